@@ -140,9 +140,8 @@ struct VIEWGAIN_EXPORT RayOutcomes {
 /// none per pose in the steady state: each thread's buffers grow to the largest view that it has
 /// scored and are kept. Determinism: the same bits for any number of threads, run after run.
 ///
-/// Cost of evaluate(): grows with the rays. On two threads at 128³ voxels it makes 151, 74 and 45
-/// million rays a second with AVX-512, AVX2 and SSE4; by the surface and the combined gain 0.28 and
-/// 0.22 times as many (perf/README.md). That of approximate() grows with the rays that it traces.
+/// Cost of evaluate(): grows with the rays; the surface and the combined gain cost some 4 times the
+/// paper's (perf/README.md). That of approximate() grows with the rays that it traces.
 /// The constructor costs a PinholeCamera::ray() a pixel and, by the surface and the combined gain,
 /// the hazard of a scene that has none yet.
 class VIEWGAIN_EXPORT GainEvaluator {
@@ -229,7 +228,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
                                const BatchControl& control = {}) const;
 
   /// The k best poses, very probably, in two stages: all poses are scored by about 400 of their
-  /// rays, every so manieth pixel and row, as approximate() does, and the best max(24, 4 k, 5 %) of
+  /// rays, every s-th pixel and row, as approximate() does, and the best max(24, 4 k, 5 %) of
   /// them in full (by the other gains and measures 1.6 %), so gains reported are exact; best first,
   /// ties to the lower index. A view is lost if its 400 rays make it look worse than that many
   /// others: by the paper's gain the best of 2,000 poses on 3 to 6 of 200 maps of objects, 0.4 % of
@@ -285,7 +284,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
   [[nodiscard]] const PinholeCamera& camera() const noexcept;  ///< the sensor's
   /// What a view's gain counts.
   [[nodiscard]] GainModel model() const noexcept;
-  /// Every so manieth pixel of every so manieth row.
+  /// s, where every s-th pixel of every s-th row has a ray.
   [[nodiscard]] int pixel_stride() const noexcept;
   /// Threads that a batch runs on.
   [[nodiscard]] int num_threads() const noexcept;
