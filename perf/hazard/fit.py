@@ -7,7 +7,7 @@ Models each mesh by `reconstruct`, keeps the maps after views 1, 3 and 5, and le
 sphere run through each map's unknown voxels: by distance d and elevation s over what is known, how many metres they
 pass and how often the true surface meets them there. Prints the model of the form
 
-    h = (h_inf / h_0 + exp(-d / lambda)) c(s) h_0
+    h = h_inf + h_0 c(s) exp(-d / lambda), beyond 5 lambda h_inf
 
 that makes this likeliest, and its log-likelihood per meeting on each mesh when it is left out of the fit. d and s are
 as HazardField has them: to voxels with three hits, whose normal leads to where more of 7^3 voxels is free. Run it with
@@ -26,6 +26,7 @@ VIEWS = (1, 3, 5)
 STRIDE = 5                                  # of pixels
 DISTANCES = 1e-3 * np.array([0, 5.05, 7.5, 10.05, 15, 20, 25, 30, 40, 50, 65, 85, 110, 140])  # at 0.35 m
 ELEVATIONS = np.linspace(-1.1, 1.1, 12)
+CUT = 5                                     # decay lengths to which h_0 c(s) counts, HazardConfig::Model::kCut
 PRIOR = 40                                  # meetings by which a factor is held to 1
 
 
@@ -88,19 +89,24 @@ def counts(grid, sensor, frames, scale):
 
 
 def fit(data):
-    """(log-likelihood, lambda, h_inf / h_0, h_0, c) by a grid of lambda and h_inf and, for c, scaling in turn."""
+    """(log-likelihood, lambda, h_0, h_inf, c, rates): by a grid of lambda and, in it, by the EM algorithm for which of
+    the two terms each meeting is of."""
     passed, met = data
     middle = np.append((DISTANCES[:-1] + DISTANCES[1:]) / 2, 1.2 * DISTANCES[-1])
     best = None
     for decay in 1e-3 * np.array([12, 14, 16, 18, 20, 22, 25]):
-        for far in (0, 1e-3, 3e-3, 1e-2):
-            base = (np.exp(-middle / decay) + far)[:, None]
-            c = (met.sum(0) + PRIOR) / ((passed * base).sum(0) * met.sum() / (passed * base).sum() + PRIOR)
-            c /= c.max()
-            h = met.sum() / (passed * base * c).sum()
-            value = likelihood(data, h * base * c)
-            if best is None or value > best[0]:
-                best = (value, decay, far, h, c, h * base * c)
+        falls = np.where(middle <= CUT * decay, np.exp(-middle / decay), 0)[:, None]
+        exposed = (passed * falls).sum(0)
+        near, far = np.full(passed.shape[1], met.sum() / exposed.sum()), 0.5 * met.sum() / passed.sum()
+        for _ in range(300):
+            of_near = met * near * falls / (near * falls + far)
+            mean = of_near.sum() / exposed.sum()
+            near = (of_near.sum(0) + PRIOR) / (exposed + PRIOR / mean)
+            far = (met - of_near).sum() / passed.sum()
+        rates = near * falls + far
+        value = likelihood(data, rates)
+        if best is None or value > best[0]:
+            best = (value, decay, near.max(), far, near / near.max(), rates)
     return best
 
 
@@ -134,8 +140,8 @@ def main():
         grids = [maps / "maps" / f"{view:02}.vdb" for view in VIEWS]
         data[mesh.stem] = sum(counts(viewgain.BeliefGrid.load(g), sensor, frames, args.size / 0.35)
                               for g in grids if g.exists())
-    _, decay, far, h, c, _ = fit(sum(data.values()))
-    print(f"near_rate {h * 0.35:.3g} / size, decay_length {decay / 0.35:.3g} size, far_rate {h * far * 0.35:.3g} / size")
+    _, decay, near, far, c, _ = fit(sum(data.values()))
+    print(f"near_rate {near * 0.35:.3g} / size, decay_length {decay / 0.35:.3g} size, far_rate {far * 0.35:.3g} / size")
     print("c", " ".join(f"{value:.3g}" for value in c))
     for name, own in data.items():
         others = sum(counted for other, counted in data.items() if other != name)

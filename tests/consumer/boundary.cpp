@@ -28,10 +28,10 @@ class NoProposal : public viewgain::ViewpointGeneration {
  public:
   viewgain::Proposal generate(const viewgain::Pose&) override { return {}; }
 };
-class NoDecision : public viewgain::DecisionMaking {
+class NoDecision : public DecisionMaking {
  public:
-  std::optional<viewgain::Decision> decide(const viewgain::Pose&,
-                                           std::span<const viewgain::Candidate>) override {
+  std::optional<Decision> decide(const viewgain::Pose&,
+                                 std::span<const viewgain::Candidate>) override {
     return {};
   }
 };

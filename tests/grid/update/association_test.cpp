@@ -22,6 +22,7 @@
 
 namespace viewgain {
 namespace {
+using Carve = IntegrationConfig::Carve;
 
 using namespace test;
 
@@ -58,14 +59,16 @@ TEST(Association, EqualsASearch) {
       sensor.noise = ConstantNoise{sigma * kVoxel, 0.003};
       BeliefGrid grid = turned_grid();
       VoxelOracle oracle(grid);
-      FrameIntegrator integrator(sensor, {carve, Occupancy::probabilistic, {}}, {2});
+      FrameIntegrator integrator(sensor, {carve, IntegrationConfig::Occupancy::probabilistic, {}},
+                                 {2});
       std::uint64_t moved = 0;
       for (int view = 0; view < 4; ++view) {
         const Pose pose = ring_view(view);
         const DepthFrame frame =
             noisy(sensor, see_spheres(sensor, pose, three_spheres_in_a_room()), random);
         const IntegrationReport report = integrator.integrate(grid, frame, pose);
-        oracle.integrate(sensor, frame, pose, {carve, Occupancy::probabilistic, {}});
+        oracle.integrate(sensor, frame, pose,
+                         {carve, IntegrationConfig::Occupancy::probabilistic, {}});
         EXPECT_EQ(oracle.differences(grid), 0U) << sigma << " voxels, view " << view;
         EXPECT_EQ(report.voxels_hit, oracle.hit()) << sigma << " voxels, view " << view;
         moved += oracle.moved();
@@ -142,7 +145,8 @@ TEST(Association, TheBeliefTakesThePlaceOfTheReading) {
 
 TEST(Association, SurfaceThatHasGoneAttractsNothing) {
   BeliefGrid grid = column();
-  FrameIntegrator integrator(one_pixel(0.01), {Carve::lines, Occupancy::probabilistic, {}});
+  FrameIntegrator integrator(one_pixel(0.01),
+                             {Carve::lines, IntegrationConfig::Occupancy::probabilistic, {}});
   const Pose beside(Eigen::Matrix3d::Identity(), {0.004, 0.004, 0});
   const auto see = [&](float depth, int times) {
     for (int i = 0; i < times; ++i) integrator.integrate(grid, {1, 1, {depth}}, beside);
@@ -185,7 +189,8 @@ TEST(Association, QuietReadingsAndTheLiteralRuleStayWhereTheyAre) {
   read(grid, 0.001, 0.495, 50);
   read(grid, 0.0049, 0.485);
   EXPECT_EQ(hits(grid, 48), 1U);
-  FrameIntegrator literal(one_pixel(0.02), {Carve::cones, Occupancy::literal, {}});
+  FrameIntegrator literal(one_pixel(0.02),
+                          {Carve::cones, IntegrationConfig::Occupancy::literal, {}});
   literal.integrate(grid, {1, 1, {0.475F}}, {});
   EXPECT_EQ(hits(grid, 47), 1U);
 }
@@ -204,7 +209,7 @@ TEST(Association, NothingGoesIntoTheWorkspaceOrOutOfIt) {
 double thickness(const BeliefGrid& grid) {
   double occupied = 0;
   std::set<std::array<int, 2>> columns;
-  grid.for_each_occupied([&](const VoxelValue& at) {
+  grid.for_each_occupied([&](const BeliefGrid::VoxelValue& at) {
     const Index3 v = at.voxel;
     if (std::abs(v.x) > 8 || std::abs(v.y) > 8) return;
     ++occupied;
