@@ -28,7 +28,7 @@ class NoProposal : public viewgain::ViewpointGeneration {
  public:
   viewgain::Proposal generate(const viewgain::Pose&) override { return {}; }
 };
-class NoDecision : public DecisionMaking {
+class NoDecision : public viewgain::DecisionMaking {
  public:
   std::optional<Decision> decide(const viewgain::Pose&,
                                  std::span<const viewgain::Candidate>) override {
