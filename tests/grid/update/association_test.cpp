@@ -259,6 +259,8 @@ TEST(Association, AStepStaysAStep) {
 }
 
 TEST(Association, TheOrderOfPointsDoesNotMatter) {
+  Sensor sensor = small_sensor(48, 36);
+  sensor.noise = ConstantNoise{0.9 * kVoxel, 0.003};
   std::mt19937 random(6);
   std::vector<std::array<double, 3>> points;
   std::normal_distribution<double> normal;
