@@ -369,12 +369,15 @@ TEST_F(Follow, AnEmptyViewBreaksItsPromise) {
   write_png(dir / "dark.png", GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)});
   for (const char* rule : {"0", "1", "2"}) {
     begin_with_one_frame();
-    run_well(follow({"--stop-promises", rule}));
+    fs::remove(dir / "live/done");
+    const pid_t child = start(follow({"--stop-promises", rule}));
+    ASSERT_TRUE(wait_for(1)) << rule;
     const json first = json::parse(read("plan/next.json"));
     EXPECT_EQ(first["stop_reason"], nullptr) << rule;
     write(name(1) + ".depth.png", read("dark.png"));
     write(name(1) + ".pose.txt", matrix_text(best_of(first)));
-    run_well(follow({"--stop-promises", rule}));
+    write("live/done", "");
+    EXPECT_EQ(end_of(child), 0) << rule;
     const json reason = json::parse(read("plan/next.json"))["stop_reason"];
     EXPECT_EQ(reason, *rule == '1' ? json("promises") : json(nullptr)) << rule;
   }
