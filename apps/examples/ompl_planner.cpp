@@ -36,7 +36,7 @@ viewgain::BeliefGrid make_map() {
   viewgain::BeliefGrid map(
       {.voxel_size = 0.02, .workspace = {{-0.8, -0.8, 0}, {0.8, 0.8, 0.9}}, .prior_sigma = 0.01});
   const viewgain::Belief well_known{.information = {1e8F, 1e8F, 1e8F}, .hits = 500};
-  std::vector<viewgain::VoxelValue> voxels;
+  std::vector<viewgain::BeliefGrid::VoxelValue> voxels;
   for (int x = -40; x < 40; ++x) {
     for (int y = -40; y < 40; ++y) {
       for (int z = 0; z < 45; ++z) {

@@ -171,7 +171,7 @@ double time_ours(const BeliefGrid& before, FrameIntegrator& integrator, const Ca
 BeliefGrid literal_hits(int voxels, Sensor sensor, const std::vector<CamelView>& views) {
   sensor.noise = ConstantNoise{1e-4, 1e-3};
   BeliefGrid grid = test::empty_camel_grid(voxels);
-  FrameIntegrator integrator(sensor, {.carve = Carve::lines});
+  FrameIntegrator integrator(sensor, {.carve = IntegrationConfig::Carve::lines});
   for (const CamelView& view : views) {
     integrator.integrate(grid, view.frame, view.T_world_camera);
   }
@@ -209,7 +209,7 @@ nlohmann::ordered_json measure_integrate(const IntegrateOptions& options) {
   const std::vector<CamelView> views = test::camel_views(4, options.mesh);
   const std::vector<CamelView> first(views.begin(), views.begin() + 3);
   const CamelView& next = views.back();
-  const IntegrationConfig with_lines{.carve = Carve::lines};
+  const IntegrationConfig with_lines{.carve = IntegrationConfig::Carve::lines};
 
   const BeliefGrid cones = test::camel_grid(options.voxels, first);
   const BeliefGrid lines = test::camel_grid(options.voxels, first, with_lines);

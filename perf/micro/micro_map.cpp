@@ -60,7 +60,7 @@ BeliefGrid one_more(const MicroScene& micro, FrameIntegrator& integrator, double
   return grid;
 }
 
-void integrate(benchmark::State& state, Carve carve) {
+void integrate(benchmark::State& state, IntegrationConfig::Carve carve) {
   const MicroScene& micro = MicroScene::get();
   FrameIntegrator integrator(micro.sensor, {.carve = carve}, kOneThread);
   for (auto _ : state) {
@@ -129,7 +129,8 @@ void register_map_benchmarks() {
   wall(benchmark::RegisterBenchmark("hazard_field", hazard_field));
   wall(benchmark::RegisterBenchmark("brick_table", brick_table));
   for (const auto& [name, carve] :
-       {std::pair("integrate/cones", Carve::cones), std::pair("integrate/lines", Carve::lines)}) {
+       {std::pair("integrate/cones", IntegrationConfig::Carve::cones),
+        std::pair("integrate/lines", IntegrationConfig::Carve::lines)}) {
     benchmark::RegisterBenchmark(name, integrate, carve)
         ->Unit(benchmark::kMillisecond)
         ->UseManualTime();

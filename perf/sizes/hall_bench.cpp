@@ -97,12 +97,12 @@ int run_hall(const HallOptions& options) {
   const double of_poses = seconds_of([&] { evaluator.evaluate(poses, gains); });
   const std::uint64_t peak = peak_resident_bytes();
 
-  const GridStatistics known = grid.statistics();
+  const BeliefGrid::Statistics known = grid.statistics();
   Box half = kWorkspace;
   half.max[0] = 0;
   std::uint64_t forgotten = 0;
   const double of_forgetting = seconds_of([&] { forgotten = grid.forget(half); });
-  const GridStatistics left = grid.statistics();
+  const BeliefGrid::Statistics left = grid.statistics();
   const bool is_right = left.unknown == known.unknown + forgotten && forgotten > 0;
 
   nlohmann::ordered_json json{

@@ -17,7 +17,7 @@ struct MemoryOptions {
 /// What a map and its scene take [byte].
 struct MemoryFigures {
   std::uint64_t peak = 0;   ///< VmHWM, from the frames being there to the scene being built
-  std::uint64_t map = 0;    ///< GridStatistics::bytes
+  std::uint64_t map = 0;    ///< BeliefGrid::Statistics::bytes
   std::uint64_t scene = 0;  ///< VoxelScene::bytes: without what it shares with the map and the BVH
 };
 

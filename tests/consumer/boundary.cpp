@@ -30,8 +30,8 @@ class NoProposal : public viewgain::ViewpointGeneration {
 };
 class NoDecision : public viewgain::DecisionMaking {
  public:
-  std::optional<viewgain::Decision> decide(const viewgain::Pose&,
-                                           std::span<const viewgain::Candidate>) override {
+  std::optional<Decision> decide(const viewgain::Pose&,
+                                 std::span<const viewgain::Candidate>) override {
     return {};
   }
 };

@@ -12,6 +12,7 @@
 
 namespace viewgain {
 namespace {
+using Decision = DecisionMaking::Decision;
 
 using test::expect_error;
 

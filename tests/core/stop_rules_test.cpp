@@ -29,7 +29,7 @@ TEST(StopRules, GoOnFromWhatTheyRemember) {
     for (;;) {
       if (chance(0.8)) progress.entropy_removed += value(), progress.unknown_voxels -= 5;
       progress.new_area = chance(0.8) ? 0.1 * value() : std::numeric_limits<double>::quiet_NaN();
-      Decision decision;
+      DecisionMaking::Decision decision;
       decision.area = decision.gain = 0.4 * value();
       if (chance(0.7)) decision.gain_per_voxel = value();
       if (chance(0.7)) decision.best_area = 0.3 * value();

@@ -93,11 +93,11 @@ ViewGain gain_of_hits(const BeliefGrid& grid, const Sensor& sensor, const GainCo
   ViewGain result;
   if (!is_rigid(T_world_camera)) return result;
   const std::vector<Ray> rays = rays_of(grid, sensor, config, T_world_camera);
-  result.status = ViewStatus::ok;
+  result.status = ViewGain::Status::ok;
   result.rays = static_cast<std::uint32_t>(rays.size());
   result.gain = result.exploration = result.refinement = result.posterior_entropy = 0;
   if (state_at(grid, T_world_camera.translation()) == VoxelState::occupied) {
-    result.status = ViewStatus::camera_in_occupied;
+    result.status = ViewGain::Status::camera_in_occupied;
     return result;
   }
 

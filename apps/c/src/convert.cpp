@@ -56,7 +56,7 @@ void write_outcomes(const GainEvaluator& evaluator, const double* T_world_camera
                     vg_ray_outcomes* outcomes) {
   require("T_world_camera", T_world_camera);
   require_struct(outcomes, "vg_ray_outcomes");
-  const RayOutcomes of = evaluator.outcomes(rigid_pose_of(T_world_camera));
+  const GainEvaluator::RayOutcomes of = evaluator.outcomes(rigid_pose_of(T_world_camera));
   if (of.rays == 0) reject("the pose is not a rigid transform of finite numbers");
   write_struct(outcomes, {.struct_size = 0,
                           .rays = of.rays,

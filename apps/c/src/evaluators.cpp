@@ -19,7 +19,7 @@ namespace {
 static_assert(VG_GAIN_COMBINED == static_cast<int>(GainModel::combined));
 static_assert(VG_TRACER_SWEEP == static_cast<int>(ExecConfig::Tracer::sweep));
 static_assert(VG_TRACE == static_cast<int>(Criterion::trace));
-static_assert(VG_VIEW_CAMERA_IN_OCCUPIED == static_cast<int>(ViewStatus::camera_in_occupied));
+static_assert(VG_VIEW_CAMERA_IN_OCCUPIED == static_cast<int>(ViewGain::Status::camera_in_occupied));
 static_assert(VG_HIT_OBSTACLE == static_cast<int>(RayHit::Kind::obstacle));
 
 GainConfig settings_of(const vg_evaluator_config& config) {
@@ -268,7 +268,7 @@ vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_c
     require_size<vg_contribution>(contribution_size, "vg_contribution (contribution_size)");
     const Pose pose = rigid_pose_of(T_world_camera);
     const std::vector<VoxelContribution> own = evaluator->evaluator.contributions(pose);
-    if (own.empty() && evaluator->evaluator.evaluate(pose).status == ViewStatus::bad_pose) {
+    if (own.empty() && evaluator->evaluator.evaluate(pose).status == ViewGain::Status::bad_pose) {
       reject("the pose is off from a rigid transform by " + short_text(orthonormality_error(pose)) +
              "; 1e-3 is allowed");
     }

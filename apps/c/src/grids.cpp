@@ -94,7 +94,7 @@ vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info) {
     require("grid", grid);
     require_struct(info, "vg_grid_info");
     const BeliefGrid& map = grid->grid;
-    const GridStatistics statistics = map.statistics();
+    const BeliefGrid::Statistics statistics = map.statistics();
     const Index3 base = map.min_index(), dims = map.dims();
     vg_grid_info whole{.struct_size = 0,
                        .min_index = {base.x, base.y, base.z},
@@ -161,7 +161,7 @@ vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* log_odd
     require("grid", grid);
     require_array(voxels, count, "voxels");
     require_array(log_odds, count, "log_odds");
-    std::vector<VoxelValue> changes(count);
+    std::vector<BeliefGrid::VoxelValue> changes(count);
     for (std::size_t i = 0; i < count; ++i) {
       const std::int32_t* at = voxels + 3 * i;
       changes[i] = {{at[0], at[1], at[2]}, log_odds[i], {}};
@@ -187,7 +187,7 @@ vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds
     require_array(voxels, capacity, "voxels");
     require("found", found);
     std::size_t count = 0;
-    grid->grid.for_each_occupied([&](const VoxelValue& one) {
+    grid->grid.for_each_occupied([&](const BeliefGrid::VoxelValue& one) {
       const std::size_t i = count++;
       if (i >= capacity) return;
       std::copy_n(std::array{one.voxel.x, one.voxel.y, one.voxel.z}.data(), 3, voxels + 3 * i);
@@ -226,8 +226,8 @@ vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_conf
       reject("occupancy is " + std::to_string(chosen.occupancy) +
              "; it must be 0 or 1 (VG_OCCUPANCY_)");
     }
-    const IntegrationConfig settings{static_cast<Carve>(chosen.carve),
-                                     static_cast<Occupancy>(chosen.occupancy),
+    const IntegrationConfig settings{static_cast<IntegrationConfig::Carve>(chosen.carve),
+                                     static_cast<IntegrationConfig::Occupancy>(chosen.occupancy),
                                      given(chosen.support_plane)};
     return vg_integrator{FrameIntegrator(camera, settings, {.num_threads = chosen.num_threads}),
                          HazardCalibration(camera, settings.support_plane), camera.camera};

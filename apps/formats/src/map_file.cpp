@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/formats/map_file.hpp"
 
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -46,12 +47,12 @@ BeliefGrid load_map(const std::filesystem::path& path, const Sensor* sensor, Oct
 MapOfSensor load_map_of_sensor(const std::filesystem::path& path, const Sensor* sensor,
                                OctomapConfig config) {
   if (!is_octomap(path)) {
-    VdbMap map = load_vdb_map(path);
-    MapOfSensor result{std::move(map.grid), std::nullopt};
-    if (const auto note = map.notes.find(kSensorNote); note != map.notes.end()) {
+    std::map<std::string, std::string> notes;
+    MapOfSensor result{load_vdb(path, &notes), std::nullopt};
+    if (const auto note = notes.find(kSensorNote); note != notes.end()) {
       result.sensor = parse_sensor_toml(note->second, path.string());
     }
-    if (const auto note = map.notes.find(kFramesNote); note != map.notes.end()) {
+    if (const auto note = notes.find(kFramesNote); note != notes.end()) {
       result.frames = frames_of_note(note->second, path.string());
     }
     return result;

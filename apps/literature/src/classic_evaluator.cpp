@@ -12,23 +12,11 @@
 #include "gain_sums.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/literature/classic_gains.hpp"
+#include "viewgain/support/nearest_name.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/view_rays.hpp"
 
 namespace viewgain {
-namespace {
-
-std::size_t parse(std::string_view name, const std::vector<std::string>& names, const char* what) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  std::string text("unknown ");
-  text.append(what).append(" \"").append(name).append("\"; valid are");
-  for (const std::string& valid : names) text.append(" ").append(valid);
-  throw Error(ErrorCode::invalid_argument, text);
-}
-
-}  // namespace
-
 const std::vector<std::string>& classic_gain_names() {
   static const std::vector<std::string> names{
       "occlusion_aware",   "unobserved_voxel",      "average_entropy", "rear_side_voxel",
@@ -40,7 +28,7 @@ std::string_view classic_gain_name(ClassicGain gain) {
   return classic_gain_names().at(static_cast<std::size_t>(gain));
 }
 ClassicGain parse_classic_gain(std::string_view name) {
-  return static_cast<ClassicGain>(parse(name, classic_gain_names(), "classic gain"));
+  return static_cast<ClassicGain>(place_of_name(name, classic_gain_names(), "classic gain"));
 }
 std::string_view classic_gain_unit(ClassicGain gain) {
   static constexpr std::array<std::string_view, 10> kUnits{
@@ -59,7 +47,7 @@ std::string_view gain_semantics_name(GainSemantics semantics) {
   return gain_semantics_names().at(static_cast<std::size_t>(semantics));
 }
 GainSemantics parse_gain_semantics(std::string_view name) {
-  return static_cast<GainSemantics>(parse(name, gain_semantics_names(), "semantics"));
+  return static_cast<GainSemantics>(place_of_name(name, gain_semantics_names(), "semantics"));
 }
 
 }  // namespace viewgain
@@ -190,7 +178,7 @@ namespace {
 class SumConsumer final : public RayConsumer {
  public:
   SumConsumer(const ClassicMapData& data, const ClassicConfig& config, const VoxelValues& values,
-              std::span<double> results, std::span<ViewStatus> statuses)
+              std::span<double> results, std::span<ViewGain::Status> statuses)
       : data_(data),
         gains_(config.gains),
         view_{data.table, values, 2 * data.occlusion_depth,
@@ -218,10 +206,10 @@ class SumConsumer final : public RayConsumer {
   }
   void finish(std::size_t i, const ViewGain& view, ViewScratch& scratch) const override {
     if (!statuses_.empty()) statuses_[i] = view.status;
-    if (view.status == ViewStatus::bad_pose) return;
+    if (view.status == ViewGain::Status::bad_pose) return;
     for (std::size_t g = 0; g < gains_.size(); ++g) {
       results_[i * gains_.size() + g] =
-          view.status == ViewStatus::camera_in_occupied
+          view.status == ViewGain::Status::camera_in_occupied
               ? 0.0
               : value(gains_[g], static_cast<Scratch&>(scratch), view);
     }
@@ -269,7 +257,7 @@ class SumConsumer final : public RayConsumer {
   ClassicView view_;
   const ClassicKernels& kernels_;
   std::span<double> results_;
-  std::span<ViewStatus> statuses_;
+  std::span<ViewGain::Status> statuses_;
 };
 
 }  // namespace
@@ -297,7 +285,7 @@ ClassicGainEvaluator ClassicGainEvaluator::with_map(std::shared_ptr<const Classi
 
 std::size_t ClassicGainEvaluator::evaluate(std::span<const Pose> T_world_camera,
                                            std::span<double> results,
-                                           std::span<ViewStatus> statuses,
+                                           std::span<ViewGain::Status> statuses,
                                            const BatchControl& control) const {
   const std::size_t poses = T_world_camera.size(), gains = config().gains.size();
   if (results.size() != poses * gains) {
@@ -309,7 +297,7 @@ std::size_t ClassicGainEvaluator::evaluate(std::span<const Pose> T_world_camera,
            " statuses");
   }
   std::fill(results.begin(), results.end(), kNaN);
-  std::fill(statuses.begin(), statuses.end(), ViewStatus::bad_pose);
+  std::fill(statuses.begin(), statuses.end(), ViewGain::Status::bad_pose);
   const SumConsumer consumer(impl_->data(), config(), impl_->values, results, statuses);
   return for_each_view_rays(impl_->rays, T_world_camera, /*from_occupied=*/false, consumer,
                             control);

@@ -12,6 +12,7 @@
 #include "viewgain/planner/rank_views.hpp"
 #include "viewgain/planner/stop_settings.hpp"
 #include "viewgain/support/mix64.hpp"
+#include "viewgain/support/nearest_name.hpp"
 
 namespace viewgain {
 const std::vector<std::string>& policy_names() {
@@ -21,14 +22,7 @@ const std::vector<std::string>& policy_names() {
 }
 
 Policy parse_policy(std::string_view name) {
-  const std::vector<std::string>& names = policy_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    std::string text = "unknown policy \"" + std::string(name) + "\"; valid are";
-    for (const std::string& valid : names) text.append(" ").append(valid);
-    throw Error(ErrorCode::invalid_argument, text);
-  }
-  return static_cast<Policy>(found - names.begin());
+  return static_cast<Policy>(place_of_name(name, policy_names(), "policy"));
 }
 
 void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
@@ -61,8 +55,8 @@ PolicyDecision::PolicyDecision(const SurfaceModel& model, const CandidateGenerat
   }
 }
 
-std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
-                                               std::span<const Candidate> candidates) {
+std::optional<DecisionMaking::Decision> PolicyDecision::decide(
+    const Pose& T_world_camera, std::span<const Candidate> candidates) {
   if (candidates.empty()) return std::nullopt;
   const bool by_gain = config_.policy == Policy::gain && !classic_;
   const GainEvaluator& evaluator = this->evaluator();
@@ -74,7 +68,7 @@ std::optional<Decision> PolicyDecision::decide(const Pose& T_world_camera,
   if (!chosen) return std::nullopt;
   const ViewGain gain =
       scored ? gains[*chosen] : evaluator.evaluate(candidates[*chosen].T_world_camera);
-  Decision decision;
+  DecisionMaking::Decision decision;
   decision.candidate = *chosen;
   decision.gain = gain.gain;
   const std::uint32_t touched = gain.unknown_voxels + gain.occupied_voxels;

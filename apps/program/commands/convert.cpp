@@ -55,7 +55,7 @@ void convert(const Options& options) {
   if (map.sensor) how = noting_sensor(*map.sensor, std::move(how));
   const LostInTree lost = save_map(grid, options.out, how);
   warn_of_lost_frame(lost, options.out);
-  const GridStatistics statistics = grid.statistics();
+  const BeliefGrid::Statistics statistics = grid.statistics();
   const Index3 dims = grid.dims();
   if (options.common.json) {
     Json json = {{"in", options.in}, {"out", options.out}};

@@ -23,25 +23,26 @@ struct Options {
 
 struct Region {
   Box box;
-  GridStatistics statistics;
+  BeliefGrid::Statistics statistics;
+  double mean_sigma;  // [m]
 };
 
 std::optional<Region> region_of(const Options& options, const BeliefGrid& grid,
                                 Criterion criterion) {
   if (options.region.empty()) return std::nullopt;
   const Box box = parse_box("--region", options.region);
-  const GridStatistics s = grid.statistics(box, criterion);
+  const BeliefGrid::Statistics s = grid.statistics(box, criterion);
   if (s.unknown + s.free + s.occupied == 0) {
     refuse("--region " + options.region + ": holds no voxel of the map");
   }
-  return Region{box, s};
+  return Region{box, s, grid.mean_sigma(box)};
 }
 
 Json region_json(const Region& region) {
-  const GridStatistics& s = region.statistics;
+  const BeliefGrid::Statistics& s = region.statistics;
   return {{"box", to_json(region.box)},
           {"entropy_removed", s.entropy_removed},
-          {"mean_sigma", s.mean_sigma},  // a NaN becomes null
+          {"mean_sigma", region.mean_sigma},  // a NaN becomes null
           {"hits", s.hits},
           {"unknown", s.unknown},
           {"free", s.free},
@@ -49,13 +50,13 @@ Json region_json(const Region& region) {
 }
 
 void print(const Region& region, const char* unit) {
-  const GridStatistics& s = region.statistics;
+  const BeliefGrid::Statistics& s = region.statistics;
   std::printf("region           %s m (grid frame)\n", describe(region.box).c_str());
   std::printf("  unknown        %s\n", with_commas(s.unknown).c_str());
   std::printf("  free           %s\n", with_commas(s.free).c_str());
   std::printf("  occupied       %s\n", with_commas(s.occupied).c_str());
   std::printf("  entropy removed %.6g %s\n", s.entropy_removed, unit);
-  std::printf("  mean sigma     %.4g m\n", s.mean_sigma);
+  std::printf("  mean sigma     %.4g m\n", region.mean_sigma);
   std::printf("  hits           %s\n", with_commas(s.hits).c_str());
 }
 
@@ -81,7 +82,7 @@ void info(const Options& options) {
     return;
   }
   const std::optional<Region> region = region_of(options, grid, criterion);
-  const GridStatistics statistics = grid.statistics(criterion);
+  const BeliefGrid::Statistics statistics = grid.statistics(criterion);
   const Index3 dims = grid.dims();
   const double per_occupied = static_cast<double>(statistics.bytes) /
                               static_cast<double>(statistics.occupied);  // NaN or infinity: null

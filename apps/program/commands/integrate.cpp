@@ -159,7 +159,7 @@ Totals integrate_all(ReadingSource& source, const Options& options, std::set<std
 
 void print_summary(const Options& options, const ReadingSource& source, const BeliefGrid& grid,
                    const Totals& totals, const LostInTree& lost, double seconds) {
-  const GridStatistics statistics = grid.statistics();
+  const BeliefGrid::Statistics statistics = grid.statistics();
   const Index3 dims = grid.dims();
   const std::size_t taken = totals.seconds.size();
   const std::optional<double> frame_seconds = median(totals.seconds);

@@ -13,7 +13,8 @@
 namespace viewgain::app {
 
 /// What a call says in JSON of a map that it has written.
-[[nodiscard]] inline Json map_json(const BeliefGrid& grid, const GridStatistics& statistics) {
+[[nodiscard]] inline Json map_json(const BeliefGrid& grid,
+                                   const BeliefGrid::Statistics& statistics) {
   const Index3 dims = grid.dims();
   return {{"voxel_size", grid.voxel_size()},  {"workspace", to_json(grid.workspace())},
           {"dims", {dims.x, dims.y, dims.z}}, {"prior_sigma", grid.prior_sigma()},

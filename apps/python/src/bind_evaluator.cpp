@@ -231,8 +231,8 @@ void bind_evaluator(py::module_& module) {
       "The names that ``gain`` takes.\n\nReturns\n-------\nlist of str");
   module.attr("DEFAULT_GAIN") = gain_model_name(kDefaultGain);
   py::list statuses;
-  for (const ViewStatus status :
-       {ViewStatus::ok, ViewStatus::bad_pose, ViewStatus::camera_in_occupied}) {
+  for (const ViewGain::Status status :
+       {ViewGain::Status::ok, ViewGain::Status::bad_pose, ViewGain::Status::camera_in_occupied}) {
     statuses.append(std::string(view_status_name(status)));
   }
   module.attr("VIEW_STATUS_NAMES") = py::tuple(statuses);

@@ -33,7 +33,7 @@ struct Scene {
 [[nodiscard]] Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes);
 
 /// Needs the GIL.
-[[nodiscard]] inline py::object named_outcomes(const RayOutcomes& of) {
+[[nodiscard]] inline py::object named_outcomes(const GainEvaluator::RayOutcomes& of) {
   return named("RayOutcomes", of.rays, of.unknown, of.known_surface, of.obstacle, of.too_near,
                of.out_of_range, of.out_of_map);
 }

@@ -58,7 +58,7 @@ stop_gain : float, optional
     trace]. Default: 1.2; for trace 0.01 of the first ranking's.
 stop_area : float, optional
     By gain "surface" and "combined": end when no candidate promises this share of the surface so
-    far as new surface, on the mean of three rankings; 0: never. Default: 0.003.
+    far as new surface, on the mean of three rankings; 0: never. Default: 0.004.
 state : path-like, optional
     A file of ``save`` to go on from, its map laid out as here; what ``load`` gives.
 tracer : {"automatic", "embree", "sweep"}

@@ -63,7 +63,7 @@ class Planner {
     if (interrupted()) return StopReason::interrupted;
     const std::vector<Candidate>& candidates = record.proposal.candidates;
     if (candidates.empty()) return nowhere_to_go(record.proposal);
-    const std::optional<Decision> decision =
+    const std::optional<DecisionMaking::Decision> decision =
         timed(record, "score", [&] { return decision_.decide(record.T_world_camera, candidates); });
     if (decision && decision->candidate >= candidates.size()) {
       throw Error(ErrorCode::invalid_argument, "planning: the decision is candidate " +
@@ -123,7 +123,7 @@ PlanningResult active_view_planning(const Pose& x_0, DataAcquisition& acquisitio
   PlanningResult result;
   Pose next = x_0;
   std::optional<Candidate> chosen;
-  Decision choice{};  // of the view at hand; x_0 was not chosen
+  DecisionMaking::Decision choice{};  // of the view at hand; x_0 was not chosen
   for (;;) {
     ViewRecord record;
     record.index = result.views.size();

@@ -109,8 +109,9 @@ bool StopRules::stops_for_area(double share) {
          sum < config_.stop_area * static_cast<double>(memory_.area_shares.size());
 }
 
-std::optional<StopReason> StopRules::after_decision(const std::optional<Decision>& decision,
-                                                    const Proposal& proposal, double surface_area) {
+std::optional<StopReason> StopRules::after_decision(
+    const std::optional<DecisionMaking::Decision>& decision, const Proposal& proposal,
+    double surface_area) {
   if (!decision) return nowhere_to_go(proposal);
   // A policy that never stops for them promises nothing.
   if (!std::isnan(decision->best_area)) memory_.promised_area = decision->area;

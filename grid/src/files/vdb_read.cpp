@@ -39,14 +39,15 @@ class Loader {
  public:
   explicit Loader(std::filesystem::path path) : path_(std::move(path)) {}
 
-  [[nodiscard]] VdbMap load() const {
+  [[nodiscard]] BeliefGrid load(std::map<std::string, std::string>* notes) const {
     const VdbContents contents(path_);
     try {
       check_version(*contents.metadata);
       auto storage = make_storage(*contents.metadata);
       load_states(contents, *storage);
       load_beliefs(contents, *storage);
-      return {GridAccess::wrap(std::move(storage)), notes(*contents.metadata)};
+      if (notes != nullptr) *notes = notes_of(*contents.metadata);
+      return GridAccess::wrap(std::move(storage));
     } catch (const openvdb::Exception& error) {
       fail(std::string("cannot be read by OpenVDB: ") + error.what());
     }
@@ -73,7 +74,8 @@ class Loader {
     return *std::move(result);
   }
 
-  [[nodiscard]] std::map<std::string, std::string> notes(const openvdb::MetaMap& metadata) const {
+  [[nodiscard]] std::map<std::string, std::string> notes_of(
+      const openvdb::MetaMap& metadata) const {
     std::map<std::string, std::string> notes;
     for (auto entry = metadata.beginMeta(); entry != metadata.endMeta(); ++entry) {
       const std::string& name = entry->first;
@@ -340,11 +342,9 @@ class Loader {
 
 }  // namespace
 
-BeliefGrid load_vdb(const std::filesystem::path& path) {
-  return std::move(Loader(path).load().grid);
+BeliefGrid load_vdb(const std::filesystem::path& path, std::map<std::string, std::string>* notes) {
+  return Loader(path).load(notes);
 }
-
-VdbMap load_vdb_map(const std::filesystem::path& path) { return Loader(path).load(); }
 
 HazardConfig::Volume load_hazard_vdb(const std::filesystem::path& path, const BeliefGrid& grid) {
   const VdbContents contents(path);

@@ -46,7 +46,7 @@ std::uint64_t tree_bytes(const CodeTree& tree) {
   return bytes;
 }
 
-void check_value(const GridStorage& s, const VoxelValue& value) {
+void check_value(const GridStorage& s, const BeliefGrid::VoxelValue& value) {
   const auto fail = [](const std::string& what) { throw Error(ErrorCode::invalid_argument, what); };
   const Index3& v = value.voxel;
   if (!s.lattice.contains(v)) {
@@ -60,7 +60,7 @@ void check_value(const GridStorage& s, const VoxelValue& value) {
 }
 
 /// A value and the key of its block.
-using KeyedValue = std::pair<std::uint64_t, const VoxelValue*>;
+using KeyedValue = std::pair<std::uint64_t, const BeliefGrid::VoxelValue*>;
 
 /// Sets voxels of one block; of those given twice the last counts.
 void set_in_block(GridStorage& s, std::span<const KeyedValue> values) {
@@ -236,21 +236,22 @@ std::optional<Belief> BeliefGrid::belief(Index3 voxel) const {
 }
 
 void BeliefGrid::set(Index3 voxel, float log_odds, const std::optional<Belief>& belief) {
-  const VoxelValue value{voxel, log_odds, belief};
+  const BeliefGrid::VoxelValue value{voxel, log_odds, belief};
   check_value(*storage_, value);
   const KeyedValue keyed(storage_->lattice.key(voxel), &value);
   set_in_block(*storage_, std::span(&keyed, 1));
   ++storage_->time;
 }
 
-void BeliefGrid::set(std::span<const VoxelValue> voxels) {
+void BeliefGrid::set(std::span<const BeliefGrid::VoxelValue> voxels) {
   GridStorage& s = *storage_;
-  for (const VoxelValue& value : voxels) check_value(s, value);
+  for (const BeliefGrid::VoxelValue& value : voxels) check_value(s, value);
 
   // Block by block, so that its beliefs are copied once.
   std::vector<KeyedValue> by_block;
   by_block.reserve(voxels.size());
-  for (const VoxelValue& value : voxels) by_block.emplace_back(s.lattice.key(value.voxel), &value);
+  for (const BeliefGrid::VoxelValue& value : voxels)
+    by_block.emplace_back(s.lattice.key(value.voxel), &value);
   std::stable_sort(by_block.begin(), by_block.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   for (auto first = by_block.begin(), last = first; first != by_block.end(); first = last) {
@@ -327,7 +328,8 @@ void BeliefGrid::for_each_belief(const std::function<void(Index3, const Belief&)
   for (const BeliefBlockAt& block : belief_blocks(*this)) block.for_each(visit);
 }
 
-void BeliefGrid::for_each_occupied(const std::function<void(const VoxelValue&)>& visit) const {
+void BeliefGrid::for_each_occupied(
+    const std::function<void(const BeliefGrid::VoxelValue&)>& visit) const {
   const GridSnapshot now = snapshot();
   for (const GridSnapshot::Leaf& leaf : now.leaves) {
     if (leaf.occupied == LeafMask{}) continue;

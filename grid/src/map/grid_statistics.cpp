@@ -14,11 +14,11 @@ namespace {
 
 using namespace detail;
 
-GridStatistics statistics_of(const BeliefGrid& grid, const VoxelBox& range, Criterion criterion) {
+BeliefGrid::Statistics statistics_of(const BeliefGrid& grid, const VoxelBox& range,
+                                     Criterion criterion) {
   const auto prior = SymmetricMatrix3::identity(1.0 / (grid.prior_sigma() * grid.prior_sigma()));
-  const double floor = grid.voxel_size() * grid.voxel_size() / 12.0;
   const BlockLattice lattice(grid.min_index(), grid.dims());
-  GridStatistics result;
+  BeliefGrid::Statistics result;
   for (const auto& [key, block] : beliefs_of(grid)) {
     std::size_t rank = 0;
     const LeafMask part = block_mask(range, lattice.origin(key));
@@ -27,8 +27,6 @@ GridStatistics statistics_of(const BeliefGrid& grid, const VoxelBox& range, Crit
       if (test_bit(part, offset)) result.hits += hits;
     });
   }
-  double sum_of_sigmas = 0;
-  std::uint64_t believed = 0;
   const auto part_of = [&](Index3 origin, std::int32_t size) {
     return range.intersection(VoxelBox::from_dims(origin, {size, size, size}));
   };
@@ -44,10 +42,8 @@ GridStatistics statistics_of(const BeliefGrid& grid, const VoxelBox& range, Crit
         const BeliefBlock* block = find_beliefs(grid, part_of(origin, kBlockSize).min);
         if (block == nullptr) return;
         for_each_bit(intersection(occupied, block->mask), [&](unsigned offset) {
-          const SymmetricMatrix3 information = block->find(offset)->information_matrix();
-          result.entropy_removed += entropy_reduction(prior, information, criterion);
-          sum_of_sigmas += std::sqrt(information.inverse().trace() / 3.0 + floor);
-          ++believed;
+          result.entropy_removed +=
+              entropy_reduction(prior, block->find(offset)->information_matrix(), criterion);
         });
       },
       [&](Index3 origin, std::int32_t size, std::uint8_t code) {
@@ -55,19 +51,31 @@ GridStatistics statistics_of(const BeliefGrid& grid, const VoxelBox& range, Crit
       });
   result.unknown = range.volume() - result.free - result.occupied;
   result.bytes = bytes_of(grid);
-  result.mean_sigma = believed > 0 ? sum_of_sigmas / static_cast<double>(believed)
-                                   : std::numeric_limits<double>::quiet_NaN();
   return result;
 }
 
 }  // namespace
 
-GridStatistics BeliefGrid::statistics(Criterion criterion) const {
+BeliefGrid::Statistics BeliefGrid::statistics(Criterion criterion) const {
   return statistics_of(*this, VoxelBox::from_dims(min_index(), dims()), criterion);
 }
 
-GridStatistics BeliefGrid::statistics(const Box& region, Criterion criterion) const {
+BeliefGrid::Statistics BeliefGrid::statistics(const Box& region, Criterion criterion) const {
   return statistics_of(*this, voxels_in(*this, region), criterion);
+}
+
+double BeliefGrid::mean_sigma(const Box& region) const {
+  const VoxelBox range = voxels_in(*this, region);
+  const double floor = voxel_size() * voxel_size() / 12.0;
+  double sum = 0;
+  std::uint64_t believed = 0;
+  for_each_occupied([&](const VoxelValue& at) {
+    if (!at.belief || !range.contains(at.voxel)) return;
+    sum += std::sqrt(at.belief->information_matrix().inverse().trace() / 3.0 + floor);
+    ++believed;
+  });
+  return believed > 0 ? sum / static_cast<double>(believed)
+                      : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace viewgain

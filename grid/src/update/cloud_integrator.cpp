@@ -77,8 +77,9 @@ IntegrationReport CloudIntegrator::integrate(BeliefGrid& grid,
                                              const Pose& T_world_sensor) {
   Impl& m = *impl_;
   const Pose view = rigid_view(T_world_sensor);
-  m.points.load(points, view.translation(), m.config.occupancy != Occupancy::literal,
-                m.config.support_plane, m.update.pool());
+  m.points.load(points, view.translation(),
+                m.config.occupancy != IntegrationConfig::Occupancy::literal, m.config.support_plane,
+                m.update.pool());
   const Pose T_grid_world = grid.T_world_grid().inverse();
   return m.update.run(grid, {m.points, T_grid_world, view}, nullptr);
 }

@@ -50,10 +50,10 @@ IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame&
   const Pose T_grid_camera = grid.T_world_grid().inverse() * T_world_camera;
   const ConeCamera camera(m.pixels.sensor().camera, T_camera_grid);
   m.pixels.set_pose_sigma(pose_sigma);
-  m.pixels.load(frame, m.config.occupancy != Occupancy::literal, m.update.pool(),
+  m.pixels.load(frame, m.config.occupancy != IntegrationConfig::Occupancy::literal, m.update.pool(),
                 plane_seen_from(T_world_camera, m.config.support_plane));
   return m.update.run(grid, {m.pixels, T_grid_camera, T_world_camera},
-                      m.config.carve == Carve::cones ? &camera : nullptr);
+                      m.config.carve == IntegrationConfig::Carve::cones ? &camera : nullptr);
 }
 
 std::optional<Box> reading_bounds(const Sensor& sensor, const DepthFrame& frame,

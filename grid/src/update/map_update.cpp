@@ -10,8 +10,8 @@
 namespace viewgain::detail {
 
 struct MapUpdate::Impl {
-  Impl(Occupancy occupancy, const ExecConfig& exec, const BlockKernels& kernels)
-      : literal(occupancy == Occupancy::literal),
+  Impl(IntegrationConfig::Occupancy occupancy, const ExecConfig& exec, const BlockKernels& kernels)
+      : literal(occupancy == IntegrationConfig::Occupancy::literal),
         pool(exec.num_threads),
         cones(kernels),
         apply(kernels, literal) {}
@@ -24,7 +24,7 @@ struct MapUpdate::Impl {
   FrameApply apply;
 };
 
-MapUpdate::MapUpdate(Occupancy occupancy, const ExecConfig& exec)
+MapUpdate::MapUpdate(IntegrationConfig::Occupancy occupancy, const ExecConfig& exec)
     : impl_(std::make_unique<Impl>(occupancy, exec, block_kernels(select_isa()))) {}
 MapUpdate::~MapUpdate() = default;
 MapUpdate::MapUpdate(MapUpdate&&) noexcept = default;

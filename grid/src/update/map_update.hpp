@@ -15,7 +15,7 @@ namespace viewgain::detail {
 /// apply (grid/README.md).
 class MapUpdate {
  public:
-  MapUpdate(Occupancy occupancy, const ExecConfig& exec);
+  MapUpdate(IntegrationConfig::Occupancy occupancy, const ExecConfig& exec);
   ~MapUpdate();
   MapUpdate(MapUpdate&&) noexcept;
   MapUpdate& operator=(MapUpdate&&) noexcept;

@@ -41,7 +41,7 @@ std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
           return;
         }
         const ViewGain whole = driver.evaluate(T_world_camera[i], lease);
-        results[i] = {whole.gain, whole.status == ViewStatus::bad_pose ? whole.gain : 0.0,
+        results[i] = {whole.gain, whole.status == ViewGain::Status::bad_pose ? whole.gain : 0.0,
                       whole.rays};
       });
 }

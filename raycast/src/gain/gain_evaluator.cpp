@@ -42,7 +42,7 @@ struct RayHitConsumer {
 
 }  // namespace
 
-std::string_view view_status_name(ViewStatus status) {
+std::string_view view_status_name(ViewGain::Status status) {
   constexpr std::array<std::string_view, 3> kNames{"ok", "bad_pose", "camera_in_occupied"};
   return kNames[std::min<std::size_t>(static_cast<std::size_t>(status), kNames.size() - 1)];
 }

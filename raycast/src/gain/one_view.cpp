@@ -103,7 +103,7 @@ ViewGain evaluate_together(const ViewDriver& driver, const Pose& T_world_camera)
                                throw;
                              }
                            });
-  result.status = ViewStatus::ok;
+  result.status = ViewGain::Status::ok;
   core.view_strips.give_back(std::move(strips));
   return result;
 }

@@ -61,11 +61,11 @@ class PlaneRange {
 
 }  // namespace
 
-RayOutcomes GainEvaluator::outcomes(const Pose& T_world_camera) const {
+GainEvaluator::RayOutcomes GainEvaluator::outcomes(const Pose& T_world_camera) const {
   const detail::ViewDriver& driver = impl_->driver;
   ViewGain opened;
   const auto frame = driver.open(T_world_camera, opened, detail::ViewDriver::From::anywhere);
-  RayOutcomes counts;
+  GainEvaluator::RayOutcomes counts;
   if (!frame) return counts;
   detail::ViewDriver::Lease lease(driver);
   detail::ViewSweep& sweep = lease.workspace().sweep;

@@ -189,7 +189,7 @@ ApproximateGain SampledViews::estimate(const Pose& T_world_camera, ViewDriver::L
         lease.accumulator(),      lease.workspace().sample, driver_.scene(), driver_.settings(),
         driver_.tracer().table(), min_range * 1.000001F,    step_squared_,   tally};
     result = driver_.view(T_world_camera, lease, consumer);
-    if (result.status != ViewStatus::ok) return {result.gain, result.gain};
+    if (result.status != ViewGain::Status::ok) return {result.gain, result.gain};
   }
   return {scale_ * tally.gain, scale_ * standard_error(tally)};
 }

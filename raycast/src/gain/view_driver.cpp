@@ -63,7 +63,7 @@ std::optional<PoseFrame> ViewDriver::open(const Pose& T_world_camera, ViewGain& 
       result.area = 0;
       if (model == GainModel::combined) result.refinement_saturated = 0;
     }
-    result.status = ViewStatus::camera_in_occupied;
+    result.status = ViewGain::Status::camera_in_occupied;
     return std::nullopt;
   }
   return frame;
@@ -77,7 +77,7 @@ ViewGain ViewDriver::evaluate(const Pose& T_world_camera, Lease& lease) const {
   ViewGain result;
   if (const auto frame = open(T_world_camera, result)) {
     surface->evaluate(*frame, lease.workspace(), result);
-    result.status = ViewStatus::ok;
+    result.status = ViewGain::Status::ok;
   }
   return result;
 }

@@ -75,7 +75,7 @@ class ViewDriver {
       consumer.add(number, tile);
     });
     consumer.finish(result);
-    result.status = ViewStatus::ok;
+    result.status = ViewGain::Status::ok;
     return result;
   }
 

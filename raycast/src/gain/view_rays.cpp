@@ -35,7 +35,7 @@ std::size_t for_each_view_rays(const GainEvaluator& evaluator, std::span<const P
             task.lanes = rays.valid;
             consumer.add(limits, task, *scratch);
           });
-          view.status = ViewStatus::ok;
+          view.status = ViewGain::Status::ok;
         }
         consumer.finish(i, view, *scratch);
       });

@@ -264,32 +264,5 @@ TEST(CApi, ALongMessageIsCutOff) {
   EXPECT_EQ(std::string(vg_last_error()).size(), 1023U);
 }
 
-TEST(CApi, SeveralThreadsShareAnEvaluator) {
-  test::Random random(9);
-  const test::RandomMap map = test::random_map(test::MapFamily::salt_and_pepper_30, random);
-  const std::vector<Pose> poses = test::random_poses(map, 50, random);
-  const std::vector<double> matrices = matrices_of(poses);
-  const test::TemporaryFolder folder;
-  const std::string path = folder.path() / "map.vdb";
-  save_vdb(map.grid, path);
-  Handles own;
-  vg_sensor sensor;
-  vg_sensor_init(&sensor, sizeof sensor);
-  ASSERT_EQ(vg_sensor_preset("laser_line", &sensor), VG_OK);
-  ASSERT_EQ(vg_grid_load(path.c_str(), &own.grid), VG_OK);
-  ASSERT_EQ(vg_scene_build(own.grid, nullptr, &own.scene), VG_OK);
-  ASSERT_EQ(vg_evaluator_create(own.scene, &sensor, nullptr, &own.evaluator), VG_OK);
-  std::vector<std::vector<double>> gains(4, std::vector<double>(poses.size()));
-  std::vector<std::thread> threads;
-  for (std::vector<double>& mine : gains) {
-    threads.emplace_back([&] {
-      (void)vg_evaluate(own.evaluator, matrices.data(), poses.size(), mine.data(), nullptr);
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  for (const std::vector<double>& mine : gains) EXPECT_EQ(mine, gains[0]);
-  EXPECT_GT(*std::max_element(gains[0].begin(), gains[0].end()), 0.0);
-}
-
 }  // namespace
 }  // namespace viewgain

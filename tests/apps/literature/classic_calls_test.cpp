@@ -13,6 +13,7 @@
 
 namespace viewgain {
 namespace {
+using Status = ViewGain::Status;
 
 using test::kExactVoxel;
 
@@ -118,10 +119,10 @@ TEST(ClassicGains, PosesThatSeeNothing) {
       bad, test::axis_pose({0.5, 1.5, 1.5}, 0, true), test::axis_pose({-4, 1.5, 1.5}, 0, false),
       test::axis_pose({-1e7, 1.5, 1.5}, 0, true), test::axis_pose({5.5, 1.5, 1.5}, 0, true)};
   std::vector<double> gains(poses.size() * 3);
-  std::vector<ViewStatus> statuses(poses.size());
+  std::vector<Status> statuses(poses.size());
   EXPECT_EQ(ClassicGainEvaluator(map, one_ray(), config).evaluate(poses, gains, statuses), 5U);
-  EXPECT_EQ(statuses, (std::vector<ViewStatus>{ViewStatus::bad_pose, ViewStatus::camera_in_occupied,
-                                               ViewStatus::ok, ViewStatus::ok, ViewStatus::ok}));
+  EXPECT_EQ(statuses, (std::vector<Status>{Status::bad_pose, Status::camera_in_occupied, Status::ok,
+                                           Status::ok, Status::ok}));
   for (std::size_t g = 0; g < 3; ++g) {
     EXPECT_TRUE(std::isnan(gains[g]));
     for (const std::size_t pose : {1U, 2U, 3U}) EXPECT_EQ(gains[pose * 3 + g], 0) << pose;

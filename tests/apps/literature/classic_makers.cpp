@@ -14,7 +14,7 @@ std::vector<ClassicGain> all_classic_gains() {
 
 void vary_log_odds(BeliefGrid& grid, Random& random) {
   const VoxelBox all = VoxelBox::from_dims(grid.min_index(), grid.dims());
-  std::vector<VoxelValue> values;
+  std::vector<BeliefGrid::VoxelValue> values;
   const Index3 first{all.min.x & ~7, all.min.y & ~7, all.min.z & ~7};
   for (int x = first.x; x < all.max.x; x += 8) {
     for (int y = first.y; y < all.max.y; y += 8) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -53,13 +55,20 @@ struct BinScene {
   }
 };
 
+/// The notes in a map's file.
+inline std::map<std::string, std::string> notes_of(const std::filesystem::path& path) {
+  std::map<std::string, std::string> notes;
+  (void)load_vdb(path, &notes);
+  return notes;
+}
+
 /// A planner's state as text, but for its last proposal; equal texts are
 /// equal bits.
 inline std::string seen_of(const ViewPlanner& planner) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "seen.vdb";
   planner.save(path);
-  return planner.grid().content_hash() + load_vdb_map(path).notes.at("planner");
+  return planner.grid().content_hash() + notes_of(path).at("planner");
 }
 
 }  // namespace viewgain::test

@@ -132,7 +132,7 @@ TEST(CPlanner, SaysWhatTheOtherSays) {
       vg_ray_outcomes rays;
       vg_ray_outcomes_init(&rays, sizeof rays);
       ASSERT_EQ(vg_planner_outcomes(planner, numbers_of({pose}).data(), &rays), VG_OK);
-      const RayOutcomes outcomes = own.evaluator().outcomes(pose);
+      const GainEvaluator::RayOutcomes outcomes = own.evaluator().outcomes(pose);
       EXPECT_EQ(rays.unknown, outcomes.unknown);
       EXPECT_EQ(rays.out_of_map, outcomes.out_of_map);
       EXPECT_EQ(rays.rays, rays.too_near + rays.unknown + rays.known_surface + rays.obstacle +

@@ -94,8 +94,9 @@ struct SeenBox {
     for (const Pose& pose : views) (void)model->update(view(pose));
     return model;
   }
-  [[nodiscard]] std::optional<Decision> choice(const SurfaceModel& model, PolicyConfig config,
-                                               int num_threads = 1) const {
+  [[nodiscard]] std::optional<DecisionMaking::Decision> choice(const SurfaceModel& model,
+                                                               PolicyConfig config,
+                                                               int num_threads = 1) const {
     const ExecConfig own{num_threads};
     config.object = {mesh, truth, {}};
     CandidateGeneration generation(model, default_generation(sensor, 0.005), own);

@@ -134,9 +134,9 @@ TEST(SavedPlanner, KeepsNotesBesideItsOwn) {
   ViewPlanner planner(scene.sensor, scene.config(), {1});
   (void)planner.add(scene.see(scene.views[0]), scene.views[0]);
   planner.save(path);
-  const auto own = load_vdb_map(path).notes;
+  const auto own = test::notes_of(path);
   planner.save(path, {.with_covariance = false, .notes = {{"frames", "a\nb\n"}, {"planner", "x"}}});
-  auto notes = load_vdb_map(path).notes;
+  auto notes = test::notes_of(path);
   EXPECT_EQ(notes.extract("frames").mapped(), "a\nb\n");
   EXPECT_EQ(notes, own);
   const ViewPlanner loaded = ViewPlanner::load(path, scene.sensor, scene.config(), {1});
@@ -170,7 +170,7 @@ TEST(SavedPlanner, RefusesWhatIsNone) {
   refuses(ErrorCode::invalid_argument, "0.02", other);
 
   // A note that somebody changed, in each of its lines.
-  const std::string note = load_vdb_map(path).notes.at("planner");
+  const std::string note = test::notes_of(path).at("planner");
   const auto with_note = [&](const std::string& text) {
     save_vdb(planner.grid(), path, {.with_covariance = false, .notes = {{"planner", text}}});
   };

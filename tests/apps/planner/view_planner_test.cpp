@@ -83,7 +83,7 @@ TEST(ViewPlanner, SaysWhatThePartsSay) {
       parts.add(frame, next);
       EXPECT_EQ(added.view, view);
       EXPECT_EQ(planner.grid().content_hash(), parts.grid().content_hash());
-      const GridStatistics statistics = parts.grid().statistics();
+      const BeliefGrid::Statistics statistics = parts.grid().statistics();
       EXPECT_EQ(added.progress.entropy_removed, statistics.entropy_removed);
       EXPECT_EQ(added.entropy_removed, statistics.entropy_removed - before);
       EXPECT_EQ(added.progress.unknown_voxels, statistics.unknown);

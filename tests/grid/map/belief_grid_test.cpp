@@ -54,7 +54,7 @@ TEST(BeliefGrid, IsMadeOfADefaultLayoutForItsSensor) {
 TEST(BeliefGrid, AnUnknownWorkspaceCostsTiles) {
   for (const double low : {-20.0, 0.0, 3.217, -512.0 * 0.01}) {
     const BeliefGrid grid(cube(0.01, low, low + 40.0));
-    const GridStatistics statistics = grid.statistics();
+    const BeliefGrid::Statistics statistics = grid.statistics();
     EXPECT_GE(statistics.unknown, 64000000000U);
     EXPECT_EQ(statistics.unknown, grid.voxel_count());
     EXPECT_EQ(statistics.free + statistics.occupied, 0U);
@@ -128,7 +128,7 @@ TEST(BeliefGrid, DenseStatesRoundTrip) {
           }
         }
       }
-      const GridStatistics statistics = grid.statistics();
+      const BeliefGrid::Statistics statistics = grid.statistics();
       EXPECT_EQ(statistics.unknown, counts[0]);
       EXPECT_EQ(statistics.free, counts[1]);
       EXPECT_EQ(statistics.occupied, counts[2]);

@@ -15,6 +15,7 @@
 
 namespace viewgain {
 namespace {
+using VoxelValue = BeliefGrid::VoxelValue;
 
 using test::expect_error;
 

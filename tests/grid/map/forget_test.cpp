@@ -37,11 +37,11 @@ BeliefGrid known_map(unsigned seed) {
   BeliefGrid grid =
       BeliefGrid::from_states(kConfig, std::vector<std::uint8_t>(layout.voxel_count(), 1));
   std::mt19937 random(seed);
-  std::vector<VoxelValue> values;
+  std::vector<BeliefGrid::VoxelValue> values;
   for_each_voxel(grid, [&](Index3 voxel) {
     const bool is_mixed = ((voxel.x >> 3) + (voxel.y >> 3) + (voxel.z >> 3)) % 2 == 0;
     if (!is_mixed || random() % 20 != 0) return;
-    VoxelValue value{voxel, random() % 2 == 0 ? 1.0F : -1.0F, {}};
+    BeliefGrid::VoxelValue value{voxel, random() % 2 == 0 ? 1.0F : -1.0F, {}};
     if (random() % 2 == 0)
       value.belief = Belief{{1, 2, 3, 0, 0, 0}, {}, static_cast<std::uint32_t>(1 + random() % 9)};
     values.push_back(value);

@@ -8,12 +8,14 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "core/expect_error.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain {
 namespace {
+using Statistics = BeliefGrid::Statistics;
 
 /// A map of 21 x 18 x 25 voxels off the origin in all three states, some with beliefs.
 BeliefGrid random_map(std::mt19937_64& random) {
@@ -41,12 +43,13 @@ BeliefGrid random_map(std::mt19937_64& random) {
   return grid;
 }
 
-/// Voxel by voxel, by the definition.
-GridStatistics slow_statistics(const BeliefGrid& grid, const Box& region, Criterion criterion) {
+/// Voxel by voxel, by the definition, and the mean sigma.
+std::pair<Statistics, double> slow_statistics(const BeliefGrid& grid, const Box& region,
+                                              Criterion criterion) {
   const Index3 min = grid.min_index(), dims = grid.dims();
   const double V = grid.voxel_size();
   const SymmetricMatrix3 prior = SymmetricMatrix3::identity(std::pow(grid.prior_sigma(), -2));
-  GridStatistics result;
+  Statistics result;
   double sum = 0;
   int believed = 0;
   for (int x = min.x; x < min.x + dims.x; ++x) {
@@ -71,20 +74,21 @@ GridStatistics slow_statistics(const BeliefGrid& grid, const Box& region, Criter
       }
     }
   }
-  result.mean_sigma = sum / believed;
-  return result;
+  return {result, sum / believed};
 }
 
-void expect_equal(const GridStatistics& a, const GridStatistics& b) {
+void expect_equal(const Statistics& a, const Statistics& b) {
   EXPECT_EQ(a.unknown, b.unknown);
   EXPECT_EQ(a.free, b.free);
   EXPECT_EQ(a.occupied, b.occupied);
   EXPECT_EQ(a.hits, b.hits);
   EXPECT_NEAR(a.entropy_removed, b.entropy_removed, 1e-9 * (1e-6 + b.entropy_removed));
-  if (std::isnan(b.mean_sigma)) {
-    EXPECT_TRUE(std::isnan(a.mean_sigma));
-  } else {
-    EXPECT_NEAR(a.mean_sigma, b.mean_sigma, 1e-9 * b.mean_sigma);
+}
+
+void expect_sigma(double a, double b) {
+  EXPECT_EQ(std::isnan(a), std::isnan(b));
+  if (!std::isnan(b)) {
+    EXPECT_NEAR(a, b, 1e-9 * b);
   }
 }
 
@@ -101,8 +105,9 @@ TEST(RegionStatistics, AreTheSumsOverTheVoxels) {
       region.max[k] = std::max(a, b);
     }
     const auto criterion = static_cast<Criterion>(i % 3);
-    const GridStatistics expected = slow_statistics(grid, region, criterion);
+    const auto [expected, sigma] = slow_statistics(grid, region, criterion);
     expect_equal(grid.statistics(region, criterion), expected);
+    expect_sigma(grid.mean_sigma(region), sigma);
     with_points += expected.entropy_removed > 0 ? 1 : 0;
   }
   EXPECT_GT(with_points, 40);
@@ -114,24 +119,28 @@ TEST(RegionStatistics, BoundsMayBeInfiniteButNotNaN) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Box everywhere{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
   expect_equal(grid.statistics(everywhere), grid.statistics(grid.workspace()));
-  expect_equal(grid.statistics(), slow_statistics(grid, everywhere, Criterion::log_diagonal));
+  const auto [expected, sigma] = slow_statistics(grid, everywhere, Criterion::log_diagonal);
+  expect_equal(grid.statistics(), expected);
+  expect_sigma(grid.mean_sigma(everywhere), sigma);
   for (std::size_t bound = 0; bound < 6; ++bound) {
     Box region = grid.workspace();
     (bound < 3 ? region.min : region.max)[bound % 3] = std::nan("");
     test::expect_error(ErrorCode::invalid_argument, std::string("along ") + "xyz"[bound % 3],
                        [&] { (void)grid.statistics(region); });
+    EXPECT_THROW((void)grid.mean_sigma(region), Error);
   }
 }
 
 TEST(RegionStatistics, NothingThere) {
   std::mt19937_64 random(6);
   const BeliefGrid grid = random_map(random);
-  const GridStatistics outside = grid.statistics(Box{{1, 1, 1}, {2, 2, 2}});
+  const Box far{{1, 1, 1}, {2, 2, 2}};
+  const Statistics outside = grid.statistics(far);
   EXPECT_EQ(outside.unknown + outside.free + outside.occupied + outside.hits, 0U);
   EXPECT_EQ(outside.entropy_removed, 0);
-  EXPECT_TRUE(std::isnan(outside.mean_sigma));
+  EXPECT_TRUE(std::isnan(grid.mean_sigma(far)));
   const BeliefGrid unknown(GridConfig{0.01, {{0, 0, 0}, {3, 3, 3}}, {}, 0.01});
-  const GridStatistics part = unknown.statistics(Box{{1, 1, 1}, {2, 2.1, 9}});
+  const Statistics part = unknown.statistics(Box{{1, 1, 1}, {2, 2.1, 9}});
   EXPECT_EQ(part.unknown, 100U * 110 * 200);
   EXPECT_EQ(part.free + part.occupied, 0U);
 }

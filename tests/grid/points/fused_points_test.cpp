@@ -41,11 +41,12 @@ Sensor plane_sensor() {
 }
 
 // A frontal plane as a noisy sensor sees it, `frames` times.
-BeliefGrid noisy_plane(double voxel, int frames, const Pose& T_world_grid = {},
-                       Occupancy occupancy = Occupancy::probabilistic) {
+BeliefGrid noisy_plane(
+    double voxel, int frames, const Pose& T_world_grid = {},
+    IntegrationConfig::Occupancy occupancy = IntegrationConfig::Occupancy::probabilistic) {
   const Sensor sensor = plane_sensor();
   BeliefGrid grid({voxel, {{-0.06, -0.06, 0.34}, {0.06, 0.06, 0.46}}, T_world_grid, 0.0072});
-  FrameIntegrator integrator(sensor, {Carve::cones, occupancy, {}});
+  FrameIntegrator integrator(sensor, {IntegrationConfig::Carve::cones, occupancy, {}});
   RandomValues random(7);
   for (int i = 0; i < frames; ++i) {
     DepthFrame frame{64, 64, {}};
@@ -88,7 +89,8 @@ TEST(FusedPoints, PooledStaysHonestAsReadingsAccumulateLiteralDoesNot) {
       const double pooled = plane_consistency(fused_points(grid));
       EXPECT_LT(pooled, 2.0) << voxel << " " << frames;
       if (frames == 30) {
-        const BeliefGrid of_paper = noisy_plane(voxel, frames, {}, Occupancy::literal);
+        const BeliefGrid of_paper =
+            noisy_plane(voxel, frames, {}, IntegrationConfig::Occupancy::literal);
         EXPECT_GT(plane_consistency(fused_points(of_paper, literal)), 2.0) << voxel;
       }
     }

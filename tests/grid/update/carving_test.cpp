@@ -18,6 +18,8 @@
 
 namespace viewgain {
 namespace {
+using Occupancy = IntegrationConfig::Occupancy;
+using Carve = IntegrationConfig::Carve;
 
 using namespace test;
 
@@ -99,7 +101,7 @@ TEST_P(Carving, EqualsLoopsOverAllVoxels) {
       EXPECT_EQ(report.readings + report.out_of_range + report.invalid, frame.depth.size());
       ++cases;
     }
-    const GridStatistics statistics = grid.statistics();
+    const BeliefGrid::Statistics statistics = grid.statistics();
     EXPECT_EQ(statistics.unknown + statistics.free + statistics.occupied, oracle.voxels());
   }
   EXPECT_EQ(cases, literal ? 8 : 24);

@@ -52,14 +52,15 @@ TEST(Cloud, MakesTheMapThatTheLiteralLoopsMake) {
   const Sensor sensor = cloud_sensor();
   std::mt19937 random(8);
   for (const GridConfig& config : {plain, turned}) {
-    for (const Occupancy occupancy : {Occupancy::probabilistic, Occupancy::literal}) {
+    for (const IntegrationConfig::Occupancy occupancy :
+         {IntegrationConfig::Occupancy::probabilistic, IntegrationConfig::Occupancy::literal}) {
       BeliefGrid grid(config);
       VoxelOracle oracle(grid);
       CloudIntegrator integrator(sensor, {.occupancy = occupancy}, {2});
       for (int view = 0; view < 4; ++view) {
         const Pose pose = ring_view(view);
         const DepthFrame frame = mixed_frame(sensor, pose, random, false);
-        oracle.integrate(sensor, frame, pose, {Carve::lines, occupancy, {}});
+        oracle.integrate(sensor, frame, pose, {IntegrationConfig::Carve::lines, occupancy, {}});
         const IntegrationReport report =
             integrator.integrate(grid, points_of(sensor, frame, pose), pose);
         EXPECT_EQ(report.voxels_crossed, oracle.crossed());

@@ -19,6 +19,8 @@
 
 namespace viewgain {
 namespace {
+using Occupancy = IntegrationConfig::Occupancy;
+using Carve = IntegrationConfig::Carve;
 
 using namespace test;
 

@@ -23,7 +23,8 @@ TEST(KnownDepth, CountsFromThereOn) {
   sensor.min_range = 0.05;
   sensor.noise = ConstantNoise{0.002, 0.002};
   const Pose down = look_at({0.005, 0.005, 0.5}, {0.005, 0.005, 0});
-  for (const Carve carve : {Carve::cones, Carve::lines}) {
+  for (const IntegrationConfig::Carve carve :
+       {IntegrationConfig::Carve::cones, IntegrationConfig::Carve::lines}) {
     for (const auto& [before, is_known] : {std::pair(0.1F, false),
                                            {1e-6F, false},
                                            {0.0F, true},

@@ -129,7 +129,8 @@ TEST(Occupancy, CrossedWithoutWeightIsFree) {
 TEST(Occupancy, LiteralFollowsTheLastFrame) {
   const Sensor sensor = small_sensor(24, 18);
   BeliefGrid grid({0.02, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01});
-  FrameIntegrator integrator(sensor, {Carve::cones, Occupancy::literal});
+  FrameIntegrator integrator(
+      sensor, {IntegrationConfig::Carve::cones, IntegrationConfig::Occupancy::literal});
   const Index3 voxel{0, 0, 20};
   for (int i = 0; i < 5; ++i) integrator.integrate(grid, wall(sensor, 0.41), Pose{});
   EXPECT_EQ(grid.state(voxel), VoxelState::occupied);

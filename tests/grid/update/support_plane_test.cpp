@@ -78,8 +78,10 @@ TEST(SupportPlane, BoundsAreThreeSigmaAlongTheNormalAndBelow) {
 
 TEST(SupportPlane, CarvesAsFarAsTheReadingReaches) {
   const Pose down = look_at({0.005, 0.005, 0.5}, {0.005, 0.005, 0});
-  for (const Carve carve : {Carve::cones, Carve::lines}) {
-    for (const Occupancy occupancy : {Occupancy::probabilistic, Occupancy::literal}) {
+  for (const IntegrationConfig::Carve carve :
+       {IntegrationConfig::Carve::cones, IntegrationConfig::Carve::lines}) {
+    for (const IntegrationConfig::Occupancy occupancy :
+         {IntegrationConfig::Occupancy::probabilistic, IntegrationConfig::Occupancy::literal}) {
       const auto column = [&](std::optional<double> plane) {
         BeliefGrid grid({0.01, {{-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}}, {}, 0.01});
         const DepthFrame frame{1, 1, {0.524F}};  // a point at z = -0.024

@@ -184,7 +184,7 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
     for (int j = min_.y; j < min_.y + dims_.y; ++j) {
       for (int k = min_.z; k < min_.z + dims_.z; ++k) {
         int& delta = deltas[position({i, j, k})];
-        if (config.carve == Carve::cones) {
+        if (config.carve == IntegrationConfig::Carve::cones) {
           const Eigen::Vector3d c = center({i, j, k});
           const auto& T = T_camera_grid.m;
           const Eigen::Vector3d p(T[0] * c.x() + T[1] * c.y() + T[2] * c.z() + T[3],
@@ -233,7 +233,7 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
     own[n] = voxel_at(points[n]);
     if (!own[n]) continue;
     starts[n] = points[n];
-    if (config.occupancy != Occupancy::literal &&
+    if (config.occupancy != IntegrationConfig::Occupancy::literal &&
         sensor.sigmas(pixels[n].range).axial >= 0.5 * voxel_size_) {
       const auto surface = on_surface(sensor, frame, u, v);
       if (surface && voxel_at(T_grid_camera * *surface)) starts[n] = T_grid_camera * *surface;
@@ -247,7 +247,7 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
     if (!own[n]) continue;
     const MeasurementSigmas s = sensor.sigmas(pixels[n].range);
     std::size_t voxel = *own[n];
-    if (config.occupancy != Occupancy::literal && s.axial >= 0.5 * voxel_size_) {
+    if (config.occupancy != IntegrationConfig::Occupancy::literal && s.axial >= 0.5 * voxel_size_) {
       voxel = best_supported(starts[n], rays[n], s.axial, support);
     }
     if (voxel != *own[n]) ++moved_;
@@ -265,7 +265,7 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
   crossed_ = hit_ = 0;
   for (std::size_t n = 0; n < steps_.size(); ++n) {
     const int before = steps_[n] == kUnknown ? 0 : steps_[n];
-    const bool literal = config.occupancy == Occupancy::literal;
+    const bool literal = config.occupancy == IntegrationConfig::Occupancy::literal;
     if (is_hit[n]) {
       steps_[n] = literal ? 17 : std::min(before + 17, 70);
       ++hit_;

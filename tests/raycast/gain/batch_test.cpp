@@ -67,7 +67,7 @@ TEST_F(Batch, ABadPoseSpoilsOnlyItself) {
   std::size_t bad = 0;
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     if (i % 7 == 3) {
-      EXPECT_EQ(actual[i].status, ViewStatus::bad_pose);
+      EXPECT_EQ(actual[i].status, ViewGain::Status::bad_pose);
       EXPECT_TRUE(std::isnan(actual[i].gain));
       EXPECT_TRUE(std::isnan(actual[i].posterior_entropy));
       ++bad;
@@ -122,13 +122,14 @@ TEST_F(Batch, StopsEarlyAndMarksWhatItDidNotReach) {
     control.progress = [&](std::size_t done, std::size_t) {
       if (done >= 20) source.request_stop();
     };
-    std::vector<ViewGain> results(poses_.size(), ViewGain{.gain = 5, .status = ViewStatus::ok});
+    std::vector<ViewGain> results(poses_.size(),
+                                  ViewGain{.gain = 5, .status = ViewGain::Status::ok});
     const std::size_t scored = evaluator(threads).evaluate(poses_, results, control);
     EXPECT_GE(scored, 20U);
     EXPECT_LT(scored, poses_.size());
     std::size_t ok = 0;
     for (std::size_t i = 0; i < results.size(); ++i) {
-      if (results[i].status == ViewStatus::bad_pose) {
+      if (results[i].status == ViewGain::Status::bad_pose) {
         EXPECT_TRUE(std::isnan(results[i].gain));
         continue;
       }
@@ -207,7 +208,7 @@ TEST_F(Batch, AlreadyStoppedScoresNothing) {
   source.request_stop();
   std::vector<ViewGain> results(poses_.size());
   EXPECT_EQ(evaluator().evaluate(poses_, results, {.stop = source.get_token()}), 0U);
-  EXPECT_EQ(results[0].status, ViewStatus::bad_pose);
+  EXPECT_EQ(results[0].status, ViewGain::Status::bad_pose);
 }
 
 TEST_F(Batch, AnEmptyBatchIsFineAndSizesMustAgree) {

@@ -7,12 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "core/comma_locale.hpp"
 #include "core/expect_error.hpp"
 #include "oracle/gain.hpp"
 #include "raycast/scene_makers.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/raycast/depth_image.hpp"
 
 namespace viewgain {
 namespace {
@@ -244,25 +242,6 @@ TEST(GainOptions, PriorsAndSigmasThatDoublePrecisionCannotWeighAreRefused) {
   }
   sensor.noise = ConstantNoise{1e-9, 1e-2};
   EXPECT_THROW(GainEvaluator(scene, sensor), Error);
-}
-
-TEST(GainOptions, MessagesHaveDecimalPointsInEveryLocale) {
-  const auto scene = VoxelScene::build(make(3).map.grid);
-  Sensor sensor = test::lattice_sensor(3, 3);
-  const test::CommaLocale locale;
-  test::expect_error(ErrorCode::invalid_argument,
-                     "prior sigma is 1234.5 m; it must be in 1e-06..1000 m",
-                     [&] { GainEvaluator(scene, sensor, {.prior_sigma = 1234.5}); });
-  sensor.noise = ConstantNoise{2.5e-9, 0.125};
-  test::expect_error(ErrorCode::invalid_argument,
-                     "2.5e-09 m along the ray and 0.125 m across, differ by more than a factor of "
-                     "10000",
-                     [&] { GainEvaluator(scene, sensor); });
-  Pose skewed;
-  skewed.m[0] = 1.5;
-  test::expect_error(ErrorCode::invalid_argument, "off from a rigid transform by 1.25;", [&] {
-    (void)depth_image(GainEvaluator(scene, test::lattice_sensor(3, 3)), skewed);
-  });
 }
 
 TEST(GainOptions, BadArgumentsAreNamed) {

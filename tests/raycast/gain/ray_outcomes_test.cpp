@@ -15,6 +15,7 @@
 
 namespace viewgain {
 namespace {
+using RayOutcomes = GainEvaluator::RayOutcomes;
 
 using Kind = RayHit::Kind;
 

@@ -136,7 +136,7 @@ TEST_P(Runs, AreTheVoxelsOfTheOraclesWalk) {
     EXPECT_EQ(evaluator.evaluate(poses, results, own), poses.size());
     const Eigen::Matrix3d R_world_grid = made.grid.T_world_grid().rotation();
     for (std::size_t p = 0; p < poses.size(); ++p) {
-      if (evaluator.evaluate(poses[p]).status == ViewStatus::camera_in_occupied) {
+      if (evaluator.evaluate(poses[p]).status == ViewGain::Status::camera_in_occupied) {
         EXPECT_EQ(results[p], 0);
         continue;
       }

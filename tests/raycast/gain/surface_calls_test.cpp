@@ -27,7 +27,7 @@ TEST_P(SurfaceCalls, ContributionsAddUpToTheGain) {
   for (const Pose& pose : poses_) {
     const ViewGain gain = evaluator.evaluate(pose);
     const std::vector<VoxelContribution> parts = evaluator.contributions(pose);
-    if (gain.status != ViewStatus::ok) {
+    if (gain.status != ViewGain::Status::ok) {
       EXPECT_TRUE(parts.empty());
       continue;
     }

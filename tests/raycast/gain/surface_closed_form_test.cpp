@@ -102,7 +102,7 @@ TEST(SurfaceGain, OneSlabOfConstantHazard) {
 
 TEST(SurfaceGain, AnEmptyBoxBringsNothing) {
   const ViewGain gain = gain_of(slab(0, 0), one_ray(1.0), constant(0));
-  EXPECT_EQ(gain.status, ViewStatus::ok);
+  EXPECT_EQ(gain.status, ViewGain::Status::ok);
   EXPECT_EQ(gain.gain, 0.0);
   EXPECT_EQ(gain.area, 0.0);
 }

@@ -97,12 +97,12 @@ TEST_P(SurfaceOracle, AgreesUnderEachInstructionSet) {
         const ViewGain actual =
             GainEvaluator(scene, sensor, config, {.num_threads = 1}).evaluate(pose);
         ++checks;
-        if (actual.status == ViewStatus::camera_in_occupied) {
+        if (actual.status == ViewGain::Status::camera_in_occupied) {
           EXPECT_EQ(actual.gain, 0.0);
           EXPECT_EQ(actual.area, 0.0);
           continue;
         }
-        ASSERT_EQ(actual.status, ViewStatus::ok);
+        ASSERT_EQ(actual.status, ViewGain::Status::ok);
         gaining += expected.area > 0 ? 1 : 0;
         exact += std::abs(actual.area - expected.area) <= 1e-5 * expected.area ? 1 : 0;
         EXPECT_LE(std::abs(actual.area - expected.area),

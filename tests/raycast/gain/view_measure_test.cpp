@@ -87,12 +87,12 @@ TEST_F(Own, SeesTheHitsOfTheViews) {
       EXPECT_EQ(evaluator.evaluate(poses_, results, own, control), poses_.size());
       EXPECT_EQ(last, poses_.size());
       for (std::size_t i = 0; i < poses_.size(); ++i) {
-        if (gains[i].status == ViewStatus::bad_pose) {
+        if (gains[i].status == ViewGain::Status::bad_pose) {
           EXPECT_TRUE(std::isnan(results[i]));
           ++bad;
           continue;
         }
-        if (gains[i].status == ViewStatus::camera_in_occupied) ++in_occupied;
+        if (gains[i].status == ViewGain::Status::camera_in_occupied) ++in_occupied;
         EXPECT_EQ(results[i], gains[i].hits);
         hits += static_cast<int>(gains[i].hits);
       }

@@ -15,6 +15,7 @@
 
 namespace viewgain {
 namespace {
+using Status = ViewGain::Status;
 
 using test::axis_pose;
 using test::kExactVoxel;
@@ -244,15 +245,15 @@ TEST_P(DegenerateRays, StartingInAnOccupiedVoxelGainNothing) {
   const BeliefGrid grid = sparse_map({16, 16, 16}, {{7, 7, 7}, {7, 7, 12}});
   const ViewGain gain =
       score(grid, axis_pose({7.5, 7.5, 7.5}, 2, true), {.min_range = kExactVoxel});
-  EXPECT_EQ(gain.status, ViewStatus::camera_in_occupied);
+  EXPECT_EQ(gain.status, Status::camera_in_occupied);
   EXPECT_EQ(gain.gain, 0.0);
   EXPECT_EQ(gain.exploration, 0.0);
   EXPECT_EQ(gain.refinement, 0.0);
   // On the face between free and occupied the centre belongs to the larger index.
   EXPECT_EQ(score(grid, axis_pose({7.5, 7.5, 7}, 2, false), {.min_range = kExactVoxel}).status,
-            ViewStatus::camera_in_occupied);
+            Status::camera_in_occupied);
   EXPECT_EQ(score(grid, axis_pose({7.5, 7.5, 8}, 2, true), {.min_range = kExactVoxel}).status,
-            ViewStatus::ok);
+            Status::ok);
 }
 
 TEST_P(DegenerateRays, OutsideTheWorkspaceGainNothingAndBlockNothing) {
@@ -262,7 +263,7 @@ TEST_P(DegenerateRays, OutsideTheWorkspaceGainNothingAndBlockNothing) {
         Eigen::Vector3d(1e6, 1e6, 1e6), Eigen::Vector3d(1e30, 7.5, 7.5)}) {
     SCOPED_TRACE(eye.transpose());
     const ViewGain gain = score(grid, axis_pose(eye, 2, true), {.posterior_entropy = true});
-    EXPECT_EQ(gain.status, ViewStatus::ok);
+    EXPECT_EQ(gain.status, Status::ok);
     EXPECT_EQ(gain.gain, 0.0);
     EXPECT_EQ(gain.posterior_entropy, 0.0);
     EXPECT_EQ(gain.rays, 1U);
@@ -312,13 +313,13 @@ TEST_P(DegenerateRays, NanAndUnrigidPosesAreBadAndSayNothing) {
   for (std::size_t i = 0; i < bad.size(); ++i) {
     SCOPED_TRACE(i);
     const ViewGain gain = score(grid, bad[i]);
-    EXPECT_EQ(gain.status, ViewStatus::bad_pose);
+    EXPECT_EQ(gain.status, Status::bad_pose);
     EXPECT_TRUE(std::isnan(gain.gain));
     EXPECT_EQ(gain.hits, 0U);
   }
   EXPECT_EQ(bad.size(), 27U);
   EXPECT_EQ(score(grid, {Eigen::Matrix3d(1.0002 * good.rotation()), good.translation()}).status,
-            ViewStatus::ok);
+            Status::ok);
 }
 
 INSTANTIATE_TEST_SUITE_P(Isa, DegenerateRays, testing::ValuesIn(available_isas()),

@@ -42,7 +42,7 @@ class TraceOracle : public testing::TestWithParam<MapFamily> {
       const ViewGain by_own = oracle::gain_of_hits(grid, sensor, config, pose, own);
       ASSERT_EQ(actual.status, by_own.status);
       ++gain_checks_;
-      if (actual.status != ViewStatus::ok) {
+      if (actual.status != ViewGain::Status::ok) {
         EXPECT_EQ(actual.gain, 0.0);
         continue;
       }

@@ -126,7 +126,7 @@ TEST(TracePaths, ObstaclesEndTheSameRaysEitherWay) {
             hit.kind == RayHit::Kind::occupied || hit.kind == RayHit::Kind::unknown ? 1 : 0;
       }
       const ViewGain view = evaluator_by(ExecConfig::Tracer::sweep, scene, sensor).evaluate(pose);
-      if (view.status == ViewStatus::ok) {
+      if (view.status == ViewGain::Status::ok) {
         EXPECT_EQ(view.hits, in_voxels);
       }
     }

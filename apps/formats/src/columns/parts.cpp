@@ -136,7 +136,7 @@ std::string difference(const PartHead& head, const PartHead& first, const std::s
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 20U;  // that is read or written at once
-constexpr auto kLastStatus = static_cast<std::uint8_t>(ViewStatus::camera_in_occupied);
+constexpr auto kLastStatus = static_cast<std::uint8_t>(ViewGain::Status::camera_in_occupied);
 constexpr std::array kTypes{ColumnType::row, ColumnType::real, ColumnType::count,
                             ColumnType::status};
 
@@ -277,7 +277,7 @@ void PartReader::parse_row(std::string_view line) {
     } else {
       const std::string_view word(at, static_cast<std::size_t>(std::find(at, end, ',') - at));
       std::uint8_t code = 0;
-      while (word != view_status_name(static_cast<ViewStatus>(code))) {
+      while (word != view_status_name(static_cast<ViewGain::Status>(code))) {
         if (code++ == kLastStatus) {
           fail("there is no status " + quoted(word));
         }
@@ -343,7 +343,7 @@ void append_csv(std::string& csv, const std::vector<Column>& columns, std::strin
       } else if (column.type == ColumnType::count) {
         csv += std::to_string(value_at<std::uint32_t>(at));
       } else {
-        csv += view_status_name(static_cast<ViewStatus>(*at));
+        csv += view_status_name(static_cast<ViewGain::Status>(*at));
       }
       at += size_of(column.type);
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <utility>
 
@@ -40,8 +41,8 @@ std::string layout_text(const BeliefGrid& grid) {
 }
 
 // What the stopping rules want to know of a ranking.
-Decision decision_of(const Ranking& ranking, GainModel model, bool has_costs) {
-  Decision decision;
+DecisionMaking::Decision decision_of(const Ranking& ranking, GainModel model, bool has_costs) {
+  DecisionMaking::Decision decision;
   const ViewGain& best = ranking.views.front().gain;
   decision.candidate = ranking.views.front().index;
   decision.gain = best.gain;
@@ -160,7 +161,7 @@ struct ViewPlanner::Impl {
   }
 
   // After a choice, which takes the place of an earlier one of the same view.
-  void remember(const std::optional<Decision>& decision, const Proposal& from) {
+  void remember(const std::optional<DecisionMaking::Decision>& decision, const Proposal& from) {
     StopRules rules(planning, state.before_choice);
     state.of_choice = rules.after_decision(decision, from, state.seen_area);
     state.after_choice = rules.memory();
@@ -178,7 +179,7 @@ struct ViewPlanner::Impl {
     Ranking ranking =
         rank_views(by, poses, std::max<std::size_t>(k, 1), rank_config, here, control);
     if (from != nullptr && ranking.complete) {
-      std::optional<Decision> decision;
+      std::optional<DecisionMaking::Decision> decision;
       const bool has_costs = !rank_config.costs.empty() || rank_config.cost_per_metre > 0;
       state.promised.reset();
       if (!ranking.views.empty()) {
@@ -310,13 +311,13 @@ void ViewPlanner::save(const std::filesystem::path& path, VdbWriteConfig config)
 ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& sensor,
                               const PlannerConfig& config, const ExecConfig& exec) {
   const MapModelConfig map = detail::map_config(config);
-  VdbMap saved = load_vdb_map(path);
-  const auto note = saved.notes.find(kNote);
-  if (note == saved.notes.end()) {
+  std::map<std::string, std::string> notes;
+  BeliefGrid grid = load_vdb(path, &notes);
+  const auto note = notes.find(kNote);
+  if (note == notes.end()) {
     throw Error(ErrorCode::format, path.string() + ": is a map without the state of a planner");
   }
   const BeliefGrid expected(map.grid, sensor);
-  const BeliefGrid& grid = saved.grid;
   if (grid.voxel_size() != expected.voxel_size() || grid.dims() != expected.dims() ||
       grid.min_index() != expected.min_index() || grid.prior_sigma() != expected.prior_sigma() ||
       !(grid.T_world_grid() == expected.T_world_grid())) {
@@ -324,8 +325,7 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
          ", is laid out otherwise than the configuration says, " + layout_text(expected));
   }
   detail::PlannerState state = detail::state_of(path.string() + " (note planner)", note->second);
-  auto impl =
-      std::make_unique<Impl>(config, exec, MapModel(std::move(saved.grid), sensor, map, exec));
+  auto impl = std::make_unique<Impl>(config, exec, MapModel(std::move(grid), sensor, map, exec));
   impl->state = std::move(state);
   // The limits are those of today's configuration; what the last choice said stays.
   impl->state.of_view = limit_reached(impl->planning, impl->state.after_choice);

@@ -167,7 +167,7 @@ BeliefGrid MapModel::grid_after(const Measurements& measurements) const {
 }
 
 ModelProgress MapModel::progress() const {
-  const GridStatistics statistics = grid_.statistics(config_.criterion);
+  const BeliefGrid::Statistics statistics = grid_.statistics(config_.criterion);
   ModelProgress progress;
   progress.entropy_removed = statistics.entropy_removed;
   progress.unknown_voxels = statistics.unknown;

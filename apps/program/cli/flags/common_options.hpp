@@ -75,6 +75,10 @@ inline constexpr const char* kOverlapHelp =
 inline constexpr const char* kRegionDepthHelp =
     "how far inward from a boundary the surface is fitted that candidates go on from [m]";
 
+inline constexpr const char* kStopPromisesHelp =
+    "of --gain paper, surface and combined: stop after so many views in a row that bring less than "
+    "a fifth of what they promised, new surface, by the paper's gain entropy; 0: never";
+
 /// --seed, the same bounds in every subcommand.
 inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {
   app.add_option("--seed", seed, of_what)->takes_seed();

@@ -26,17 +26,18 @@ std::string why(const NextView& view) {
 struct Outcome {
   const char* key;
   const char* words;
-  std::uint32_t RayOutcomes::*count;
+  std::uint32_t GainEvaluator::RayOutcomes::*count;
 };
 constexpr std::array kOutcomes{
-    Outcome{"unknown", "come to unknown space", &RayOutcomes::unknown},
-    Outcome{"known_surface", "end in known surface", &RayOutcomes::known_surface},
-    Outcome{"obstacle", "end at obstacles", &RayOutcomes::obstacle},
-    Outcome{"too_near", "meet something too near", &RayOutcomes::too_near},
-    Outcome{"out_of_range", "see free space to the range limit", &RayOutcomes::out_of_range},
-    Outcome{"out_of_map", "leave the map", &RayOutcomes::out_of_map}};
+    Outcome{"unknown", "come to unknown space", &GainEvaluator::RayOutcomes::unknown},
+    Outcome{"known_surface", "end in known surface", &GainEvaluator::RayOutcomes::known_surface},
+    Outcome{"obstacle", "end at obstacles", &GainEvaluator::RayOutcomes::obstacle},
+    Outcome{"too_near", "meet something too near", &GainEvaluator::RayOutcomes::too_near},
+    Outcome{"out_of_range", "see free space to the range limit",
+            &GainEvaluator::RayOutcomes::out_of_range},
+    Outcome{"out_of_map", "leave the map", &GainEvaluator::RayOutcomes::out_of_map}};
 
-Json to_json(const std::optional<RayOutcomes>& rays) {
+Json to_json(const std::optional<GainEvaluator::RayOutcomes>& rays) {
   if (!rays) return {};
   Json json{{"rays", rays->rays}};
   for (const Outcome& outcome : kOutcomes) json[outcome.key] = (*rays).*outcome.count;
@@ -44,7 +45,7 @@ Json to_json(const std::optional<RayOutcomes>& rays) {
 }
 
 // "of 25,344 rays 61 % come to unknown space, 39 % end in known surface"
-std::string text_of(const RayOutcomes& rays) {
+std::string text_of(const GainEvaluator::RayOutcomes& rays) {
   std::string text = "of " + with_commas(rays.rays) + " rays";
   const char* between = " ";
   for (const Outcome& outcome : kOutcomes) {
@@ -56,7 +57,7 @@ std::string text_of(const RayOutcomes& rays) {
   return text;
 }
 
-void add(const RayOutcomes& from, RayOutcomes& to) {
+void add(const GainEvaluator::RayOutcomes& from, GainEvaluator::RayOutcomes& to) {
   to.rays += from.rays;
   for (const Outcome& outcome : kOutcomes) to.*outcome.count += from.*outcome.count;
 }

@@ -24,8 +24,8 @@ struct NextView {
   ViewGain gain;
   double worth = 0;  ///< its gain less its cost
   std::string generator;
-  std::optional<BoundaryClass> boundary_class{};  ///< of the boundary that it looks beyond
-  std::optional<RayOutcomes> rays{};              ///< what becomes of them, by explain()
+  std::optional<BoundaryClass> boundary_class{};     ///< of the boundary that it looks beyond
+  std::optional<GainEvaluator::RayOutcomes> rays{};  ///< what becomes of them, by explain()
 };
 
 /// Where a camera should look next.
@@ -34,7 +34,8 @@ struct NextViews {
   std::size_t candidates = 0;                  ///< that were possible; `views` are the best of them
   std::map<std::string, std::size_t> dropped;  ///< the impossible ones: reason -> count
   GainModel model = kDefaultGain;              ///< of the gains
-  std::optional<RayOutcomes> no_gain{};        ///< by explain(): candidates' rays, if none gains
+  std::optional<GainEvaluator::RayOutcomes>
+      no_gain{};  ///< by explain(): candidates' rays, if none gains
 };
 
 /// Of a ranking of a proposal's candidates.

@@ -57,6 +57,7 @@ struct Options {
   std::optional<double> support_plane;
   std::size_t top = 10;
   std::size_t max_views = PlannerConfig{}.max_views;
+  std::size_t stop_promises = PlannerConfig{}.broken_promises;
   RegistrationOptions registration;
   std::string out;
 };
@@ -76,6 +77,7 @@ PlannerConfig planner_config(const Options& options) {
   }
   if (!options.reach.empty()) config.reach = read_reach_toml(options.reach);
   config.max_views = options.max_views;
+  config.broken_promises = options.stop_promises;
   return config;
 }
 
@@ -381,6 +383,9 @@ Command add_follow(App& program) {
   app->add_option("--max-views", o.max_views, "view budget: a reason to stop")
       ->capture_default_str()
       ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
+  app->add_option("--stop-promises", o.stop_promises, kStopPromisesHelp)
+      ->capture_default_str()
+      ->range(std::size_t{0}, std::size_t{1'000'000}, "count");
   add_registration_options(*app, o.registration);
   app->add_option("--out", o.out, "folder for state.vdb, next.txt, next.json")->required();
   add_trace_option(*app, o.common);

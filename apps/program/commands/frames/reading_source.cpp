@@ -22,7 +22,8 @@ namespace {
 
 IntegrationConfig config_of(const IntegrateOptions& options) {
   IntegrationConfig config;
-  config.carve = options.carve == "cones" ? Carve::cones : Carve::lines;
+  config.carve =
+      options.carve == "cones" ? IntegrationConfig::Carve::cones : IntegrationConfig::Carve::lines;
   config.occupancy = options.occupancy_rule();
   return config;
 }

@@ -47,8 +47,9 @@ struct IntegrateOptions {
   [[nodiscard]] bool calibrates_hazard() const {
     return calibrate_hazard == "on" && !is_octomap(out);
   }
-  [[nodiscard]] Occupancy occupancy_rule() const {
-    return occupancy == "probabilistic" ? Occupancy::probabilistic : Occupancy::literal;
+  [[nodiscard]] IntegrationConfig::Occupancy occupancy_rule() const {
+    return occupancy == "probabilistic" ? IntegrationConfig::Occupancy::probabilistic
+                                        : IntegrationConfig::Occupancy::literal;
   }
 };
 

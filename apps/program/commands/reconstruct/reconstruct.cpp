@@ -69,19 +69,18 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   const InterruptGuard interrupt;
   setup.planning.stop = interrupt.token();
   const Stopwatch watch_of_set_up;
-  Run loop(setup, options.frames_per_view, exec);
+  RunParts parts(setup, options.frames_per_view, exec);
   seconds["quality"] = watch_of_set_up.seconds();
-  const SurfaceModel& model = loop.model();
-  const CandidateGeneration& generation = loop.generation();
+  const SurfaceModel& model = parts.model;
 
   RunFolder folder(outputs.out);
   const PolicyConfig& policy = setup.policy;
   RunReport report(policy, setup.visibility.tolerance);
   RunPage page(run_title(options, setup), setup.sensor,
-               std::string(criterion_name(policy.criterion)), loop.truth());
+               std::string(criterion_name(policy.criterion)), parts.truth);
   std::vector<Pose> views;
   Progress progress("view", options.common.quiet);
-  const PlanningResult result = loop.go([&](const ViewRecord& record) {
+  const auto watch = [&](const ViewRecord& record) {
     views.push_back(record.T_world_camera);
     add_to(seconds, record.seconds);
     if (outputs.saves_maps()) {
@@ -90,9 +89,9 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
     if (outputs.draws()) {
       const GainEvaluator evaluator = step_evaluator(model, setup, exec);
       add_to(seconds, show_step(outputs, folder, page,
-                                {record, model, generation, evaluator, setup.sensor}, exec));
+                                {record, model, parts.generation, evaluator, setup.sensor}, exec));
     }
-    const DepthFrame& frame = loop.acquisition().last_frame();
+    const DepthFrame& frame = parts.camera.last_frame();
     if (outputs.with_pictures() && !frame.amplitude.empty()) {
       write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
     }
@@ -100,10 +99,13 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
     progress.wipe();
     if (!options.common.quiet) std::fprintf(stderr, "%s\n", report.progress_line().c_str());
     progress.update(views.size(), options.max_views);
-  });
+  };
+  const PlanningResult result =
+      active_view_planning(setup.start, parts.acquisition, parts.representation(), parts.generation,
+                           parts.decision, setup.planning, watch);
 
   progress.wipe();
-  const std::vector<FrameRegistration> registrations = loop.registrations();
+  const std::vector<FrameRegistration> registrations = parts.registrations();
   for (std::size_t i = 0; i < registrations.size(); ++i) {
     views[i] = registrations[i].T_world_camera;
   }

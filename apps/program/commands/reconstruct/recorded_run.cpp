@@ -152,7 +152,7 @@ class Recording {
     next_ =
         best_views(moment.evaluator, last.proposal, proposal_, moment.model.grid(), options_.top);
     views_->add_seconds("score", watch.seconds());
-    if (!next_.views.empty()) last.decision = Decision{next_.views.front().index};
+    if (!next_.views.empty()) last.decision = DecisionMaking::Decision{next_.views.front().index};
     show(folder, moment);
 
     save_vdb(moment.model.grid(), folder.file("map.vdb"),

@@ -231,26 +231,16 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   return setup;
 }
 
-Run::Run(RunSetup setup, std::size_t frames_per_view, const ExecConfig& exec)
-    : setup_(std::move(setup)),
-      truth_(std::make_shared<const Truth>(setup_.stage.scene, setup_.sensor, setup_.visibility,
-                                           exec)),
-      acquisition_(SimulatedSensor(setup_.stage.scene, setup_.sensor, setup_.simulation, exec),
-                   frames_per_view, setup_.planning.stop),
-      reported_(acquisition_, setup_.pose_noise, setup_.simulation.seed),
-      model_(setup_.sensor, setup_.model, truth_, exec),
-      generation_(model_, setup_.generation, exec),
-      decision_(model_, generation_, setup_.sensor, with_object(setup_.policy, setup_, truth_),
-                exec) {
-  if (!setup_.registration) return;
-  registered_.emplace(model_, setup_.model.map, *setup_.registration, exec);
-}
-
-PlanningResult Run::go(const std::function<void(const ViewRecord&)>& observer) {
-  RepresentationUpdate& representation =
-      registered_ ? static_cast<RepresentationUpdate&>(*registered_) : model_;
-  return active_view_planning(setup_.start, reported_, representation, generation_, decision_,
-                              setup_.planning, observer);
+RunParts::RunParts(RunSetup from, std::size_t frames_per_view, const ExecConfig& exec)
+    : setup(std::move(from)),
+      truth(std::make_shared<const Truth>(setup.stage.scene, setup.sensor, setup.visibility, exec)),
+      camera(SimulatedSensor(setup.stage.scene, setup.sensor, setup.simulation, exec),
+             frames_per_view, setup.planning.stop),
+      acquisition(camera, setup.pose_noise, setup.simulation.seed),
+      model(setup.sensor, setup.model, truth, exec),
+      generation(model, setup.generation, exec),
+      decision(model, generation, setup.sensor, with_object(setup.policy, setup, truth), exec) {
+  if (setup.registration) registered.emplace(model, setup.model.map, *setup.registration, exec);
 }
 
 }  // namespace viewgain::app

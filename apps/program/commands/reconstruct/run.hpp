@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <functional>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -50,38 +50,31 @@ struct RunSetup {
 /// Reads the files that the options name and checks everything. Throws Error.
 [[nodiscard]] RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec);
 
-/// The parts of a simulated run, wired up as its flags say. For one run.
-class Run {
- public:
+/// The parts of Algorithm 1 on a mesh, wired up as a run's flags say. For one run.
+struct RunParts {
   /// Finds which samples of the mesh are visible, which takes some tenths of a second. Throws
   /// Error.
-  Run(RunSetup setup, std::size_t frames_per_view, const ExecConfig& exec);
-  Run(const Run&) = delete;
-  Run& operator=(const Run&) = delete;
+  RunParts(RunSetup from, std::size_t frames_per_view, const ExecConfig& exec);
+  RunParts(const RunParts&) = delete;
+  RunParts& operator=(const RunParts&) = delete;
 
-  /// The loop, to its end; `observer` is called once a view, when its record is complete.
-  PlanningResult go(const std::function<void(const ViewRecord&)>& observer);
-
-  [[nodiscard]] const RunSetup& setup() const noexcept { return setup_; }
-  [[nodiscard]] const std::shared_ptr<const Truth>& truth() const noexcept { return truth_; }
-  [[nodiscard]] const SimulatedAcquisition& acquisition() const noexcept { return acquisition_; }
+  /// What takes the measurements: the model, or what registers them first.
+  [[nodiscard]] RepresentationUpdate& representation() {
+    return registered ? static_cast<RepresentationUpdate&>(*registered) : model;
+  }
   /// What registration did to each view; empty without it.
   [[nodiscard]] std::vector<FrameRegistration> registrations() const {
-    return registered_ ? registered_->registrations() : std::vector<FrameRegistration>{};
+    return registered ? registered->registrations() : std::vector<FrameRegistration>{};
   }
-  [[nodiscard]] const SurfaceModel& model() const noexcept { return model_; }
-  [[nodiscard]] const CandidateGeneration& generation() const noexcept { return generation_; }
-  [[nodiscard]] CandidateGeneration& generation() noexcept { return generation_; }
 
- private:
-  RunSetup setup_;
-  std::shared_ptr<const Truth> truth_;
-  SimulatedAcquisition acquisition_;
-  MisreportedAcquisition reported_;
-  SurfaceModel model_;
-  std::optional<RegisteredModel> registered_;
-  CandidateGeneration generation_;
-  PolicyDecision decision_;
+  RunSetup setup;
+  std::shared_ptr<const Truth> truth;
+  SimulatedAcquisition camera;
+  MisreportedAcquisition acquisition;  ///< the camera's, at the poses that it reports
+  SurfaceModel model;
+  std::optional<RegisteredModel> registered;
+  CandidateGeneration generation;
+  PolicyDecision decision;
 };
 
 }  // namespace viewgain::app

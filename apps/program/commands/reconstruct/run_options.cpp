@@ -106,18 +106,14 @@ void describe(Options& o, Visitor& visit) {
       "stop_area", "--stop-area", o.stop_area,
       "of --gain surface and combined: stop when the best candidate promises less than this "
       "share of the surface so far as new surface, on the mean of three decisions; 0: never; "
-      "default: 0.003",
+      "default: 0.004",
       as_it_is);
   visit.option("stop_idle", "--stop-idle", o.stop_idle,
                "stop after so many views in a row that change entropy and unknown voxels by "
                "less than 0.1 %; 0: never",
                counted_with_default(0, kMaxCount));
-  visit.option(
-      "stop_promises", "--stop-promises", o.stop_promises,
-      "of --gain paper, surface and combined: stop after so many views in a row that bring "
-      "less than a fifth of what they promised, new surface, by the paper's gain "
-      "entropy; 0: never",
-      counted_with_default(0, kMaxCount));
+  visit.option("stop_promises", "--stop-promises", o.stop_promises, kStopPromisesHelp,
+               counted_with_default(0, kMaxCount));
   visit.option("stop_coverage", "--stop-coverage", o.stop_coverage,
                "stop at this coverage of the visible surface, 0..1", as_it_is);
   visit.option("tolerance", "--tolerance", o.tolerance,

@@ -34,7 +34,7 @@ struct ClassicScores {
   std::vector<std::size_t> numbers;            ///< of each candidate among the poses given
   std::map<std::string, std::size_t> dropped;  ///< the others: reason -> count
   std::vector<double> gains{};                 ///< as ClassicGainEvaluator::evaluate
-  std::vector<ViewStatus> statuses{};
+  std::vector<ViewGain::Status> statuses{};
   double seconds = 0;
 
   /// Candidates, best first: ties to the lower number, NaN last; at most `top`.

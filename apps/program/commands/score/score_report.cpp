@@ -119,12 +119,17 @@ void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel mod
   }
 }
 
-void print_rows(const Estimates& estimates) {
-  std::printf("%4s %8s %12s %14s\n", "rank", "index", "gain", "standard error");
+void print_rows(const Estimates& estimates, const PoseSource& poses) {
+  const bool has_costs = !poses.costs.empty();
+  std::printf("%4s %8s %12s", "rank", "index", "gain");
+  if (has_costs) std::printf(" %12s", "worth");
+  std::printf(" %14s\n", "standard error");
   for (std::size_t rank = 0; rank < estimates.best.size(); ++rank) {
     const ApproximateGain& r = estimates.gains[estimates.best[rank]];
-    std::printf("%4zu %8zu %12.6g %14.3g\n", rank + 1, estimates.indices[estimates.best[rank]],
-                r.gain, r.standard_error);
+    const std::size_t i = estimates.indices[estimates.best[rank]];
+    std::printf("%4zu %8zu %12.6g", rank + 1, i, r.gain);
+    if (has_costs) std::printf(" %12.6g", poses.worth(i, r.gain));
+    std::printf(" %14.3g\n", r.standard_error);
   }
 }
 
@@ -189,7 +194,7 @@ void ScoreReport::print_table() const {
                 counts_text(scores.dropped).c_str());
   }
   if (scores.estimates) {
-    print_rows(*scores.estimates);
+    print_rows(*scores.estimates, source);
   } else {
     print_rows(scores.best, source, model);
   }
@@ -221,6 +226,7 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
   }
   const bool by_area = model != GainModel::paper && in_full;
   const bool by_paper = model == GainModel::paper && in_full;
+  const bool has_costs = !source.costs.empty();
   std::vector<double> gains, areas;
   std::vector<ViewGain> by_worth = ranked;
   for (std::size_t i = 0; i < ranked.size(); ++i) {
@@ -229,6 +235,7 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
     if (by_area) areas.push_back(ranked[i].area);
   }
   Json columns{"pose", "gain"}, rows = Json::array();
+  if (has_costs) columns.push_back("worth");
   if (by_area) columns.push_back("area");
   if (in_full) columns.push_back("hits");
   if (by_paper) columns.push_back("unknown");
@@ -240,6 +247,7 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
     const ViewGain& r = ranked[i];
     if (std::isnan(r.gain)) break;
     Json row{i, r.gain};
+    if (has_costs) row.push_back(by_worth[i].gain);
     if (by_area) row.push_back(r.area);
     if (in_full) row.push_back(r.hits);
     if (by_paper) row.push_back(r.unknown_voxels);

@@ -49,7 +49,7 @@ double ResultRow::counted_views_to(std::size_t goal) const {
   return static_cast<double>(views_to[goal].value_or(coverage_by_view.size() + 1));
 }
 
-ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json, const Json& maps) {
+ResultRow row_of(const StudyRun& run, const Json& json, std::size_t max_views) {
   ResultRow row;
   row.run = &run;
   row.views = json.at("views").get<std::size_t>();
@@ -59,7 +59,7 @@ ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json, c
     const double coverage = number_of(view.at("coverage_visible"));
     row.coverage_by_view.push_back(std::isnan(coverage) ? 0 : coverage);
   }
-  row.coverage_by_view.resize(spec.max_views, row.coverage_by_view.back());
+  row.coverage_by_view.resize(max_views, row.coverage_by_view.back());
   for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
     for (std::size_t view = row.coverage_by_view.size(); view > 0; --view) {
       if (row.coverage_by_view[view - 1] >= kGoals[goal]) row.views_to[goal] = view;
@@ -73,14 +73,18 @@ ResultRow row_of(const StudySpec& spec, const StudyRun& run, const Json& json, c
   row.outliers = number_of(json.at("outliers"));
   row.travelled = number_of(json.at("travelled"));
   row.seconds = number_of(json.at("seconds").at("total"));
-  row.prediction = Json::array();
-  for (Json entry : maps.at("prediction")) {
-    if (entry.at("policy") != Json(spec.policies[run.policy].name)) continue;
-    entry.erase("policy");
-    row.prediction.push_back(std::move(entry));
-  }
   row.isa = json.at("isa").get<std::string>();
   return row;
+}
+
+Json prediction_of(const std::string& policy, const Json& maps) {
+  Json prediction = Json::array();
+  for (Json entry : maps.at("prediction")) {
+    if (entry.at("policy") != Json(policy)) continue;
+    entry.erase("policy");
+    prediction.push_back(std::move(entry));
+  }
+  return prediction;
 }
 
 std::string run_columns(const StudySpec& spec, const StudyRun& run) {

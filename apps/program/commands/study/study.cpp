@@ -97,15 +97,25 @@ void check_folder(const std::filesystem::path& dir, const std::filesystem::path&
   refuse("--out " + dir.string() + ": has files, but no runs/ of a study; name a new folder");
 }
 
-ResultRow row_in(const StudyFolder& folder, const StudySpec& spec, const StudyRun& run) {
+// What `take` takes from a run's run.json.
+template <typename Take>
+auto taken_from(const StudyFolder& folder, const StudyRun& run, Take&& take) {
   const Json json = folder.read(run);
-  const StudyRun& maps = spec.runs[run.maps];
   try {
-    return row_of(spec, run, json, &maps == &run ? json : folder.read(maps));
+    return take(json);
   } catch (const JsonError& error) {
     throw Error(ErrorCode::format, folder.file(run, "run.json").string() + ": " + error.what() +
                                        "; a run whose folder is removed is made again");
   }
+}
+
+ResultRow row_in(const StudyFolder& folder, const StudySpec& spec, const StudyRun& run) {
+  ResultRow row =
+      taken_from(folder, run, [&](const Json& json) { return row_of(run, json, spec.max_views); });
+  row.prediction = taken_from(folder, spec.runs[run.maps], [&](const Json& json) {
+    return prediction_of(spec.policies[run.policy].name, json);
+  });
+  return row;
 }
 
 // Coverage that is finer than the voxels says more of these than of the views.

@@ -65,15 +65,14 @@ std::vector<Candidate> evenly(const std::vector<Candidate>& from, std::size_t co
   return some;
 }
 
-std::vector<Candidate> candidates_of(Run& run, const ViewRecord& record, std::size_t count) {
+std::vector<Candidate> candidates_of(RunParts& run, const ViewRecord& record, std::size_t count) {
   // After the last view of the budget nobody has asked for a proposal.
   const std::vector<Candidate> proposed =
-      record.proposal.candidates.empty()
-          ? run.generation().generate(record.T_world_camera).candidates
-          : record.proposal.candidates;
+      record.proposal.candidates.empty() ? run.generation.generate(record.T_world_camera).candidates
+                                         : record.proposal.candidates;
   std::vector<Candidate> candidates = evenly(proposed, count / 2);
-  const RunSetup& setup = run.setup();
-  const FeasibilityChecker checker(run.model().scene(), run.generation().config().feasibility);
+  const RunSetup& setup = run.setup;
+  const FeasibilityChecker checker(run.model.scene(), run.generation.config().feasibility);
   std::vector<Candidate> sphere;
   const std::vector<Pose> around = sphere_poses(2 * count, setup.distance, setup.stage.center);
   for (const Pose& pose : feasible_poses(checker, around, {}).poses) {
@@ -111,7 +110,7 @@ double top1_share(const std::vector<double>& score, const std::vector<double>& a
 // from its list, the rest feasible poses of the sphere round the object at the start's distance.
 // To be called by the loop's observer. Empty where no policy scores anything, or if a stop was
 // requested. Takes some 0.1 s a candidate.
-Prediction predict(Run& run, const ViewRecord& record, Scorers& scorers, std::size_t count,
+Prediction predict(RunParts& run, const ViewRecord& record, Scorers& scorers, std::size_t count,
                    const ExecConfig& exec, const std::stop_token& stop) {
   Prediction prediction;
   prediction.view = record.index + 1;
@@ -122,16 +121,16 @@ Prediction predict(Run& run, const ViewRecord& record, Scorers& scorers, std::si
     if (auto scores = scorer.scores(candidates)) by_policy.push_back({policy, std::move(*scores)});
   }
   if (by_policy.empty()) return prediction;
-  const RunSetup& setup = run.setup();
-  const OracleChoice oracle(run.model(), setup.sensor,
-                            {setup.stage.scene, run.truth(), setup.simulation}, exec);
+  const RunSetup& setup = run.setup;
+  const OracleChoice oracle(run.model, setup.sensor,
+                            {setup.stage.scene, run.truth, setup.simulation}, exec);
   const auto covered = static_cast<double>(oracle.covered());
   std::vector<CandidateOutcome> outcomes;
   for (const Candidate& candidate : candidates) {
     if (stop.stop_requested()) return prediction;
     const TrueOutcome outcome = oracle.outcome_of(candidate.T_world_camera);
     const double new_samples = static_cast<double>(outcome.covered) - covered;
-    outcomes.push_back({candidate, new_samples, new_samples * run.truth()->area_per_sample(),
+    outcomes.push_back({candidate, new_samples, new_samples * run.truth->area_per_sample(),
                         outcome.entropy_removed - record.progress.entropy_removed});
   }
   const std::vector<double> added = column(outcomes, &CandidateOutcome::new_samples),
@@ -200,15 +199,15 @@ void add_to(StudyResult& result, const StudySpec& spec, const Prediction& predic
 }
 
 // What ranks by the policies whose scores are looked at on a run's maps.
-Scorers scorers_of(const StudySpec& spec, const StudyRun& study_run, const Run& run,
+Scorers scorers_of(const StudySpec& spec, const StudyRun& study_run, const RunParts& run,
                    const ExecConfig& exec) {
   Scorers scorers;
   for (const std::size_t policy : scored_policies(spec, study_run)) {
     StudyRun other = study_run;
     other.policy = policy;
     PolicyConfig config = policy_config(options_of(spec, other));
-    config.object = {run.setup().stage.scene, run.truth(), run.setup().simulation};
-    scorers.try_emplace(policy, run.model(), run.generation(), run.setup().sensor, config, exec);
+    config.object = {run.setup.stage.scene, run.truth, run.setup.simulation};
+    scorers.try_emplace(policy, run.model, run.generation, run.setup.sensor, config, exec);
   }
   return scorers;
 }
@@ -219,22 +218,25 @@ std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& stud
   const ExecConfig exec{threads, parse_tracer(options.common.trace)};
   RunSetup setup = set_up(options, exec);
   setup.planning.stop = stop;
-  Run run(std::move(setup), options.frames_per_view, exec);
-  RunReport report(run.setup().policy, spec.tolerance);
+  RunParts run(std::move(setup), options.frames_per_view, exec);
+  RunReport report(run.setup.policy, spec.tolerance);
   StudyResult result;
   result.run = {{"prediction", Json::array()}};
   Scorers scorers = scorers_of(spec, study_run, run, exec);
   const std::vector<std::size_t>& views = spec.prediction.views;
   StageSeconds seconds;
-  const PlanningResult planned = run.go([&](const ViewRecord& record) {
+  const auto watch_view = [&](const ViewRecord& record) {
     for (const auto& [stage, value] : record.seconds) seconds[stage] += value;
-    report.add_view(record, run.model().quality().back(), seconds);
+    report.add_view(record, run.model.quality().back(), seconds);
     const bool is_asked = std::find(views.begin(), views.end(), record.index + 1) != views.end();
     if (scorers.empty() || !is_asked || stop.stop_requested()) return;
     const Stopwatch watch;
     add_to(result, spec, predict(run, record, scorers, spec.prediction.candidates, exec, stop));
     seconds["prediction"] += watch.seconds();
-  });
+  };
+  const PlanningResult planned =
+      active_view_planning(run.setup.start, run.acquisition, run.representation(), run.generation,
+                           run.decision, run.setup.planning, watch_view);
   if (stop.stop_requested() || planned.reason == StopReason::interrupted) return std::nullopt;
   result.run["configuration"] = study_run.configuration;
   result.run.update(report.json(planned.reason));

@@ -137,13 +137,14 @@ double pooling_length_of(const SharedGrid& grid) {
 
 py::object statistics_of(const SharedGrid& grid, const std::string& criterion) {
   const Criterion parsed = parse_criterion(criterion);
-  const GridStatistics s = grid.read([&](const BeliefGrid& g) { return g.statistics(parsed); });
+  const BeliefGrid::Statistics s =
+      grid.read([&](const BeliefGrid& g) { return g.statistics(parsed); });
   return named("GridStatistics", s.unknown, s.free, s.occupied, s.bytes, s.entropy_removed);
 }
 
 std::string repr_of(const SharedGrid& grid) {
   const Index3 dims = grid.layout().dims();
-  const GridStatistics s = grid.read([](const BeliefGrid& g) { return g.statistics(); });
+  const BeliefGrid::Statistics s = grid.read([](const BeliefGrid& g) { return g.statistics(); });
   std::ostringstream text;
   text << "<BeliefGrid " << dims.x << "x" << dims.y << "x" << dims.z << " voxels of "
        << grid.layout().voxel_size() << " m: " << s.unknown << " unknown, " << s.free << " free, "

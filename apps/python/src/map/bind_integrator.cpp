@@ -57,9 +57,9 @@ ValueError
     Beside what is usual: all readings, or 19 in 20 that are not alike, are beyond 10 times max_range, as
     where they are in millimetres. The grid is unchanged then.)";
 
-Occupancy parse_occupancy(const std::string& name) {
-  if (name == "probabilistic") return Occupancy::probabilistic;
-  if (name == "literal") return Occupancy::literal;
+IntegrationConfig::Occupancy parse_occupancy(const std::string& name) {
+  if (name == "probabilistic") return IntegrationConfig::Occupancy::probabilistic;
+  if (name == "literal") return IntegrationConfig::Occupancy::literal;
   throw py::value_error("occupancy is \"" + name + "\"; valid are probabilistic literal");
 }
 
@@ -228,7 +228,7 @@ IntegrationConfig config_of(const std::string& carve, const std::string& occupan
                             std::optional<double> support_plane) {
   IntegrationConfig config;
   if (carve == "lines") {
-    config.carve = Carve::lines;
+    config.carve = IntegrationConfig::Carve::lines;
   } else if (carve != "cones") {
     throw py::value_error("carve is \"" + carve + "\"; valid are cones lines");
   }

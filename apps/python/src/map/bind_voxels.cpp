@@ -91,7 +91,7 @@ void set(SharedGrid& grid, const py::object& voxels, const py::object& log_odds)
         "; it must be one number, or one for each of voxels, which has the shape " +
         shape_text(array));
   }
-  std::vector<VoxelValue> changes;
+  std::vector<BeliefGrid::VoxelValue> changes;
   changes.reserve(indices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) {
     changes.push_back({indices[i], static_cast<float>(values.data()[is_one ? 0 : i]), {}});
@@ -102,7 +102,7 @@ void set(SharedGrid& grid, const py::object& voxels, const py::object& log_odds)
 py::array_t<OccupiedRow> occupied(const SharedGrid& grid) {
   std::vector<OccupiedRow> rows;
   grid.read([&](const BeliefGrid& g) {
-    g.for_each_occupied([&](const VoxelValue& one) {
+    g.for_each_occupied([&](const BeliefGrid::VoxelValue& one) {
       rows.push_back({{one.voxel.x, one.voxel.y, one.voxel.z},
                       one.log_odds,
                       one.belief ? one.belief->hits : 0});

@@ -90,27 +90,27 @@ class VIEWGAIN_EXPORT ViewpointGeneration {
   virtual Proposal generate(const Pose& T_world_camera) = 0;
 };
 
-/// The choice among the candidates.
-struct VIEWGAIN_EXPORT Decision {
-  std::size_t candidate = 0;  ///< index of the chosen one
-  double gain =
-      std::numeric_limits<double>::quiet_NaN();  ///< its expected gain [nat, m² for trace]
-  /// Its expected gain per touched voxel [nat, m² for trace], held against
-  /// PlanningConfig::stop_gain; NaN: this policy has none and never stops for it.
-  double gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
-  /// The new surface that it is expected to show [m²]; NaN: not known.
-  double area = std::numeric_limits<double>::quiet_NaN();
-  /// The most that any of the candidates that were looked at closely is expected to show [m²], held
-  /// against PlanningConfig::stop_area; NaN: not known, and never stops for it.
-  double best_area = std::numeric_limits<double>::quiet_NaN();
-  /// Its gain less what it costs to go there, in the gain's unit; NaN: nothing has a cost, and it
-  /// never stops for it.
-  double worth = std::numeric_limits<double>::quiet_NaN();
-};
-
 /// DECISIONMAKER: picks x_{i+1}. Returns nothing if none of the candidates will do.
 class VIEWGAIN_EXPORT DecisionMaking {
  public:
+  /// The choice among the candidates.
+  struct Decision {
+    std::size_t candidate = 0;  ///< index of the chosen one
+    double gain =
+        std::numeric_limits<double>::quiet_NaN();  ///< its expected gain [nat, m² for trace]
+    /// Its expected gain per touched voxel [nat, m² for trace], held against
+    /// PlanningConfig::stop_gain; NaN: this policy has none and never stops for it.
+    double gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
+    /// The new surface that it is expected to show [m²]; NaN: not known.
+    double area = std::numeric_limits<double>::quiet_NaN();
+    /// The most that any of the candidates that were looked at closely is expected to show [m²],
+    /// held against PlanningConfig::stop_area; NaN: not known, and never stops for it.
+    double best_area = std::numeric_limits<double>::quiet_NaN();
+    /// Its gain less what it costs to go there, in the gain's unit; NaN: nothing has a cost, and it
+    /// never stops for it.
+    double worth = std::numeric_limits<double>::quiet_NaN();
+  };
+
   virtual ~DecisionMaking() = default;
   /// One of the candidates, by its place in their order, or nothing. `T_world_camera`: where the
   /// camera is now.
@@ -127,7 +127,7 @@ inline constexpr double kStopGainShare = 0.01;
 
 /// Default of PlanningConfig::stop_area, a share of the surface so far; perf/results/loop.md says
 /// where the camel stops by it.
-inline constexpr double kStopArea = 3e-3;
+inline constexpr double kStopArea = 4e-3;
 
 /// A view that brings less than this share of what was promised breaks the promise.
 inline constexpr double kKeptShare = 0.2;
@@ -190,7 +190,7 @@ struct VIEWGAIN_EXPORT ViewRecord {
   Proposal proposal{};   ///< for the next view; empty if the run ended before it was asked for
   /// The next view; empty if there was none. With StopReason::gain, area and cost it is the one
   /// that promised too little and is not taken.
-  std::optional<Decision> decision{};
+  std::optional<DecisionMaking::Decision> decision{};
   /// What the turn's steps took: acquire; the update's own stages, or, where it names none, update;
   /// candidates; score.
   StageSeconds seconds{};

@@ -46,9 +46,9 @@ class VIEWGAIN_EXPORT StopRules {
 
   /// After a choice among the candidates that are left: no_candidates or unreachable if none was
   /// made, else gain, area or cost. `surface_area` [m²]: as ModelProgress has it.
-  [[nodiscard]] std::optional<StopReason> after_decision(const std::optional<Decision>& decision,
-                                                         const Proposal& proposal,
-                                                         double surface_area);
+  [[nodiscard]] std::optional<StopReason> after_decision(
+      const std::optional<DecisionMaking::Decision>& decision, const Proposal& proposal,
+      double surface_area);
 
   /// What the rules have to remember.
   [[nodiscard]] const StopMemory& memory() const noexcept { return memory_; }

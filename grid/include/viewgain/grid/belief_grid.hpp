@@ -39,26 +39,6 @@ struct VIEWGAIN_EXPORT GridConfig {
   std::optional<double> prior_sigma{};
 };
 
-/// Voxel counts and the paper's measure of progress, of a map or a part of it ("selected parts").
-struct VIEWGAIN_EXPORT GridStatistics {
-  std::uint64_t unknown = 0;   ///< voxels never observed
-  std::uint64_t free = 0;      ///< voxels known to be free
-  std::uint64_t occupied = 0;  ///< voxels known to be occupied
-  std::uint64_t bytes = 0;     ///< memory of the whole map: tree, beliefs, book-keeping
-  double entropy_removed =
-      0;  ///< sum over occupied of H(Λ_0) - H(Λ_0 + Λ_v) [nat, or m² for trace]
-  std::uint64_t hits = 0;  ///< readings that ended there, whatever the voxels are now
-  /// Mean of √(tr(Λ_v⁻¹ + voxel²/12 I) / 3) over occupied voxels with a belief [m]; NaN without.
-  double mean_sigma = 0;
-};
-
-/// A known voxel: what BeliefGrid::set() makes of one, and what for_each_occupied() shows.
-struct VIEWGAIN_EXPORT VoxelValue {
-  Index3 voxel;                    ///< of the workspace
-  float log_odds = 0;              ///< set() rounds it to the nearest step of 0.05 and clamps it
-  std::optional<Belief> belief{};  ///< none: it has none, and after set() none any more
-};
-
 /// The belief grid: what is known of a workspace, voxel by voxel.
 ///
 /// Voxel (i,j,k) is [i,i+1) x [j,j+1) x [k,k+1) times V in the grid's frame. The workspace is grown
@@ -72,6 +52,24 @@ struct VIEWGAIN_EXPORT VoxelValue {
 /// say so; the others take any. Members that look at one voxel cost constant time.
 class VIEWGAIN_EXPORT BeliefGrid {
  public:
+  /// A known voxel: what set() makes of one, and what for_each_occupied() shows.
+  struct VoxelValue {
+    Index3 voxel;                    ///< of the workspace
+    float log_odds = 0;              ///< set() rounds it to the nearest step of 0.05 and clamps it
+    std::optional<Belief> belief{};  ///< none: it has none, and after set() none any more
+  };
+
+  /// Voxel counts and the paper's measure of progress, of a map or a part of it ("selected parts").
+  struct Statistics {
+    std::uint64_t unknown = 0;   ///< voxels never observed
+    std::uint64_t free = 0;      ///< voxels known to be free
+    std::uint64_t occupied = 0;  ///< voxels known to be occupied
+    std::uint64_t bytes = 0;     ///< memory of the whole map: tree, beliefs, book-keeping
+    double entropy_removed =
+        0;  ///< sum over occupied of H(Λ_0) - H(Λ_0 + Λ_v) [nat, or m² for trace]
+    std::uint64_t hits = 0;  ///< readings that ended there, whatever the voxels are now
+  };
+
   /// `sensor`: that the map is for, which is asked where there is no prior_sigma. Throws
   /// Error(invalid_argument) naming the value unless voxel_size is at least 2e-5 m (smaller ones
   /// have no OpenVDB transform), it and prior_sigma are positive and finite, the workspace is
@@ -158,11 +156,14 @@ class VIEWGAIN_EXPORT BeliefGrid {
 
   /// How much is known, and how well; the entropy removed is by this criterion. Costs a pass over
   /// the map's blocks. Deterministic.
-  [[nodiscard]] GridStatistics statistics(Criterion criterion = Criterion::log_diagonal) const;
+  [[nodiscard]] Statistics statistics(Criterion criterion = Criterion::log_diagonal) const;
   /// The same of the voxels whose centres lie in a region of the grid's frame [m], half-open;
   /// bounds may be infinite. Throws Error(invalid_argument) if one is NaN.
-  [[nodiscard]] GridStatistics statistics(const Box& region,
-                                          Criterion criterion = Criterion::log_diagonal) const;
+  [[nodiscard]] Statistics statistics(const Box& region,
+                                      Criterion criterion = Criterion::log_diagonal) const;
+  /// Mean of √(tr(Λ_v⁻¹ + voxel²/12 I) / 3) over the region's occupied voxels with a belief [m];
+  /// NaN without. Throws as statistics(). Costs a pass over the occupied voxels.
+  [[nodiscard]] double mean_sigma(const Box& region) const;
 
   /// 16 hexadecimal digits over states, log-odds, beliefs, layout, prior, views and, if there are
   /// any, hazard counters. The same for

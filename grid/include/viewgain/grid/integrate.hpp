@@ -14,22 +14,22 @@
 
 namespace viewgain {
 
-/// Which voxels count as crossed by a pixel.
-enum class Carve : std::uint8_t {
-  cones,  ///< those whose centre lies in the pixel's pyramid nearer than the reading
-  /// Those that the ray of the pixel's centre passes through: the paper's literal rule. The weight
-  /// is that of the ray's entry into the voxel; of several rays the strongest counts.
-  lines,
-};
-
-/// How crossings and hits change a voxel's state.
-enum class Occupancy : std::uint8_t {
-  probabilistic,  ///< log-odds, once a voxel a frame
-  literal,        ///< crossed -> free, encloses a reading -> occupied: the paper's rule
-};
-
 /// What changes the map.
 struct VIEWGAIN_EXPORT IntegrationConfig {
+  /// Which voxels count as crossed by a pixel.
+  enum class Carve : std::uint8_t {
+    cones,  ///< those whose centre lies in the pixel's pyramid nearer than the reading
+    /// Those that the ray of the pixel's centre passes through: the paper's literal rule. The
+    /// weight is that of the ray's entry into the voxel; of several rays the strongest counts.
+    lines,
+  };
+
+  /// How crossings and hits change a voxel's state.
+  enum class Occupancy : std::uint8_t {
+    probabilistic,  ///< log-odds, once a voxel a frame
+    literal,        ///< crossed -> free, encloses a reading -> occupied: the paper's rule
+  };
+
   Carve carve = Carve::cones;                      ///< what a pixel carves
   Occupancy occupancy = Occupancy::probabilistic;  ///< how states follow
   /// Height z [m] of the table that the object stands on, world. Readings whose point is below it,
@@ -63,7 +63,8 @@ struct VIEWGAIN_EXPORT IntegrationReport {
 /// have carried it there: it is put on the plane through the 5×5 pixels around, and hits the best
 /// supported voxel on its ray within 3 sigma_ax of there, that with the most readings of map and
 /// frame, near ones before far ones, if it has more than twice the support of the plane's. So noise
-/// does not make walls thick. Occupancy::literal leaves it where it is (the paper's eq. 4).
+/// does not make walls thick. IntegrationConfig::Occupancy::literal leaves it where it is (the
+/// paper's eq. 4).
 ///
 /// Thread safety: one call at a time on one integrator and on one grid.
 class VIEWGAIN_EXPORT FrameIntegrator {

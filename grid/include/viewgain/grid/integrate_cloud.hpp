@@ -19,14 +19,14 @@ namespace viewgain {
 /// pixels of a camera.
 ///
 /// Each point is a reading along the line from the sensor's origin, which carves the voxels that it
-/// passes through (Carve::lines) and hits the one that holds the point, with the sensor's
-/// covariance at that range and direction and frontal incidence. All points of a call count as one
-/// frame: a voxel is updated once, a hit beats crossings. Ranges are treated as FrameIntegrator
-/// does: nearer than min_range is invalid, farther than max_range carves as far as that. A point
-/// that is not finite, or is the origin itself, is invalid. Of the sensor only noise, fx (of the
-/// models whose sigma_lat is a pixel's footprint) and range limits matter. The map is the same bit
-/// for bit for any number of threads, and for the points in any order but for the rounding of the
-/// beliefs' sums.
+/// passes through (IntegrationConfig::Carve::lines) and hits the one that holds the point, with the
+/// sensor's covariance at that range and direction and frontal incidence. All points of a call
+/// count as one frame: a voxel is updated once, a hit beats crossings. Ranges are treated as
+/// FrameIntegrator does: nearer than min_range is invalid, farther than max_range carves as far as
+/// that. A point that is not finite, or is the origin itself, is invalid. Of the sensor only noise,
+/// fx (of the models whose sigma_lat is a pixel's footprint) and range limits matter. The map is
+/// the same bit for bit for any number of threads, and for the points in any order but for the
+/// rounding of the beliefs' sums.
 ///
 /// Thread safety: one call at a time on one integrator and on one grid. Cost: grows with
 /// the voxels crossed.

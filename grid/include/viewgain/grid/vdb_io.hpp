@@ -20,12 +20,6 @@ struct VIEWGAIN_EXPORT VdbWriteConfig {
   std::map<std::string, std::string> notes{};
 };
 
-/// A file of save_vdb, whole.
-struct VIEWGAIN_EXPORT VdbMap {
-  BeliefGrid grid;                           ///< the map
-  std::map<std::string, std::string> notes;  ///< VdbWriteConfig::notes
-};
-
 /// Writes the map as a plain OpenVDB file (active = known; apps/docs/reference/formats.md has the
 /// layout), of types that OpenVDB's Python module reads. Atomic: a temporary file beside it is
 /// renamed. Throws Error(io). If memory runs out (std::bad_alloc), the file that was there stays.
@@ -37,11 +31,11 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 /// has the saved one's content_hash(). Throws Error(io) if it cannot be opened and Error(format),
 /// naming the file and what is missing or out of bounds, if it is truncated, of another version of
 /// the layout or no viewgain map; Error(capacity) if tiles hold more than 2^27 occupied voxels, or
-/// the file is over 16 GiB. Cost: grows with the leaves and beliefs of the map; the file is read
-/// once.
-[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_vdb(const std::filesystem::path& path);
-/// The same with its notes: both of one state of the file, whoever rewrites it meanwhile.
-[[nodiscard]] VIEWGAIN_EXPORT VdbMap load_vdb_map(const std::filesystem::path& path);
+/// the file is over 16 GiB. `notes`, if not null, becomes the file's VdbWriteConfig::notes: both
+/// are of one state of the file, whoever rewrites it meanwhile. Cost: grows with the leaves and
+/// beliefs of the map; the file is read once.
+[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid
+load_vdb(const std::filesystem::path& path, std::map<std::string, std::string>* notes = nullptr);
 
 /// Rates of the unknown for HazardConfig::volume, from a .vdb file of any program, say a prior of
 /// the object's shape: the grid of floats [1/m] named "hazard", or the only one. Its transform may

@@ -65,19 +65,17 @@ struct VIEWGAIN_EXPORT GainConfig {
   bool posterior_entropy = false;       ///< paper: ViewGain::posterior_entropy too; some 4 % slower
 };
 
-/// Whether a view could be scored.
-enum class ViewStatus : std::uint8_t {
-  ok,
-  bad_pose,  ///< a number that is not finite, or a rotation off by more than 1e-3: gain NaN
-  camera_in_occupied,  ///< the camera's centre lies in an occupied voxel: gain 0
-};
-/// Its name, as JSON has it; never throws.
-[[nodiscard]] VIEWGAIN_EXPORT std::string_view view_status_name(ViewStatus status);
-
 /// What a view is expected to bring. Gains in nats, in m² for the criterion trace and for the
 /// surface gain. Each part says which models have it; of the others it is NaN, a count 0, and null
 /// in JSON.
 struct VIEWGAIN_EXPORT ViewGain {
+  /// Whether a view could be scored.
+  enum class Status : std::uint8_t {
+    ok,
+    bad_pose,  ///< a number that is not finite, or a rotation off by more than 1e-3: gain NaN
+    camera_in_occupied,  ///< the camera's centre lies in an occupied voxel: gain 0
+  };
+
   /// By GainConfig::model: exploration + refinement; area; or area · ΔH_new / voxel² + w ·
   /// refinement_saturated. NaN: a bad pose, or sensor sigmas beyond what double precision can
   /// weigh.
@@ -91,12 +89,15 @@ struct VIEWGAIN_EXPORT ViewGain {
   /// If GainConfig asks for it: the paper's eq. (6) over the touched voxels, Σ_v Σ_k ln[(Λ_v +
   /// ΣΛ_r)⁻¹]_kk, lengths in metres.
   double posterior_entropy = std::numeric_limits<double>::quiet_NaN();
-  std::uint32_t rays = 0;                    ///< of the view
-  std::uint32_t hits = 0;                    ///< rays that end in a voxel
-  std::uint32_t unknown_voxels = 0;          ///< distinct; paper
-  std::uint32_t occupied_voxels = 0;         ///< distinct; paper, combined
-  ViewStatus status = ViewStatus::bad_pose;  ///< whether it could be scored
+  std::uint32_t rays = 0;             ///< of the view
+  std::uint32_t hits = 0;             ///< rays that end in a voxel
+  std::uint32_t unknown_voxels = 0;   ///< distinct; paper
+  std::uint32_t occupied_voxels = 0;  ///< distinct; paper, combined
+  Status status = Status::bad_pose;   ///< whether it could be scored
 };
+
+/// Name of a status, as JSON has it; never throws.
+[[nodiscard]] VIEWGAIN_EXPORT std::string_view view_status_name(ViewGain::Status status);
 
 /// Where one ray of a view ends.
 struct VIEWGAIN_EXPORT RayHit {
@@ -119,19 +120,6 @@ struct VIEWGAIN_EXPORT VoxelContribution {
   double gain = 0;  ///< its task weight included, in the gain's unit
 };
 
-/// What becomes of a view's rays, for asking why its gain is what it is. Each ray counts once, so
-/// that the counts below `rays` add up to it.
-struct VIEWGAIN_EXPORT RayOutcomes {
-  std::uint32_t rays = 0;           ///< of the view
-  std::uint32_t too_near = 0;       ///< meet surface or an obstacle before min_range, in free space
-  std::uint32_t unknown = 0;        ///< come to unknown space: what may be new
-  std::uint32_t known_surface = 0;  ///< end in known surface, with free space before it
-  std::uint32_t obstacle =
-      0;  ///< end at an obstacle or, but by the paper's gain, on the support plane
-  std::uint32_t out_of_range = 0;  ///< are in known free space to max_range
-  std::uint32_t out_of_map = 0;    ///< leave the workspace, or never come into it
-};
-
 /// Scores camera poses against a scene by expected information gain (apps/docs/guide/equations.md).
 ///
 /// A camera that is more than 1e6 voxels away from the workspace sees nothing of it: gain 0.
@@ -146,6 +134,19 @@ struct VIEWGAIN_EXPORT RayOutcomes {
 /// the hazard of a scene that has none yet.
 class VIEWGAIN_EXPORT GainEvaluator {
  public:
+  /// What becomes of a view's rays, for asking why its gain is what it is. Each ray counts once, so
+  /// that the counts below `rays` add up to it.
+  struct RayOutcomes {
+    std::uint32_t rays = 0;      ///< of the view
+    std::uint32_t too_near = 0;  ///< meet surface or an obstacle before min_range, in free space
+    std::uint32_t unknown = 0;   ///< come to unknown space: what may be new
+    std::uint32_t known_surface = 0;  ///< end in known surface, with free space before it
+    std::uint32_t obstacle =
+        0;  ///< end at an obstacle or, but by the paper's gain, on the support plane
+    std::uint32_t out_of_range = 0;  ///< are in known free space to max_range
+    std::uint32_t out_of_map = 0;    ///< leave the workspace, or never come into it
+  };
+
   /// Undoes the lens distortion once. By ExecConfig::tracer `embree` the first evaluator of a scene
   /// builds the scene's BVH, 0.5 ms per 1,000 primitives. Throws Error(backend) or Error(capacity)
   /// if it cannot be built, Error(invalid_argument), naming the value, for a null scene, a sensor

@@ -159,7 +159,7 @@ TEST(Octomap, AWorkspaceCutsAndGrows) {
   }
   EXPECT_EQ(differences, 0);
   EXPECT_GT(known, 3000);
-  const GridStatistics statistics = part.statistics();
+  const BeliefGrid::Statistics statistics = part.statistics();
   EXPECT_EQ(statistics.free + statistics.occupied, static_cast<std::uint64_t>(known));
 
   config.workspace = Box{{-50, -50, -50}, {50, 50, 50}};

@@ -6,17 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <set>
-#include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/program/commands/pose_file_text.hpp"
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
 #include "viewgain/formats/frames.hpp"
-#include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/png.hpp"
 
 namespace viewgain {
@@ -126,80 +122,6 @@ TEST_F(FollowMasks, AMaskedArmIsNoPartOfTheMap) {
   }
   const std::string text = run_well(test::joined(follow(), {"--quiet"}));
   EXPECT_NE(text.find("pixels taken away by masks: "), std::string::npos) << text;
-}
-
-TEST_F(FollowMasks, WhatHasNoGoodMaskIsLeftOutAndSaid) {
-  for (std::size_t i = 0; i < 5; ++i) put(i);
-  put_mask(0);
-  put_mask(2, bytes_of(Gray8Image{10, 8, std::vector<std::uint8_t>(80)}));
-  put_mask(3, images[3]);  // 16 bits
-  put_mask(4, masks[4].substr(0, masks[4].size() - 1));
-  write("live/done", "");
-  const test::ProgramResult result = run(follow());
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  const json bad{{"no_mask", 1}, {"wrong_size", 1}, {"unreadable", 2}};
-  for (const auto& [reason, number] :
-       {std::pair("no_mask", 1), {"wrong_size", 2}, {"unreadable", 3}, {"unreadable", 4}}) {
-    const std::string file = "live/masks/" + name(static_cast<std::size_t>(number)) + ".depth.png";
-    const std::size_t at = result.err.find(file);
-    ASSERT_NE(at, std::string::npos) << file;
-    EXPECT_NE(result.err.find("(" + std::string(reason) + ")", at), std::string::npos) << reason;
-  }
-  EXPECT_NE(result.out.find("left out: 1 no_mask, 2 unreadable, 1 wrong_size"), std::string::npos)
-      << result.out;
-  const json next = json::parse(read("plan/next.json"));
-  EXPECT_EQ(next["bad"], bad);
-  EXPECT_EQ(next["waiting"], 0);
-  EXPECT_EQ(next["frames"], 1);
-  EXPECT_EQ(load_map_of_sensor(dir / "plan/state.vdb").frames,
-            std::set<std::string>{frame_identity(open_frames(dir / "live"), 0)});
-
-  // When their masks are good they go in.
-  put(5);
-  for (std::size_t i = 1; i < kFrames; ++i) put_mask(i);
-  const json said = follow_well({"--mask", "live/masks"});
-  EXPECT_EQ(said["added"], kFrames - 1);
-  EXPECT_EQ(said["bad"], json::object());
-  EXPECT_EQ(said["hash"], integrate("clean", {"--mask", "live/masks"})["hash"]);
-}
-
-TEST_F(FollowMasks, AFolderWithoutMasksIsAnError) {
-  put(0);
-  put(1);
-  write("live/done", "");
-  const test::ProgramResult result =
-      run(test::joined(follow({"--confidence", "sure"}), {"--quiet"}));
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("without a frame; bad: 2 no_mask"), std::string::npos) << result.err;
-  EXPECT_FALSE(fs::exists(dir / "plan"));
-}
-
-// As `integrate --map` has it: what is in stays as it is, the flags are for what comes.
-TEST_F(FollowMasks, OtherFlagsAreForWhatComes) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    put(i);
-    put_mask(i);
-  }
-  write("live/done", "");
-  const json first = follow_well({"--mask", "live/masks"});
-  EXPECT_EQ(first["hash"], integrate("live", {"--mask", "live/masks"})["hash"]);
-  // With other masks, or none, the frames are the same.
-  put_mask(0, bytes_of(Gray8Image{kWidth, kHeight, std::vector<std::uint8_t>(kWidth * kHeight)}));
-  put_mask(1, "damaged");
-  for (const Strings& flags :
-       {Strings{"--mask", "live/masks"}, Strings{"--confidence", "sure"}, Strings{}}) {
-    const json said = follow_well(flags);
-    EXPECT_EQ(said["added"], 0);
-    EXPECT_EQ(said["bad"], json::object());
-    EXPECT_EQ(said["hash"], first["hash"]);
-  }
-  for (std::size_t i = 3; i < kFrames; ++i) put(i);
-  const json last = follow_well({});
-  EXPECT_EQ(last["added"], 3);
-  EXPECT_EQ(last["masked_pixels"], 0);
-  const json continued = integrate("live", {"--map", "map.vdb"});
-  EXPECT_EQ(continued["skipped"], 3);
-  EXPECT_EQ(last["hash"], continued["hash"]);
 }
 
 TEST_F(FollowMasks, RefusesFoldersThatCannotHoldMasks) {

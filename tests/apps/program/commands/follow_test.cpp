@@ -107,6 +107,25 @@ class Follow : public test::ProgramTest {
     write(name(number) + ".pose.txt", poses[number]);
   }
 
+  // A folder of one frame, and nothing made of it.
+  void begin_with_one_frame() const {
+    fs::remove_all(dir / "live");
+    fs::remove_all(dir / "plan");
+    write("live/sensor.toml", read("small.toml"));
+    write("live/depth-scale.txt", "1e-4\n");
+    put(0);
+    write("live/done", "");
+  }
+
+  // Of next.json.
+  static Pose best_of(const json& next) {
+    Pose best;
+    for (std::size_t k = 0; k < 12; ++k) {
+      best.m[k] = next["next"][0]["T_world_camera"][k / 4][k % 4].get<double>();
+    }
+    return best;
+  }
+
   static Strings follow(const Strings& more = {}) {
     return test::joined(
         {"follow", "live", "--voxel", "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
@@ -321,12 +340,7 @@ TEST_F(Follow, NoViewIsProposedTwiceToAnArmThatFails) {
   write_png(dir / "dark.png", nothing);
   const std::string dark = read("dark.png");
   for (const std::string kind : {"misses", "sees nothing", "garbage"}) {
-    fs::remove_all(dir / "live");
-    fs::remove_all(dir / "plan");
-    write("live/sensor.toml", read("small.toml"));
-    write("live/depth-scale.txt", "1e-4\n");
-    put(0);
-    write("live/done", "");
+    begin_with_one_frame();
     std::vector<Pose> asked;
     json next;
     std::size_t first_reason = 0;
@@ -335,10 +349,7 @@ TEST_F(Follow, NoViewIsProposedTwiceToAnArmThatFails) {
       next = json::parse(read("plan/next.json"));
       if (first_reason == 0 && next["stop_reason"] != nullptr) first_reason = step;
       if (next["next"].size() == 0) break;
-      Pose best;
-      for (std::size_t k = 0; k < 12; ++k) {
-        best.m[k] = next["next"][0]["T_world_camera"][k / 4][k % 4].get<double>();
-      }
+      const Pose best = best_of(next);
       EXPECT_FALSE(is_among(best, asked, ReachRegion::Tolerance{})) << kind << " " << step;
       asked.push_back(best);
       write(name(step) + ".depth.png", kind == "misses" ? images[0] : dark);
@@ -351,6 +362,24 @@ TEST_F(Follow, NoViewIsProposedTwiceToAnArmThatFails) {
     EXPECT_NE(next["stop_reason"], nullptr) << kind;
     EXPECT_GT(first_reason, 0U) << kind;
     EXPECT_LE(first_reason, 20U) << kind;  // --max-views
+  }
+}
+
+TEST_F(Follow, AnEmptyViewBreaksItsPromise) {
+  write_png(dir / "dark.png", GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)});
+  for (const char* rule : {"0", "1", "2"}) {
+    begin_with_one_frame();
+    fs::remove(dir / "live/done");
+    const pid_t child = start(follow({"--stop-promises", rule}));
+    ASSERT_TRUE(wait_for(1)) << rule;
+    const json first = json::parse(read("plan/next.json"));
+    EXPECT_EQ(first["stop_reason"], nullptr) << rule;
+    write(name(1) + ".depth.png", read("dark.png"));
+    write(name(1) + ".pose.txt", matrix_text(best_of(first)));
+    write("live/done", "");
+    EXPECT_EQ(end_of(child), 0) << rule;
+    const json reason = json::parse(read("plan/next.json"))["stop_reason"];
+    EXPECT_EQ(reason, *rule == '1' ? json("promises") : json(nullptr)) << rule;
   }
 }
 

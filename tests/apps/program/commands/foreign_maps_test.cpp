@@ -23,25 +23,23 @@ class ForeignMaps : public test::ProgramTest {
     return json::parse(run_well(arguments));
   }
 
-  // A wall at x = 1 as seen from the origin, moved by `shift` along y.
-  static std::string wall(const std::string& head, double shift) {
+  // A wall at x = 1 as seen from the origin.
+  static std::string wall(const std::string& head) {
     std::string file = head;
     for (int y = -20; y <= 20; ++y) {
       for (int z = -20; z <= 20; ++z) {
         char line[100];
-        std::snprintf(line, sizeof line, "1.01 %.3f %.3f\n", 0.02 * y + 0.005 + shift,
-                      0.02 * z + 0.005);
+        std::snprintf(line, sizeof line, "1.01 %.3f %.3f\n", 0.02 * y + 0.005, 0.02 * z + 0.005);
         file += line;
       }
     }
     return file + "nan nan nan\n";
   }
-  static std::string pcd(double shift, const std::string& viewpoint = "") {
+  static std::string pcd(const std::string& viewpoint = "") {
     return wall(
         "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1682\n"
         "HEIGHT 1\n" +
-            viewpoint + "POINTS 1682\nDATA ascii\n",
-        shift);
+        viewpoint + "POINTS 1682\nDATA ascii\n");
   }
 };
 
@@ -88,43 +86,6 @@ TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
             std::string::npos);
 }
 
-TEST_F(ForeignMaps, TheFrameMovesTheTreeOrIsLostWithAWarning) {
-  const auto save = [&](const char* name, const Eigen::Vector3d& origin) {
-    BeliefGrid grid({0.1, {{0, 0, 0}, {1, 1, 1}}, Pose(Eigen::Matrix3d::Identity(), origin), 0.05});
-    grid.set({3, 4, 5}, 1.0F);
-    save_vdb(grid, dir / name);
-  };
-  save("whole.vdb", {1.3, -0.7, 20});
-  save("odd.vdb", {1.35, 0, 0});
-  const json whole = run_json({"convert", "whole.vdb", "whole.ot"});
-  EXPECT_EQ(whole.at("lost_T_world_grid"), false);
-  const json corner = run_json({"info", "whole.ot"}).at("workspace");
-  const double expected[]{1.6, -0.3, 20.5};
-  for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(corner.at(a).get<double>(), expected[a], 1e-9);
-
-  const auto warned = [&](Strings arguments) {
-    arguments.push_back("--json");
-    const auto result = run(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_NE(result.err.find("warning: odd.ot"), std::string::npos) << result.err;
-    EXPECT_NE(result.err.find("T_world_grid"), std::string::npos) << result.err;
-    EXPECT_EQ(json::parse(result.out).at("lost_T_world_grid"), true);
-  };
-  warned({"convert", "odd.vdb", "odd.ot"});
-  EXPECT_EQ(run_json({"info", "odd.ot"}).at("occupied"), 1);
-  write("a.pcd", pcd(0));
-  const Strings more{"integrate", "--cloud",  "a.pcd",      "--origin",
-                     "0,0,0",     "--sensor", "small.toml", "--map"};
-  const auto continued = [&](const char* map, const char* out) {
-    Strings arguments = more;
-    arguments.insert(arguments.end(), {map, "--out", out});
-    return arguments;
-  };
-  warned(continued("odd.vdb", "odd.ot"));
-  EXPECT_EQ(run_json(continued("whole.vdb", "more.ot")).at("lost_T_world_grid"), false);
-  EXPECT_EQ(run_json(continued("odd.vdb", "more.vdb")).at("lost_T_world_grid"), false);
-}
-
 TEST_F(ForeignMaps, EndingsAreLargeOrSmallAndOthersRefused) {
   BeliefGrid grid({0.1, {{0, 0, 0}, {1, 1, 1}}, {}, 0.05});
   grid.set({3, 4, 5}, 1.0F);
@@ -140,7 +101,7 @@ TEST_F(ForeignMaps, EndingsAreLargeOrSmallAndOthersRefused) {
   for (const char* name : {"a.txt", "a", "a.vdb2", ".vdb", "a.vdb.gz"}) {
     expect_refused({"convert", "a.vdb", name}, "must end in .vdb or .ot");
   }
-  write("a.pcd", pcd(0));
+  write("a.pcd", pcd());
   expect_refused({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--sensor", "small.toml",
                   "--voxel", "0.1", "--out", "map.txt"},
                  "must end in .vdb or .ot");
@@ -149,10 +110,9 @@ TEST_F(ForeignMaps, EndingsAreLargeOrSmallAndOthersRefused) {
 }
 
 TEST_F(ForeignMaps, CloudsAreIntegrated) {
-  write("a.pcd", pcd(0));
+  write("a.pcd", pcd());
   write("b.ply", wall("ply\nformat ascii 1.0\nelement vertex 1682\nproperty float x\n"
-                      "property float y\nproperty float z\nend_header\n",
-                      0));
+                      "property float y\nproperty float z\nend_header\n"));
   const Strings map{"--voxel",    "0.02",        "--sensor",
                     "small.toml", "--workspace", "-0.1,-1,-1,1.2,1,1"};
   const auto integrate = [&](Strings arguments) {
@@ -174,7 +134,7 @@ TEST_F(ForeignMaps, CloudsAreIntegrated) {
   const json b = integrate({"--cloud", "b.ply", "--origin", "0,0,0", "--out", "b.vdb"});
   EXPECT_EQ(b.at("occupied"), a.at("occupied"));
   EXPECT_EQ(b.at("free"), a.at("free"));
-  write("v.pcd", pcd(0, "VIEWPOINT 0 0 0 1 0 0 0\n"));
+  write("v.pcd", pcd("VIEWPOINT 0 0 0 1 0 0 0\n"));
   const json v = integrate({"--cloud", "v.pcd", "--out", "v.vdb"});
   EXPECT_EQ(v.at("occupied"), a.at("occupied"));
   EXPECT_EQ(v.at("free"), a.at("free"));
@@ -212,8 +172,8 @@ TEST_F(ForeignMaps, CloudsAreIntegrated) {
 }
 
 TEST_F(ForeignMaps, WrongUseIsRefused) {
-  write("a.pcd", pcd(0));
-  write("cut.pcd", pcd(0).substr(0, 500));
+  write("a.pcd", pcd());
+  write("cut.pcd", pcd().substr(0, 500));
   write("cut.ot", "# Octomap OcTree file\nid OcTree\nsize 1\nres 0.1\ndata\n");
   write("poses.txt", "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");
   run_well({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--voxel", "0.05", "--sensor",

@@ -33,7 +33,7 @@ TEST_F(InfoRegion, SaysHowWellAPartIsKnown) {
   EXPECT_EQ(part.at("free"), 4);
   EXPECT_EQ(part.at("unknown"), 4 * 100 - 8);
   EXPECT_EQ(part.at("hits"), 28);
-  const GridStatistics expected =
+  const BeliefGrid::Statistics expected =
       load_vdb(dir / "map.vdb").statistics({{0.025, 0, 0}, {0.065, 0.1, 0.1}}, Criterion::trace);
   EXPECT_EQ(part.at("entropy_removed"), expected.entropy_removed);
   const double variance = (1e-5 + 0.5e-5 + 1e-5 / 3) / 3 + 1e-4 / 12;

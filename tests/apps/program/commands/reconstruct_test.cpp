@@ -225,39 +225,11 @@ TEST_F(Reconstruct, EveryPolicyGoesItsOwnWay) {
   EXPECT_EQ(different.size(), 8U);
 }
 
-TEST_F(Reconstruct, KriegelTakesReachablePosesOnlyWhenNoBoundaryIsLeft) {
-  // No boundary candidate is within the reach of a list, whose poses are candidates themselves.
-  const std::vector<Pose> poses{look_at({0.5, 0, 0}, {0, 0, 0}), look_at({-0.5, 0, 0}, {0, 0, 0}),
-                                look_at({0, 0.1, 0.5}, {0, 0, 0})};
-  write_tum(dir / "poses.txt", poses);
-  write("list.toml", "poses = \"poses.txt\"\n");
-  const json result =
-      reconstruct("cube.off", {"--policy", "kriegel", "--reach", "list.toml", "--max-views", "5",
-                               "--pictures", "off", "--size", "0.2", "--noise", "off"});
-  EXPECT_GE(result["views"].get<int>(), 2);
-  EXPECT_EQ(result["per_view"][1]["generator"], "reach");
-  EXPECT_TRUE(result["per_view"][1]["class"].is_null());
-}
-
 TEST_F(Reconstruct, ClosedBoxSeenFromAllSidesEnds) {
   const json result = reconstruct(
       "cube.off", {"--max-views", "80", "--pictures", "off", "--size", "0.15", "--noise", "off"});
   EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
   EXPECT_GT(result["coverage_visible"].get<double>(), 0.8);
-}
-
-TEST_F(Reconstruct, StopAreaIsThatOfTheGainsThatExpectIt) {
-  const auto setting = [&](const Strings& more) {
-    (void)reconstruct(
-        "cube.off", test::joined({"--max-views", "1", "--pictures", "off", "--size", "0.2"}, more));
-    return json::parse(read("run/run.json"))["settings"]["stop_area"].get<double>();
-  };
-  EXPECT_EQ(setting({}), 0.003);
-  EXPECT_EQ(setting({"--gain", "paper"}), 0);
-  EXPECT_EQ(setting({"--policy", "frontier"}), 0);
-  EXPECT_EQ(setting({"--gain", "surface"}), 0.003);
-  EXPECT_EQ(setting({"--gain", "combined"}), 0.003);
-  EXPECT_EQ(setting({"--gain", "combined", "--stop-area", "0"}), 0);
 }
 
 TEST_F(Reconstruct, FlatPlateEnds) {
@@ -280,17 +252,6 @@ TEST_F(Reconstruct, ObjectLargerThanTheWorkspaceEnds) {
   EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
   EXPECT_GT(result["coverage"].get<double>(), 0.02);
   EXPECT_LT(result["coverage"].get<double>(), 0.6);
-}
-
-TEST_F(Reconstruct, BothPartsOfAnObjectAreModelled) {
-  Off two;
-  two.add_box({0, 0, 0}, {1, 1, 1});
-  two.add_box({2.5, 0, 0}, {3.5, 1, 1});
-  write("two.off", two.text());
-  const json result =
-      reconstruct("two.off", {"--max-views", "14", "--pictures", "off", "--size", "0.3"});
-  // Either box alone is half of the surface.
-  EXPECT_GT(result["coverage_visible"].get<double>(), 0.7);
 }
 
 TEST_F(Reconstruct, SupportPlaneWithTheUpperHalfInReach) {

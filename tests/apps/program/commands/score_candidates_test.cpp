@@ -145,6 +145,20 @@ TEST_F(ScoreCandidates, CostsRankAndRowsHavePoses) {
     EXPECT_EQ(view["index"], best);
     EXPECT_NEAR(view["worth"].get<double>(), worth[best], 1e-6 * std::abs(worth[best]));
   }
+  // Tables and reports show it where there are costs.
+  Strings as_text = arguments({"--approximate", "0.5", "--report", "score.html"});
+  std::erase(as_text, "--json");
+  EXPECT_EQ(run_well(as_text).find("worth"), std::string::npos);
+  EXPECT_EQ(read("score.html").find("\"gain\",\"worth\""), std::string::npos);
+  const std::string table = run_well(test::joined(as_text, costs));
+  const json estimate = score(test::joined(costs, {"--approximate", "0.5"}))["best"][0];
+  std::array<char, 64> first{};
+  (void)std::snprintf(first.data(), first.size(), "   1 %8zu %12.6g %12.6g ",
+                      estimate["index"].get<std::size_t>(), estimate["gain"].get<double>(),
+                      estimate["worth"].get<double>());
+  EXPECT_NE(table.find("worth standard error"), std::string::npos) << table;
+  EXPECT_NE(table.find(first.data()), std::string::npos) << table;
+  EXPECT_NE(read("score.html").find("\"gain\",\"worth\""), std::string::npos);
   (void)score(test::joined(costs, {"--out", "all.csv"}));
   std::istringstream rows(read("all.csv"));
   std::string line;

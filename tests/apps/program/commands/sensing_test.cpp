@@ -22,8 +22,6 @@
 namespace viewgain {
 namespace {
 
-constexpr int kPixels = 48 * 36;
-
 class Sensing : public test::ProgramTest {
  protected:
   Sensing() {
@@ -93,25 +91,6 @@ TEST_F(Sensing, AmplitudeImagesAreWrittenAndUsed) {
   EXPECT_TRUE(has_amplitude("other"));
 }
 
-TEST_F(Sensing, FramesPerViewRepeatThePoseWithNoiseOfTheirOwn) {
-  const json report = simulate("frames", {"--frames-per-view", "3", "--noise", "on"});
-  EXPECT_EQ(report.at("views"), 2);
-  EXPECT_EQ(report.at("frames"), 6);
-  EXPECT_EQ(report.at("frames_per_view"), 3);
-  EXPECT_EQ(report.at("readings").get<int>() + report.at("out_of_range").get<int>() +
-                report.at("invalid").get<int>(),
-            6 * kPixels);
-  const auto poses = read_tum(dir / "frames" / "poses.txt").poses;
-  ASSERT_EQ(poses.size(), 6U);
-  EXPECT_EQ(poses[0], poses[2]);
-  EXPECT_EQ(poses[3], poses[5]);
-  EXPECT_NE(poses[2], poses[3]);
-  const auto frames = load("frames");
-  ASSERT_EQ(frames.size(), 6U);
-  EXPECT_NE(frames[0], frames[1]);
-  EXPECT_EQ(integrate("frames").at("views"), 6);
-}
-
 TEST_F(Sensing, FlyingPixelsFollowTheNoiseUnlessAsked) {
   EXPECT_EQ(simulate("off").at("flying_pixels"), false);
   EXPECT_EQ(simulate("noisy", {"--noise", "on"}).at("flying_pixels"), true);
@@ -124,25 +103,6 @@ TEST_F(Sensing, FlyingPixelsFollowTheNoiseUnlessAsked) {
 
   EXPECT_NE(load("off"), load("mixed"));
   EXPECT_NE(load("noisy"), load("noise_alone"));
-}
-
-TEST_F(Sensing, ReadingsOfTheTableCarveButDoNotHit) {
-  // The cube stands on the table.
-  EXPECT_EQ(simulate("frames", {"--support-plane", "-0.15"}).at("support_plane"), -0.15);
-  EXPECT_TRUE(simulate("floating").at("support_plane").is_null());
-  const json taken = integrate("frames");
-  const json left = integrate("frames", {"--support-plane", "-0.15"});
-  EXPECT_EQ(taken.at("plane_readings"), 0);
-  EXPECT_GT(left.at("plane_readings"), 300);
-  EXPECT_EQ(left.at("plane_readings").get<int>() + left.at("readings").get<int>() +
-                left.at("out_of_range").get<int>() + left.at("invalid").get<int>(),
-            2 * kPixels);
-  EXPECT_LT(left.at("occupied"), taken.at("occupied"));
-  EXPECT_GT(left.at("occupied"), 100);
-  // The workspace by default is what the object fills, not the table.
-  const json own = json::parse(run_well({"integrate", "frames", "--voxel", "0.02",
-                                         "--support-plane", "-0.15", "--out", "o.vdb", "--json"}));
-  EXPECT_NEAR(own.at("workspace")[2].get<double>(), -0.15, 0.03);
 }
 
 TEST_F(Sensing, BadFlagsAndImagesAreRefused) {

@@ -155,12 +155,13 @@ class VIEWGAIN_EXPORT ClassicGainEvaluator {
   [[nodiscard]] ClassicGainEvaluator with_map(std::shared_ptr<const ClassicMap> map) const;
 
   /// Gains of a batch: `results` in the unit of each gain, results[i * gains + g] for pose i and
-  /// gain g of the configuration. A bad pose (see ViewStatus) has NaN, a camera in an occupied
-  /// voxel 0. `statuses` is empty or has one place a pose. Returns how many poses were scored: all,
-  /// or fewer if `control` ended the call, when the others keep NaN and bad_pose. Throws
-  /// Error(invalid_argument) if the sizes do not fit.
+  /// gain g of the configuration. A bad pose (see ViewGain::Status) has NaN, a camera in an
+  /// occupied voxel 0. `statuses` is empty or has one place a pose. Returns how many poses were
+  /// scored: all, or fewer if `control` ended the call, when the others keep NaN and bad_pose.
+  /// Throws Error(invalid_argument) if the sizes do not fit.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
-                       std::span<ViewStatus> statuses = {}, const BatchControl& control = {}) const;
+                       std::span<ViewGain::Status> statuses = {},
+                       const BatchControl& control = {}) const;
   /// The same, into a new array: row i for pose i.
   [[nodiscard]] std::vector<double> evaluate(std::span<const Pose> T_world_camera) const;
 

@@ -190,9 +190,9 @@ TEST_F(StudySpecTest, FiguresOfARun) {
   const app::StudySpec spec = spec_of(kSpec);
   // Falls under a goal again: the first time counts. Ends early: keeps its last.
   const ordered_json run = run_json({0.5, 0.85, 0.79, 0.9});
-  const app::ResultRow row = app::row_of(spec, spec.runs[0], run, run);
-  EXPECT_EQ(app::row_of(spec, spec.runs[0], run, run_json({0.5}, "frontier")).prediction.size(),
-            0U);
+  app::ResultRow row = app::row_of(spec.runs[0], run, spec.max_views);
+  row.prediction = app::prediction_of("gain:combined", run);
+  EXPECT_EQ(app::prediction_of("gain:combined", run_json({0.5}, "frontier")).size(), 0U);
   EXPECT_EQ(row.coverage_by_view, (std::vector<double>{0.5, 0.85, 0.79, 0.9, 0.9}));
   EXPECT_EQ(row.views_to[0], 2U);
   EXPECT_EQ(row.views_to[1], 4U);
@@ -225,7 +225,8 @@ TEST_F(StudySpecTest, TheTableIsThatByHand) {
     std::vector<app::ResultRow> rows;
     for (std::size_t i = 0; i < coverages.size(); ++i) {
       const ordered_json run = run_json(coverages[i]);
-      rows.push_back(app::row_of(spec, spec.runs[i], run, run));
+      rows.push_back(app::row_of(spec.runs[i], run, spec.max_views));
+      rows.back().prediction = app::prediction_of(spec.policies[spec.runs[i].policy].name, run);
     }
     return app::results_markdown(spec, rows);
   };

@@ -186,6 +186,20 @@ TEST_F(Study, ScoresAreHeldAgainstTheMapsOfOnePolicy) {
   for (const json& run : results) {
     EXPECT_EQ(run["prediction"].size(), run["policy"] == "random" ? 0U : 2U);
   }
+  // A run of frontier that says nothing of predictions is itself to blame.
+  std::string damaged;
+  for (const std::string& hash : list("out/runs")) {
+    const std::string file = "out/runs/" + hash + "/run.json";
+    if (!damaged.empty() || !fs::exists(dir / file)) continue;
+    json one = json::parse(read(file));
+    if (one["prediction"].size() == 0) continue;
+    damaged = file;
+    one.erase("prediction");
+    write(file, one.dump());
+  }
+  const test::ProgramResult result = run(study("out", {"--plots", "off"}));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find(damaged + ": "), std::string::npos) << damaged << " " << result.err;
 }
 
 TEST_F(Study, VoxelsLargerThanTheToleranceAreSaid) {

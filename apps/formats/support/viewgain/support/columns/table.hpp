@@ -20,7 +20,7 @@ enum class ColumnType : std::uint8_t {
   row,     ///< a row's number: int64, "<i8"
   real,    ///< double, "<f8"
   count,   ///< uint32, "<u4"
-  status,  ///< a ViewStatus: uint8, "|u1"; its name in CSV
+  status,  ///< a ViewGain::Status: uint8, "|u1"; its name in CSV
 };
 
 struct Column {

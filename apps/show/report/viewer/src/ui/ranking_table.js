@@ -8,7 +8,7 @@ import { Table } from "./table.js";
 
 /** A column's name with its unit, where the name tells it. */
 function scaleOf(report, name) {
-  if (name === "gain") return unitOf(report.gain_unit);
+  if (name === "gain" || name === "worth") return unitOf(report.gain_unit);
   if (name === "area") return unitOf("m^2");
   return unitOf("");
 }
