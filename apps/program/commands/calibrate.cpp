@@ -324,9 +324,10 @@ Command add_calibrate(App& program) {
   app->add_option(
       "--wall", options->wall,
       "nx,ny,nz,d: the wall in the world is normal . p = d [m]; the frames' poses hold");
-  app->add_option(
-      "--sensor", options->sensor,
-      kSensorHelp + "; default: FRAMES_DIR/sensor.toml. A table that it has is replaced");
+  app->add_option("--sensor", options->sensor,
+                  kSensorHelp +
+                      "; default: FRAMES_DIR/sensor.toml. A table that it has is replaced, "
+                      "with --noise kept");
   app->add_option(
       "--depth-scale", options->depth_scale,
       "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
