@@ -17,6 +17,7 @@
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
+#include "program/commands/calibrate_noise.hpp"
 #include "program/commands/commands.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/file_names.hpp"
@@ -35,6 +36,7 @@ namespace fs = std::filesystem;
 struct Options {
   CommonOptions common;
   std::string frames;
+  bool noise = false;
   std::string distances;
   std::string wall;
   std::string sensor;
@@ -115,7 +117,7 @@ struct Calibrated {
   std::uint64_t masked_pixels = 0;
 };
 
-FrameSequence open_wall_frames(const Options& options) {
+FrameSequence open_calibration_frames(const Options& options) {
   if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
   try {
     // Poses need not be there where distances are.
@@ -129,7 +131,7 @@ FrameSequence open_wall_frames(const Options& options) {
 }
 
 Calibrated measure(const Options& options) {
-  FrameSequence frames = open_wall_frames(options);
+  FrameSequence frames = open_calibration_frames(options);
   frames.sensor.range_calibration = {};  // readings are to be as the camera gives them
   frames.out_of_range = Sensor::OutOfRange::invalid;
   std::optional<Wall> wall;
@@ -277,11 +279,17 @@ void print_summary(const Options& options, const Calibrated& calibrated) {
 
 void calibrate(const Options& options) {
   const Stopwatch watch;
-  if (options.distances.empty() == options.wall.empty()) {
-    refuse("needs either --distances or --wall");
-  }
+  const int ways = (options.noise ? 1 : 0) + (options.distances.empty() ? 0 : 1) +
+                   (options.wall.empty() ? 0 : 1);
+  if (ways != 1) refuse("needs one of --noise, --distances or --wall");
+  if (options.noise && !options.mask.empty()) refuse("--mask does not go with --noise");
   if (!is_sensor_file(options.out) && !is_special_file(options.out)) {
     refuse("--out " + options.out + ": the name of a sensor file must end in .toml");
+  }
+  if (options.noise) {
+    FrameSequence frames = open_calibration_frames(options);
+    frames.out_of_range = Sensor::OutOfRange::invalid;
+    return calibrate_noise(frames, options.out, options.common.json, options.common.quiet);
   }
   const Calibrated calibrated = measure(options);
   write_sensor_toml(options.out, calibrated.sensor);
@@ -301,8 +309,14 @@ Command add_calibrate(App& program) {
       "The systematic error of a depth camera, by the range, from frames of a flat wall: a sensor "
       "file with a table that is subtracted from readings wherever frames are read. FRAMES_DIR is "
       "as of integrate; with --distances it needs no poses. Frames at a slant show more ranges, "
-      "so ten may do: turn the camera by 30 to 40 degrees.");
-  app->add_option("FRAMES_DIR", options->frames, "folder of frames of a wall")->required();
+      "so ten may do: turn the camera by 30 to 40 degrees. With --noise how readings scatter "
+      "instead: sigma_ax and "
+      "sigma_lat in the sensor's noise model.");
+  app->add_option("FRAMES_DIR", options->frames, "folder of frames of a wall, or of a static scene")
+      ->required();
+  app->add_flag("--noise", options->noise,
+                "measure the noise from 30 frames or more of a static scene with edges before a "
+                "wall, from one pose; poses need not be there");
   app->add_option("--distances", options->distances,
                   "text file: line i is the wall's distance [m] along the optical axis in frame i; "
                   "or lines of a frame's name and its distance, which may leave frames out. Tilts "
@@ -310,9 +324,10 @@ Command add_calibrate(App& program) {
   app->add_option(
       "--wall", options->wall,
       "nx,ny,nz,d: the wall in the world is normal . p = d [m]; the frames' poses hold");
-  app->add_option(
-      "--sensor", options->sensor,
-      kSensorHelp + "; default: FRAMES_DIR/sensor.toml. A table that it has is replaced");
+  app->add_option("--sensor", options->sensor,
+                  kSensorHelp +
+                      "; default: FRAMES_DIR/sensor.toml. A table that it has is replaced, "
+                      "with --noise kept");
   app->add_option(
       "--depth-scale", options->depth_scale,
       "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "

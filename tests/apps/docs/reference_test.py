@@ -28,6 +28,7 @@ CALLS = {
     "next": "next run/map.vdb --top 2",
     "follow": "follow frames --voxel 0.01 --workspace=-0.2,-0.2,-0.2,0.2,0.2,0.2 --out followed",
     "calibrate": "calibrate wall --sensor sr4000 --wall 0,0,1,1 --out calibrated.toml",
+    "calibrate --noise": "calibrate --noise static --out measured.toml",
     "candidates": "candidates run/map.vdb --out candidates.txt --generator boundary --gain combined",
     "surface": "surface run/map.vdb --out surface.ply --truth meshes/camel.off --size 0.35 --recenter on",
     "render": "render run --what sigma --out sigma.png",
@@ -47,6 +48,20 @@ views = [1]
 candidates = 4
 """
 WALL = "OFF\n4 2 0\n-3 -3 1\n3 -3 1\n3 3 1\n-3 3 1\n3 0 1 2\n3 0 2 3\n"
+# A wall with a box's front before it.
+STATIC = """OFF
+8 2 0
+-3 -3 1.5
+3 -3 1.5
+3 3 1.5
+-3 3 1.5
+-0.15 -0.2 1
+0.17 -0.2 1
+0.17 0.22 1
+-0.15 0.22 1
+4 0 1 2 3
+4 4 5 6 7
+"""
 POSES = "0 0 0 0 0 0 0 1\n1 0 0 0.3 0 0 0 1\n"
 # Objects whose keys are data: reasons, stages, gains by name.
 OPEN = {"dropped", "final_dropped", "seconds", "settings", "versions"}
@@ -78,10 +93,12 @@ def main():
     gains = set()
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([source / "apps/extract_mesh.sh", "camel.off", f"{folder}/meshes"], check=True)
-        for file, text in {"spec.toml": SPEC, "wall.off": WALL, "poses.txt": POSES}.items():
+        for file, text in {"spec.toml": SPEC, "wall.off": WALL, "static.off": STATIC, "poses.txt": POSES,
+                           "pose.txt": POSES.splitlines()[0]}.items():
             pathlib.Path(folder, file).write_text(text, encoding="utf-8")
-        subprocess.run([program, *"simulate wall.off --poses poses.txt --sensor sr4000 --out wall".split()], cwd=folder,
-                       capture_output=True, check=True)
+        for call in ["simulate wall.off --poses poses.txt --sensor sr4000 --out wall",
+                     "simulate static.off --poses pose.txt --sensor sr4000 --noise on --frames-per-view 30 --out static"]:
+            subprocess.run([program, *call.split()], cwd=folder, capture_output=True, check=True)
         for name, call in CALLS.items():
             if name == "follow":
                 pathlib.Path(folder, "frames/done").touch()
