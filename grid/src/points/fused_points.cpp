@@ -126,6 +126,10 @@ double evidence(const Seed& seed, double column_area) {
   return seed.hits * lateral_variance(seed.information, seed.hits) / column_area;
 }
 
+/// What of the resolution's floor is left after so much evidence, as readings of more views lie at
+/// other places in a voxel (perf/results/honesty.md).
+double floor_share(double evidence) { return std::min(1.0, 0.2 + 2.0 / std::max(evidence, 1.0)); }
+
 }  // namespace
 
 std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsConfig& config,
@@ -140,6 +144,7 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
   const Lengths lengths{std::min(config.normal_radius * unit, kMaxReach),
                         config.column_radius * unit, config.min_distance * unit,
                         kSupportRadius * unit};
+  const double column_area = std::numbers::pi * std::pow(lengths.column_radius * V, 2);  // [m²]
   const Pose& T_world_grid = grid.T_world_grid();
   std::vector<std::pair<std::size_t, unsigned>> occupied = bricks.occupied_with_belief();
   if (config.where) {
@@ -187,9 +192,8 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
     std::sort(kept.begin(), kept.end());
     std::vector<SupportedPoint> support;
     support.reserve(kept.size());
-    const double area = std::numbers::pi * std::pow(lengths.column_radius * V, 2);  // [m²]
     for (const std::size_t i : kept) {
-      support.push_back({seeds[i].position, evidence(seeds[i], area)});
+      support.push_back({seeds[i].position, evidence(seeds[i], column_area)});
     }
     const std::vector<bool> good =
         well_supported(support, lengths.support_radius, config.min_relative_evidence);
@@ -206,6 +210,7 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
   });
 
   const double floor = config.floor_sigma.value_or(V / std::sqrt(12.0));
+  const bool falls = pooled && !config.floor_sigma;
   const Eigen::Matrix3d R = T_world_grid.rotation();
   std::vector<FusedPoint> points;
   points.reserve(kept.size());
@@ -213,9 +218,10 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
     const Seed& seed = seeds[i];
     const Eigen::Vector3d p = T_world_grid * (seed.position * V);
     const Eigen::Vector3d n = R * seed.normal;
+    const double share = falls ? floor_share(evidence(seed, column_area)) : 1.0;
     const Eigen::Matrix3d covariance =
         R * seed.covariance.matrix() * R.transpose() +
-        Eigen::Matrix3d(Eigen::Vector3d::Constant(floor * floor).asDiagonal());
+        Eigen::Matrix3d(Eigen::Vector3d::Constant(share * floor * floor).asDiagonal());
     points.push_back({{p.x(), p.y(), p.z()},
                       SymmetricMatrix3::from(covariance),
                       {n.x(), n.y(), n.z()},

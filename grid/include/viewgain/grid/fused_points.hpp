@@ -42,8 +42,9 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
   double column_radius = 1.0;   ///< of the column whose beliefs are pooled [pooling lengths]
   double column_sigmas = 1.75;  ///< its half height, in sigmas of one reading across the surface
   double min_distance = 0.75;   ///< between two pooled points [pooling lengths]
-  /// F = floor_sigma² I, the resolution floor that no number of readings takes away [m]; default
-  /// 1/√12 of the edge of the cubes that are pooled (a voxel, where the footprint is no longer).
+  /// F = floor_sigma² I, the resolution floor [m]. Unless given, 1/√12 of the edge of the cubes
+  /// that are pooled (a voxel, where the footprint is no longer), and F times min(1, 0.2 + 2 / e)
+  /// for pooled points that were seen in e frontal views, as these meet a voxel at many places.
   std::optional<double> floor_sigma{};
   /// Points begin only at voxels, or cubes, of whose centre [m, world frame] this is true; empty:
   /// at all. Those within some lengths of its border may differ from those of the whole map.
