@@ -10,7 +10,7 @@
 namespace viewgain::detail {
 
 /// Views chosen together by the surface or the combined gain, and what another adds to them
-/// (raycast/README.md, "Sets of views"). after() may be called by several threads at once.
+/// (raycast/README.md, "Choosing views"). after() may be called by several threads at once.
 class SurfaceSet {
  public:
   /// The driver must outlive it, and have a surface().
