@@ -17,51 +17,52 @@
 namespace viewgain {
 namespace {
 
-using Cell = std::tuple<int, int, int>;
-
 // What views show of hazard cells, from contributions(); the value of sets of them.
 struct SetOracle {
-  std::map<Cell, double> worth;                 // a p [m²]
-  std::vector<std::map<Cell, double>> reached;  // R of each pose
+  std::vector<double> worth;                 // a p of each cell [m²]
+  std::vector<std::vector<double>> reached;  // R of each pose and cell
 
   SetOracle(const GainEvaluator& surface, const VoxelScene& scene, std::span<const Pose> poses) {
     const HazardField& hazard = scene.hazard();
-    const double V = hazard.voxel_size(), side = V * (1 << hazard.cell_shift());
-    const auto cell_of = [&](int i) {
-      return int(std::floor(i / double(1 << hazard.cell_shift())));
-    };
+    const int voxels = 1 << hazard.cell_shift();
+    const double side = hazard.voxel_size() * voxels;
+    const auto cell_of = [&](int i) { return static_cast<int>(std::floor(double(i) / voxels)); };
+    std::map<std::tuple<int, int, int>, std::size_t> places;
+    std::vector<std::map<std::size_t, double>> shown;
     for (const Pose& pose : poses) {
-      std::map<Cell, double>& of_pose = reached.emplace_back();
+      std::map<std::size_t, double>& of_pose = shown.emplace_back();
       for (const VoxelContribution& part : surface.contributions(pose)) {
         if (part.state != VoxelState::unknown || !(part.gain > 0)) continue;
-        const Cell cell(cell_of(part.voxel.x), cell_of(part.voxel.y), cell_of(part.voxel.z));
-        of_pose[cell] += part.gain;
-        worth[cell] = side * side * (1 - std::exp(-double(hazard.rate(part.voxel)) * side));
+        const std::tuple cell(cell_of(part.voxel.x), cell_of(part.voxel.y), cell_of(part.voxel.z));
+        const auto [found, is_new] = places.try_emplace(cell, worth.size());
+        if (is_new) {
+          worth.push_back(side * side * (1 - std::exp(-double(hazard.rate(part.voxel)) * side)));
+        }
+        of_pose[found->second] += part.gain;
       }
-      for (auto& [cell, R] : of_pose) R = std::min(1.0, R / worth.at(cell));
+    }
+    for (const std::map<std::size_t, double>& of_pose : shown) {
+      std::vector<double>& R = reached.emplace_back(worth.size(), 0.0);
+      for (const auto& [cell, area] : of_pose) R[cell] = std::min(1.0, area / worth[cell]);
     }
   }
   [[nodiscard]] double value(std::span<const std::size_t> set) const {
     double sum = 0;
-    for (const auto& [cell, a] : worth) {
+    for (std::size_t cell = 0; cell < worth.size(); ++cell) {
       double missed = 1;
-      for (const std::size_t i : set) missed *= 1 - R(i, cell);
-      sum += a * (1 - missed);
+      for (const std::size_t i : set) missed *= 1 - reached[i][cell];
+      sum += worth[cell] * (1 - missed);
     }
     return sum;
   }
   [[nodiscard]] double by_best_alone(std::span<const std::size_t> set) const {
     double sum = 0;
-    for (const auto& [cell, a] : worth) {
+    for (std::size_t cell = 0; cell < worth.size(); ++cell) {
       double largest = 0;
-      for (const std::size_t i : set) largest = std::max(largest, R(i, cell));
-      sum += a * largest;
+      for (const std::size_t i : set) largest = std::max(largest, reached[i][cell]);
+      sum += worth[cell] * largest;
     }
     return sum;
-  }
-  [[nodiscard]] double R(std::size_t i, const Cell& cell) const {
-    const auto found = reached[i].find(cell);
-    return found == reached[i].end() ? 0.0 : found->second;
   }
 };
 

@@ -202,7 +202,10 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
   do {
     const double way = (eyes[order[0]] - here).norm() + (eyes[order[1]] - eyes[order[0]]).norm() +
                        (eyes[order[2]] - eyes[order[1]]).norm();
-    if (orders++ == 0) EXPECT_NEAR(tour["tour_metres"], way, 1e-9);
+    if (orders == 0) {
+      EXPECT_NEAR(tour["tour_metres"].get<double>(), way, 1e-9);
+    }
+    ++orders;
     EXPECT_GE(way, tour["tour_metres"].get<double>() - 1e-9);
   } while (std::next_permutation(order.begin(), order.end()));
   EXPECT_EQ(orders, 6);
