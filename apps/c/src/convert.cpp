@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "viewgain/core/generators.hpp"
+#include "viewgain/core/tour.hpp"
 
 namespace viewgain::c_api {
 namespace {
@@ -94,6 +95,17 @@ vg_status vg_dome_poses(size_t count, double radius, const double center[3], dou
   return guarded([&] {
     require("center poses", center, poses);
     write_poses(dome_poses(count, radius, vector_of(center)), poses);
+  });
+}
+
+vg_status vg_order_stops(const double* costs, size_t count, size_t* stops, double* cost) {
+  return guarded([&] {
+    if (count > 0) require("costs stops", costs, stops);
+    const Tour tour = order_stops(count, [&](std::size_t from, std::size_t to) {
+      return costs[std::min(from, count) * count + to];
+    });
+    std::copy(tour.stops.begin(), tour.stops.end(), stops);
+    if (cost != nullptr) *cost = tour.cost;
   });
 }
 

@@ -8,6 +8,7 @@
 
 #include "arrays.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/core/tour.hpp"
 
 namespace viewgain::python {
 namespace {
@@ -39,6 +40,21 @@ py::array_t<double> look_at_all(const py::object& eyes, const py::object& target
     poses.push_back(look_at({e[0], e[1], e[2]}, {t[0], t[1], t[2]}, up_vector));
   }
   return to_array(poses, leading_shape(eye, 1));
+}
+
+py::tuple order_stops_of(const py::object& costs) {
+  const Doubles table = doubles(costs, "costs", {-1, -1});
+  const auto count = static_cast<std::size_t>(table.shape(1));
+  if (table.size() != 0 && table.shape(0) != table.shape(1) + 1) {
+    throw py::value_error("costs must have the shape (k + 1, k), not " + shape_text(table));
+  }
+  const Tour tour =
+      order_stops(table.size() == 0 ? 0 : count, [&](std::size_t from, std::size_t to) {
+        return table.data()[std::min(from, count) * count + to];
+      });
+  py::array_t<std::int64_t> stops(static_cast<py::ssize_t>(tour.stops.size()));
+  std::copy(tour.stops.begin(), tour.stops.end(), stops.mutable_data());
+  return py::make_tuple(stops, tour.cost);
 }
 
 // Of the docstrings: what all lattices have in common.
@@ -92,6 +108,25 @@ Returns
 -------
 ndarray, (..., 4, 4), float64
     T_world_camera.)");
+  module.def("order_stops", &order_stops_of, py::arg("costs"),
+             R"(The order of k stops in which the way through all of them costs least.
+
+Exact up to 12 stops; beyond, pieces are turned and moved for as long as that costs less. The same
+costs give the same order. Holds the GIL. Cost: about 1 ms for 12 stops.
+
+Parameters
+----------
+costs : array_like, (k + 1, k)
+    Row i, column j: of the way from stop i to stop j, in a unit of your own, say metres or seconds
+    of an arm; the last row is of the ways from where the camera is. At least 0; inf: no way. The
+    diagonal of the first k rows is not read.
+
+Returns
+-------
+stops : ndarray, (k,), int64
+    All of them in their order; none where no order was found that avoids infinite ways.
+cost : float
+    Of the way; then inf.)");
   def_lattice<sphere_poses>(
       module, "sphere_poses",
       "Fibonacci lattice on a sphere, looking at its centre, image up = world up.");

@@ -165,9 +165,12 @@ Returns
 RacedViews)";
 
 inline constexpr const char* kBestSetDoc =
-    R"(Up to k poses that are good together, chosen one after the other, with gain "paper" alone.
+    R"(Up to k poses that are good together, chosen one after the other.
 
-Cost: up to k times twice that of ``evaluate``, and memory for the voxels that are touched.
+By gains "surface" and "combined" two looks at one place are not two chances: a set is worth what
+the views show of each place together, at most what is to be expected there.
+
+Cost: up to k times that of some calls of ``evaluate``, and memory for the voxels that are touched.
 
 Parameters
 ----------

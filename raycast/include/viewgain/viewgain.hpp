@@ -20,6 +20,7 @@
 #include "viewgain/core/range_calibration.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/core/tour.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/grid/belief.hpp"
 #include "viewgain/grid/belief_grid.hpp"

@@ -4,13 +4,12 @@
 // Views that are good together, chosen greedily on a frozen map.
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <unordered_map>
 
+#include "choose/surface_set.hpp"
 #include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
 #include "viewgain/core/criterion.hpp"
-#include "viewgain/core/error.hpp"
 
 namespace viewgain {
 namespace {
@@ -67,37 +66,48 @@ struct ChosenConsumer : detail::GainConsumer {
   }
 };
 
-}  // namespace
+// The same by the paper's gain as SurfaceSet by the others.
+class PaperSet {
+ public:
+  explicit PaperSet(const ViewDriver& driver) : driver_(driver) {}
 
-ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_t k,
-                                const BatchControl& control) const {
-  if (impl_->driver.surface() != nullptr) {
-    throw Error(ErrorCode::invalid_argument,
-                "sets of views are chosen by the gain paper, not by " +
-                    std::string(gain_model_name(impl_->driver.core()->config.model)));
+  [[nodiscard]] bool is_submodular() const {
+    return driver_.settings().criterion == Criterion::log_determinant;
   }
+  [[nodiscard]] ViewGain after(const Pose& T_world_camera, ViewDriver::Lease& lease) const {
+    return driver_.view(T_world_camera, lease,
+                        AfterOthersConsumer{{lease.accumulator()}, driver_.settings(), chosen_});
+  }
+  void choose(const Pose& T_world_camera, ViewDriver::Lease& lease) {
+    driver_.view(T_world_camera, lease, ChosenConsumer{{lease.accumulator()}, chosen_});
+  }
+
+ private:
+  const ViewDriver& driver_;
+  Overlay chosen_;
+};
+
+template <typename Chosen>
+ViewSet choose_greedily(const ViewDriver& driver, Chosen& chosen,
+                        std::span<const Pose> T_world_camera, std::size_t k,
+                        const BatchControl& control) {
   const std::size_t count = T_world_camera.size();
   k = std::min(k, count);
   ViewSet set;
   if (k == 0) return set;
   if (control.progress) control.progress(0, k);
-  const ViewDriver& driver = impl_->driver;
-  const bool lazy = driver.settings().criterion == Criterion::log_determinant;
-
-  Overlay chosen;
+  const bool lazy = chosen.is_submodular();
   std::vector<ViewGain> gains(count);     // marginal, as of round[i]
   std::vector<std::size_t> round(count);  // 0: never scored
   std::vector<std::size_t> open(count);   // poses that may be chosen
   for (std::size_t i = 0; i < count; ++i) open[i] = i;
   const auto score = [&](std::span<const std::size_t> indices, std::size_t now) {
-    set.complete = detail::for_each(
-        driver, indices.size(), control, [&](std::size_t j, ViewDriver::Lease& lease) {
-          const std::size_t i = indices[j];
-          gains[i] =
-              driver.view(T_world_camera[i], lease,
-                          AfterOthersConsumer{{lease.accumulator()}, driver.settings(), chosen});
-          round[i] = now;
-        });
+    set.complete = detail::for_each(driver, indices.size(), control,
+                                    [&](std::size_t j, ViewDriver::Lease& lease) {
+                                      const std::size_t i = indices[j];
+                                      gains[i] = chosen.after(T_world_camera[i], lease);
+                                      round[i] = now;
+                                    });
     set.evaluations += indices.size();
     return set.complete;
   };
@@ -133,11 +143,27 @@ ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_
     set.marginal.push_back(gains[index]);
     set.gain += gains[index].gain;
     if (control.progress) control.progress(now, k);
-    if (now == k) break;
 
     ViewDriver::Lease lease(driver);
-    driver.view(T_world_camera[index], lease, ChosenConsumer{{lease.accumulator()}, chosen});
+    chosen.choose(T_world_camera[index], lease);
   }
+  return set;
+}
+
+}  // namespace
+
+ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_t k,
+                                const BatchControl& control) const {
+  const ViewDriver& driver = impl_->driver;
+  if (driver.surface() == nullptr) {
+    PaperSet chosen(driver);
+    ViewSet set = choose_greedily(driver, chosen, T_world_camera, k, control);
+    set.gain_by_best_alone = set.gain;
+    return set;
+  }
+  detail::SurfaceSet chosen(driver);
+  ViewSet set = choose_greedily(driver, chosen, T_world_camera, k, control);
+  set.gain_by_best_alone = chosen.by_best_alone();
   return set;
 }
 

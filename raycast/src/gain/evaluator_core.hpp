@@ -34,6 +34,7 @@ struct SurfaceShare {
   double probability;              ///< P; occupied: T
   double area;                     ///< P min(ω t², cap) w_v where surface is new, else 0 [m²]
   SymmetricMatrix3 information{};  ///< occupied, combined: T Λ_r [m⁻²]
+  double rate = 0;                 ///< unknown: of its hazard cell [1/voxel]
 };
 
 /// A ray of a sample that ends in an occupied voxel.

@@ -304,8 +304,14 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
           P * (static_cast<double>(visit->end) - static_cast<double>(visit->begin)) / (end - begin);
       const double weight = weights.empty() ? 1.0 : task_weight(weights, voxel, V);
       const bool is_new = !std::signbit(visit->rate);
-      workspace.shares.push_back(
-          {lane, visit->begin, voxel, false, part, is_new ? part * across * weight * V * V : 0.0});
+      workspace.shares.push_back({lane,
+                                  visit->begin,
+                                  voxel,
+                                  false,
+                                  part,
+                                  is_new ? part * across * weight * V * V : 0.0,
+                                  {},
+                                  std::abs(static_cast<double>(first->rate))});
     }
     passed -= P;
   }

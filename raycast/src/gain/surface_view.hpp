@@ -55,6 +55,8 @@ class SurfaceView {
   /// The voxel at table coordinates.
   [[nodiscard]] Index3 voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
+  /// Logarithm to base 2 of the hazard cells' edge [voxels].
+  [[nodiscard]] int cell_shift() const { return bricks_.rate_shift; }
   /// Nats for one m² of new surface: ΔH_new / V².
   [[nodiscard]] double nats_per_area() const { return nats_per_area_; }
   /// w_v [H_F(Λ_0 + Λ_v) - H_F(Λ_0 + Λ_v + information)] of an occupied voxel.

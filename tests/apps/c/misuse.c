@@ -282,12 +282,16 @@ static void of_evaluators(const vg_scene* scene) {
 static void of_poses(void) {
   const double center[3] = {0, 0, 0};
   double pose[16];
+  const double below[2] = {0, -1}; /* the last row is the start's */
+  size_t stop = 0;
   CHECK_REFUSED(vg_sphere_poses(1, -1, center, pose), "-1");
   CHECK_REFUSED(vg_sphere_poses(0, 1, center, pose), "0");
   CHECK_REFUSED(vg_sphere_poses(1, 1, NULL, pose), "center is null");
   CHECK_FAILS(vg_dome_poses((size_t)1 << 40, 1, center, pose), VG_CAPACITY, "1099511627776");
   CHECK_REFUSED(vg_look_at(center, center, NULL, pose), "eye");
   CHECK_REFUSED(vg_look_at(NULL, center, NULL, pose), "eye is null");
+  CHECK_REFUSED(vg_order_stops(NULL, 1, &stop, NULL), "costs is null");
+  CHECK_REFUSED(vg_order_stops(below, 1, &stop, NULL), "from the start to 0 costs -1");
 }
 
 static void of_range_calibrations(void) {

@@ -180,6 +180,15 @@ static void choices(const vg_evaluator* evaluator) {
                 "deadline");
   CHECK_OK(vg_best_set(evaluator, poses, POSES, 3, others, chosen, &found, NULL));
   CHECK(found == 3 && chosen[0] == gains[others[0]] && others[0] != others[1]);
+  {
+    /* From the camera to stop 1, then 0, then 2. */
+    const double costs[4][3] = {{0, 9, 2}, {1, 0, 9}, {9, 9, 0}, {9, 3, 9}};
+    size_t stops[3] = {0, 0, 0};
+    double cost = 0;
+    CHECK_OK(vg_order_stops(&costs[0][0], 3, stops, &cost));
+    CHECK(stops[0] == 1 && stops[1] == 0 && stops[2] == 2 && cost == 6);
+    CHECK_OK(vg_order_stops(NULL, 0, NULL, NULL));
+  }
   CHECK_OK(vg_evaluate(evaluator, NULL, 0, NULL, NULL));
   CHECK_OK(vg_best(evaluator, NULL, 0, 0, NULL, NULL, &found, NULL));
   CHECK(found == 0);

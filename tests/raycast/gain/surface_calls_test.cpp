@@ -4,7 +4,6 @@
 // The evaluator's other calls with the surface and the combined gain.
 #include <gtest/gtest.h>
 
-#include "core/expect_error.hpp"
 #include "raycast/scene_makers.hpp"
 
 namespace viewgain {
@@ -48,12 +47,6 @@ TEST_P(SurfaceCalls, ContributionsAddUpToTheGain) {
   }
   EXPECT_GT(views, 20U);
   EXPECT_EQ(known > 0, GetParam() == GainModel::combined);
-}
-
-TEST_P(SurfaceCalls, SetsAreThePapers) {
-  const GainEvaluator evaluator(scene_, sensor_, {.model = GetParam()});
-  test::expect_error(ErrorCode::invalid_argument, "by the gain paper, not by",
-                     [&] { (void)evaluator.best_set(poses_, 2); });
 }
 
 TEST_P(SurfaceCalls, AnUpdatedSceneKeepsItsHazard) {

@@ -92,6 +92,7 @@ Json to_json(const NextViews& next) {
             {"dropped", next.dropped},
             {"next", Json::array()}};
   if (next.no_gain) json["no_gain"] = to_json(next.no_gain);
+  if (next.tour_metres) json["tour_metres"] = *next.tour_metres;
   for (const NextView& view : next.views) {
     const auto& of = view.boundary_class;
     json["next"].push_back({{"gain", view.gain.gain},  // a NaN becomes null
@@ -132,7 +133,12 @@ std::string text_of(const NextViews& next) {
                       axis.x(), axis.y(), axis.z(), why(view).c_str());
     if (view.rays) text.append("     ").append(text_of(*view.rays)).append("\n");
   }
-  if (next.views.front().worth <= 0) text += "no view is worth its way\n";
+  if (next.tour_metres) {
+    text += formatted("a tour of %.3f m by straight ways; gains are what each view adds\n",
+                      *next.tour_metres);
+  } else if (next.views.front().worth <= 0) {
+    text += "no view is worth its way\n";
+  }
   return text;
 }
 

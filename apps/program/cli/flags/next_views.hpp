@@ -30,12 +30,13 @@ struct NextView {
 
 /// Where a camera should look next.
 struct NextViews {
-  std::vector<NextView> views;                 ///< best first
+  std::vector<NextView> views;                 ///< best first, or in a tour's order
   std::size_t candidates = 0;                  ///< that were possible; `views` are the best of them
   std::map<std::string, std::size_t> dropped;  ///< the impossible ones: reason -> count
   GainModel model = kDefaultGain;              ///< of the gains
   std::optional<GainEvaluator::RayOutcomes>
-      no_gain{};  ///< by explain(): candidates' rays, if none gains
+      no_gain{};                        ///< by explain(): candidates' rays, if none gains
+  std::optional<double> tour_metres{};  ///< of a tour: its way, from the last view on [m]
 };
 
 /// Of a ranking of a proposal's candidates.

@@ -11,6 +11,7 @@
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
+#include "viewgain/core/tour.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/planner/pose_sets.hpp"
 #include "viewgain/planner/rank_views.hpp"
@@ -193,6 +194,33 @@ NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
   leave_out_gainless(ranking, config);
   ranking.views.resize(std::min(ranking.views.size(), top));
   return next_views(ranking, proposal, evaluator.model());
+}
+
+NextViews tour_views(const GainEvaluator& evaluator, const Proposal& proposal,
+                     const BeliefGrid& grid, std::size_t count) {
+  const std::vector<Pose> poses = poses_of(proposal.candidates);
+  const ViewSet set = evaluator.best_set(poses, count);
+  Ranking chosen;
+  for (std::size_t i = 0; i < set.indices.size(); ++i) {
+    const ViewGain& adds = set.marginal[i];
+    chosen.views.push_back({set.indices[i], poses[set.indices[i]], adds, adds.gain});
+  }
+  leave_out_gainless(chosen, {});
+  std::vector<Pose> stops;
+  for (const RankedView& view : chosen.views) stops.push_back(view.T_world_camera);
+  WayCost way = straight_ways(grid.views().empty() ? Pose() : grid.views().back(), stops);
+  if (grid.views().empty()) {
+    // It may begin anywhere.
+    way = [between = std::move(way)](std::size_t from, std::size_t to) {
+      return from == kTourStart ? 0.0 : between(from, to);
+    };
+  }
+  const Tour tour = order_stops(stops.size(), way);
+  Ranking ordered;
+  for (const std::size_t stop : tour.stops) ordered.views.push_back(chosen.views[stop]);
+  NextViews next = next_views(ordered, proposal, evaluator.model());
+  next.tour_metres = tour.cost;
+  return next;
 }
 
 }  // namespace viewgain::app

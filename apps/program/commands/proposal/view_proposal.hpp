@@ -79,4 +79,10 @@ void check(const ProposalOptions& options);
                                    const ProposalOptions& options, const BeliefGrid& grid,
                                    std::size_t top);
 
+/// At most `count` of the candidates that are good together (GainEvaluator::best_set()), in the
+/// order that is short to drive from the map's last view by straight ways. Each has for gain and
+/// worth what it adds to those chosen before it; those that add nothing are not among them.
+[[nodiscard]] NextViews tour_views(const GainEvaluator& evaluator, const Proposal& proposal,
+                                   const BeliefGrid& grid, std::size_t count);
+
 }  // namespace viewgain::app

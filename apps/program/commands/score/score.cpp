@@ -65,9 +65,6 @@ GainConfig gain_config(const Options& options) {
   if (config.model != GainModel::paper && options.criterion != "log_diagonal") {
     refuse("--criterion " + options.criterion + " goes with --gain paper, not " + options.gain);
   }
-  if (config.model != GainModel::paper && options.set) {
-    refuse("--set goes with --gain paper, not " + options.gain);
-  }
   if (options.semantics != "paper") {
     refuse("--semantics " + options.semantics + " goes with classic gains");
   }
@@ -322,8 +319,7 @@ Command add_score(App& program) {
       ->range(1e-6, 1.0, "share in (0, 1]");
   selection
       ->add_option("--set", options->set,
-                   "K views that are good together on this map, by --gain paper, with what each "
-                   "adds to those "
+                   "K views that are good together on this map, with what each adds to those "
                    "before")
       ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
   selection->require_option(0, 1);

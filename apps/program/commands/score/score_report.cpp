@@ -177,7 +177,10 @@ void ScoreReport::print_json() const {
   Json json = summary();
   json["best"] =
       scores.estimates ? entries(*scores.estimates, source) : entries(scores.best, source, model);
-  if (scores.set_gain) json["set_gain"] = *scores.set_gain;
+  if (scores.set_gain) {
+    json["set_gain"] = *scores.set_gain;
+    json["set_gain_by_best_alone"] = scores.set_gain_by_best_alone;
+  }
   app::print_json(json);
 }
 
@@ -198,7 +201,10 @@ void ScoreReport::print_table() const {
   } else {
     print_rows(scores.best, source, model);
   }
-  if (scores.set_gain) std::printf("together: %.6g\n", *scores.set_gain);
+  if (scores.set_gain) {
+    std::printf("together: %.6g; each place by its best view alone: %.6g\n", *scores.set_gain,
+                scores.set_gain_by_best_alone);
+  }
   const std::size_t poses = scores.candidates, in_full = scores.scored.gains.size();
   const int threads = evaluator.num_threads();
   std::printf(

@@ -36,6 +36,7 @@ struct Scores {
   ScoredViews scored{};                  ///< with all their rays, in input order or in the set's
   ScoredViews best{};                    ///< best first, or the set
   std::optional<double> set_gain{};      ///< of views that are good together: of all
+  double set_gain_by_best_alone = 0;     ///< ViewSet::gain_by_best_alone
   std::optional<Estimates> estimates{};  ///< instead of both
   std::uint64_t rays_traced = 0;
   std::size_t estimated = 0;                     ///< poses that a race scored by some rays

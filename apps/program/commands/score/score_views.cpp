@@ -51,6 +51,7 @@ Scores chosen_together(const ScoreOptions& options, const GainEvaluator& evaluat
   return {.scored = views,
           .best = views,
           .set_gain = set.gain,
+          .set_gain_by_best_alone = set.gain_by_best_alone,
           .rays_traced = set.evaluations * evaluator.rays_per_pose()};
 }
 

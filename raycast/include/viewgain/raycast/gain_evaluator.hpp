@@ -249,15 +249,18 @@ class VIEWGAIN_EXPORT GainEvaluator {
                                const BatchControl& control = {}) const;
 
   /// Up to k different poses of T_world_camera, in the order of their choice, that are good
-  /// together on the map as it stands, greedily, by the paper's gain (Error(invalid_argument) with
-  /// another): each is the one that adds most once the expected information ΣΛ_r of those before it
-  /// is part of the voxels' (an unknown voxel goes on blocking rays as unknown). Ties go to the
-  /// lower index, bad poses are never chosen, k is clamped. For log_determinant, which is
-  /// submodular, poses whose earlier gain cannot win are not scored anew, which gives the same
-  /// choice; for log_diagonal and trace a pose may gain more after another, so that all are scored
-  /// in every round. control.progress counts those chosen. A stop returns those chosen so far.
-  /// Costs up to k batches, about twice the time of evaluate() each, and memory for the voxels
-  /// touched.
+  /// together on the map as it stands, greedily: each is the one that adds most to those before it.
+  /// By the paper's gain the expected information ΣΛ_r of those is then part of the voxels' (an
+  /// unknown voxel goes on blocking rays as unknown). By surface and combined a set is worth
+  /// Σ_c a_c p_c [1 - Π_v (1 - R_vc)] over hazard cells c: a_c p_c is the new surface to be
+  /// expected there, R_vc the share of it that view v shows, 1 at most, so that one view is worth
+  /// no more than its gain but for rounding; combined adds the refinement by all information
+  /// together. Ties go to the lower index, bad poses are never chosen, k is clamped. For surface
+  /// and log_determinant, which are submodular, poses whose earlier gain cannot win are not scored
+  /// anew, which gives the same choice; otherwise a pose may gain more after another, so that all
+  /// are scored in every round. control.progress counts those chosen. A stop returns those chosen
+  /// so far. Costs up to k batches, of about twice the time of evaluate() by the paper's gain, and
+  /// more by the others; memory for the voxels touched.
   [[nodiscard]] ViewSet best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                  const BatchControl& control = {}) const;
 

@@ -46,9 +46,12 @@ struct VIEWGAIN_EXPORT BestViews {
 struct VIEWGAIN_EXPORT ViewSet {
   std::vector<std::size_t> indices;  ///< into the poses, in the order of their choice
   std::vector<ViewGain> marginal;    ///< of those: what each adds to the ones before it
-  double gain = 0;                   ///< of all together [nat, m² for trace]
-  std::size_t evaluations = 0;       ///< of single poses
-  bool complete = true;              ///< false: a stop was requested before the last choice
+  double gain = 0;                   ///< of all together, in the gain's unit
+  /// The same if a hazard cell is reached by the one of them that reaches it best alone, as views
+  /// that are hindered by the same things may be: at most `gain`. By the paper's gain: `gain`.
+  double gain_by_best_alone = 0;
+  std::size_t evaluations = 0;  ///< of single poses
+  bool complete = true;         ///< false: a stop was requested before the last choice
 };
 
 /// How GainEvaluator::approximate() samples a view.

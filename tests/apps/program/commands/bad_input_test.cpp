@@ -196,7 +196,6 @@ TEST_F(BadInputTest, Scores) {
          "--hazard", "p.vdb", "--out", "p.vdb"},
         "is, or holds, a file of --hazard p.vdb"},
        {with({"--gain", "surface", "--object-size", "0"}), "--object-size 0"},
-       {with({"--set", "2"}), "--set goes with --gain paper, not combined"},
        {with({"--gain", "surface", "--refinement-weight", "1"}), "combined"},
        {with({"--gain", "paper", "--hazard", "1"}), "--gain surface"},
        {with({"--gain", "surface", "--hazard", "cube.off"}), ".vdb"},

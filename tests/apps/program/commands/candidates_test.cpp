@@ -190,6 +190,8 @@ TEST_F(Candidates, NextChoosesAmongGivenPosesByTheirWorth) {
                        {{"--poses", "mine.txt", "--costs", "few.txt"}, "2 costs for 30 poses"},
                        {{"--poses", "mine.txt", "--costs", "word.txt"}, "word.txt:2"},
                        {{"--poses", "mine.txt", "--count", "7"}, "--generator"},
+                       {{"--cost-per-metre", "1", "--tour", "2"}, "do not go with --tour"},
+                       {{"--tour", "0"}, "--tour"},
                        {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"}});
 }
 

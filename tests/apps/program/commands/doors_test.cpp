@@ -184,6 +184,31 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
     EXPECT_EQ(sum, 2 * view["rays"]["rays"].get<std::size_t>());
     EXPECT_GT(view["rays"]["unknown"], 0);  // else it would not gain
   }
+  // Of the best place one view alone, in the order in which they are driven to from the last one.
+  const json tour = call({"next", "frames", "--tour", "3"});
+  ASSERT_EQ(tour["next"].size(), 3U);
+  std::vector<Eigen::Vector3d> eyes;
+  double most = 0;
+  for (const json& view : tour["next"]) {
+    const json& m = view["T_world_camera"];
+    eyes.emplace_back(m[0][3].get<double>(), m[1][3].get<double>(), m[2][3].get<double>());
+    EXPECT_GT(view["gain"], 0);
+    most = std::max(most, view["gain"].get<double>());
+  }
+  EXPECT_LE(most, next["next"][0]["gain"].get<double>() * (1 + 1e-6));
+  const Eigen::Vector3d here = load_map(dir / "map.vdb").views().back().translation();
+  std::array<std::size_t, 3> order{0, 1, 2};
+  int orders = 0;
+  do {
+    const double way = (eyes[order[0]] - here).norm() + (eyes[order[1]] - eyes[order[0]]).norm() +
+                       (eyes[order[2]] - eyes[order[1]]).norm();
+    if (orders == 0) {
+      EXPECT_NEAR(tour["tour_metres"].get<double>(), way, 1e-9);
+    }
+    ++orders;
+    EXPECT_GE(way, tour["tour_metres"].get<double>() - 1e-9);
+  } while (std::next_permutation(order.begin(), order.end()));
+  EXPECT_EQ(orders, 6);
   const json followed = call({"follow", "frames", "--out", "plan"});
   const json run = call({"reconstruct", "frames", "--pictures", "off", "--out", "run"});
   const std::string hash = hash_of("map.vdb");

@@ -183,8 +183,7 @@ VG_API vg_status vg_race_until(const vg_evaluator* evaluator, const double* pose
                                double* gains, size_t* found, size_t* estimated, size_t* scored);
 
 /* Up to k poses that are good together, in the order of their choice; gains: what each adds to
-   those before it. By VG_GAIN_PAPER only, else VG_INVALID_ARGUMENT. VG_STOPPED: those chosen so
-   far. */
+   those before it. VG_STOPPED: those chosen so far. */
 VG_API vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses, size_t count,
                              size_t k, size_t* indices, double* gains, size_t* found,
                              const vg_watch* watch);
@@ -303,6 +302,12 @@ VG_API vg_status vg_dome_poses(size_t count, double radius, const double center[
 /* A camera at `eye` that looks at `target`, image up as near to `up` as can be (null: +z). */
 VG_API vg_status vg_look_at(const double eye[3], const double target[3], const double up[3],
                             double T_world_camera[16]);
+
+/* The order of `count` stops in which the way through all of them costs least, in a unit of your
+   own: exact to 12 stops. costs, count + 1 rows of `count`: row i, column j from stop i to stop j;
+   the last row from where the camera is. At least 0; infinity: no way. `stops` has room for count.
+   *cost (null: not wanted) is infinity, and stops stay as they were, where no order was found. */
+VG_API vg_status vg_order_stops(const double* costs, size_t count, size_t* stops, double* cost);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+
+#include "gain/view_driver.hpp"
+
+namespace viewgain::detail {
+
+/// Views chosen together by the surface or the combined gain, and what another adds to them
+/// (raycast/README.md, "Choosing views"). after() may be called by several threads at once.
+class SurfaceSet {
+ public:
+  /// The driver must outlive it, and have a surface().
+  explicit SurfaceSet(const ViewDriver& driver) : driver_(driver), surface_(*driver.surface()) {}
+
+  /// Is what a view adds never more after another has been chosen?
+  [[nodiscard]] bool is_submodular() const { return !refines(); }
+  /// What the view adds to those chosen.
+  [[nodiscard]] ViewGain after(const Pose& T_world_camera, ViewDriver::Lease& lease) const;
+  void choose(const Pose& T_world_camera, ViewDriver::Lease& lease);
+  /// What the chosen show if each cell is reached by the best of them alone, in the gain's unit.
+  [[nodiscard]] double by_best_alone() const;
+
+ private:
+  struct Cell {
+    double worth = 0;    // a p [m²]
+    double missed = 1;   // Π (1 - R) of the chosen views
+    double largest = 0;  // max R
+  };
+
+  [[nodiscard]] bool refines() const { return driver_.core()->config.model == GainModel::combined; }
+  /// Calls cell(key, worth, R) for the cells that the view may reach, in the order in which it
+  /// first meets them, and leaves in the workspace what it brings to occupied voxels.
+  template <typename Visit>
+  void look(const PoseFrame& frame, Workspace& workspace, std::uint32_t& hits, Visit&& cell) const;
+  /// a p of a hazard cell, by its least voxel [m²].
+  [[nodiscard]] double worth_of(Index3 least, double rate) const;
+  /// The refinement of the voxel by the chosen views and `added` beyond that of the chosen.
+  [[nodiscard]] double refinement(const OccupiedSums::Entry& added) const;
+
+  const ViewDriver& driver_;
+  const SurfaceView& surface_;
+  std::unordered_map<std::uint64_t, Cell> cells_;
+  std::unordered_map<std::uint64_t, SymmetricMatrix3> known_;  // Σ T Λ_r of the chosen [m⁻²]
+  double refined_ = 0;                                         // by the chosen [nat]
+};
+
+}  // namespace viewgain::detail
