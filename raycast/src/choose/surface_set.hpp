@@ -16,8 +16,16 @@ class SurfaceSet {
   /// The driver must outlive it, and have a surface().
   explicit SurfaceSet(const ViewDriver& driver) : driver_(driver), surface_(*driver.surface()) {}
 
-  /// Is what a view adds never more after another has been chosen?
-  [[nodiscard]] bool is_submodular() const { return !refines(); }
+  /// Poses are scored anew only while their earlier gain could win. What a view adds of new surface
+  /// is never more after another has been chosen; of refinement it hardly ever is.
+  [[nodiscard]] static bool is_lazy() { return true; }
+  static constexpr bool kBoundIsFirst = false;
+  /// The view's gain, which its cells cannot exceed but for rounding; an eighth of after()'s time.
+  [[nodiscard]] ViewGain bound(const Pose& T_world_camera, ViewDriver::Lease& lease) const {
+    ViewGain gain = driver_.evaluate(T_world_camera, lease);
+    gain.gain *= 1 + kBoundSlack;
+    return gain;
+  }
   /// What the view adds to those chosen.
   [[nodiscard]] ViewGain after(const Pose& T_world_camera, ViewDriver::Lease& lease) const;
   void choose(const Pose& T_world_camera, ViewDriver::Lease& lease);
@@ -25,6 +33,8 @@ class SurfaceSet {
   [[nodiscard]] double by_best_alone() const;
 
  private:
+  static constexpr double kBoundSlack = 1e-4;  // the kernel's single precision
+
   struct Cell {
     double worth = 0;    // a p [m²]
     double missed = 1;   // Π (1 - R) of the chosen views

@@ -71,8 +71,14 @@ class PaperSet {
  public:
   explicit PaperSet(const ViewDriver& driver) : driver_(driver) {}
 
-  [[nodiscard]] bool is_submodular() const {
+  // Is a pose scored anew only while its earlier gain could win?
+  [[nodiscard]] bool is_lazy() const {
     return driver_.settings().criterion == Criterion::log_determinant;
+  }
+  // Before any is chosen what a view adds is the first round's result.
+  static constexpr bool kBoundIsFirst = true;
+  [[nodiscard]] ViewGain bound(const Pose& T_world_camera, ViewDriver::Lease& lease) const {
+    return after(T_world_camera, lease);
   }
   [[nodiscard]] ViewGain after(const Pose& T_world_camera, ViewDriver::Lease& lease) const {
     return driver_.view(T_world_camera, lease,
@@ -96,31 +102,43 @@ ViewSet choose_greedily(const ViewDriver& driver, Chosen& chosen,
   ViewSet set;
   if (k == 0) return set;
   if (control.progress) control.progress(0, k);
-  const bool lazy = chosen.is_submodular();
+  const bool lazy = chosen.is_lazy();
   std::vector<ViewGain> gains(count);     // marginal, as of round[i]
   std::vector<std::size_t> round(count);  // 0: never scored
   std::vector<std::size_t> open(count);   // poses that may be chosen
+  std::vector<std::size_t> stale;
   for (std::size_t i = 0; i < count; ++i) open[i] = i;
-  const auto score = [&](std::span<const std::size_t> indices, std::size_t now) {
+  const auto score_by = [&](std::span<const std::size_t> indices, std::size_t now, auto&& gain) {
     set.complete = detail::for_each(driver, indices.size(), control,
                                     [&](std::size_t j, ViewDriver::Lease& lease) {
                                       const std::size_t i = indices[j];
-                                      gains[i] = chosen.after(T_world_camera[i], lease);
+                                      gains[i] = gain(T_world_camera[i], lease);
                                       round[i] = now;
                                     });
     set.evaluations += indices.size();
     return set.complete;
+  };
+  const auto score = [&](std::span<const std::size_t> indices, std::size_t now) {
+    return score_by(indices, now, [&](const Pose& pose, ViewDriver::Lease& lease) {
+      return chosen.after(pose, lease);
+    });
   };
   const auto better = [&](std::size_t a, std::size_t b) {
     return gains[a].gain != gains[b].gain ? gains[a].gain > gains[b].gain : a < b;
   };
 
   for (std::size_t now = 1; now <= k && !open.empty(); ++now) {
-    if (now == 1 || !lazy) {
-      if (!score(open, now)) return set;
+    if (now == 1) {
+      const auto bound = [&](const Pose& pose, ViewDriver::Lease& lease) {
+        return chosen.bound(pose, lease);
+      };
+      if (!score_by(open, Chosen::kBoundIsFirst ? 1 : 0, bound)) return set;
       std::erase_if(open, [&](std::size_t i) { return std::isnan(gains[i].gain); });
       if (open.empty()) break;
-    } else {
+    } else if (!lazy) {
+      if (!score(open, now)) return set;
+    }
+    if (lazy) {
       // Earlier gains bound those of now: score from the largest on until one of now beats the
       // rest.
       std::sort(open.begin(), open.end(), better);
@@ -128,7 +146,10 @@ ViewSet choose_greedily(const ViewDriver& driver, Chosen& chosen,
       for (std::size_t begin = 0;
            begin < open.size() && gains[open[begin]].gain * kRounding >= largest;) {
         const std::size_t end = std::min(begin + kLazyBatch, open.size());
-        if (!score({open.data() + begin, end - begin}, now)) return set;
+        stale.assign(open.begin() + static_cast<std::ptrdiff_t>(begin),
+                     open.begin() + static_cast<std::ptrdiff_t>(end));
+        std::erase_if(stale, [&](std::size_t i) { return round[i] == now; });
+        if (!score(stale, now)) return set;
         for (; begin < end; ++begin) largest = std::max(largest, gains[open[begin]].gain);
       }
     }

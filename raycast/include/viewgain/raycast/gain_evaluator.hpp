@@ -255,12 +255,14 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// Σ_c a_c p_c [1 - Π_v (1 - R_vc)] over hazard cells c: a_c p_c is the new surface to be
   /// expected there, R_vc the share of it that view v shows, 1 at most, so that one view is worth
   /// no more than its gain but for rounding; combined adds the refinement by all information
-  /// together. Ties go to the lower index, bad poses are never chosen, k is clamped. For surface
-  /// and log_determinant, which are submodular, poses whose earlier gain cannot win are not scored
-  /// anew, which gives the same choice; otherwise a pose may gain more after another, so that all
-  /// are scored in every round. control.progress counts those chosen. A stop returns those chosen
-  /// so far. Costs up to k batches, of about twice the time of evaluate() by the paper's gain, and
-  /// more by the others; memory for the voxels touched.
+  /// together. Ties go to the lower index, bad poses are never chosen, k is clamped. By surface,
+  /// combined and log_determinant poses whose earlier gain cannot win are not scored anew. That
+  /// gives the same choice for surface and log_determinant, which are submodular; by combined a
+  /// refinement may, rarely, grow after another view and then be missed. By log_diagonal and trace
+  /// all are scored in every round. control.progress counts those chosen. A stop returns those
+  /// chosen so far. Costs by the paper's gain up to k batches of about twice the time of
+  /// evaluate(), by the others one batch and some ten times evaluate() for each pose that is scored
+  /// anew; memory for the voxels touched.
   [[nodiscard]] ViewSet best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                  const BatchControl& control = {}) const;
 
