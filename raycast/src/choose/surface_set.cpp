@@ -37,37 +37,47 @@ double SurfaceSet::worth_of(Index3 least, double rate) const {
   return weight * side * side * V * V * -std::expm1(-rate * side);
 }
 
-template <typename Visit>
-void SurfaceSet::look(const PoseFrame& frame, Workspace& workspace, std::uint32_t& hits,
-                      Visit&& cell) const {
+SurfaceSet::Look SurfaceSet::look(const Pose& T_world_camera, Workspace& workspace) const {
+  Look look;
+  const auto frame = driver_.open(T_world_camera, look.seen);
+  if (!frame) return look;
+  look.seen.hits = 0;
+  look.seen.status = ViewGain::Status::ok;
   struct Seen {
-    std::uint64_t key;
     Index3 least;
     double rate, area;
   };
   std::unordered_map<std::uint64_t, std::size_t> places;
-  std::vector<Seen> seen;
+  std::vector<Seen> cells;
   const int shift = surface_.cell_shift();
   workspace.occupied.begin();
-  driver_.tracer().prepare(frame, workspace.sweep);
+  driver_.tracer().prepare(*frame, workspace.sweep);
   surface_.for_each_share(
-      frame, workspace, [&](std::size_t, const RayTile&, const SurfaceShare& share) {
+      *frame, workspace, [&](std::size_t, const RayTile&, const SurfaceShare& share) {
         if (share.is_occupied) {
-          ++hits;
+          ++look.seen.hits;
           if (refines()) workspace.occupied.add(share.voxel, share.information);
           return;
         }
         if (!(share.area > 0)) return;
         const Index3& v = share.voxel;
         const Index3 least{v.x >> shift << shift, v.y >> shift << shift, v.z >> shift << shift};
-        const auto [found, is_new] = places.try_emplace(key_of(least), seen.size());
-        if (is_new) seen.push_back({found->first, least, share.rate, 0});
-        seen[found->second].area += share.area;
+        const auto [found, is_new] = places.try_emplace(key_of(least), cells.size());
+        if (is_new) cells.push_back({least, share.rate, 0});
+        cells[found->second].area += share.area;
       });
-  for (const Seen& one : seen) {
-    const double worth = worth_of(one.least, one.rate);
-    if (worth > 0) cell(one.key, worth, std::min(1.0, one.area / worth));
+  for (const Seen& cell : cells) {
+    const double worth = worth_of(cell.least, cell.rate);
+    if (worth > 0) {
+      look.cells.push_back({key_of(cell.least), worth, std::min(1.0, cell.area / worth)});
+    }
   }
+  if (refines()) {
+    const auto& occupied = workspace.occupied.entries();
+    look.refines.assign(occupied.begin(), occupied.end());
+    look.seen.occupied_voxels = static_cast<std::uint32_t>(occupied.size());
+  }
+  return look;
 }
 
 double SurfaceSet::refinement(const OccupiedSums::Entry& added) const {
@@ -77,24 +87,22 @@ double SurfaceSet::refinement(const OccupiedSums::Entry& added) const {
          surface_.saturated_gain(added.voxel, chosen->second);
 }
 
-ViewGain SurfaceSet::after(const Pose& T_world_camera, ViewDriver::Lease& lease) const {
-  ViewGain result;
-  const auto frame = driver_.open(T_world_camera, result);
-  if (!frame) return result;
-  Workspace& workspace = lease.workspace();
-  result.hits = 0;
+ViewGain SurfaceSet::after(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease) {
+  if (!looks_[i]) {
+    looks_[i] = std::make_unique<const Look>(look(T_world_camera, lease.workspace()));
+  }
+  const Look& look = *looks_[i];
+  ViewGain result = look.seen;
+  if (result.status != ViewGain::Status::ok) return result;
   result.area = 0;
-  look(*frame, workspace, result.hits, [&](std::uint64_t key, double worth, double reached) {
-    const auto cell = cells_.find(key);
-    result.area += worth * reached * (cell == cells_.end() ? 1.0 : cell->second.missed);
-  });
+  for (const Reached& one : look.cells) {
+    const auto cell = cells_.find(one.key);
+    result.area += one.worth * one.share * (cell == cells_.end() ? 1.0 : cell->second.missed);
+  }
   result.gain = result.area;
-  result.status = ViewGain::Status::ok;
   if (!refines()) return result;
-  const auto& occupied = workspace.occupied.entries();
-  result.occupied_voxels = static_cast<std::uint32_t>(occupied.size());
   result.refinement_saturated = 0;
-  for (const OccupiedSums::Entry& entry : occupied) {
+  for (const OccupiedSums::Entry& entry : look.refines) {
     result.refinement_saturated += refinement(entry);
   }
   result.gain = surface_.nats_per_area() * result.area +
@@ -102,20 +110,16 @@ ViewGain SurfaceSet::after(const Pose& T_world_camera, ViewDriver::Lease& lease)
   return result;
 }
 
-void SurfaceSet::choose(const Pose& T_world_camera, ViewDriver::Lease& lease) {
-  ViewGain ignored;
-  const auto frame = driver_.open(T_world_camera, ignored);
-  if (!frame) return;
-  Workspace& workspace = lease.workspace();
-  std::uint32_t hits = 0;
-  look(*frame, workspace, hits, [&](std::uint64_t key, double worth, double reached) {
-    Cell& cell = cells_[key];
-    cell.worth = worth;
-    cell.missed *= 1 - reached;
-    cell.largest = std::max(cell.largest, reached);
-  });
-  if (!refines()) return;
-  for (const OccupiedSums::Entry& entry : workspace.occupied.entries()) {
+void SurfaceSet::choose(std::size_t i, const Pose& /*T_world_camera*/,
+                        ViewDriver::Lease& /*lease*/) {
+  const Look& look = *looks_[i];
+  for (const Reached& one : look.cells) {
+    Cell& cell = cells_[one.key];
+    cell.worth = one.worth;
+    cell.missed *= 1 - one.share;
+    cell.largest = std::max(cell.largest, one.share);
+  }
+  for (const OccupiedSums::Entry& entry : look.refines) {
     refined_ += refinement(entry);
     const auto [known, is_new] = known_.try_emplace(key_of(entry.voxel), entry.information);
     if (!is_new) known->second += entry.information;

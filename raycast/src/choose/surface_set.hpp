@@ -3,32 +3,38 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <unordered_map>
+#include <vector>
 
 #include "gain/view_driver.hpp"
 
 namespace viewgain::detail {
 
 /// Views chosen together by the surface or the combined gain, and what another adds to them
-/// (raycast/README.md, "Choosing views"). after() may be called by several threads at once.
+/// (raycast/README.md, "Choosing views"). after() may be called by several threads at once, for
+/// different views.
 class SurfaceSet {
  public:
-  /// The driver must outlive it, and have a surface().
-  explicit SurfaceSet(const ViewDriver& driver) : driver_(driver), surface_(*driver.surface()) {}
+  /// To choose from `count` poses. The driver must outlive it, and have a surface().
+  SurfaceSet(const ViewDriver& driver, std::size_t count)
+      : driver_(driver), surface_(*driver.surface()), looks_(count) {}
 
   /// Poses are scored anew only while their earlier gain could win. What a view adds of new surface
   /// is never more after another has been chosen; of refinement it hardly ever is.
   [[nodiscard]] static bool is_lazy() { return true; }
   static constexpr bool kBoundIsFirst = false;
   /// The view's gain, which its cells cannot exceed but for rounding; an eighth of after()'s time.
-  [[nodiscard]] ViewGain bound(const Pose& T_world_camera, ViewDriver::Lease& lease) const {
+  [[nodiscard]] ViewGain bound(std::size_t /*i*/, const Pose& T_world_camera,
+                               ViewDriver::Lease& lease) const {
     ViewGain gain = driver_.evaluate(T_world_camera, lease);
     gain.gain *= 1 + kBoundSlack;
     return gain;
   }
-  /// What the view adds to those chosen.
-  [[nodiscard]] ViewGain after(const Pose& T_world_camera, ViewDriver::Lease& lease) const;
-  void choose(const Pose& T_world_camera, ViewDriver::Lease& lease);
+  /// What view `i` adds to those chosen. Traces it once: what it reaches is kept, 24 bytes a cell.
+  [[nodiscard]] ViewGain after(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease);
+  /// One that after() was asked about.
+  void choose(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease);
   /// What the chosen show if each cell is reached by the best of them alone, in the gain's unit.
   [[nodiscard]] double by_best_alone() const;
 
@@ -42,10 +48,17 @@ class SurfaceSet {
   };
 
   [[nodiscard]] bool refines() const { return driver_.core()->config.model == GainModel::combined; }
-  /// Calls cell(key, worth, R) for the cells that the view may reach, in the order in which it
-  /// first meets them, and leaves in the workspace what it brings to occupied voxels.
-  template <typename Visit>
-  void look(const PoseFrame& frame, Workspace& workspace, std::uint32_t& hits, Visit&& cell) const;
+  // What a view shows by itself.
+  struct Reached {
+    std::uint64_t key;
+    double worth, share;  // a p [m²], R
+  };
+  struct Look {
+    ViewGain seen;                             // status, hits, occupied voxels
+    std::vector<Reached> cells;                // in the order in which it first meets them
+    std::vector<OccupiedSums::Entry> refines;  // by combined
+  };
+  [[nodiscard]] Look look(const Pose& T_world_camera, Workspace& workspace) const;
   /// a p of a hazard cell, by its least voxel [m²].
   [[nodiscard]] double worth_of(Index3 least, double rate) const;
   /// The refinement of the voxel by the chosen views and `added` beyond that of the chosen.
@@ -53,6 +66,7 @@ class SurfaceSet {
 
   const ViewDriver& driver_;
   const SurfaceView& surface_;
+  std::vector<std::unique_ptr<const Look>> looks_;
   std::unordered_map<std::uint64_t, Cell> cells_;
   std::unordered_map<std::uint64_t, SymmetricMatrix3> known_;  // Σ T Λ_r of the chosen [m⁻²]
   double refined_ = 0;                                         // by the chosen [nat]

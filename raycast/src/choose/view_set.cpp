@@ -77,14 +77,16 @@ class PaperSet {
   }
   // Before any is chosen what a view adds is the first round's result.
   static constexpr bool kBoundIsFirst = true;
-  [[nodiscard]] ViewGain bound(const Pose& T_world_camera, ViewDriver::Lease& lease) const {
-    return after(T_world_camera, lease);
+  [[nodiscard]] ViewGain bound(std::size_t i, const Pose& T_world_camera,
+                               ViewDriver::Lease& lease) const {
+    return after(i, T_world_camera, lease);
   }
-  [[nodiscard]] ViewGain after(const Pose& T_world_camera, ViewDriver::Lease& lease) const {
+  [[nodiscard]] ViewGain after(std::size_t /*i*/, const Pose& T_world_camera,
+                               ViewDriver::Lease& lease) const {
     return driver_.view(T_world_camera, lease,
                         AfterOthersConsumer{{lease.accumulator()}, driver_.settings(), chosen_});
   }
-  void choose(const Pose& T_world_camera, ViewDriver::Lease& lease) {
+  void choose(std::size_t /*i*/, const Pose& T_world_camera, ViewDriver::Lease& lease) {
     driver_.view(T_world_camera, lease, ChosenConsumer{{lease.accumulator()}, chosen_});
   }
 
@@ -112,15 +114,15 @@ ViewSet choose_greedily(const ViewDriver& driver, Chosen& chosen,
     set.complete = detail::for_each(driver, indices.size(), control,
                                     [&](std::size_t j, ViewDriver::Lease& lease) {
                                       const std::size_t i = indices[j];
-                                      gains[i] = gain(T_world_camera[i], lease);
+                                      gains[i] = gain(i, lease);
                                       round[i] = now;
                                     });
     set.evaluations += indices.size();
     return set.complete;
   };
   const auto score = [&](std::span<const std::size_t> indices, std::size_t now) {
-    return score_by(indices, now, [&](const Pose& pose, ViewDriver::Lease& lease) {
-      return chosen.after(pose, lease);
+    return score_by(indices, now, [&](std::size_t i, ViewDriver::Lease& lease) {
+      return chosen.after(i, T_world_camera[i], lease);
     });
   };
   const auto better = [&](std::size_t a, std::size_t b) {
@@ -129,8 +131,8 @@ ViewSet choose_greedily(const ViewDriver& driver, Chosen& chosen,
 
   for (std::size_t now = 1; now <= k && !open.empty(); ++now) {
     if (now == 1) {
-      const auto bound = [&](const Pose& pose, ViewDriver::Lease& lease) {
-        return chosen.bound(pose, lease);
+      const auto bound = [&](std::size_t i, ViewDriver::Lease& lease) {
+        return chosen.bound(i, T_world_camera[i], lease);
       };
       if (!score_by(open, Chosen::kBoundIsFirst ? 1 : 0, bound)) return set;
       std::erase_if(open, [&](std::size_t i) { return std::isnan(gains[i].gain); });
@@ -166,7 +168,7 @@ ViewSet choose_greedily(const ViewDriver& driver, Chosen& chosen,
     if (control.progress) control.progress(now, k);
 
     ViewDriver::Lease lease(driver);
-    chosen.choose(T_world_camera[index], lease);
+    chosen.choose(index, T_world_camera[index], lease);
   }
   return set;
 }
@@ -182,7 +184,7 @@ ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_
     set.gain_by_best_alone = set.gain;
     return set;
   }
-  detail::SurfaceSet chosen(driver);
+  detail::SurfaceSet chosen(driver, T_world_camera.size());
   ViewSet set = choose_greedily(driver, chosen, T_world_camera, k, control);
   set.gain_by_best_alone = chosen.by_best_alone();
   return set;
