@@ -72,12 +72,28 @@ SurfaceSet::Look SurfaceSet::look(const Pose& T_world_camera, Workspace& workspa
       look.cells.push_back({key_of(cell.least), worth, std::min(1.0, cell.area / worth)});
     }
   }
+  look.cells.shrink_to_fit();
   if (refines()) {
     const auto& occupied = workspace.occupied.entries();
     look.refines.assign(occupied.begin(), occupied.end());
     look.seen.occupied_voxels = static_cast<std::uint32_t>(occupied.size());
   }
   return look;
+}
+
+std::shared_ptr<const SurfaceSet::Look> SurfaceSet::look_of(std::size_t i,
+                                                            const Pose& T_world_camera,
+                                                            Workspace& workspace) {
+  if (looks_[i]) return looks_[i];
+  const auto made = std::make_shared<const Look>(look(T_world_camera, workspace));
+  const std::size_t bytes =
+      made->cells.size() * sizeof(Reached) + made->refines.size() * sizeof(OccupiedSums::Entry);
+  if (kept_.fetch_add(bytes) + bytes <= kMostKept) {
+    looks_[i] = made;
+  } else {
+    kept_ -= bytes;
+  }
+  return made;
 }
 
 double SurfaceSet::refinement(const OccupiedSums::Entry& added) const {
@@ -88,10 +104,8 @@ double SurfaceSet::refinement(const OccupiedSums::Entry& added) const {
 }
 
 ViewGain SurfaceSet::after(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease) {
-  if (!looks_[i]) {
-    looks_[i] = std::make_unique<const Look>(look(T_world_camera, lease.workspace()));
-  }
-  const Look& look = *looks_[i];
+  const std::shared_ptr<const Look> held = look_of(i, T_world_camera, lease.workspace());
+  const Look& look = *held;
   ViewGain result = look.seen;
   if (result.status != ViewGain::Status::ok) return result;
   result.area = 0;
@@ -110,9 +124,9 @@ ViewGain SurfaceSet::after(std::size_t i, const Pose& T_world_camera, ViewDriver
   return result;
 }
 
-void SurfaceSet::choose(std::size_t i, const Pose& /*T_world_camera*/,
-                        ViewDriver::Lease& /*lease*/) {
-  const Look& look = *looks_[i];
+void SurfaceSet::choose(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease) {
+  const std::shared_ptr<const Look> held = look_of(i, T_world_camera, lease.workspace());
+  const Look& look = *held;
   for (const Reached& one : look.cells) {
     Cell& cell = cells_[one.key];
     cell.worth = one.worth;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <unordered_map>
@@ -31,15 +32,16 @@ class SurfaceSet {
     gain.gain *= 1 + kBoundSlack;
     return gain;
   }
-  /// What view `i` adds to those chosen. Traces it once: what it reaches is kept, 24 bytes a cell.
+  /// What view `i` adds to those chosen. What it reaches is kept while there is room, so that it is
+  /// traced once.
   [[nodiscard]] ViewGain after(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease);
-  /// One that after() was asked about.
   void choose(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease);
   /// What the chosen show if each cell is reached by the best of them alone, in the gain's unit.
   [[nodiscard]] double by_best_alone() const;
 
  private:
-  static constexpr double kBoundSlack = 1e-4;  // the kernel's single precision
+  static constexpr double kBoundSlack = 1e-4;                     // the kernel's single precision
+  static constexpr std::size_t kMostKept = std::size_t{1} << 28;  // [bytes]
 
   struct Cell {
     double worth = 0;    // a p [m²]
@@ -59,6 +61,9 @@ class SurfaceSet {
     std::vector<OccupiedSums::Entry> refines;  // by combined
   };
   [[nodiscard]] Look look(const Pose& T_world_camera, Workspace& workspace) const;
+  // The same of view `i`, as kept; traces it and keeps it if it was not.
+  [[nodiscard]] std::shared_ptr<const Look> look_of(std::size_t i, const Pose& T_world_camera,
+                                                    Workspace& workspace);
   /// a p of a hazard cell, by its least voxel [m²].
   [[nodiscard]] double worth_of(Index3 least, double rate) const;
   /// The refinement of the voxel by the chosen views and `added` beyond that of the chosen.
@@ -66,7 +71,8 @@ class SurfaceSet {
 
   const ViewDriver& driver_;
   const SurfaceView& surface_;
-  std::vector<std::unique_ptr<const Look>> looks_;
+  std::vector<std::shared_ptr<const Look>> looks_;  // null: not kept
+  std::atomic<std::size_t> kept_ = 0;               // [bytes]
   std::unordered_map<std::uint64_t, Cell> cells_;
   std::unordered_map<std::uint64_t, SymmetricMatrix3> known_;  // Σ T Λ_r of the chosen [m⁻²]
   double refined_ = 0;                                         // by the chosen [nat]
