@@ -262,7 +262,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// all are scored in every round. control.progress counts those chosen. A stop returns those
   /// chosen so far. Costs by the paper's gain up to k batches of about twice the time of
   /// evaluate(), by the others one batch and some ten times evaluate() for each pose that is scored
-  /// anew; memory for the voxels touched.
+  /// anew for the first time; memory for the voxels touched and at most 256 MB of what views reach.
   [[nodiscard]] ViewSet best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                  const BatchControl& control = {}) const;
 
