@@ -37,7 +37,7 @@ for deb in build/packages/packages/{libviewgain0.1,python3-viewgain}_*.deb; do
     binaries=$((binaries + 1))
   done < <(find "$work/content" -type f -name '*.so*')
 done
-[ "$binaries" -eq 4 ] || fail "$binaries libraries were looked at, there should be 4"
+[ "$binaries" -eq 5 ] || fail "$binaries libraries were looked at, there should be 5"
 for file in man/man1/viewgain.1 man/man1/viewgain-score.1 bash-completion/completions/viewgain zsh/site-functions/_viewgain; do
   dpkg-deb -c build/packages/packages/viewgain_*.deb | grep " ./usr/share/$file\$" || fail "viewgain lacks $file"
 done
