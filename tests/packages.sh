@@ -104,7 +104,7 @@ cmake --build build >/dev/null
 ./build/gain | cmp - first.txt
 grep -qE '^[0-9]+\.[0-9]*[1-9]' first.txt
 apt-get remove -y -qq libviewgain0.1 >/dev/null # takes all that depends on it along
-if dpkg -l | grep -E '^ii +(libviewgain|viewgain|python3-viewgain)'; then exit 1; fi
+if dpkg -l | grep -E '^ii +(libviewgain|viewgain +[0-9]|python3-viewgain)'; then exit 1; fi
 INSIDE
 cat >"$root/documentation.sh" <<'INSIDE'
 set -euo pipefail
