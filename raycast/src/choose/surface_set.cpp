@@ -74,9 +74,12 @@ SurfaceSet::Look SurfaceSet::look(const Pose& T_world_camera, Workspace& workspa
   }
   look.cells.shrink_to_fit();
   if (refines()) {
-    const auto& occupied = workspace.occupied.entries();
-    look.refines.assign(occupied.begin(), occupied.end());
-    look.seen.occupied_voxels = static_cast<std::uint32_t>(occupied.size());
+    const OccupiedSums& occupied = workspace.occupied;
+    look.seen.occupied_voxels = occupied.count();
+    look.refines.reserve(occupied.count());
+    for (std::uint32_t i = 0; i < occupied.count(); ++i) {
+      look.refines.push_back({occupied.voxel(i), occupied.information(i)});
+    }
   }
   return look;
 }
@@ -87,7 +90,7 @@ std::shared_ptr<const SurfaceSet::Look> SurfaceSet::look_of(std::size_t i,
   if (looks_[i]) return looks_[i];
   const auto made = std::make_shared<const Look>(look(T_world_camera, workspace));
   const std::size_t bytes =
-      made->cells.size() * sizeof(Reached) + made->refines.size() * sizeof(OccupiedSums::Entry);
+      made->cells.size() * sizeof(Reached) + made->refines.size() * sizeof(Refined);
   if (kept_.fetch_add(bytes) + bytes <= kMostKept) {
     looks_[i] = made;
   } else {
@@ -96,7 +99,7 @@ std::shared_ptr<const SurfaceSet::Look> SurfaceSet::look_of(std::size_t i,
   return made;
 }
 
-double SurfaceSet::refinement(const OccupiedSums::Entry& added) const {
+double SurfaceSet::refinement(const Refined& added) const {
   const auto chosen = known_.find(key_of(added.voxel));
   if (chosen == known_.end()) return surface_.saturated_gain(added.voxel, added.information);
   return surface_.saturated_gain(added.voxel, chosen->second + added.information) -
@@ -116,7 +119,7 @@ ViewGain SurfaceSet::after(std::size_t i, const Pose& T_world_camera, ViewDriver
   result.gain = result.area;
   if (!refines()) return result;
   result.refinement_saturated = 0;
-  for (const OccupiedSums::Entry& entry : look.refines) {
+  for (const Refined& entry : look.refines) {
     result.refinement_saturated += refinement(entry);
   }
   result.gain = surface_.nats_per_area() * result.area +
@@ -133,7 +136,7 @@ void SurfaceSet::choose(std::size_t i, const Pose& T_world_camera, ViewDriver::L
     cell.missed *= 1 - one.share;
     cell.largest = std::max(cell.largest, one.share);
   }
-  for (const OccupiedSums::Entry& entry : look.refines) {
+  for (const Refined& entry : look.refines) {
     refined_ += refinement(entry);
     const auto [known, is_new] = known_.try_emplace(key_of(entry.voxel), entry.information);
     if (!is_new) known->second += entry.information;

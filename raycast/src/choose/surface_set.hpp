@@ -55,10 +55,14 @@ class SurfaceSet {
     std::uint64_t key;
     double worth, share;  // a p [m²], R
   };
+  struct Refined {
+    Index3 voxel;
+    SymmetricMatrix3 information;  // Σ T Λ_r [m⁻²]
+  };
   struct Look {
-    ViewGain seen;                             // status, hits, occupied voxels
-    std::vector<Reached> cells;                // in the order in which it first meets them
-    std::vector<OccupiedSums::Entry> refines;  // by combined
+    ViewGain seen;                 // status, hits, occupied voxels
+    std::vector<Reached> cells;    // in the order in which it first meets them
+    std::vector<Refined> refines;  // by combined
   };
   [[nodiscard]] Look look(const Pose& T_world_camera, Workspace& workspace) const;
   // The same of view `i`, as kept; traces it and keeps it if it was not.
@@ -67,7 +71,7 @@ class SurfaceSet {
   /// a p of a hazard cell, by its least voxel [m²].
   [[nodiscard]] double worth_of(Index3 least, double rate) const;
   /// The refinement of the voxel by the chosen views and `added` beyond that of the chosen.
-  [[nodiscard]] double refinement(const OccupiedSums::Entry& added) const;
+  [[nodiscard]] double refinement(const Refined& added) const;
 
   const ViewDriver& driver_;
   const SurfaceView& surface_;

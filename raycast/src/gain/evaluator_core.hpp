@@ -39,7 +39,7 @@ struct SurfaceShare {
 
 /// A ray of a sample that ends in an occupied voxel.
 struct SampledEnd {
-  std::size_t entry;  ///< of OccupiedSums
+  std::uint32_t place;  ///< of its voxel in OccupiedSums
   int lane;
   double expected;  ///< SampledVoxel's
 };
@@ -58,7 +58,8 @@ struct Workspace {
   std::vector<ViewMeasure::Hit> view_hits;  ///< for a gain of the user's own
   std::vector<RunMeasure::Run> view_runs;
   SampleScratch sample;
-  OccupiedSums occupied;  ///< these four for the surface gain
+  OccupiedSums occupied;  ///< these five for the surface gain
+  RefiningHits refining;
   std::vector<SampledEnd> sampled_ends;
   std::vector<VoxelVisit> visits;
   std::vector<SurfaceShare> shares;

@@ -209,9 +209,16 @@ HWY_INLINE void multiply(LogProduct& product, std::size_t part, VD factor) {
   hn::Store(hn::Add(hn::Load(di, exponent), power), di, exponent);
 }
 
-template <Criterion criterion, bool kWithPosterior>
+// What an inverse's diagonal has more: F det in each of its cofactors.
+HWY_INLINE Inverse with_floor(Inverse m, VD floor) {
+  const VD more = hn::Mul(floor, m.determinant);
+  m.xx = hn::Add(m.xx, more), m.yy = hn::Add(m.yy, more), m.zz = hn::Add(m.zz, more);
+  return m;
+}
+
+template <Criterion criterion, bool kWithPosterior, bool kWithFloor = false>
 HWY_INLINE void finish_as(double prior_information, const VoxelClass& voxels, LogProduct& ratios,
-                          LogProduct* posterior, double* each) {
+                          LogProduct* posterior, double* each, double floor = 0) {
   const VD prior = hn::Set(dd, prior_information), zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
   const Inverse unknown_before = invert(prior, prior, prior, zero, zero, zero);
   // Copies, so that the compiler may keep the strands in registers.
@@ -255,8 +262,12 @@ HWY_INLINE void finish_as(double prior_information, const VoxelClass& voxels, Lo
         xx = hn::Add(xx, kxx), yy = hn::Add(yy, kyy), zz = hn::Add(zz, kzz);
         xy = hn::Add(xy, kxy), xz = hn::Add(xz, kxz), yz = hn::Add(yz, kyz);
       }
-      const Inverse after =
+      Inverse after =
           invert(hn::Add(prior, xx), hn::Add(prior, yy), hn::Add(prior, zz), xy, xz, yz);
+      if constexpr (kWithFloor) {
+        before = with_floor(before, hn::Set(dd, floor));
+        after = with_floor(after, hn::Set(dd, floor));
+      }
       const VD gained = reduction<criterion>(before, after);
       if constexpr (kWithPosterior) {
         const Inverse without_prior = invert(xx, yy, zz, xy, xz, yz);
@@ -298,10 +309,16 @@ void finish(Criterion criterion, double prior_information, const VoxelClass& vox
   }
 }
 
+void finish_with_floor(double prior_information, double floor, const VoxelClass& voxels,
+                       LogProduct& ratios, double* each) {
+  finish_as<Criterion::log_diagonal, false, true>(prior_information, voxels, ratios, nullptr, each,
+                                                  floor);
+}
+
 }  // namespace
 
 const GainKernels& gain_kernel_table() {
-  static const GainKernels table{append, expand, accumulate, look_up, finish};
+  static const GainKernels table{append, expand, accumulate, look_up, finish, finish_with_floor};
   return table;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "trace/ray_tile.hpp"
+#include "viewgain/core/covariance.hpp"
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
 #include "viewgain/support/isa.hpp"
@@ -43,6 +44,10 @@ struct alignas(64) VoxelSum {
   double a[4];  ///< xx yy zz xy
   double b[4];  ///< xz yz 0 0
 };
+
+[[nodiscard]] inline SymmetricMatrix3 matrix_of(const VoxelSum& m) {
+  return {m.a[0], m.a[1], m.a[2], m.a[3], m.b[0], m.b[1]};
+}
 
 /// Half of a symmetric matrix as in VoxelSum.
 struct alignas(32) MatrixHalf {
@@ -88,6 +93,9 @@ struct GainKernels {
   /// into `posterior` unless that is null.
   void (*finish)(Criterion criterion, double prior_information, const VoxelClass& voxels,
                  LogProduct& ratios, LogProduct* posterior, double* each);
+  /// The same by log_diagonal with a floor: H_F(Λ) = ½ Σ_k ln [Λ⁻¹ + F]_kk, F = `floor` I [m²].
+  void (*finish_with_floor)(double prior_information, double floor, const VoxelClass& voxels,
+                            LogProduct& ratios, double* each);
 };
 
 [[nodiscard]] const GainKernels& gain_kernels(Isa isa);

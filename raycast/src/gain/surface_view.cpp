@@ -6,11 +6,13 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "task_weight.hpp"
 #include "trace/scene_tracing.hpp"
 #include "view_driver.hpp"
 #include "viewgain/support/belief_block.hpp"
+#include "voxel_sums.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -25,10 +27,6 @@ constexpr float kLeastCosineBehind = 0.2F;
 // Readings that a voxel of new surface is counted with.
 constexpr double kNewReadings = 3.0;
 
-SymmetricMatrix3 scaled(const SymmetricMatrix3& m, double factor) {
-  return {factor * m.xx, factor * m.yy, factor * m.zz, factor * m.xy, factor * m.xz, factor * m.yz};
-}
-
 // ½ Σ_k ln [Λ⁻¹ + F]_kk
 double entropy_with_floor(const SymmetricMatrix3& information, double floor_variance) {
   const SymmetricMatrix3 sigma = information.inverse();
@@ -41,7 +39,7 @@ double entropy_of_new_voxel(const EvaluatorCore& core, double prior_information,
                             double floor_variance) {
   const MeasurementSigmas sigmas = core.frontal(core.working_distance);
   const SymmetricMatrix3 seen =
-      scaled(measurement_information(Eigen::Vector3d::UnitZ(), sigmas), kNewReadings);
+      measurement_information(Eigen::Vector3d::UnitZ(), sigmas) * kNewReadings;
   const auto prior = SymmetricMatrix3::identity(prior_information);
   return entropy_with_floor(prior, floor_variance) -
          entropy_with_floor(prior + seen, floor_variance);
@@ -56,12 +54,15 @@ SurfaceView::SurfaceView(const SceneData& scene, const EvaluatorCore& core,
       tracer_(tracer),
       bricks_(scene.tracing->bricks()),
       walk_(walk_kernels(scene.tracing->kernels.isa)),
+      gain_kernels_(gain_kernels(scene.tracing->kernels.isa)),
+      frontal_(core.sigmas),
       prior_information_(1.0 / (prior_sigma * prior_sigma)) {
   const double V = scene.snapshot.voxel_size;
   const double stride = core.config.pixel_stride;
   const double radius = bricks_.pooling_length;
   cap_ = static_cast<float>(stride * stride * std::numbers::pi * radius * radius / kLeastReadings);
   floor_variance_ = V * V;
+  frontal_.p0 = frontal_.p2 = 0;  // as core's frontal(): readings that share a pose share its error
   nats_per_area_ = entropy_of_new_voxel(core, prior_information_, floor_variance_) / (V * V);
 }
 
@@ -104,6 +105,8 @@ double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, std::uin
   tracer_.prepare(frame, workspace.sweep);
   OccupiedSums& occupied = workspace.occupied;
   occupied.begin();
+  RefiningHits& refining = workspace.refining;
+  refining.batch.count = 0;
   if (!core_.config.weights.empty()) {
     double area = 0;
     for_each_share(
@@ -133,29 +136,80 @@ double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, std::uin
     }
     hits += static_cast<std::uint32_t>(std::popcount(walked.occupied));
     if (!refines) return;
+    HitBatch& batch = refining.batch;
     for_each_lane(walked.occupied, [&](int lane) {
-      met(number, rays, lane, walked.range[lane],
-          occupied.add(voxel_at(walked.x[lane], walked.y[lane], walked.z[lane]),
-                       scaled(information(rays, lane, walked.range[lane]),
-                              static_cast<double>(walked.passed[lane]))));
+      const std::size_t i = batch.count++;
+      batch.dx[i] = rays.dx[lane], batch.dy[i] = rays.dy[lane], batch.dz[i] = rays.dz[lane];
+      batch.range[i] = walked.range[lane];
+      refining.passed[i] = walked.passed[lane];
+      bool is_new = false;
+      refining.places[i] =
+          occupied.place_of(voxel_at(walked.x[lane], walked.y[lane], walked.z[lane]), is_new);
+      refining.keep[i] = is_new ? 0 : ~std::uint64_t{0};
+      met(number, rays, lane, walked.range[lane], refining.places[i]);
     });
+    if (batch.count >= kBatchSize) sum_refining(workspace);
   });
+  sum_refining(workspace);
   return sum * V * V;
+}
+
+// Λ_r of the hits that wait, each times its ray's T, into the sums.
+void SurfaceView::sum_refining(Workspace& workspace) const {
+  RefiningHits& refining = workspace.refining;
+  HitBatch& batch = refining.batch;
+  gain_kernels_.expand(frontal_, scene_.snapshot.voxel_size, batch);
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const auto passed = static_cast<double>(refining.passed[i]);
+    for (double& part : batch.information_a[i]) part *= passed;
+    for (double& part : batch.information_b[i]) part *= passed;
+  }
+  gain_kernels_.accumulate(batch, refining.places, refining.keep, workspace.occupied.sums());
+  batch.count = 0;
+}
+
+double SurfaceView::saturated_gain(Workspace& workspace) const {
+  OccupiedSums& occupied = workspace.occupied;
+  RefiningHits& refining = workspace.refining;
+  const std::uint32_t count = occupied.count();
+  const std::size_t room = std::size_t{count} + VoxelSums::kOverhang;
+  if (refining.leaves.size() < room) {
+    refining.leaves.resize(room), refining.offsets.resize(room), refining.members.resize(room);
+    refining.known_a.resize(room), refining.known_b.resize(room), refining.each.resize(room);
+    std::iota(refining.members.begin(), refining.members.end(), 0U);
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Index3 voxel = occupied.voxel(i);
+    refining.leaves[i] = &scene_.snapshot.leaves[bricks_.leaf_of(voxel)];
+    refining.offsets[i] = block_offset(voxel);
+  }
+  gain_kernels_.look_up(refining.leaves.data(), refining.offsets.data(), count,
+                        refining.known_a.data(), refining.known_b.data());
+  const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
+  double* each = weights.empty() ? nullptr : refining.each.data();
+  LogProduct ratios;
+  gain_kernels_.finish_with_floor(prior_information_, floor_variance_,
+                                  {occupied.sums(), refining.members.data(),
+                                   refining.known_a.data(), refining.known_b.data(), count},
+                                  ratios, each);
+  if (each == nullptr) return 0.5 * ratios.log();
+  double sum = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    sum += task_weight(weights, occupied.voxel(i), scene_.snapshot.voxel_size) * 0.5 *
+           std::log(each[i]);
+  }
+  return sum;
 }
 
 void SurfaceView::evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result) const {
   result.hits = 0;
   result.area = result.gain = trace(frame, workspace, result.hits, nullptr,
-                                    [](std::size_t, const RayTile&, int, float, std::size_t) {});
+                                    [](std::size_t, const RayTile&, int, float, std::uint32_t) {});
   if (core_.config.model != GainModel::combined) return;
-  const OccupiedSums& occupied = workspace.occupied;
-  double saturated = 0;
-  for (const OccupiedSums::Entry& entry : occupied.entries()) {
-    saturated += saturated_gain(entry.voxel, entry.information);
-  }
-  result.occupied_voxels = static_cast<std::uint32_t>(occupied.entries().size());
-  result.refinement_saturated = saturated;
-  result.gain = nats_per_area_ * result.area + core_.config.refinement_weight * saturated;
+  result.occupied_voxels = workspace.occupied.count();
+  result.refinement_saturated = saturated_gain(workspace);
+  result.gain =
+      nats_per_area_ * result.area + core_.config.refinement_weight * result.refinement_saturated;
 }
 
 double SurfaceView::expected_hits(std::size_t number, const RayTile& rays, int lane, float range,
@@ -186,9 +240,9 @@ void SurfaceView::sample(const PoseFrame& frame, Workspace& workspace, double ra
   // The rays' solid angles are those of what they stand for, so areas add up to the whole.
   const double area = trace(
       frame, workspace, hits, tally.by_lane.data(),
-      [&](std::size_t number, const RayTile& rays, int lane, float range, std::size_t entry) {
-        ends.push_back({entry, lane,
-                        expected_hits(number, rays, lane, range, occupied.entries()[entry].voxel)});
+      [&](std::size_t number, const RayTile& rays, int lane, float range, std::uint32_t place) {
+        ends.push_back(
+            {place, lane, expected_hits(number, rays, lane, range, occupied.voxel(place))});
       });
   tally.gain = area;
   if (core_.config.model != GainModel::combined) return;
@@ -198,23 +252,23 @@ void SurfaceView::sample(const PoseFrame& frame, Workspace& workspace, double ra
   struct Voxel {
     double hits = 0, share = 0;
   };
-  std::vector<Voxel> voxels(occupied.entries().size());
+  std::vector<Voxel> voxels(occupied.count());
   for (const SampledEnd& end : ends) {
-    voxels[end.entry].hits += 1;
-    voxels[end.entry].share += 1 / end.expected;
+    voxels[end.place].hits += 1;
+    voxels[end.place].share += 1 / end.expected;
   }
-  for (std::size_t i = 0; i < voxels.size(); ++i) {
+  for (std::uint32_t i = 0; i < occupied.count(); ++i) {
     Voxel& voxel = voxels[i];
     const double expected = voxel.hits / voxel.share;
     const SampledVoxel stands(voxel.hits, expected, rays_each);
-    const OccupiedSums::Entry& entry = occupied.entries()[i];
-    const double gain = core_.config.refinement_weight * stands.copies *
-                        saturated_gain(entry.voxel, scaled(entry.information, stands.rays_per_hit));
+    const double gain =
+        core_.config.refinement_weight * stands.copies *
+        saturated_gain(occupied.voxel(i), occupied.information(i) * stands.rays_per_hit);
     tally.add(gain, voxel.hits, expected);
     voxel.share = gain / voxel.hits;
   }
   for (const SampledEnd& end : ends) {
-    tally.by_lane[static_cast<std::size_t>(end.lane)] += voxels[end.entry].share;
+    tally.by_lane[static_cast<std::size_t>(end.lane)] += voxels[end.place].share;
   }
 }
 
@@ -279,7 +333,7 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
       SurfaceShare share{lane, first->begin, voxel_at(first->x, first->y, first->z),
                          true, passed,       0.0};
       if (core_.config.model == GainModel::combined) {
-        share.information = scaled(information(rays, lane, first->begin), passed);
+        share.information = information(rays, lane, first->begin) * passed;
       }
       workspace.shares.push_back(share);
       continue;

@@ -68,7 +68,7 @@ class SurfaceView {
     tracer_.trace<ViewTracer::Asked::along_rays>(frame, workspace.sweep, visit);
   }
 
-  /// Sums what all tiles meet: calls met(tile number, rays, lane, range, entry of
+  /// Sums what all tiles meet: calls met(tile number, rays, lane, range, place in
   /// workspace.occupied) for each occupied voxel by the combined gain, and adds up in by_lane what
   /// new surface each lane shows [m²] unless it is null. Returns that of all [m²].
   template <typename Met>
@@ -77,6 +77,9 @@ class SurfaceView {
   /// How many of the tracer's rays would end in an occupied voxel if nothing stood before it.
   [[nodiscard]] double expected_hits(std::size_t number, const RayTile& rays, int lane, float range,
                                      Index3 voxel) const;
+  void sum_refining(Workspace& workspace) const;
+  /// Σ of the same over the voxels of workspace.occupied.
+  [[nodiscard]] double saturated_gain(Workspace& workspace) const;
   void find_visits(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                    Workspace& workspace) const;
   void find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
@@ -91,6 +94,8 @@ class SurfaceView {
   const ViewTracer& tracer_;
   const BrickTable& bricks_;
   const WalkKernels& walk_;
+  const GainKernels& gain_kernels_;
+  FrontalSigmas frontal_;
   float cap_;  // the most that a ray counts for [voxels²]
   double prior_information_, floor_variance_, nats_per_area_;
 };

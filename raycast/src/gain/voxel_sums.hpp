@@ -10,14 +10,9 @@
 
 #include "gain_kernels.hpp"
 #include "scene/scene_data.hpp"
-#include "viewgain/core/covariance.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::detail {
-
-[[nodiscard]] inline SymmetricMatrix3 matrix_of(const VoxelSum& m) {
-  return {m.a[0], m.a[1], m.a[2], m.a[3], m.b[0], m.b[1]};
-}
 
 /// What the gain of a view depends on besides the scene and the hits.
 struct GainSettings {

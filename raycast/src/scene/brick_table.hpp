@@ -41,6 +41,12 @@ struct BrickTable : BrickIndex {
   /// The outward normal at an occupied voxel in table coordinates, grid frame; zero if not known.
   [[nodiscard]] Eigen::Vector3f normal_at(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
+  /// Which of the snapshot's leaves a voxel of the lattice is in; it must be in one.
+  [[nodiscard]] std::size_t leaf_of(Index3 voxel) const {
+    const auto [x, y, z] = in_table(voxel);
+    return (entries[entry_index(x, y, z)] & kPayload) - 1;  // slots begin with kFarSlot
+  }
+
   [[nodiscard]] std::uint64_t bytes() const {
     return BrickIndex::bytes() + (states.size() + normals.size()) * sizeof(std::uint32_t) +
            rates.size() * sizeof(float);
