@@ -5,9 +5,9 @@
 #include <exception>
 
 #include "benches/bars.hpp"
+#include "benches/decision_bench.hpp"
 #include "benches/honesty_bench.hpp"
 #include "benches/integrate_bench.hpp"
-#include "benches/iteration_bench.hpp"
 #include "benches/trace_bench.hpp"
 #include "benches/tracers_bench.hpp"
 #include "choose/approximate_bench.hpp"
@@ -64,8 +64,9 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
 
-  trace_app->add_option("--without", trace.without, "not compared with: dense, openvdb, octomap")
-      ->check(CLI::IsMember({"dense", "openvdb", "octomap"}))
+  trace_app
+      ->add_option("--without", trace.without, "not compared with: dense, tree64, openvdb, octomap")
+      ->check(CLI::IsMember({"dense", "tree64", "openvdb", "octomap"}))
       ->delimiter(',');
 
   viewgain::bench::IntegrateOptions integrate;
@@ -74,15 +75,27 @@ int run(int argc, char** argv) {
   add_common(*integrate_app, integrate.num_threads, integrate.voxels, integrate.repetitions,
              integrate.mesh, integrate.json);
 
-  viewgain::bench::IterationOptions iteration;
-  iteration.mesh = viewgain::test::camel_mesh_path();
-  CLI::App* iteration_app = app.add_subcommand(
-      "iteration", "one turn of the loop after eight views of the camel, by stage");
-  add_common(*iteration_app, iteration.num_threads, iteration.voxels, iteration.repetitions,
-             iteration.mesh, iteration.json);
-  iteration_app->add_option("--candidates", iteration.candidates, "views to score")
-      ->check(CLI::Range(1, 1000000))
+  viewgain::bench::DecisionOptions decision;
+  decision.mesh = viewgain::test::camel_mesh_path();
+  CLI::App* decision_app = app.add_subcommand(
+      "decision", "from a frame to the best next pose, by stage, gain and number of candidates");
+  add_run(*decision_app, decision.num_threads, decision.repetitions, decision.mesh, decision.json);
+  decision_app->add_option("--maps", decision.maps, "of camel-N (N voxels a side), room, hall")
+      ->check(CLI::Validator(
+          [](const std::string& name) {
+            const bool is_camel = name.starts_with("camel-") && name.size() > 6 &&
+                                  name.find_first_not_of("0123456789", 6) == std::string::npos;
+            return is_camel || name == "room" || name == "hall" ? "" : "no map " + name;
+          },
+          "MAP"))
+      ->delimiter(',')
       ->capture_default_str();
+  decision_app->add_option("--candidates", decision.candidates, "views to choose from")
+      ->check(CLI::Range(1, 1000000))
+      ->delimiter(',')
+      ->capture_default_str();
+  decision_app->add_option("--recording", decision.recording, "frames of the map room")
+      ->check(CLI::ExistingDirectory);
 
   viewgain::bench::HonestyOptions honesty;
   honesty.mesh = viewgain::test::camel_mesh_path();
@@ -314,7 +327,7 @@ int run(int argc, char** argv) {
   }
   if (trace_app->parsed()) return viewgain::bench::run_trace(trace);
   if (integrate_app->parsed()) return viewgain::bench::run_integrate(integrate);
-  if (iteration_app->parsed()) return viewgain::bench::run_iteration(iteration);
+  if (decision_app->parsed()) return viewgain::bench::run_decision(decision);
   if (honesty_app->parsed()) return viewgain::bench::run_honesty(honesty);
   if (scaling_app->parsed()) return viewgain::bench::run_scaling(scaling);
   if (approximate_app->parsed()) return viewgain::bench::run_approximate(approximate);

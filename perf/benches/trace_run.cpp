@@ -7,8 +7,10 @@
 #include "measure.hpp"
 #include "methods/dense_dda.hpp"
 #include "methods/embree_quads.hpp"
+#include "methods/nanovdb_method.hpp"
 #include "methods/octomap_methods.hpp"
 #include "methods/openvdb_methods.hpp"
+#include "methods/tree64.hpp"
 #include "methods/viewgain_methods.hpp"
 #include "support/camel_scene.hpp"
 #include "viewgain/core/generators.hpp"
@@ -39,9 +41,12 @@ std::vector<TraceEntry> make_entries(const TraceTask& task, const ScenePointer& 
   entries.emplace_back(make_viewgain_floor(task, scene), all);
   for (auto& method : make_embree_quads(task)) entries.emplace_back(std::move(method), all);
   if (wants("dense")) entries.emplace_back(make_dense_dda(task), all);
+  if (wants("tree64"))
+    entries.emplace_back(make_tree64_method(task), thinned(task.poses, 4, least));
   if (wants("openvdb")) {
     const std::vector<Pose> some = thinned(task.poses, 8, least);
     for (auto& method : make_openvdb_methods(task)) entries.emplace_back(std::move(method), some);
+    entries.emplace_back(make_nanovdb_method(task), some);
   }
   if (wants("octomap")) {
     const std::vector<Pose> some = thinned(task.poses, 25, least);

@@ -22,7 +22,6 @@
 namespace viewgain::bench {
 namespace {
 
-const Box kWorkspace{{-10, -10, 0}, {10, 10, 3}};
 const Box kHall{{-9.8, -9.8, 0.1}, {9.8, 9.8, 2.9}};
 constexpr int kAisles = 6;
 constexpr double kAisleLength = 18, kAisleDistance = 3.2;  // [m]
@@ -32,8 +31,9 @@ constexpr double kScoringRange = 5;  // [m]
 
 double aisle_y(double number) { return kAisleDistance * (number - (kAisles - 1) / 2.0); }
 
-/// Boxes on the floor and at all heights, beside the aisles.
-TriangleMesh make_hall() {
+}  // namespace
+
+TriangleMesh hall_mesh() {
   TriangleMesh mesh;
   test::add_box(mesh, kHall);
   std::uint64_t drawn = 0;
@@ -50,8 +50,7 @@ TriangleMesh make_hall() {
   return mesh;
 }
 
-/// Up one aisle and down the next, looking left and right.
-Pose camera_at(int frame, int frames) {
+Pose hall_pose(int frame, int frames) {
   const double way = kAisles * (frame + 0.5) / frames;  // [aisle]
   const double aisle = std::floor(way), along = kAisleLength * (way - aisle - 0.5);
   const double heading = std::fmod(aisle, 2) == 0 ? 1 : -1;
@@ -60,16 +59,14 @@ Pose camera_at(int frame, int frames) {
   return look_at(eye, eye + Eigen::Vector3d(heading * std::cos(turn), std::sin(turn), tilt));
 }
 
-}  // namespace
-
 int run_hall(const HallOptions& options) {
   const ExecConfig exec{.num_threads = ThreadPool(options.num_threads).num_threads()};
   const Sensor sensor = sensor_preset("kinect_v1");
-  const SimulatedSensor camera(std::make_shared<const SurfaceScene>(make_hall(), exec), sensor,
+  const SimulatedSensor camera(std::make_shared<const SurfaceScene>(hall_mesh(), exec), sensor,
                                {.noise = true}, exec);
   reset_peak_memory();
   const std::uint64_t before = resident_bytes();
-  BeliefGrid grid({.voxel_size = options.voxel, .workspace = kWorkspace}, sensor);
+  BeliefGrid grid({.voxel_size = options.voxel, .workspace = kHallWorkspace}, sensor);
   FrameIntegrator integrator(sensor, {}, exec);
   const auto integrate = [&](int i, const Pose& T_world_camera) {
     const DepthFrame frame = camera.acquire(T_world_camera, static_cast<std::uint64_t>(i));
@@ -77,14 +74,14 @@ int run_hall(const HallOptions& options) {
   };
   std::vector<double> of_frames;
   for (int i = 0; i < options.frames; ++i) {
-    of_frames.push_back(integrate(i, camera_at(i, options.frames)));
+    of_frames.push_back(integrate(i, hall_pose(i, options.frames)));
   }
   std::shared_ptr<const VoxelScene> scene;
   const double of_build = seconds_of([&] { scene = VoxelScene::build(grid, {}, exec); });
   const std::uint64_t peak_of_map_and_scene = peak_resident_bytes();
   const std::uint64_t map_bytes = grid.statistics().bytes;
   // One more frame, where the camera began.
-  (void)integrate(options.frames, camera_at(0, options.frames));
+  (void)integrate(options.frames, hall_pose(0, options.frames));
   const double of_update = seconds_of([&] { scene = VoxelScene::update(scene, grid, exec); });
 
   Sensor scoring = sensor;
@@ -98,7 +95,7 @@ int run_hall(const HallOptions& options) {
   const std::uint64_t peak = peak_resident_bytes();
 
   const BeliefGrid::Statistics known = grid.statistics();
-  Box half = kWorkspace;
+  Box half = kHallWorkspace;
   half.max[0] = 0;
   std::uint64_t forgotten = 0;
   const double of_forgetting = seconds_of([&] { forgotten = grid.forget(half); });

@@ -2,7 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "viewgain/core/box.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/triangle_mesh.hpp"
+
 namespace viewgain::bench {
+
+inline const Box kHallWorkspace{{-10, -10, 0}, {10, 10, 3}};
+/// Tables, shelves and crates on the floor and at all heights, beside the aisles.
+[[nodiscard]] TriangleMesh hall_mesh();
+/// Up one aisle and down the next, looking left and right: where the camera is at a frame.
+[[nodiscard]] Pose hall_pose(int frame, int frames);
 
 struct HallOptions {
   int num_threads = 0;  ///< 0: all hardware threads

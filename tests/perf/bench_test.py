@@ -13,7 +13,7 @@ BOX = "OFF\n8 12 0\n" + "".join(f"{x} {y} {z}\n" for z in (-10, 10) for y in (-1
     f"3 {a} {b} {c}\n3 {a} {c} {d}\n" for a, b, c, d in
     [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)])
 CALLS = ["trace --json --voxels 37 --poses 2 --repetitions 1", "integrate --json --voxels 64 --repetitions 1",
-         "iteration --json --voxels 48 --candidates 8 --repetitions 1",
+         "decision --json --maps camel-48,hall --candidates 8 --repetitions 1",
          "scaling --json --voxels 16,24 --poses 4 --repetitions 1", "hall --json --voxel 0.2 --frames 12 --poses 4",
          "approximate --json --voxels 48 --poses 40 --repetitions 1", "choose --json --poses 60 --subsets 2 --seed 3",
          "bars --json --voxels 32 --large-voxels 48 --poses 8 --repetitions 1 --maps 2 --candidates 8", "environment",
