@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -124,7 +123,7 @@ std::vector<Pose> exactly(const std::vector<Pose>& candidates, const GridSnapsho
 }
 
 // Seconds by stage, of all repetitions.
-using Seconds = std::map<std::string, std::vector<double>>;
+using Seconds = nlohmann::ordered_map<std::string, std::vector<double>>;  // as they come
 
 void time_once(const World& world, const DecisionOptions& options, const ExecConfig& exec,
                const std::shared_ptr<const VoxelScene>& scene_before, Seconds& seconds,
