@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // A next-best-view planner on octomap::OcTree whose gain, the sum of entropies of the voxels that
-// rays end in, is replaced by viewgain's: the same ranking side by side, and the processor time
-// of either on one thread.
+// rays end in, is replaced by viewgain's: side by side the best candidates of either, and the
+// processor time on one thread.
 //
 //   octomap_planner [CANDIDATES]        exit codes: 0, 2 for bad input
 #include <algorithm>
@@ -36,24 +36,6 @@ octomap::point3d point(const Vector3d& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
 
-// The distinct voxels that the rays of a view end in, the first that are not free.
-struct Ends {
-  octomap::KeySet unknown, occupied;
-};
-
-// The planner's own gain: a castRay() a pixel.
-Ends cast_view(const octomap::OcTree& tree, const std::vector<Vector3d>& rays, const Pose& view) {
-  Ends ends;
-  const octomap::point3d eye = point(view.translation());
-  const Eigen::Matrix3d R = view.rotation();
-  for (const Vector3d& ray : rays) {
-    octomap::point3d end;
-    const bool is_occupied = tree.castRay(eye, point(R * ray), end, false);
-    (is_occupied ? ends.occupied : ends.unknown).insert(tree.coordToKey(end));
-  }
-  return ends;
-}
-
 double entropy(std::size_t unknown, std::size_t occupied) {
   return kEntropyUnknown * static_cast<double>(unknown) +
          kEntropyOccupied * static_cast<double>(occupied);
@@ -63,12 +45,19 @@ double entropy(std::size_t unknown, std::size_t occupied) {
 using GainFunction = std::function<std::vector<double>(const octomap::OcTree& tree,
                                                        const std::vector<Pose>& candidates)>;
 
+// The planner's own: a castRay() a pixel; each voxel that rays end in counts once.
 GainFunction octomap_gain(const std::vector<Vector3d>& rays) {
   return [rays](const octomap::OcTree& tree, const std::vector<Pose>& candidates) {
     std::vector<double> gains;
     for (const Pose& view : candidates) {
-      const Ends ends = cast_view(tree, rays, view);
-      gains.push_back(entropy(ends.unknown.size(), ends.occupied.size()));
+      octomap::KeySet unknown, occupied;
+      for (const Vector3d& ray : rays) {
+        octomap::point3d end;
+        const octomap::point3d eye = point(view.translation()),
+                               along = point(view.rotation() * ray);
+        (tree.castRay(eye, along, end, false) ? occupied : unknown).insert(tree.coordToKey(end));
+      }
+      gains.push_back(entropy(unknown.size(), occupied.size()));
     }
     return gains;
   };
@@ -107,39 +96,6 @@ GainFunction viewgain_gain(const viewgain::Sensor& sensor) {
   };
 }
 
-// How many voxels are an end of the view for one of the two alone.
-std::size_t differing_voxels(const Ends& ends, const std::vector<viewgain::RayHit>& hits) {
-  Ends ours;
-  for (const viewgain::RayHit& hit : hits) {
-    if (hit.kind == viewgain::RayHit::Kind::none) continue;
-    const auto key = [](std::int32_t i) { return static_cast<octomap::key_type>(i + 32768); };
-    const bool is_occupied = hit.kind == viewgain::RayHit::Kind::occupied;
-    (is_occupied ? ours.occupied : ours.unknown)
-        .insert({key(hit.voxel.x), key(hit.voxel.y), key(hit.voxel.z)});
-  }
-  const auto missing = [](const octomap::KeySet& from, const octomap::KeySet& in) {
-    return static_cast<std::size_t>(std::count_if(
-        from.begin(), from.end(), [&](const auto& key) { return in.count(key) == 0; }));
-  };
-  return missing(ends.unknown, ours.unknown) + missing(ours.unknown, ends.unknown) +
-         missing(ends.occupied, ours.occupied) + missing(ours.occupied, ends.occupied);
-}
-
-// Kendall's tau-b: 1 if the two rank all pairs alike.
-double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const auto sign = [](double x) { return (x > 0) - (x < 0); };
-  double both = 0, in_a = 0, in_b = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const int s = sign(a[i] - a[j]), t = sign(b[i] - b[j]);
-      both += s * t;
-      in_a += s * s;
-      in_b += t * t;
-    }
-  }
-  return both / std::sqrt(in_a * in_b);
-}
-
 std::vector<std::size_t> ranking(const std::vector<double>& gains) {
   std::vector<std::size_t> order(gains.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -150,14 +106,10 @@ std::vector<std::size_t> ranking(const std::vector<double>& gains) {
 
 // The real thing, simulated: a box in the middle of the room.
 viewgain::SimulatedSensor make_camera(const viewgain::Sensor& sensor) {
-  viewgain::TriangleMesh box;
-  for (unsigned i = 0; i < 8; ++i) {
-    box.vertices.push_back(
-        {(i & 4U) != 0 ? 0.15 : -0.15, (i & 2U) != 0 ? 0.1 : -0.1, (i & 1U) != 0 ? 0.2 : -0.2});
-  }
-  box.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
-                   {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
-  return {std::make_shared<viewgain::SurfaceScene>(box), sensor, {.background_radius = kRoom}};
+  const viewgain::Obstacles box{{{{-0.15, -0.1, -0.2}, {0.15, 0.1, 0.2}}}, {}};
+  return {std::make_shared<viewgain::SurfaceScene>(viewgain::mesh_of(box)),
+          sensor,
+          {.background_radius = kRoom}};
 }
 
 void take_view(const viewgain::SimulatedSensor& camera, const std::vector<Vector3d>& rays,
@@ -169,11 +121,6 @@ void take_view(const viewgain::SimulatedSensor& camera, const std::vector<Vector
     if (depth > 0 && std::isfinite(depth)) cloud.push_back(point(view * (rays[i] * depth)));
   }
   tree.insertPointCloud(cloud, point(view.translation()));
-}
-
-// Processor time, which other programs on the machine do not change.
-double seconds_since(std::clock_t start) {
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 int run(std::size_t candidate_count) {
@@ -207,32 +154,18 @@ int run(std::size_t candidate_count) {
       return 2;
     }
     std::printf("view %d, %zu candidates of %zu rays\n", step, candidates.size(), rays.size());
-    std::vector<double> gains[3];
-    std::vector<std::size_t> rankings[3];
-    for (int m = 0; m < 3; ++m) {
-      const auto start = std::clock();
-      gains[m] = methods[m].gain(tree, candidates);
-      const double seconds = seconds_since(start);
-      rankings[m] = ranking(gains[m]);
-      std::printf("  %-24s %8.4f s, rank correlation with the first %.5f, best:", methods[m].name,
-                  seconds, rank_correlation(gains[0], gains[m]));
-      for (std::size_t i = 0; i < std::min<std::size_t>(5, candidates.size()); ++i) {
-        std::printf(" %zu", rankings[m][i]);
+    std::vector<std::size_t> order;
+    for (const auto& [name, gain] : methods) {
+      const std::clock_t start = std::clock();  // processor time, which others do not change
+      order = ranking(gain(tree, candidates));
+      const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+      std::printf("  %-24s %8.4f s, best:", name, seconds);
+      for (std::size_t i = 0; i < std::min<std::size_t>(5, order.size()); ++i) {
+        std::printf(" %zu", order[i]);
       }
       std::printf("\n");
     }
-    const auto start = std::clock();
-    const viewgain::GainEvaluator evaluator = evaluator_of(tree, sensor);
-    std::printf("  of viewgain's time converting the tree: %.4f s\n", seconds_since(start));
-    // Rays that pass an edge within rounding may end in one voxel here and in its neighbour there.
-    std::size_t different = 0, all = 0;
-    for (const Pose& view : candidates) {
-      const Ends ends = cast_view(tree, rays, view);
-      different += differing_voxels(ends, evaluator.trace(view));
-      all += ends.unknown.size() + ends.occupied.size();
-    }
-    std::printf("  voxels that only one of the entropies counts: %zu of %zu\n", different, all);
-    take_view(camera, rays, candidates[rankings[1].front()], tree);
+    take_view(camera, rays, candidates[order.front()], tree);
   }
   return 0;
 }

@@ -63,14 +63,10 @@ class GainPerMetre : public DecisionMaking {
 
 int main() try {
   // The object is a box of 16 cm, seen by a simulated SR4000.
-  TriangleMesh box;
-  for (int i = 0; i < 8; ++i) {
-    box.vertices.push_back({i & 1 ? 0.08 : -0.08, i & 2 ? 0.08 : -0.08, i & 4 ? 0.08 : -0.08});
-  }
-  box.triangles.assign(kBoxTriangles.begin(), kBoxTriangles.end());
+  const Obstacles box{{{{-0.08, -0.08, -0.08}, {0.08, 0.08, 0.08}}}, {}};
   const Sensor sensor = sensor_preset("sr4000");
   SimulatedAcquisition camera(
-      SimulatedSensor(std::make_shared<const SurfaceScene>(std::move(box)), sensor), 1, {});
+      SimulatedSensor(std::make_shared<const SurfaceScene>(mesh_of(box)), sensor), 1, {});
 
   MapModelConfig config;
   config.grid.voxel_size = 0.01;

@@ -1,14 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+
 #include "viewgain/core/pose_io.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <csignal>
+#include <fstream>
+#include <limits>
 #include <string>
+#include <thread>
 
+#include "comma_locale.hpp"
 #include "expect_error.hpp"
 #include "random_values.hpp"
 #include "temporary_folder.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
@@ -236,6 +245,100 @@ TEST(PoseMatrix, RefusesWhatIsNoPose) {
   }
   expect_error(ErrorCode::io, "missing",
                [&] { (void)read_pose_matrix(folder.path() / "missing"); });
+}
+
+TEST(Locale, DoesNotReachPoseFiles) {
+  const test::TemporaryFolder folder;
+  std::vector<Pose> poses(1500);  // indices with a thousands separator, if one crept in
+  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].m[3] = 1234.5 + static_cast<double>(i);
+  write_tum(folder.path() / "plain.txt", poses);
+  {
+    const test::CommaLocale locale;
+    write_tum(folder.path() / "comma.txt", poses);
+    const PoseList list = read_tum(folder.path() / "plain.txt");
+    EXPECT_EQ(list.poses, poses);
+    EXPECT_EQ(list.timestamps.back(), 1499.0);
+    const auto matrix = folder.file("m.txt", "1 0 0 0.5  0 1 0 1.5  0 0 1 2.5  0 0 0 1");
+    EXPECT_EQ(read_pose_matrix(matrix).translation(), Eigen::Vector3d(0.5, 1.5, 2.5));
+  }
+  EXPECT_EQ(test::read_all(folder.path() / "plain.txt"),
+            test::read_all(folder.path() / "comma.txt"));
+}
+
+TEST(Locale, DoesNotReachMessages) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.min_range = -1234.5;
+  const test::CommaLocale locale;
+  test::expect_error(ErrorCode::invalid_argument, "not -1234.5", [&] { sensor.validate(); });
+  EXPECT_EQ(short_text(0.1), "0.1");
+  EXPECT_EQ(short_text(1.52F), "1.52");
+  EXPECT_EQ(short_text(1e-9), "1e-09");
+  EXPECT_EQ(short_text(-std::numeric_limits<double>::quiet_NaN()), "nan");
+  EXPECT_EQ(short_text(-std::numeric_limits<double>::infinity()), "-inf");
+  EXPECT_EQ(exact_text(0.1), "0.10000000000000001");
+  EXPECT_EQ(exact_text(1500), "1500");
+}
+
+namespace fs = std::filesystem;
+
+std::string some_bytes(std::size_t count) {
+  std::string bytes(count, '\0');
+  for (std::size_t i = 0; i < count; ++i) bytes[i] = static_cast<char>(i * 2654435761U >> 13U);
+  return bytes;
+}
+
+TEST(FileBytes, OfFilesOfAnySize) {
+  const TemporaryFolder folder;
+  for (const std::size_t size :
+       {0U, 1U, 15U, 16U, 4096U, 1U << 20U, (1U << 20U) + 1U, 5'000'000U}) {
+    const std::string bytes = some_bytes(size);
+    const fs::path path = folder.file("file", bytes);
+    EXPECT_EQ(file_bytes(path), bytes);
+    EXPECT_EQ(file_bytes(path, size), bytes);
+    EXPECT_EQ(file_head(path, 100), bytes.substr(0, 100));
+    if (size > 0) {
+      expect_error(ErrorCode::capacity, path.string() + ": has more than",
+                   [&] { (void)file_bytes(path, size - 1); });
+    }
+  }
+  EXPECT_FALSE(file_bytes("/proc/self/status").empty());  // has a length of 0
+}
+
+TEST(FileBytes, OfAPipeUpToALimit) {
+  const TemporaryFolder folder;
+  const fs::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const std::string bytes = some_bytes(3'000'000);
+  const auto write = [&] { std::ofstream(pipe, std::ios::binary) << bytes; };
+  {
+    std::thread writer(write);
+    EXPECT_EQ(file_bytes(pipe), bytes);
+    writer.join();
+  }
+  // A reader that stops leaves its writer a broken pipe.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::thread writer(write);
+  expect_error(ErrorCode::capacity, "more than 2000000 bytes",
+               [&] { (void)file_bytes(pipe, 2'000'000); });
+  writer.join();
+  std::signal(SIGPIPE, SIG_DFL);
+}
+
+TEST(FileBytes, RefusesWhatHasNoEndOrIsNoFile) {
+  const TemporaryFolder folder;
+  const fs::path endless = folder.path() / "poses.txt";
+  fs::create_symlink("/dev/zero", endless);
+  expect_error(ErrorCode::io, "poses.txt: cannot be read: it is neither a file nor a pipe",
+               [&] { (void)file_bytes(endless); });
+  expect_error(ErrorCode::io, "neither a file nor a pipe", [&] { (void)file_head(endless, 10); });
+  expect_error(ErrorCode::io, "neither a file nor a pipe", [&] { (void)read_tum(endless); });
+  expect_error(ErrorCode::io, "is a directory", [&] { (void)file_bytes(folder.path()); });
+  expect_error(ErrorCode::io, "No such file", [&] { (void)file_bytes(folder.path() / "none"); });
+  // Larger than any file that is meant, though it takes no room on the disk.
+  const fs::path sparse = folder.file("sparse", "");
+  fs::resize_file(sparse, std::uintmax_t{1} << 40U);
+  expect_error(ErrorCode::capacity, "sparse: has more than 17179869184 bytes",
+               [&] { (void)file_bytes(sparse); });
 }
 
 }  // namespace

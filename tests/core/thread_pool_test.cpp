@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+
 #include "viewgain/support/thread_pool.hpp"
 
 #include <gtest/gtest.h>
@@ -15,10 +16,13 @@
 #include <numeric>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "expect_error.hpp"
+#include "scoped_variable.hpp"
+#include "viewgain/support/isa.hpp"
 
 namespace viewgain {
 namespace {
@@ -297,6 +301,50 @@ TEST(ThreadPool, AChildOfAForkHasItsOwnThreads) {
 TEST(ThreadPool, ZeroMeansAllHardwareThreads) {
   const ThreadPool pool(0);
   EXPECT_EQ(pool.num_threads(), std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+}
+
+TEST(Isa, TheBestIsTakenUnlessLowered) {
+  const std::vector<Isa> isas = supported_isas();
+  ASSERT_FALSE(isas.empty());
+  EXPECT_TRUE(std::is_sorted(isas.rbegin(), isas.rend()));
+  {
+    const test::ScopedIsa unset(std::nullopt);
+    EXPECT_EQ(select_isa(), isas.front());
+  }
+  {
+    const test::ScopedIsa empty("");
+    EXPECT_EQ(select_isa(), isas.front());
+  }
+  std::size_t cases = 0;
+  for (const Isa isa : isas) {
+    const test::ScopedIsa environment(std::string(isa_name(isa)));
+    if (isa != Isa::baseline) {
+      EXPECT_EQ(select_isa(), isa);
+    }
+    ++cases;
+  }
+  EXPECT_EQ(cases, isas.size());
+}
+
+TEST(Isa, AWishTheCpuLacksGivesTheBestItHas) {
+  // CPUs by what they support, whatever this one does.
+  const std::vector<std::vector<Isa>> cpus{
+      {Isa::sse4}, {Isa::avx2, Isa::sse4}, {Isa::avx512, Isa::avx2, Isa::sse4}};
+  for (const std::vector<Isa>& cpu : cpus) {
+    for (const Isa wish : {Isa::avx512, Isa::avx2, Isa::sse4}) {
+      const test::ScopedIsa environment(std::string(isa_name(wish)));
+      EXPECT_EQ(select_isa(cpu), wish > cpu.front() ? cpu.front() : wish);
+    }
+    const test::ScopedIsa unset(std::nullopt);
+    EXPECT_EQ(select_isa(cpu), cpu.front());
+  }
+  test::expect_error(ErrorCode::backend, "SSE4.2", [] { (void)select_isa(std::vector<Isa>{}); });
+}
+
+TEST(Isa, AnUnknownNameListsTheValidOnes) {
+  const test::ScopedIsa environment("mmx");
+  test::expect_error(ErrorCode::invalid_argument, "'mmx'; valid are avx512, avx2, sse4",
+                     [] { (void)select_isa(); });
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "support/meshes.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/mesh/surface.hpp"
 #include "viewgain/support/mix64.hpp"
@@ -69,29 +70,6 @@ inline std::vector<OrientedPoint> plate_points(int side, double spacing, double 
     for (int j = 0; j < side; ++j) points.push_back({{i * spacing, j * spacing, z}, {0, 0, up}});
   }
   return points;
-}
-
-/// A sphere round the origin of latitude bands, outward faces.
-inline TriangleMesh sphere_mesh(double radius, std::uint32_t bands) {
-  TriangleMesh mesh;
-  const std::uint32_t columns = 2 * bands;
-  for (std::uint32_t i = 0; i <= bands; ++i) {
-    const double polar = std::numbers::pi * i / bands;
-    for (std::uint32_t j = 0; j < columns; ++j) {
-      const double azimuth = 2 * std::numbers::pi * j / columns;
-      mesh.vertices.push_back({radius * std::sin(polar) * std::cos(azimuth),
-                               radius * std::sin(polar) * std::sin(azimuth),
-                               radius * std::cos(polar)});
-    }
-  }
-  for (std::uint32_t i = 0; i < bands; ++i) {
-    for (std::uint32_t j = 0; j < columns; ++j) {
-      const std::uint32_t a = i * columns + j, b = i * columns + (j + 1) % columns;
-      if (i > 0) mesh.triangles.push_back({a, a + columns, b});
-      if (i + 1 < bands) mesh.triangles.push_back({b, a + columns, b + columns});
-    }
-  }
-  return mesh;
 }
 
 /// The square [0, side]² in the plane z = 0, normal +z.

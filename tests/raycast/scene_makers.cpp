@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstdlib>
 #include <utility>
 
 #include "viewgain/core/covariance.hpp"
@@ -145,19 +144,6 @@ Pose random_rigid(Random& random, double reach) {
   return {q.normalized().toRotationMatrix(), Eigen::Vector3d(shift(), shift(), shift())};
 }
 
-ScopedVariable::ScopedVariable(const std::string& name, const std::string& value) : name_(name) {
-  if (const char* before = std::getenv(name_.c_str())) before_ = before;
-  setenv(name_.c_str(), value.c_str(), 1);
-}
-
-ScopedVariable::~ScopedVariable() {
-  if (before_) {
-    setenv(name_.c_str(), before_->c_str(), 1);
-  } else {
-    unsetenv(name_.c_str());
-  }
-}
-
 void set_occupied_with_belief(BeliefGrid& grid, Index3 voxel, Random& random) {
   const double v = grid.voxel_size();
   SymmetricMatrix3 information;
@@ -240,6 +226,14 @@ std::vector<Pose> random_poses(const RandomMap& map, std::size_t count, Random& 
     poses.push_back(look_at(eye, target, random_rigid(random, 0).rotation().col(0)));
   }
   return poses;
+}
+
+RandomCase random_case(std::uint64_t seed, MapFamily family, std::size_t poses) {
+  Random random(seed);
+  RandomMap map = random_map(family, random);
+  const Sensor sensor = random_sensor(map.grid, random);
+  std::vector<Pose> views = random_poses(map, poses, random);
+  return {std::move(map), sensor, std::move(views)};
 }
 
 Sensor lattice_sensor(int width, int height) {

@@ -5,11 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <optional>
+#include <cstdint>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "core/scoped_variable.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -33,25 +34,6 @@ using Random = std::mt19937_64;
 [[nodiscard]] double uniform(Random& random, double low, double high);
 [[nodiscard]] int uniform_int(Random& random, int low, int high);  ///< both ends included
 [[nodiscard]] Pose random_rigid(Random& random, double reach);  ///< translation within +-reach [m]
-
-/// Sets an environment variable for as long as it lives.
-class ScopedVariable {
- public:
-  ScopedVariable(const std::string& name, const std::string& value);
-  ~ScopedVariable();
-  ScopedVariable(const ScopedVariable&) = delete;
-  ScopedVariable& operator=(const ScopedVariable&) = delete;
-
- private:
-  std::string name_;
-  std::optional<std::string> before_;
-};
-
-/// Scenes built meanwhile use that instruction set.
-class ScopedIsa : ScopedVariable {
- public:
-  explicit ScopedIsa(const std::string& isa) : ScopedVariable("VIEWGAIN_ISA", isa) {}
-};
 
 /// The ways to trace.
 inline constexpr std::array kTracers{ExecConfig::Tracer::sweep, ExecConfig::Tracer::embree};
@@ -98,6 +80,14 @@ void set_occupied_with_belief(BeliefGrid& grid, Index3 voxel, Random& random);
 /// workspace, with any roll.
 [[nodiscard]] std::vector<Pose> random_poses(const RandomMap& map, std::size_t count,
                                              Random& random);
+
+/// A map of the family, a camera and poses, by a seed.
+struct RandomCase {
+  RandomMap map;
+  Sensor sensor;
+  std::vector<Pose> poses;
+};
+[[nodiscard]] RandomCase random_case(std::uint64_t seed, MapFamily family, std::size_t poses);
 
 /// width x height pixels one focal length apart round the optical axis, so that rays run along axes
 /// and exact diagonals; isotropic noise, ranges 0 to 1000 m.

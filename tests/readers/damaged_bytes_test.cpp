@@ -448,7 +448,7 @@ TEST(DamagedMeshes, AreReadOrRefused) {
   EXPECT_GT(refused, kFiles / 40);
 }
 
-// What the fuzzers begin with, and what they found.
+// What the fuzzers of clouds and trees begin with, and what they found.
 TEST(FuzzedBytes, AreReadOrRefused) {
   std::size_t read = 0, files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(VIEWGAIN_FUZZ_CORPUS)) {
@@ -457,16 +457,14 @@ TEST(FuzzedBytes, AreReadOrRefused) {
     const std::string folder = path.parent_path().filename();
     ++files;
     try {
-      if (folder == "pcd" || folder == "ply") (void)load_cloud(path);
-      if (folder == "octomap") (void)load_octomap(path);
-      if (folder != "pcd" && folder != "octomap") (void)read_mesh(path);
+      folder == "octomap" ? (void)load_octomap(path) : (void)load_cloud(path);
       ++read;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
     }
   }
-  EXPECT_GE(read, 23U);
-  EXPECT_GE(files, 25U);
+  EXPECT_GE(read, 6U);
+  EXPECT_GE(files, 7U);
 }
 
 TEST(DamagedJson, IsReadOrRefused) {

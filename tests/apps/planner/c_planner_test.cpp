@@ -252,40 +252,6 @@ TEST(CPlanner, RefusesWrongUse) {
   refused(vg_planner_should_stop(nullptr, &reason), "null");
 }
 
-// Twice nothing is seen where the best view is said to be.
-TEST(CPlanner, EndsForPromisesThatAreNotKept) {
-  CScene c;
-  EXPECT_EQ(c.config.broken_promises, 3U);
-  c.config.broken_promises = 2;
-  c.config.idle_views = 0;
-  c.config.stop_area = 0;
-  vg_planner* planner = nullptr;
-  ASSERT_EQ(vg_planner_create(&c.sensor, &c.config, &planner), VG_OK) << vg_last_error();
-  const std::vector<double> poses = numbers_of(c.scene.views);
-  ASSERT_EQ(vg_planner_add_poses(planner, poses.data(), c.scene.views.size()), VG_OK);
-  const DepthFrame frame = c.scene.see(c.scene.views[0]);
-  const std::vector<float> nothing(frame.depth.size(), 0.0F);
-  vg_ranked_view best{};
-  std::copy_n(poses.begin(), 16, best.T_world_camera);
-  int32_t reason = VG_GO_ON;
-  for (int view = 0; view < 3; ++view) {
-    ASSERT_EQ(vg_planner_should_stop(planner, &reason), VG_OK);
-    EXPECT_EQ(reason, VG_GO_ON) << view;
-    ASSERT_EQ(vg_planner_add(planner, view == 0 ? frame.depth.data() : nothing.data(), nullptr,
-                             best.T_world_camera, nullptr, nullptr),
-              VG_OK);
-    size_t candidates = 0, found = 0;
-    if (view == 2) break;
-    ASSERT_EQ(vg_planner_propose(planner, &candidates, nullptr, 0), VG_OK);
-    ASSERT_EQ(vg_planner_rank(planner, 1, nullptr, 0, 0, &best, sizeof best, &found, nullptr),
-              VG_OK);
-    ASSERT_EQ(found, 1U);
-  }
-  ASSERT_EQ(vg_planner_should_stop(planner, &reason), VG_OK);
-  EXPECT_EQ(reason, VG_STOP_PROMISES);
-  vg_planner_release(planner);
-}
-
 int32_t stop_at_once(size_t, size_t, void*) { return 1; }
 int32_t high_enough(const double T_world_camera[16], void* user) {
   return T_world_camera[11] > *static_cast<const double*>(user) ? 1 : 0;
@@ -293,6 +259,7 @@ int32_t high_enough(const double T_world_camera[16], void* user) {
 
 TEST(CPlanner, AsksItsCallbacks) {
   CScene c(GainModel::paper);
+  EXPECT_EQ(c.config.broken_promises, 3U);
   double height = 5;
   c.config.reachable = high_enough;
   c.config.user = &height;

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <utility>
 
+#include "support/meshes.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
@@ -22,25 +22,6 @@ inline void add_plate(TriangleMesh& mesh, double x, double y, double z) {
   }
   mesh.triangles.push_back({base, base + 1, base + 2});
   mesh.triangles.push_back({base, base + 2, base + 3});
-}
-
-/// An axis-aligned box round the origin, faces outward.
-inline TriangleMesh box_mesh(double half) {
-  TriangleMesh mesh;
-  for (int k = 0; k < 8; ++k) {
-    mesh.vertices.push_back(
-        {(k & 1) != 0 ? half : -half, (k & 2) != 0 ? half : -half, (k & 4) != 0 ? half : -half});
-  }
-  for (const std::array<std::uint32_t, 4>& f : {std::array<std::uint32_t, 4>{0, 2, 3, 1},
-                                                {4, 5, 7, 6},
-                                                {0, 1, 5, 4},
-                                                {2, 6, 7, 3},
-                                                {0, 4, 6, 2},
-                                                {1, 3, 7, 5}}) {
-    mesh.triangles.push_back({f[0], f[1], f[2]});
-    mesh.triangles.push_back({f[0], f[2], f[3]});
-  }
-  return mesh;
 }
 
 /// An SR4000 at half its resolution.

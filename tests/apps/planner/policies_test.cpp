@@ -67,7 +67,7 @@ TEST(Fibonacci, AnyNumberOfTheFirstViewsIsSpreadEvenly) {
 struct SeenBox {
   Sensor sensor = test::half_sr4000();
   std::shared_ptr<const SurfaceScene> mesh =
-      std::make_shared<const SurfaceScene>(test::box_mesh(0.08));
+      std::make_shared<const SurfaceScene>(test::cube_mesh(0.08));
   std::shared_ptr<const Truth> truth;
   Pose start = look_at({0.35, 0.2, 0.25}, {0, 0, 0});
   ExecConfig exec{1};

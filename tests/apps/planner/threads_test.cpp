@@ -41,7 +41,7 @@ namespace {
 // Begun while a view goes into the model, candidates are proposed and one is chosen.
 int threads_begun(int num_threads) {
   const Sensor sensor = test::half_sr4000();
-  const auto mesh = std::make_shared<const SurfaceScene>(test::box_mesh(0.1), ExecConfig{1});
+  const auto mesh = std::make_shared<const SurfaceScene>(test::cube_mesh(0.1), ExecConfig{1});
   const SimulatedSensor camera(mesh, sensor, {}, ExecConfig{1});
   const Pose view = look_at({0.4, 0.1, 0.3}, {0, 0, 0});
   const Measurements measurements{view, {camera.acquire(view, 0)}};

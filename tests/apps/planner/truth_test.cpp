@@ -6,11 +6,17 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "apps/planner/planner_scene.hpp"
+#include "core/expect_error.hpp"
+#include "viewgain/planner/view_sight.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
 
 namespace viewgain {
 namespace {
@@ -36,7 +42,7 @@ VisibilityConfig from_the_side(const ReachRegion& reach) {
 
 // The share of the visible surface that the face is.
 double share_of_the_face(const VisibilityConfig& config) {
-  const auto scene = std::make_shared<const SurfaceScene>(test::box_mesh(kHalf));
+  const auto scene = std::make_shared<const SurfaceScene>(test::cube_mesh(kHalf));
   const Truth truth(scene, sensor_preset("sr4000"), config, {});
   return truth.figures(seen_face(), {}).coverage_visible;
 }
@@ -53,7 +59,7 @@ TEST(Truth, ShellsThatLeaveOutTheWorkingDistanceShowWhatTheyShow) {
 }
 
 TEST(Truth, CoveredAreaIsThatOfTheMesh) {
-  const auto scene = std::make_shared<const SurfaceScene>(test::box_mesh(kHalf));
+  const auto scene = std::make_shared<const SurfaceScene>(test::cube_mesh(kHalf));
   VisibilityConfig config = from_the_side({});
   const double edge = 2 * kHalf;
   for (const double tolerance : {kCovered, 0.015}) {
@@ -82,7 +88,7 @@ TEST(Truth, NothingInReachLeavesWhatTheStartSees) {
 TEST(Truth, ASensorThatSeesFarTakesNoMoreMemoryAndNoLonger) {
   Sensor sensor = sensor_preset("sr4000");
   sensor.max_range = 3e6;
-  const auto scene = std::make_shared<const SurfaceScene>(test::box_mesh(kHalf));
+  const auto scene = std::make_shared<const SurfaceScene>(test::cube_mesh(kHalf));
   ReachRegion nowhere, farther;
   nowhere.shells.push_back({{5000, 0, 0}, 0, 1});
   farther.shells.push_back({{0, 0, 0}, 40, 41});
@@ -105,7 +111,7 @@ TEST(Truth, WhatALensFoldsIntoTheImageIsNotVisible) {
   const Eigen::Vector3d face = config.start.inverse() * Eigen::Vector3d(kHalf, 0, 0);
   ASSERT_LT(sensor.camera.project(face).x(), sensor.camera.width);
   ASSERT_GT(sensor.camera.project(face).x(), 0);
-  const auto scene = std::make_shared<const SurfaceScene>(test::box_mesh(kHalf));
+  const auto scene = std::make_shared<const SurfaceScene>(test::cube_mesh(kHalf));
   const Truth truth(scene, sensor, config, {});
   const double nothing = truth.figures(seen_face(), {}).coverage_visible;
   EXPECT_TRUE(std::isnan(nothing) || nothing == 0) << nothing;
@@ -117,6 +123,96 @@ TEST(Truth, AListOfPosesCountsWhereItIsInReach) {
   EXPECT_NEAR(share_of_the_face(from_the_side(list)), 0.5, 0.02);
   list.boxes.push_back({{0, -1, -1}, {1, 1, 1}});  // not there
   EXPECT_NEAR(share_of_the_face(from_the_side(list)), 1, 1e-9);
+}
+
+// Boundaries are classed by views that see them: what is hidden from a view counts for nothing.
+
+constexpr double kVoxel = 0.008;
+constexpr std::size_t kFrames = 3;  // from each pose, so that points have enough hits
+constexpr double kRoof = 0.2;       // height of what hides the plate from above [m]
+
+BeliefGrid free_space() {
+  GridConfig config;
+  config.voxel_size = 0.1;
+  config.workspace = {{-1, -1, -1}, {1, 1, 1}};
+  config.prior_sigma = 0.05;
+  return BeliefGrid::from_states(config, std::vector<std::uint8_t>(20 * 20 * 20, 1));
+}
+
+// A plate under a larger one. View 0 looks at it from the side, view 1 from above.
+class HiddenPlate : public testing::Test {
+ protected:
+  HiddenPlate()
+      : sensor(sensor_preset("sr4000")),
+        views{look_at({0.5, 0, 0.3}, {0, 0, 0}), look_at({0, 0, 0.62}, {0, 0, 0})},
+        model(sensor, test::model_config(sensor, 0.25, kVoxel), nullptr, {}) {
+    TriangleMesh mesh;
+    test::add_plate(mesh, 0.1, 0.1, 0);
+    test::add_plate(mesh, 0.15, 0.15, kRoof);
+    const SimulatedSensor camera(std::make_shared<const SurfaceScene>(mesh), sensor, {});
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const DepthFrame frame = camera.acquire(views[i], i);
+      (void)model.update({views[i], std::vector<DepthFrame>(kFrames, frame)});
+    }
+  }
+
+  // Of the runs at the plate, and not at the roof, how many are classed by each pose's frames.
+  [[nodiscard]] std::array<int, 2> views_of_plate_runs(bool by_sight) const {
+    GenerationConfig config = default_generation(sensor, kVoxel);
+    config.boundary.classes_by_sight = by_sight;
+    CandidateGeneration generation(model, config, {});
+    (void)generation.generate(views.back());
+    std::array<int, 2> count{};
+    for (const BoundaryRun& run : generation.estimated().runs) {
+      if (model.surface().vertices[run.vertices[0]][2] < 0.5 * kRoof)
+        ++count.at(run.view / kFrames);
+    }
+    return count;
+  }
+
+  Sensor sensor;
+  std::vector<Pose> views;
+  SurfaceModel model;
+};
+
+TEST_F(HiddenPlate, IsSeenFromTheSideAlone) {
+  ViewSight sight(model.scene(), sensor, views, {});
+  for (const double x : {-0.09, 0.0, 0.09}) {
+    for (const double y : {-0.09, 0.0, 0.09}) {
+      EXPECT_TRUE(sight.sees(0, {x, y, 0})) << x << ' ' << y;
+      EXPECT_FALSE(sight.sees(1, {x, y, 0})) << x << ' ' << y;
+      EXPECT_TRUE(sight.sees(1, {x, y, kRoof})) << x << ' ' << y;
+    }
+  }
+  EXPECT_FALSE(sight.sees(1, {0, 0, 0.7}));  // behind the camera
+  EXPECT_FALSE(sight.sees(1, {5, 0, 0}));    // outside the image
+}
+
+// A lens whose model turns back at 37° folds what lies beyond into the image.
+TEST_F(HiddenPlate, IsNotSeenWhereTheLensFoldsIt) {
+  sensor.camera.distortion = {-0.6, 0, 0, 0, 0};
+  const Pose past_it = look_at({0.5, 0, 0.1}, {0.5, 0.62, -0.4});
+  const Eigen::Vector3d point = past_it * Eigen::Vector3d(1.25, 0, 1);  // at 51° from the axis
+  const Eigen::Vector2d pixel = sensor.camera.project({1.25, 0, 1});
+  ASSERT_TRUE(pixel.x() > 0 && pixel.x() < sensor.camera.width - 1) << pixel.x();
+  ViewSight sight(VoxelScene::build(free_space()), sensor, std::vector<Pose>{past_it}, {});
+  EXPECT_TRUE(sight.sees(0, past_it * Eigen::Vector3d(0.1, 0, 1)));
+  EXPECT_FALSE(sight.sees(0, point));
+}
+
+TEST_F(HiddenPlate, ItsBoundariesAreClassedByTheViewThatSeesThem) {
+  const std::array<int, 2> by_image = views_of_plate_runs(false);
+  const std::array<int, 2> by_sight = views_of_plate_runs(true);
+  EXPECT_GT(by_image[1], 0);
+  EXPECT_GT(by_sight[0], 0);
+  EXPECT_EQ(by_sight[1], 0);
+}
+
+TEST(BoundaryGeneration, RefusesVoxelsWithoutASize) {
+  for (const double spacing : {0.0, -0.01, std::numeric_limits<double>::quiet_NaN()}) {
+    test::expect_error(ErrorCode::invalid_argument, "voxel size",
+                       [&] { (void)default_boundary(test::half_sr4000(), spacing); });
+  }
 }
 
 }  // namespace

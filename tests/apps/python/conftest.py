@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
 import os
+import struct
+import zlib
 
 import numpy as np
 import pytest
@@ -53,3 +55,14 @@ def box_mesh(low, high):
     vertices = np.asarray(low) + corners * (np.asarray(high) - np.asarray(low))
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     return vertices, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+
+
+def gray_png(pixels):
+    """A PNG of 16 bits."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    rows = b"".join(b"\0" + row.astype(">u2").tobytes() for row in pixels)
+    height, width = pixels.shape
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 16, 0, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))

@@ -5,6 +5,7 @@ import copy
 
 import numpy as np
 import pytest
+from conftest import gray_png
 
 import viewgain
 
@@ -74,20 +75,6 @@ def test_poses(tmp_path):
     assert viewgain.read_poses(path).shape == (2, 4, 4)  # as it was
 
 
-def write_png(path, pixels):
-    """16 bit, grayscale, without a library."""
-    import struct
-    import zlib
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    rows = b"".join(b"\0" + row.astype(">u2").tobytes() for row in pixels)
-    head = struct.pack(">IIBBBBB", pixels.shape[1], pixels.shape[0], 16, 0, 0, 0, 0)
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows))
-                     + chunk(b"IEND", b""))
-
-
 def small_sensor():
     camera = viewgain.PinholeCamera(4, 3, fx=5.0, fy=5.0, cx=1.5, cy=1.0)
     preset = viewgain.sensor_preset("sr4000")
@@ -101,8 +88,8 @@ def test_frames(tmp_path):
     small_sensor().save(tmp_path / "sensor.toml")
     viewgain.write_poses(tmp_path / "poses.txt", poses)
     for i in range(2):
-        write_png(tmp_path / f"frame-{i:06}.depth.png", pixels)
-    write_png(tmp_path / "frame-000001.amplitude.png", pixels)
+        (tmp_path / f"frame-{i:06}.depth.png").write_bytes(gray_png(pixels))
+    (tmp_path / "frame-000001.amplitude.png").write_bytes(gray_png(pixels))
     frames = viewgain.read_frames(tmp_path)
     assert len(frames) == 2 and frames.depth_scale == 1e-4 and frames.sensor.camera == small_sensor().camera
     assert np.allclose(frames.poses, poses) and "2 frames" in repr(frames)
@@ -129,7 +116,7 @@ def test_frames(tmp_path):
 
 
 def test_recorded_frames(tmp_path):
-    write_png(tmp_path / "frame-000007.depth.png", np.full((3, 4), 500, np.uint16))
+    (tmp_path / "frame-000007.depth.png").write_bytes(gray_png(np.full((3, 4), 500)))
     np.savetxt(tmp_path / "frame-000007.pose.txt", np.eye(4))
     np.savetxt(tmp_path / "camera-intrinsics.txt", [[6, 0, 1.5], [0, 6, 1], [0, 0, 1]])
     small_sensor().save(tmp_path / "mine.toml")

@@ -4,14 +4,12 @@
 import gc
 import json
 import os
-import struct
 import subprocess
 import threading
-import zlib
 
 import numpy as np
 import pytest
-from conftest import box_mesh
+from conftest import box_mesh, gray_png
 
 import viewgain
 
@@ -253,17 +251,6 @@ def test_refused(sensor, camera, poses):
     control.stop()
     stopped = planner.rank(poses=np.tile(poses, (20, 1, 1)), control=control)
     assert not stopped["complete"]
-
-
-def gray_png(pixels):
-    """A PNG of 16 bits."""
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    rows = b"".join(b"\0" + row.astype(">u2").tobytes() for row in pixels)
-    height, width = pixels.shape
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 16, 0, 0, 0, 0))
-            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 def test_the_program_says_the_same(tmp_path):

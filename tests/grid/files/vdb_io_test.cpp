@@ -9,11 +9,11 @@
 #include <array>
 #include <cstdio>
 #include <limits>
-#include <locale>
 #include <map>
 #include <random>
 #include <string>
 
+#include "core/comma_locale.hpp"
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
 #include "grid/analytic_frames.hpp"
@@ -163,12 +163,10 @@ TEST(VdbIo, VoxelsAreAsSmallAsCanBeSaved) {
     expect_error(ErrorCode::invalid_argument, "voxel size", [&] { (void)grid(voxel); });
     ++cases;
   }
-  struct CommaPunctuation : std::numpunct<char> {
-    char do_decimal_point() const override { return ','; }
-  };
-  const std::locale before = std::locale::global(std::locale(std::locale(), new CommaPunctuation));
-  expect_error(ErrorCode::invalid_argument, "voxel size 1.4e-05 m", [&] { (void)grid(1.4e-5); });
-  std::locale::global(before);
+  {
+    const CommaLocale commas;
+    expect_error(ErrorCode::invalid_argument, "voxel size 1.4e-05 m", [&] { (void)grid(1.4e-5); });
+  }
   for (const double voxel : {2e-5, 1e-4, 1.0, 1e3}) {
     const auto path = folder.path() / "map.vdb";
     BeliefGrid small = grid(voxel);

@@ -13,7 +13,7 @@
 
 #include "core/comma_locale.hpp"
 #include "core/expect_error.hpp"
-#include "surface_makers.hpp"
+#include "support/meshes.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
@@ -23,12 +23,12 @@ namespace {
 constexpr double kPeriod = kSpeedOfLight / (2 * 30e6);  // of the SR4000's ranges [m]
 
 std::shared_ptr<const SurfaceScene> plane_at(double z, double half = 20) {
-  return std::make_shared<const SurfaceScene>(test::square(half, z));
+  return std::make_shared<const SurfaceScene>(test::square_mesh(half, z));
 }
 
 /// A small board in front of another: x < edge at z = near, the rest at z = far.
 std::shared_ptr<const SurfaceScene> step(double near, double far, double edge) {
-  TriangleMesh mesh = test::square(0.1, far);
+  TriangleMesh mesh = test::square_mesh(0.1, far);
   mesh.vertices.insert(
       mesh.vertices.end(),
       {{-0.1, -0.1, near}, {edge, -0.1, near}, {edge, 0.1, near}, {-0.1, 0.1, near}});
@@ -126,7 +126,7 @@ TEST(TofCamera, ReturnsMixAsPhasors) {
 TEST(TofCamera, NothingAddsNothing) {
   const Sensor sensor = one_pixel();
   // Half of the pixel sees the board, half nothing: the range is the board's, the light is half.
-  TriangleMesh half = test::square(1, 0.8);
+  TriangleMesh half = test::square_mesh(1, 0.8);
   for (auto& vertex : half.vertices) vertex[0] -= 1;
   const auto scene = std::make_shared<const SurfaceScene>(std::move(half));
   std::vector<SimulatedSensor::PixelTruth> truth;

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "raycast/scene_makers.hpp"
-#include "surface_makers.hpp"
+#include "support/meshes.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain {
@@ -23,7 +23,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 /// A plane through (0, 0, z) whose normal makes the angle with the optical axis.
 std::shared_ptr<const SurfaceScene> tilted_plane(double z, double angle) {
-  TriangleMesh mesh = test::square(20, 0);
+  TriangleMesh mesh = test::square_mesh(20, 0);
   for (auto& vertex : mesh.vertices) {
     const double x = vertex[0];
     vertex[0] = x * std::cos(angle);
@@ -89,7 +89,7 @@ TEST(TofNoise, OfMixedReturnsIsTheSameFromBothSides) {
   const Sensor sensor = one_pixel(sensor_preset("sr4000").noise);
   std::array<double, 2> sigmas{};
   for (const int side : {-1, 1}) {
-    TriangleMesh mesh = test::square(20, 4.4);
+    TriangleMesh mesh = test::square_mesh(20, 4.4);
     const double edge = side / 6e5;  // a sixth of a pixel beside the middle
     for (const auto& [x, y] :
          {std::pair{edge, -9.0}, {edge, 9.0}, {-9.0 * side, 9.0}, {-9.0 * side, -9.0}}) {
@@ -112,7 +112,7 @@ TEST(TofNoise, LateralNoiseMovesRaysOverAnEdge) {
   sensor.camera.cx = 87;
   sensor.camera.cy = 71;
   for (const bool vertical : {false, true}) {
-    TriangleMesh mesh = test::square(20, 1.5);
+    TriangleMesh mesh = test::square_mesh(20, 1.5);
     const std::uint32_t first = 4;
     for (const auto& [x, y] : {std::pair{-9.0, -9.0}, {0.0, -9.0}, {0.0, 9.0}, {-9.0, 9.0}}) {
       mesh.vertices.push_back(vertical ? std::array{y, x, 1.0} : std::array{x, y, 1.0});
@@ -154,8 +154,8 @@ TEST(TofNoise, AxialSigmaFollowsTheMeasuredIncidence) {
 TEST(TofNoise, AmplitudeIsAsUncertainAsThePhase) {
   const Sensor sensor = sensor_preset("sr4000");
   const SimulationConfig config{.background_radius = 1.5, .noise = true, .seed = 2};
-  const SimulatedSensor camera(std::make_shared<const SurfaceScene>(test::square(1, 100)), sensor,
-                               config);
+  const SimulatedSensor camera(std::make_shared<const SurfaceScene>(test::square_mesh(1, 100)),
+                               sensor, config);
   const DepthFrame frame = camera.acquire(Pose{});
   const double relative = 4 * std::numbers::pi * 30e6 / kSpeedOfLight * sensor.sigmas(1.5).axial;
   double sum = 0, squares = 0;
@@ -171,7 +171,7 @@ TEST(TofNoise, AmplitudeIsAsUncertainAsThePhase) {
 
 TEST(SupportPlane, IsSeenFromAboveAndBelowAndOccludes) {
   const Sensor sensor = sensor_preset("sr4000");
-  const auto ball = std::make_shared<const SurfaceScene>(test::sphere(0.1, 48));
+  const auto ball = std::make_shared<const SurfaceScene>(test::sphere_mesh(0.1, 48));
   const SimulatedSensor camera(ball, sensor, {.background_radius = 1.5, .support_plane = -0.05});
   int on_plane = 0, on_ball = 0, on_wall = 0, cases = 0;
   for (const Eigen::Vector3d& eye :
@@ -257,7 +257,7 @@ TEST(TofNoise, TheSameForAnyNumberOfThreadsAndReproducible) {
                           .sub_rays = 2,
                           .lateral_noise = true,
                           .support_plane = -0.1};
-  const auto ball = std::make_shared<const SurfaceScene>(test::sphere(0.1, 24));
+  const auto ball = std::make_shared<const SurfaceScene>(test::sphere_mesh(0.1, 24));
   const Pose pose = look_at({0.5, 0.1, 0.2}, {0, 0, 0});
   std::vector<SimulatedSensor::PixelTruth> truth, other_truth;
   const DepthFrame first = SimulatedSensor(ball, sensor, config, {1}).acquire(pose, 7, truth);

@@ -66,16 +66,11 @@ struct SetOracle {
   }
 };
 
-struct Made {
-  test::Random random;
-  test::RandomMap map = test::random_map(test::MapFamily::tiles_8, random);
-  Sensor sensor = test::random_sensor(map.grid, random);
+struct Made : test::RandomCase {
   std::shared_ptr<const VoxelScene> scene = VoxelScene::build(map.grid);
-  std::vector<Pose> poses;
 
-  Made(std::uint64_t seed, int count) : random(seed) {
-    poses = test::random_poses(map, count, random);
-  }
+  Made(std::uint64_t seed, std::size_t count)
+      : test::RandomCase(test::random_case(seed, test::MapFamily::tiles_8, count)) {}
 };
 
 TEST(SurfaceSet, IsPlainGreedysAndNearTheBestOfAllSubsets) {

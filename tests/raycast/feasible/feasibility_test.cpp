@@ -11,6 +11,7 @@
 
 #include "raycast/scene_makers.hpp"
 #include "solids.hpp"
+#include "support/meshes.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/raycast/obstacle_view.hpp"
 

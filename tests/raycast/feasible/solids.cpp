@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solids.hpp"
 
-#include <array>
-#include <cstdint>
-
 namespace viewgain::test {
 namespace {
 
@@ -57,20 +54,5 @@ bool reaches_into(Polygon polygon, const Solid& solid) {
 }
 
 bool overlap(const Solid& a, const Solid& b) { return has_face_in(a, b) || has_face_in(b, a); }
-
-TriangleMesh cube_mesh(double half) {
-  TriangleMesh mesh;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    const auto at = [&](unsigned axis) { return (corner >> axis & 1U) != 0 ? half : -half; };
-    mesh.vertices.push_back({at(0), at(1), at(2)});
-  }
-  const std::vector<std::array<std::uint32_t, 4>> faces{{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                                        {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-  for (const auto& f : faces) {
-    mesh.triangles.push_back({f[0], f[1], f[2]});
-    mesh.triangles.push_back({f[0], f[2], f[3]});
-  }
-  return mesh;
-}
 
 }  // namespace viewgain::test

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "viewgain/core/box.hpp"
-#include "viewgain/core/triangle_mesh.hpp"
 
 namespace viewgain::test {
 
@@ -28,8 +27,5 @@ struct Solid {
 
 /// Whether two solids share more than their surfaces.
 [[nodiscard]] bool overlap(const Solid& a, const Solid& b);
-
-/// A cube round the origin, [-half, half] along each axis, faces outward.
-[[nodiscard]] TriangleMesh cube_mesh(double half);
 
 }  // namespace viewgain::test

@@ -30,10 +30,7 @@ TEST(Allocation, TheCounterCounts) {
 // A thread's buffers grow to the largest view that it has scored. Which thread gets which pose is
 // not determined, so with several threads it may take some batches until all have grown.
 TEST(Allocation, NonePerPoseInTheSteadyState) {
-  test::Random random(4);
-  const test::RandomMap map = test::random_map(test::MapFamily::salt_and_pepper_30, random);
-  const Sensor sensor = test::random_sensor(map.grid, random);
-  const std::vector<Pose> poses = test::random_poses(map, 100, random);
+  const auto [map, sensor, poses] = test::random_case(4, test::MapFamily::salt_and_pepper_30, 100);
   std::vector<ViewGain> results(poses.size());
   for (const Criterion criterion :
        {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {

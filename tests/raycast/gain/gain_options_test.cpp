@@ -17,22 +17,13 @@ namespace {
 
 using test::kExactVoxel;
 
-struct Made {
-  test::RandomMap map;
-  Sensor sensor;
-  std::vector<Pose> poses;
-};
-
-Made make(std::uint64_t seed, test::MapFamily family = test::MapFamily::salt_and_pepper_1) {
-  test::Random random(seed);
-  test::RandomMap map = test::random_map(family, random);
-  const Sensor sensor = test::random_sensor(map.grid, random);
-  std::vector<Pose> poses = test::random_poses(map, 6, random);
-  return {std::move(map), sensor, std::move(poses)};
+test::RandomCase make(std::uint64_t seed,
+                      test::MapFamily family = test::MapFamily::salt_and_pepper_1) {
+  return test::random_case(seed, family, 6);
 }
 
 TEST(GainOptions, StrideTakesEverySthPixelFromTheFirst) {
-  const Made made = make(50);
+  const test::RandomCase made = make(50);
   const auto scene = VoxelScene::build(made.map.grid);
   const std::vector<RayHit> all = GainEvaluator(scene, made.sensor).trace(made.poses[1]);
   for (const int stride : {2, 3, 5, 100, std::numeric_limits<int>::max()}) {
@@ -57,7 +48,7 @@ TEST(GainOptions, StrideTakesEverySthPixelFromTheFirst) {
 TEST(GainOptions, WeightsMultiplyVoxelsByTheLastRegionThatHoldsTheirCentre) {
   int weighed = 0;
   for (std::uint64_t seed = 100; seed < 110; ++seed) {
-    const Made made = make(seed, test::MapFamily::odd_and_far);
+    const test::RandomCase made = make(seed, test::MapFamily::odd_and_far);
     const Box box = made.map.grid.workspace();
     Box half = box;
     half.max[0] = 0.5 * (box.min[0] + box.max[0]);
@@ -87,7 +78,7 @@ TEST(GainOptions, WeightsMultiplyVoxelsByTheLastRegionThatHoldsTheirCentre) {
 }
 
 TEST(GainOptions, PriorAndRangesOverrideTheMapsAndTheSensors) {
-  const Made made = make(200, test::MapFamily::salt_and_pepper_30);
+  const test::RandomCase made = make(200, test::MapFamily::salt_and_pepper_30);
   const auto scene = VoxelScene::build(made.map.grid);
   EXPECT_EQ(GainEvaluator(scene, made.sensor).prior_sigma(), made.map.grid.prior_sigma());
   const GainConfig config{.model = GainModel::paper,
@@ -158,7 +149,7 @@ TEST(GainOptions, ObstaclesInRandomMapsAgreeWithTheOracle) {
   std::size_t explained = 0;
   std::size_t blocked = 0;
   for (std::uint64_t seed = 300; seed < 310; ++seed) {
-    const Made made = make(seed, test::MapFamily::rotated);
+    const test::RandomCase made = make(seed, test::MapFamily::rotated);
     const BeliefGrid& grid = made.map.grid;
     // Boxes are in the world, the map is turned against it; cameras stay outside of them.
     const Box w = grid.workspace();

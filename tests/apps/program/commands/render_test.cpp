@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+
 #include <set>
 #include <string>
 #include <vector>
@@ -113,6 +114,145 @@ TEST_F(Render, MapsRememberTheirSensor) {
   const test::ProgramResult none = run({"score", "tree.ot", "--sphere", "20,0.6"});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_NE(none.err.find("--sensor"), std::string::npos) << none.err;
+}
+
+// `viewgain surface` as a user would run it, on the map of a short run.
+
+class Surface : public test::ProgramTest {
+ protected:
+  Surface() { make_small_run(); }
+};
+
+// The loop's own surface, points and figures come from the same map.
+TEST_F(Surface, IsThatOfTheRunThatMadeTheMap) {
+  const json result =
+      json::parse(run_well({"surface", "run/map.vdb", "--out", "s.ply", "--points", "p.ply",
+                            "--truth", "cube.off", "--size", "0.2", "--recenter", "on", "--json"}));
+  EXPECT_EQ(read("s.ply"), read("run/surface.ply"));
+  EXPECT_EQ(read("p.ply"), read("run/points.ply"));
+  EXPECT_GT(result["points"], 500);
+  EXPECT_GT(result["triangles"], 500);
+  EXPECT_GT(result["median_sigma"].get<double>(), 1e-5);
+  const json last = json::parse(read("run/run.json"))["per_view"].back();
+  EXPECT_NEAR(result["area"].get<double>(), last["surface_area"].get<double>(), 1e-12);
+  for (const char* figure : {"coverage", "coverage_2_5mm", "rms_error", "p95_error",
+                             "rms_error_points", "p95_error_points", "consistency",
+                             "consistency_median", "consistency_above_9", "outliers"}) {
+    EXPECT_NEAR(result["truth"][figure].get<double>(), last[figure].get<double>(), 1e-9) << figure;
+  }
+  // Two views see part of a cube, and what they see is mostly in the map.
+  const double seen = result["truth"]["coverage_seen"];
+  EXPECT_GT(seen, result["truth"]["coverage"].get<double>() + 0.1);
+  EXPECT_GT(seen, 0.65);
+}
+
+TEST_F(Surface, SaysWithoutATruthWhatItMade) {
+  const std::string text = run_well({"surface", "run/map.vdb", "--out", "s.ply"});
+  EXPECT_NE(text.find("triangles"), std::string::npos);
+  EXPECT_NE(text.find("s.ply"), std::string::npos);
+  EXPECT_EQ(text.find("truth"), std::string::npos);
+  const json points =
+      json::parse(run_well({"surface", "run/map.vdb", "--points", "only.ply", "--json"}));
+  EXPECT_TRUE(points["out"].is_null());
+  EXPECT_TRUE(points["truth"].is_null());
+  EXPECT_EQ(read("only.ply"), read("run/points.ply"));
+}
+
+TEST_F(Surface, WhatCannotBeMadeIsRefused) {
+  run_well({"convert", "run/map.vdb", "tree.ot"});
+  const test::Refusals calls{
+      {{"run/map.vdb"}, "--out"},
+      {{"run/map.vdb", "--out", "s.ply", "--size", "0.2"}, "--truth"},
+      {{"run/map.vdb", "--out", "s.ply", "--up", "y"}, "--truth"},
+      {{"run/map.vdb", "--out", "s.ply", "--truth", "cube.off", "--size", "0"}, "--size"},
+      {{"run/map.vdb", "--out", "s.ply", "--truth", "none.off"}, "none.off"},
+      {{"run/map.vdb", "--out", "run/map.vdb"}, "map.vdb"},
+      {{"run/map.vdb", "--out", "s.ply", "--points", "s.ply"}, "s.ply"},
+      {{"none.vdb", "--out", "s.ply"}, "none.vdb"},
+      {{"tree.ot", "--out", "s.ply"}, "tree.ot"}};
+  expect_refused_with({"surface"}, calls);
+}
+
+// What the program puts into a report; tests/apps/show/report tries the page in a browser.
+
+class Reports : public test::ProgramTest {
+ protected:
+  Reports() {
+    write_cube();
+    write_half_sensor();
+  }
+  [[nodiscard]] test::ProgramResult reconstruct(const std::string& report) const {
+    return run({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
+                "0.01", "--out", "run", "--max-views", "3", "--pictures", "off", "--report",
+                report});
+  }
+  // What the page holds.
+  [[nodiscard]] json data(const std::string& name) const {
+    const std::string page = read(name);
+    const std::string begin = "<script type=\"application/json\" id=\"data\">";
+    const std::size_t from = page.find(begin) + begin.size();
+    return json::parse(page.substr(from, page.find("</script>", from) - from));
+  }
+};
+
+TEST_F(Reports, HoldTheRunAndTheRanking) {
+  const test::ProgramResult result = reconstruct("on");
+  if (result.err.find("npm was missing") != std::string::npos) {
+    EXPECT_EQ(result.exit_code, 2);
+    GTEST_SKIP() << "built without npm";
+  }
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json page = data("run/report.html"), run_json = json::parse(read("run/run.json"));
+  EXPECT_EQ(page.at("kind"), "reconstruct");
+  EXPECT_TRUE(page.at("title").get<std::string>().starts_with("cube.off, "));
+  EXPECT_EQ(page.at("settings"), run_json.at("settings"));
+  EXPECT_EQ(page.at("truth").at("vertices").at("rows"), 8);
+  ASSERT_EQ(page.at("views").size(), 3U);
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const json& view = page.at("views").at(i);
+    EXPECT_EQ(view.at("figures"), run_json.at("per_view").at(i));
+    const json& mesh = view.at("surface");
+    EXPECT_EQ(mesh.at("sigma").at("rows"), mesh.at("vertices").at("rows"));
+    EXPECT_EQ(mesh.at("error").at("rows"), mesh.at("vertices").at("rows"));
+    const json& candidates = view.at("candidates");
+    const std::size_t all = candidates.at("poses").at("rows");
+    for (const char* list : {"class", "generator", "reason"}) {
+      EXPECT_EQ(candidates.at(list).size(), all) << list;
+    }
+    if (i + 1 < 3) {
+      // As many as the next view says it was chosen from, and were dropped.
+      const json& next = run_json.at("per_view").at(i + 1);
+      std::size_t dropped = 0;
+      for (const auto& [reason, count] : next.at("dropped").items()) {
+        dropped += count.get<std::size_t>();
+      }
+      EXPECT_EQ(all, next.at("candidates").get<std::size_t>() + dropped);
+    }
+    EXPECT_FALSE(view.at("picture").get<std::string>().empty());
+    if (view.at("chosen").is_null()) continue;
+    EXPECT_GT(view.at("bundle").at("kind").at("rows"), 0);
+    EXPECT_GT(view.at("expected").at("value").at("rows"), 0);
+    ++chosen;
+  }
+  EXPECT_EQ(chosen, 2U);
+
+  run_well({"score", "run/map.vdb", "--sphere", "30,0.6", "--gain", "combined", "--report",
+            "score.html", "--out", "scores.csv"});
+  const json score = data("score.html");
+  EXPECT_EQ(score.at("kind"), "score");
+  EXPECT_EQ(score.at("score").at("rows").size(), 30U);
+  EXPECT_EQ(score.at("score").at("shown").size(), 10U);
+  EXPECT_EQ(score.at("score").at("columns").at(2), "area");
+  // Best first.
+  for (std::size_t i = 1; i < 30; ++i) {
+    EXPECT_GE(score.at("score").at("rows").at(i - 1).at(1),
+              score.at("score").at("rows").at(i).at(1));
+  }
+
+  // A later run in the folder takes the report of the one before with it.
+  ASSERT_EQ(reconstruct("off").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(dir / "run" / "report.html"));
 }
 
 }  // namespace
