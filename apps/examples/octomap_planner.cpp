@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // A next-best-view planner on octomap::OcTree whose gain, the sum of entropies of the voxels that
-// rays end in, is replaced by viewgain's: side by side the best candidates of either, and the
-// processor time on one thread.
+// rays end in, is replaced by viewgain's, whose map follows the tree as it grows: side by side the
+// best candidates of either, and the processor time on one thread.
 //
 //   octomap_planner [CANDIDATES]        exit codes: 0, 2 for bad input
 #include <algorithm>
@@ -63,22 +63,37 @@ GainFunction octomap_gain(const std::vector<Vector3d>& rays) {
   };
 }
 
-// The tree as it is now. OctoMap's rays know no least range, so here there is as good as none (one
-// of exactly 0 takes several times as long).
-viewgain::GainEvaluator evaluator_of(const octomap::OcTree& tree, const viewgain::Sensor& sensor) {
-  const auto grid = viewgain::grid_from_octree(
-      tree, {.workspace = kMapped, .prior_sigma = viewgain::default_prior_sigma(kVoxel, sensor)});
-  return {viewgain::VoxelScene::build(grid, {}, {.num_threads = 1}),
-          sensor,
-          {.model = viewgain::GainModel::paper, .min_range = 1e-4},
-          {.num_threads = 1}};
-}
+// Follows the tree: a grid that takes over what has changed since it was asked last, and the scene
+// of it. OctoMap's rays know no least range, so here there is as good as none (one of exactly 0
+// takes several times as long).
+class Follower {
+ public:
+  explicit Follower(const viewgain::Sensor& sensor)
+      : grid_({.voxel_size = kVoxel, .workspace = kMapped}, sensor),
+        scene_(viewgain::VoxelScene::build(grid_, {}, kOneThread)),
+        evaluator_(scene_, sensor, {.model = viewgain::GainModel::paper, .min_range = 1e-4},
+                   kOneThread) {}
+
+  const viewgain::GainEvaluator& evaluator(const octomap::OcTree& tree) {
+    if (viewgain::update_from_octree(grid_, tree, kMapped) > 0) {
+      scene_ = viewgain::VoxelScene::update(scene_, grid_, kOneThread);
+      evaluator_ = evaluator_.with_scene(scene_);
+    }
+    return evaluator_;
+  }
+
+ private:
+  static constexpr viewgain::ExecConfig kOneThread{.num_threads = 1};
+  viewgain::BeliefGrid grid_;
+  std::shared_ptr<const viewgain::VoxelScene> scene_;
+  viewgain::GainEvaluator evaluator_;
+};
 
 // The same sum from viewgain's counts: what replaces the function above.
-GainFunction viewgain_entropy(const viewgain::Sensor& sensor) {
-  return [sensor](const octomap::OcTree& tree, const std::vector<Pose>& candidates) {
+GainFunction viewgain_entropy(Follower& follower) {
+  return [&follower](const octomap::OcTree& tree, const std::vector<Pose>& candidates) {
     std::vector<double> gains;
-    for (const auto& view : evaluator_of(tree, sensor).evaluate(candidates)) {
+    for (const auto& view : follower.evaluator(tree).evaluate(candidates)) {
       gains.push_back(entropy(view.unknown_voxels, view.occupied_voxels));
     }
     return gains;
@@ -86,10 +101,10 @@ GainFunction viewgain_entropy(const viewgain::Sensor& sensor) {
 }
 
 // And viewgain's own gain, which asks something else: what readings of this noise would tell.
-GainFunction viewgain_gain(const viewgain::Sensor& sensor) {
-  return [sensor](const octomap::OcTree& tree, const std::vector<Pose>& candidates) {
+GainFunction viewgain_gain(Follower& follower) {
+  return [&follower](const octomap::OcTree& tree, const std::vector<Pose>& candidates) {
     std::vector<double> gains;
-    for (const auto& view : evaluator_of(tree, sensor).evaluate(candidates)) {
+    for (const auto& view : follower.evaluator(tree).evaluate(candidates)) {
       gains.push_back(view.gain);
     }
     return gains;
@@ -127,12 +142,13 @@ int run(std::size_t candidate_count) {
   const viewgain::Sensor sensor = viewgain::sensor_preset("sr4000");
   const viewgain::SimulatedSensor camera = make_camera(sensor);
   const std::vector<Vector3d> rays = sensor.camera.ray_table();
+  Follower follower(sensor);
   const struct {
     const char* name;
     GainFunction gain;
   } methods[] = {{"OctoMap, entropy", octomap_gain(rays)},
-                 {"viewgain, entropy", viewgain_entropy(sensor)},
-                 {"viewgain, expected gain", viewgain_gain(sensor)}};
+                 {"viewgain, entropy", viewgain_entropy(follower)},
+                 {"viewgain, expected gain", viewgain_gain(follower)}};
 
   // The robot turns round once where it stands, then takes one view after the other.
   octomap::OcTree tree(kVoxel);

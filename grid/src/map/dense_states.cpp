@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
+#include "belief_blocks.hpp"
+#include "grid_storage.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/grid_blocks.hpp"
 #include "viewgain/support/log_odds_code.hpp"
@@ -16,6 +19,18 @@ namespace {
 
 using namespace detail;
 
+constexpr std::array<std::uint8_t, 3> kCodes{kUnknownCode, kLiteralFreeCode, kLiteralOccupiedCode};
+
+void check_states(std::span<const std::uint8_t> states) {
+  const auto wrong =
+      std::find_if(states.begin(), states.end(), [](std::uint8_t s) { return s > 2; });
+  if (wrong != states.end()) {
+    throw Error(ErrorCode::invalid_argument, "state " + std::to_string(*wrong) + " at position " +
+                                                 std::to_string(wrong - states.begin()) +
+                                                 "; valid are 0, 1, 2");
+  }
+}
+
 void check_size(const BeliefGrid& grid, std::size_t size) {
   if (size != grid.voxel_count()) {
     throw Error(ErrorCode::invalid_argument, "array of " + std::to_string(size) +
@@ -24,22 +39,26 @@ void check_size(const BeliefGrid& grid, std::size_t size) {
   }
 }
 
-/// Calls row(first voxel, position in the array, length) for the rows along z of what a cube has in
-/// the workspace.
+/// Calls row(first voxel, position in the array of all of `whole`, length) for the rows along z of
+/// a box within it.
 template <typename Row>
-void for_each_row(const BlockLattice& lattice, Index3 origin, std::int32_t size, Row&& row) {
-  const VoxelBox box = clipped(lattice, origin, size);
-  const auto along_y = static_cast<std::size_t>(lattice.max.y - lattice.min.y);
-  const auto along_z = static_cast<std::size_t>(lattice.max.z - lattice.min.z);
+void for_each_row(const VoxelBox& whole, const VoxelBox& box, Row&& row) {
+  const auto along_y = static_cast<std::size_t>(whole.max.y - whole.min.y);
+  const auto along_z = static_cast<std::size_t>(whole.max.z - whole.min.z);
   for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
     for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
-      const std::size_t at = (static_cast<std::size_t>(x - lattice.min.x) * along_y +
-                              static_cast<std::size_t>(y - lattice.min.y)) *
+      const std::size_t at = (static_cast<std::size_t>(x - whole.min.x) * along_y +
+                              static_cast<std::size_t>(y - whole.min.y)) *
                                  along_z +
-                             static_cast<std::size_t>(box.min.z - lattice.min.z);
+                             static_cast<std::size_t>(box.min.z - whole.min.z);
       row(Index3{x, y, box.min.z}, at, static_cast<std::size_t>(box.max.z - box.min.z));
     }
   }
+}
+/// The same of what a cube has in the workspace.
+template <typename Row>
+void for_each_row(const BlockLattice& lattice, Index3 origin, std::int32_t size, Row&& row) {
+  for_each_row(lattice, clipped(lattice, origin, size), std::forward<Row>(row));
 }
 
 }  // namespace
@@ -47,15 +66,7 @@ void for_each_row(const BlockLattice& lattice, Index3 origin, std::int32_t size,
 BeliefGrid BeliefGrid::from_states(const GridConfig& config, std::span<const std::uint8_t> states) {
   BeliefGrid grid(config);
   check_size(grid, states.size());
-  const auto wrong =
-      std::find_if(states.begin(), states.end(), [](std::uint8_t s) { return s > 2; });
-  if (wrong != states.end()) {
-    throw Error(ErrorCode::invalid_argument, "state " + std::to_string(*wrong) + " at position " +
-                                                 std::to_string(wrong - states.begin()) +
-                                                 "; valid are 0, 1, 2");
-  }
-  constexpr std::array<std::uint8_t, 3> kCodes{kUnknownCode, kLiteralFreeCode,
-                                               kLiteralOccupiedCode};
+  check_states(states);
   const BlockLattice lattice(grid.min_index(), grid.dims());
   const Index3 first = block_origin(lattice.min);
   for (std::int32_t x = first.x; x < lattice.max.x; x += kBlockSize) {
@@ -76,6 +87,61 @@ BeliefGrid BeliefGrid::from_states(const GridConfig& config, std::span<const std
     }
   }
   return grid;
+}
+
+std::uint64_t BeliefGrid::update_box(const VoxelBox& box, std::span<const std::uint8_t> states) {
+  GridStorage& s = *storage_;
+  if (box.intersection(s.lattice) != box) {
+    throw Error(ErrorCode::invalid_argument, "the box is not inside the workspace");
+  }
+  if (states.size() != box.volume()) {
+    throw Error(ErrorCode::invalid_argument, "array of " + std::to_string(states.size()) +
+                                                 " states for a box of " +
+                                                 std::to_string(box.volume()) + " voxels");
+  }
+  check_states(states);
+  std::uint64_t changed = 0;
+  const Index3 first = block_origin(box.min);
+  for (std::int32_t x = first.x; x < box.max.x; x += kBlockSize) {
+    for (std::int32_t y = first.y; y < box.max.y; y += kBlockSize) {
+      for (std::int32_t z = first.z; z < box.max.z; z += kBlockSize) {
+        const Index3 origin{x, y, z};
+        std::array<std::uint8_t, kBlockVoxels> codes;
+        if (const CodeLeaf* leaf = s.tree.probeConstLeaf(to_coord(origin))) {
+          std::copy_n(leaf->buffer().data(), kBlockVoxels, codes.data());
+        } else {
+          codes.fill(s.tree.getValue(to_coord(origin)));
+        }
+        LeafMask other{};  // what is not what it was
+        const VoxelBox part =
+            box.intersection(VoxelBox::from_dims(origin, {kBlockSize, kBlockSize, kBlockSize}));
+        for_each_row(box, part, [&](Index3 voxel, std::size_t at, std::size_t length) {
+          for (std::size_t k = 0; k < length; ++k) {
+            const unsigned offset = block_offset(voxel) + static_cast<unsigned>(k);
+            if (static_cast<std::uint8_t>(code_state(codes[offset])) == states[at + k]) continue;
+            codes[offset] = kCodes[states[at + k]];
+            other[offset >> 6U] |= std::uint64_t{1} << (offset & 63U);
+            ++changed;
+          }
+        });
+        if (other == LeafMask{}) continue;
+        const std::uint64_t key = s.lattice.key(origin);
+        s.mark_changed(key);
+        s.put_block(origin, codes.data());
+        const auto beliefs = s.beliefs.find(key);
+        if (beliefs == s.beliefs.end()) continue;
+        LeafMask left = beliefs->second->mask;
+        for (std::size_t i = 0; i < left.size(); ++i) left[i] &= ~other[i];
+        if (left == LeafMask{}) {
+          s.beliefs.erase(beliefs);
+        } else if (left != beliefs->second->mask) {
+          beliefs->second = reshaped(beliefs->second.get(), left);
+        }
+      }
+    }
+  }
+  if (changed > 0) ++s.time;
+  return changed;
 }
 
 void BeliefGrid::copy_states(std::span<std::uint8_t> states) const {

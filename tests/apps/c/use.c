@@ -18,6 +18,27 @@ static int32_t stop_after(size_t done, size_t total, void* user) {
   return done <= total && (*left)-- <= 0;
 }
 
+/* Of an empty map: a wall in a free box, once and once more. */
+static void check_update_box(vg_grid* map) {
+  const int32_t first[3] = {2, 3, 4}, dims[3] = {3, 2, 5}, outside[3] = {MAP_EDGE - 2, 0, 0};
+  uint8_t labels[30];
+  uint64_t changed = 0;
+  vg_grid_info info;
+  memset(labels, 1, sizeof labels);
+  memset(labels, 2, 10);
+  vg_grid_info_init(&info, sizeof info);
+  CHECK_OK(vg_grid_update_box(map, first, dims, labels, &changed));
+  CHECK_OK(vg_grid_get_info(map, &info));
+  CHECK(changed == 30 && info.occupied == 10 && info.free == 20);
+  labels[0] = 0;
+  CHECK_OK(vg_grid_update_box(map, first, dims, labels, &changed));
+  CHECK(changed == 1);
+  CHECK_OK(vg_grid_update_box(map, first, dims, labels, NULL));
+  labels[7] = 3;
+  CHECK(vg_grid_update_box(map, first, dims, labels, NULL) == VG_INVALID_ARGUMENT);
+  CHECK(vg_grid_update_box(map, outside, dims, labels, NULL) == VG_INVALID_ARGUMENT);
+}
+
 static void sensors_and_grids(const char* folder) {
   vg_sensor sensor;
   vg_grid_config config;
@@ -74,6 +95,7 @@ static void sensors_and_grids(const char* folder) {
   CHECK_OK(vg_grid_get_info(copy, &info));
   CHECK(forgotten > 50 && info.unknown == MAP_VOXELS && info.occupied == 0);
   CHECK_OK(vg_grid_forget(copy, nowhere, everywhere, NULL));
+  check_update_box(copy);
   vg_grid_release(copy);
 
   CHECK_OK(vg_grid_hash(grid, hash));

@@ -235,6 +235,24 @@ def test_voxels_are_set_and_listed(sensor):
     assert many.content_hash() == before
 
 
+def test_a_box_follows_another_map(sensor):
+    grid = viewgain.BeliefGrid(voxel_size=0.02, workspace=[[-0.3, -0.2, 0.1], [0.3, 0.2, 0.6]], sensor=sensor)
+    random, expected = np.random.default_rng(4), grid.states()
+    for _ in range(8):
+        low = random.integers(0, 15, 3)
+        labels = random.integers(0, 3, tuple(random.integers(1, 6, 3)))
+        part = expected[tuple(slice(a, a + n) for a, n in zip(low, labels.shape))]
+        changed = np.count_nonzero(part != labels)
+        part[...] = labels
+        assert grid.update_box(low + grid.min_index, labels) == changed
+        assert np.array_equal(grid.states(), expected)
+    with pytest.raises(ValueError, match="labels holds 3"):
+        grid.update_box(grid.min_index, np.full((2, 2, 2), 3))
+    with pytest.raises(ValueError, match="workspace"):
+        grid.update_box(grid.min_index, np.zeros((99, 2, 2), np.uint8))
+    assert np.array_equal(grid.states(), expected)
+
+
 def test_a_region_is_forgotten(sensor):
     grid = viewgain.BeliefGrid(voxel_size=0.02, workspace=[[-0.3, -0.2, 0.1], [0.3, 0.2, 0.6]], sensor=sensor)
     voxels = np.stack(np.meshgrid(*map(np.arange, grid.shape), indexing="ij"), -1) + grid.min_index

@@ -60,24 +60,28 @@ void require_states(const py::array& labels) {
   throw py::value_error(text + ": 0 is unknown, 1 free, 2 occupied");
 }
 
-std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_size,
-                                        const py::object& origin, const py::object& T_world_grid,
-                                        std::optional<double> prior_sigma,
-                                        const GivenOrNone<Sensor>& sensor) {
-  const std::string wanted =
-      "labels must be whole numbers, uint8 at best, of the shape (nx, ny, nz)";
+// Whole numbers of the shape (nx, ny, nz), not yet looked at.
+py::array any_labels(const py::object& labels) {
+  const char* wanted = "labels must be whole numbers, uint8 at best, of the shape (nx, ny, nz)";
   const py::array any =
       any_array(is_masked_array(labels) ? labels.attr("filled")(0) : labels, wanted);
   if (any.dtype().kind() == 'b') {
     throw py::value_error(
         "labels is of bools, which say two of the three states: numpy.where(labels, 2, 1) makes "
-        "True "
-        "occupied and False free");
+        "True occupied and False free");
   }
   if ((any.dtype().kind() != 'u' && any.dtype().kind() != 'i') || any.ndim() != 3) {
-    throw py::value_error(wanted + ", not " + py::str(any.dtype()).cast<std::string>() + " " +
-                          shape_text(any));
+    throw py::value_error(std::string(wanted) + ", not " +
+                          py::str(any.dtype()).cast<std::string>() + " " + shape_text(any));
   }
+  return any;
+}
+
+std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_size,
+                                        const py::object& origin, const py::object& T_world_grid,
+                                        std::optional<double> prior_sigma,
+                                        const GivenOrNone<Sensor>& sensor) {
+  const py::array any = any_labels(labels);
   GridConfig config;
   config.voxel_size = voxel_size;
   config.prior_sigma = prior_of(prior_sigma, sensor.value, voxel_size);
@@ -96,6 +100,20 @@ std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_s
   const std::span states(array.data(), static_cast<std::size_t>(array.size()));
   const WithoutGil without_gil;
   return std::make_shared<SharedGrid>(BeliefGrid::from_states(config, states));
+}
+
+std::uint64_t update_box(SharedGrid& grid, const std::array<std::int32_t, 3>& first,
+                         const py::object& labels) {
+  const py::array any = any_labels(labels);
+  if (any.size() > 0) require_states(any);
+  const Labels array(any);
+  const auto edge = [&](py::ssize_t axis) { return static_cast<std::int32_t>(any.shape(axis)); };
+  const Index3 low{first[0], first[1], first[2]};
+  const VoxelBox box = VoxelBox::from_dims(low, {edge(0), edge(1), edge(2)});
+  const std::span states(array.data(), static_cast<std::size_t>(array.size()));
+  std::uint64_t count = 0;
+  grid.write([&](BeliefGrid& g) { count = g.update_box(box, states); });
+  return count;
 }
 
 std::shared_ptr<SharedGrid> clone_of(const SharedGrid& grid) {
@@ -270,6 +288,22 @@ Returns
 -------
 ndarray, (nx, ny, nz), uint8
     0 unknown, 1 free, 2 occupied. A copy.)")
+      .def("update_box", &update_box, py::arg("first"), py::arg("labels"),
+           R"(Makes the voxels of a box what labels say, for a planner whose own map grows.
+
+Voxels that are that already keep log-odds and belief, the others have no belief afterwards. Cost: linear in the labels.
+
+Parameters
+----------
+first : 3 whole numbers
+    The box's lowest voxel, on the lattice: ``min_index`` for a box that begins where the arrays do.
+labels : array_like, (nx, ny, nz), whole numbers
+    0 unknown, 1 free, 2 occupied, as in ``from_labels``.
+
+Returns
+-------
+int
+    How many voxels have changed.)")
       .def(
           "views",
           [](const SharedGrid& grid) {

@@ -134,6 +134,14 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Error(invalid_argument) for a bound that is not a number.
   std::uint64_t forget(const Box& region);
 
+  /// Makes the voxels of a box of the lattice what a dense array says, [x][y][z] with z fastest, as
+  /// from_states() has it: for a planner with a map of its own, which grows. Where a voxel's state
+  /// is that already nothing changes; elsewhere it has the log-odds that from_states() gives, and
+  /// no belief. What VoxelScene::update() does anew is what has changed. Returns how many voxels
+  /// have. Throws Error(invalid_argument) for a box that is not inside the workspace, another size
+  /// or another state; nothing has changed then. Costs a pass over the array.
+  std::uint64_t update_box(const VoxelBox& box, std::span<const std::uint8_t> states);
+
   /// Visits the occupied voxels: by leaves in the order of snapshot().leaves, in a leaf [x][y][z]
   /// with z fastest. Equal maps give the same order. The visit must not change the grid. Costs a
   /// snapshot.

@@ -89,6 +89,52 @@ Comparison compare(const Tree& tree, const BeliefGrid& grid, bool binary) {
   return result;
 }
 
+// A map that follows a tree box by box is the tree's map.
+TEST(Octomap, AGridFollowsATreeThatGrows) {
+  constexpr double V = 0.1 / 3;
+  octomap::OcTree tree(V);
+  const Box workspace{{-1.2, -0.9, -0.7}, {1.3, 1.1, 0.8}};
+  BeliefGrid grid({.voxel_size = V, .workspace = workspace, .prior_sigma = V / 2});
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> at(-1.4, 1.4);
+  std::uint64_t changed = 0;
+  int steps = 0;
+  for (; steps < 12; ++steps) {
+    const std::array<double, 3> eye{at(random) / 3, at(random) / 3, 0.1};
+    const auto point = [](const std::array<double, 3>& p) {
+      return octomap::point3d(static_cast<float>(p[0]), static_cast<float>(p[1]),
+                              static_cast<float>(p[2]));
+    };
+    octomap::Pointcloud cloud;
+    Box region{eye, eye};
+    for (int i = 0; i < 200; ++i) {
+      const std::array<double, 3> p{at(random), 0.3 + at(random) / 4, at(random) / 2};
+      cloud.push_back(point(p));
+      for (std::size_t a = 0; a < 3; ++a) {
+        region.min[a] = std::min(region.min[a], p[a] - V);
+        region.max[a] = std::max(region.max[a], p[a] + V);
+      }
+    }
+    tree.insertPointCloud(cloud, point(eye));
+    if (steps % 4 == 3) tree.prune();
+    changed += update_from_octree(grid, tree, region);
+    EXPECT_EQ(update_from_octree(grid, tree, workspace), 0U) << steps;
+    OctomapConfig config;
+    config.workspace = workspace;
+    const BeliefGrid whole = grid_from_octree(tree, config);
+    std::vector<std::uint8_t> states(grid.voxel_count()), expected(whole.voxel_count());
+    grid.copy_states(states);
+    whole.copy_states(expected);
+    ASSERT_EQ(states, expected) << steps;
+  }
+  EXPECT_EQ(steps, 12);
+  EXPECT_GT(changed, 5'000U);
+  EXPECT_EQ(update_from_octree(grid, tree, {{5, 5, 5}, {6, 6, 6}}), 0U);
+  const octomap::OcTree other(0.05);
+  expect_error(ErrorCode::invalid_argument, "voxels",
+               [&] { (void)update_from_octree(grid, other, workspace); });
+}
+
 TEST(Octomap, TreesInMemoryAreRead) {
   octomap::OcTree tree(0.1 / 3);
   fill(tree);

@@ -7,10 +7,14 @@
 
 #include <octomap/OcTree.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <locale>
 #include <memory>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "viewgain/formats/octomap_io.hpp"
 
@@ -28,6 +32,59 @@ namespace viewgain {
   file.precision(17);  // so that the resolution is the tree's
   tree.write(file);
   return grid_from_octomap_bytes(file.str(), config, "octomap::OcTree");
+}
+
+/// Makes the grid's voxels in a box what the tree says of them now: for a tree that grows, frame by
+/// frame. `region`: in the tree's frame [m], for instance round what insertPointCloud() has
+/// changed; what lies outside the grid's workspace is left out. Returns how many voxels have
+/// changed. Throws Error(invalid_argument) unless the voxel sizes are equal. As
+/// BeliefGrid::update_box(): where a state stays nothing changes. Cost: O(nodes and voxels in the
+/// box).
+inline std::uint64_t update_from_octree(BeliefGrid& grid, const octomap::OcTree& tree,
+                                        const Box& region) {
+  const double V = tree.getResolution();
+  if (std::abs(grid.voxel_size() - V) > 1e-9 * V) {
+    throw Error(ErrorCode::invalid_argument, "the tree's voxels are not the grid's");
+  }
+  const auto index = [&](double x) {
+    return static_cast<std::int32_t>(std::clamp(std::floor(x / V), -32768.0, 32767.0));
+  };
+  const VoxelBox wanted{
+      {index(region.min[0]), index(region.min[1]), index(region.min[2])},
+      {index(region.max[0]) + 1, index(region.max[1]) + 1, index(region.max[2]) + 1}};
+  const VoxelBox box = wanted.intersection(VoxelBox::from_dims(grid.min_index(), grid.dims()));
+  if (box.volume() == 0) return 0;
+  const auto ny = static_cast<std::size_t>(box.max.y - box.min.y),
+             nz = static_cast<std::size_t>(box.max.z - box.min.z);
+  std::vector<std::uint8_t> states(box.volume(), 0);
+  const auto key_of = [](Index3 v) {
+    const auto part = [](std::int32_t i) { return static_cast<octomap::key_type>(i + 32768); };
+    return octomap::OcTreeKey(part(v.x), part(v.y), part(v.z));
+  };
+  const octomap::OcTreeKey low = key_of(box.min),
+                           high = key_of({box.max.x - 1, box.max.y - 1, box.max.z - 1});
+  for (auto leaf = tree.begin_leafs_bbx(low, high), end = tree.end_leafs_bbx(); leaf != end;
+       ++leaf) {
+    // A pruned leaf is a cube of voxels.
+    const int edge = 1 << (tree.getTreeDepth() - leaf.getDepth());
+    const octomap::OcTreeKey key = leaf.getIndexKey();
+    const auto lattice = [](octomap::key_type k) { return static_cast<std::int32_t>(k) - 32768; };
+    const VoxelBox part =
+        VoxelBox::from_dims({lattice(key[0]), lattice(key[1]), lattice(key[2])}, {edge, edge, edge})
+            .intersection(box);
+    const std::uint8_t state = tree.isNodeOccupied(*leaf) ? 2 : 1;
+    for (std::int32_t x = part.min.x; x < part.max.x; ++x) {
+      for (std::int32_t y = part.min.y; y < part.max.y; ++y) {
+        const std::size_t at = (static_cast<std::size_t>(x - box.min.x) * ny +
+                                static_cast<std::size_t>(y - box.min.y)) *
+                                   nz +
+                               static_cast<std::size_t>(part.min.z - box.min.z);
+        std::fill_n(states.begin() + static_cast<std::ptrdiff_t>(at), part.max.z - part.min.z,
+                    state);
+      }
+    }
+  }
+  return grid.update_box(box, states);
 }
 
 /// The tree that save_octomap would write, with OctoMap's default settings but for the resolution.
