@@ -1,0 +1,96 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""What views of a known object see. Needs PYTHONPATH of a build.
+
+A view sees a sample of the surface if the sample is in its image and in the sensor's limits, at under 80 deg, as
+`viewgain study` counts what is visible, and no triangle is before it. That is told by a depth image of the camera with three
+times the pixels a side: the nearest pixel's depth, but for what a surface of the sample's slope differs by within half a pixel.
+"""
+import numpy as np
+import viewgain
+
+FINER = 3
+LEAST_COSINE = np.cos(np.radians(80))
+EXACT = 2e-4  # of a depth, beside what the slope gives [m]
+
+
+def read_mesh(path):
+    """Vertices and triangles of an OFF or OBJ file, by its ending; ValueError, which names it, for another."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            lines = [words for words in (line.split("#")[0].split() for line in file) if words]
+        if str(path).lower().endswith(".obj"):
+            vertices = [words[1:4] for words in lines if words[0] == "v"]
+            faces = [[int(word.split("/")[0]) for word in words[1:]] for words in lines if words[0] == "f"]
+            faces = [[i - 1 if i > 0 else len(vertices) + i for i in face] for face in faces]
+        else:
+            words = [word for line in lines for word in line]
+            count, size = int(words[1]), int(words[2])
+            vertices = np.reshape(words[4:4 + 3 * count], (count, 3))
+            faces, at = [], 4 + 3 * count
+            for _ in range(size if words[0] == "OFF" else 0):
+                faces.append([int(word) for word in words[at + 1:at + 1 + int(words[at])]])
+                at += 1 + int(words[at])
+        triangles = np.array([[face[0], face[k], face[k + 1]] for face in faces for k in range(1, len(face) - 1)], np.int64)
+        vertices = np.array(vertices, float)
+        if len(triangles) == 0 or triangles.min() < 0 or triangles.max() >= len(vertices):
+            raise ValueError("no faces, or corners that are not there")
+    except (ValueError, IndexError) as error:
+        raise ValueError(f"{path}: no OFF or OBJ file of a mesh: {error}") from error
+    return vertices, triangles.astype(np.uint32)
+
+
+class KnownObject:
+    """Samples of equal area on an object that is centred on the origin, and which of them a view sees."""
+
+    def __init__(self, vertices, triangles, sensor, samples):
+        camera = sensor.camera
+        centre = lambda c: FINER * c + (FINER - 1) / 2  # the same rays: pixel (0,0) has its centre at (0,0)
+        self.camera = viewgain.PinholeCamera(width=FINER * camera.width, height=FINER * camera.height, fx=FINER * camera.fx,
+                                             fy=FINER * camera.fy, cx=centre(camera.cx), cy=centre(camera.cy),
+                                             distortion=camera.distortion)
+        self.sensor = viewgain.Sensor(self.camera, min_range=sensor.min_range, max_range=sensor.max_range,
+                                      working_distance=sensor.working_distance, noise=viewgain.ConstantNoise())
+        self.simulated = viewgain.SimulatedSensor(vertices, triangles, self.sensor)
+        corners = vertices[triangles]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        areas = np.linalg.norm(normals, axis=1) / 2
+        self.area = float(areas.sum())
+        # Evenly along the surface of the triangles one after another, at random in each.
+        random = np.random.default_rng(1)
+        at = (np.arange(samples) + random.random(samples)) / samples * self.area
+        of = np.minimum(np.searchsorted(np.cumsum(areas), at), len(areas) - 1)
+        s, t = np.sqrt(random.random(samples))[:, None], random.random(samples)[:, None]
+        self.points = (1 - s) * corners[of, 0] + s * (1 - t) * corners[of, 1] + s * t * corners[of, 2]
+        self.normals = normals[of] / (2 * areas[of][:, None])
+
+    def sees(self, T_world_camera):
+        """One bool a sample."""
+        sight = self.points - T_world_camera[:3, 3]
+        ranges = np.linalg.norm(sight, axis=1)
+        cosine = np.abs((sight * self.normals).sum(axis=1)) / ranges
+        at_camera = sight @ T_world_camera[:3, :3]
+        asked = np.flatnonzero((cosine >= LEAST_COSINE) & (ranges > self.sensor.min_range) & (ranges < self.sensor.max_range) &
+                               (at_camera[:, 2] > 0))
+        seen = np.zeros(len(self.points), bool)
+        if len(asked) == 0:
+            return seen
+        pixel = np.rint(self.camera.project(at_camera[asked])).astype(int)
+        inside = ((pixel >= 0) & (pixel < [self.camera.width, self.camera.height])).all(axis=1)
+        asked, (column, row) = asked[inside], pixel[inside].T
+        depth = self.simulated.acquire(T_world_camera).depth[row, column]
+        z = at_camera[asked, 2]
+        half_pixel = z / min(self.camera.fx, self.camera.fy) / np.sqrt(2)
+        slope = np.sqrt(1 - cosine[asked] ** 2) / cosine[asked]
+        seen[asked] = z <= depth + half_pixel * slope + EXACT
+        return seen
+
+    def matrix(self, poses):
+        """A row a pose, a column a sample."""
+        return np.array([self.sees(pose) for pose in poses]).reshape(len(poses), len(self.points))
+
+
+def scaled(vertices, size):
+    """The middle of the box in the origin; its longest side `size` [m], or as it is for None."""
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    return (vertices - (low + high) / 2) * (1 if size is None else size / (high - low).max())
