@@ -22,6 +22,7 @@ import numpy as np
 import viewgain
 
 import covers
+import meshes
 import visibility
 
 GOALS = (0.80, 0.90, 0.95)
@@ -68,8 +69,8 @@ class Problem:
 
     def __init__(self, runs, mesh, folder, options):
         row = runs[0].row
-        vertices, triangles = visibility.read_mesh(mesh)
-        known = visibility.KnownObject(visibility.scaled(vertices, row["size"]), triangles,
+        vertices, triangles = meshes.read_mesh(mesh)
+        known = visibility.KnownObject(meshes.scaled(vertices, row["size"]), triangles,
                                        viewgain.Sensor.load(row["sensor"]), options.samples)
         starts = {run.row["seed"]: run.taken[0] for run in runs}
         for run in runs:

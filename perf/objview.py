@@ -24,8 +24,8 @@ import viewgain
 from scipy.spatial import cKDTree
 
 import covers
+import meshes
 import tammes
-import visibility
 
 SECTORS = {"whole": [], "hemi": [2], "quarter": [2, 1], "eighth": [2, 1, 0]}  # axes that may not be below 0
 RADIUS, PIXELS, FUSED = 3.0, 512, 0.005
@@ -82,9 +82,9 @@ class Stage:
     """An object and what the views read of it."""
 
     def __init__(self, mesh, directions, observable, as_is):
-        vertices, triangles = visibility.read_mesh(mesh)
+        vertices, triangles = meshes.read_mesh(mesh)
         if not as_is:
-            vertices = visibility.scaled(vertices, None)
+            vertices = meshes.scaled(vertices, None)
             vertices = vertices / np.linalg.norm(vertices, axis=1).max()
         self.sensor = sensor_of()
         camera = self.sensor.camera

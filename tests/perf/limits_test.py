@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""perf/covers.py, tammes.py and visibility.py against brute force, known optima and closed forms, and
+"""perf/covers.py, meshes.py, tammes.py, visibility.py and objview.py against brute force, known optima and closed forms, and
 limits.py on a small study. limits_test.py PERF_FOLDER VIEWGAIN"""
 import itertools
 import pathlib
@@ -16,6 +16,7 @@ PERF, VIEWGAIN = (str(pathlib.Path(name).resolve()) for name in sys.argv[1:3])
 del sys.argv[1:3]
 sys.path.insert(0, PERF)
 import covers  # noqa: E402
+import meshes  # noqa: E402
 import tammes  # noqa: E402
 
 
@@ -175,8 +176,6 @@ class Visibility(unittest.TestCase):
         self.assertGreater((~inside).sum(), 500)
 
     def test_files(self):
-        import visibility
-
         with tempfile.TemporaryDirectory() as folder:
             files = {"a.off": "OFF # a comment\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
                      "b.off": "OFF 4 1 0 0 0 0 1 0 0 1 1 0 0 1 0 4 0 1 2 3\n",
@@ -185,13 +184,13 @@ class Visibility(unittest.TestCase):
             for name, text in files.items():
                 path = pathlib.Path(folder, name)
                 path.write_text(text, encoding="utf-8")
-                vertices, triangles = visibility.read_mesh(path)
+                vertices, triangles = meshes.read_mesh(path)
                 self.assertEqual((vertices.tolist()[2], triangles.tolist()), ([1, 1, 0], [[0, 1, 2], [0, 2, 3]]), name)
-                np.testing.assert_allclose(visibility.scaled(vertices, 0.5).max(axis=0), [0.25, 0.25, 0])
+                np.testing.assert_allclose(meshes.scaled(vertices, 0.5).max(axis=0), [0.25, 0.25, 0])
                 for wrong in ("", "OFF 3 1", "OFF 4 1 0 0 0 0 1 0 0 1 1 0 0 1 0 4 0 1 2 4", "STL 0 0 0", "v 0 0 0\nf 1 2 3", "f 1 2 0"):
                     path.write_text(wrong, encoding="utf-8")
-                    with self.assertRaisesRegex(ValueError, name):
-                        visibility.read_mesh(path)
+                    with self.assertRaisesRegex(SystemExit, name):
+                        meshes.read_mesh(path)
 
 
 class ObjView(unittest.TestCase):
