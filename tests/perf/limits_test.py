@@ -230,7 +230,38 @@ class ObjView(unittest.TestCase):
         self.assertEqual(taken, [4, 9, 7])
 
 
+BOX = "OFF\n8 6 0\n" + "".join(f"{x} {y} {z}\n" for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)) + "".join(
+    "4 " + face + "\n" for face in ("0 2 3 1", "4 5 7 6", "0 1 5 4", "2 6 7 3", "0 4 6 2", "1 3 7 5"))
+
+
 class Program(unittest.TestCase):
+    def test_objview_of_a_box(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "box.off").write_text(BOX, encoding="utf-8")
+            corners = "".join(f"{x} {y} {z}\n" for x in (-1, 1) for y in (-1, 1) for z in (-1, 1))
+            pathlib.Path(folder, "views.txt").write_text(corners, encoding="utf-8")
+            pathlib.Path(folder, "bad.txt").write_text("1 2\n", encoding="utf-8")
+
+            def objview(*more):
+                return subprocess.run([sys.executable, f"{PERF}/objview.py", "box.off", "--views", "views.txt", "--observable",
+                                       "views.txt", "--budget", "3", *more], cwd=folder, capture_output=True, text=True)
+
+            done = objview("--sectors", "hemi,eighth")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            # From a corner three of six sides are seen; two of the upper four corners see all five sides that any does.
+            # The eighth has one view, which sees all that it can.
+            rows = re.findall(r"^\| (\w+) \| (\w+) \| ([\d. |]+) \|$", done.stdout, re.M)
+            self.assertEqual(len(rows), 10, done.stdout)
+            for sector, policy, values in rows:
+                values = [float(value) for value in values.split("|")]
+                self.assertEqual(len(values), 7)
+                if sector == "eighth" or policy == "oracle":
+                    self.assertEqual(values[0], 100, (sector, policy))
+            self.assertIn("| hemi | 100.0 | 2 | 2 | 2 | 2 |", done.stdout)
+            self.assertIn("| eighth | 100.0 | 1 | 1 | 1 | 1 |", done.stdout)
+            self.assertIn("bad.txt", objview("--starts", "bad.txt").stderr)
+            self.assertEqual(objview("--sectors", "third").returncode, 2)
+
     def test_limits_of_a_small_study(self):
         spec = '''objects = ["box.off"]
 policies = ["frontier", "random"]
@@ -241,10 +272,8 @@ sizes = [0.3]
 max_views = 4
 tolerance = 0.02
 '''
-        box = "OFF\n8 6 0\n" + "".join(f"{x} {y} {z}\n" for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)) + "".join(
-            "4 " + face + "\n" for face in ("0 2 3 1", "4 5 7 6", "0 1 5 4", "2 6 7 3", "0 4 6 2", "1 3 7 5"))
         with tempfile.TemporaryDirectory() as folder:
-            pathlib.Path(folder, "box.off").write_text(box, encoding="utf-8")
+            pathlib.Path(folder, "box.off").write_text(BOX, encoding="utf-8")
 
             def limits(name, text):
                 pathlib.Path(folder, f"{name}.toml").write_text(text, encoding="utf-8")
