@@ -156,7 +156,7 @@ def limits_of(problem, seconds):
 
 def with_first(seen, area):
     """Greedy's order after view 0."""
-    return covers.greedy(seen, np.where(seen[0], 0, area)) if not seen[0].all() else []
+    return covers.greedy(seen, np.where(seen[0], 0, area))
 
 
 def print_curve(problems, seconds):
@@ -180,8 +180,8 @@ def print_curve(problems, seconds):
         rows.append([k, mean(simple), mean([b.share for b in best]), mean([b.bound for b in best]), mean(modelled),
                      *(mean(others[policy]) for policy in policies)])
         print(f"best {k}: {rows[-1]}", file=sys.stderr)
-    print(f"Best k views of the dense set [%], means of {len(problems)} objects at their first seed; {proven} of {MOST * len(problems)} proven "
-          "to 0.01. Seen: greedy's, the best known, the bound. Modelled: the surface after a frame from each of the best, with all "
+    print(f"Best k views of the dense set [%], means of {len(problems)} objects at their first seed; {proven} of {MOST * len(problems)} "
+          "proven to 0.01. Seen: greedy's, the best known, the bound. Modelled: the surface after a frame from each of the best, with all "
           "noise, as the study counts it; beside it what the policies' runs had after k views\n")
     table(["k", "greedy, seen", "best, seen", "bound", "best, modelled", *policies], rows)
 

@@ -223,7 +223,8 @@ def main():
             print(f"{mesh.stem}, {sector}", file=sys.stderr)
     print(f"{', '.join(mesh.stem for mesh in options.meshes)}; {len(starts)} starts; means of {len(options.meshes) * len(starts)} runs. "
           f"NSC at 0.01 after k views, then at the stop at {', '.join(map(str, NEAR))} [%].\n")
-    head = ["sector", "policy", *(f"k = {k}" for k in checkpoints), "views to the stop", *(f"NSC {near}" for near in NEAR), "way", "s a choice"]
+    head = ["sector", "policy", *(f"k = {k}" for k in checkpoints), "views to the stop", *(f"NSC {near}" for near in NEAR), "way",
+            "s a choice"]
     print("| " + " | ".join(head) + " |\n|" + "---|" * len(head))
     for (sector, policy), rows in figures.items():
         mean = np.mean(rows, axis=0)
