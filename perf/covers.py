@@ -64,6 +64,15 @@ def _swapped(seen, area, views):
     return views
 
 
+def _best_few(seen, area, k):
+    """The best set of one view or of at most two, by all pairs."""
+    alone = seen @ area
+    if k == 1:
+        return [int(np.argmax(alone))]
+    together = alone[:, None] + alone - (seen * area) @ seen.T.astype(float)
+    return sorted({int(i) for i in np.unravel_index(np.argmax(together), together.shape)})
+
+
 def _solve(seen, area, cost, least, most, whole, seconds):
     """Minimises `cost` over x (views) and y (cells): covered at least `least`, at most `most` views."""
     n, cells = seen.shape
@@ -103,6 +112,12 @@ def least_views(seen, area, share, *, first=None, seconds=60.0):
     cost = np.r_[np.ones(len(rest)), np.zeros(len(rest_area))]
     relaxed = _solve(rest, rest_area, cost, wanted, len(rest), False, seconds)
     lp_bound = bound = max(1, int(np.ceil(relaxed.fun - 1e-6))) if relaxed.status == 0 else 1
+    while 1 < len(known) <= 3 and bound < len(known):
+        fewer = _best_few(rest, rest_area, len(known) - 1)
+        if share_of(rest, rest_area, fewer) < wanted - SLACK:
+            bound = len(known)
+        else:
+            known = fewer
     if bound < len(known):  # is there a smaller one?
         result = _solve(rest, rest_area, cost, wanted, len(known) - 1, True, seconds)
         if result.status == 2:
@@ -121,6 +136,10 @@ def best_of(seen, area, k, *, first=None, seconds=60.0):
     k -= len(start)
     if k < 1 or not rest.any():
         return Best(start, share_of(seen, area, start), share_of(seen, area, start))
+    if k <= 2:
+        known = _best_few(rest, rest_area, k)
+        share = share_of(seen, area, start + known)
+        return Best(start + known, share, share)
     known = _swapped(rest, rest_area, greedy(rest, rest_area, k))
     cost = np.r_[np.zeros(len(rest)), -rest_area / rest_area.sum()]
     result = _solve(rest, rest_area, cost, 0, k, True, seconds)

@@ -137,14 +137,14 @@ class Visibility(unittest.TestCase):
         import viewgain
         import visibility
 
-        # A sphere of 10 cm round the origin, seen from 0.5 m: what lies at under 80 deg, which no part of it hides.
+        # A sphere of 10 cm round the origin, seen from 0.5 m: what lies at under 72 deg, which no part of it hides.
         sphere = visibility.KnownObject(*globe(0.1), viewgain.Sensor.load("sr4000"), 4000)
         self.assertAlmostEqual(sphere.area, 4 * np.pi * 0.1**2, delta=1e-3 * sphere.area + 4e-4)
         checked = 0
         for pose in viewgain.sphere_poses(5, 0.5):
             sight = sphere.points - pose[:3, 3]
             cosine = -(sight * sphere.points).sum(axis=1) / np.linalg.norm(sight, axis=1) / np.linalg.norm(sphere.points, axis=1)
-            seen, steepest = sphere.sees(pose), np.cos(np.radians(80))
+            seen, steepest = sphere.sees(pose), visibility.LEAST_COSINE
             clear = np.abs(cosine - steepest) > 0.03  # the mesh has facets
             np.testing.assert_array_equal(seen[clear], cosine[clear] > steepest)
             checked += clear.sum()
