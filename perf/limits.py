@@ -46,10 +46,6 @@ class Run:
         own = own[np.unique(np.linspace(0, len(own) - 1, most).astype(int))]
         self.poses = np.concatenate([self.taken, own])
 
-    def views_to(self, reached, share):
-        """By what the views see, not by the map: as many as the budget and one more where the run never gets there."""
-        return next((k for k, value in enumerate(reached, 1) if value >= share - covers.SLACK), len(reached) + 1)
-
 
 def kept_matrix(path, known, poses):
     """known.matrix(poses), from the file if that is of the same poses and samples."""
@@ -198,27 +194,31 @@ def print_policies(problems, dense, own):
     views, counted, ways, least, own_least = (collections.defaultdict(list) for _ in range(5))
     for problem, run in runs:
         for i, goal in enumerate(GOALS):
-            key, count = (run.policy, goal), run.views_to(reached[run], goal)
+            key, never = (run.policy, goal), len(run.row["coverage_by_view"]) + 1
+            count = next((k for k, share in enumerate(reached[run], 1) if share >= goal - covers.SLACK), never)
             views[key].append(count)
             ways[key].append(way_of(run.taken[:count]))
-            budget = len(run.row["coverage_by_view"])
-            counted[key].append(run.row[("views_to_80", "views_to_90", "views_to_95")[i]] or budget + 1)
+            counted[key].append(run.row[("views_to_80", "views_to_90", "views_to_95")[i]] or never)
             best = dense[problem.name, run.row["seed"], goal][0]
-            least[key].append(len(best.views) if best.views is not None else budget + 1)
+            least[key].append(len(best.views) if best.views is not None else never)
             one = own[run, goal]
-            own_least[key].append(len(one.views) if one.views is not None else budget + 1)
+            if one.views is not None:
+                own_least[key].append(len(one.views))
     print("Views of each policy to a share of what can be seen, by what its views see; the least of the dense set and of the run's own "
-          "candidates from the same starts; and how much of the way from `random` to the dense set's limit the policy made\n")
+          "candidates from the same starts (the runs that it is known for: others' never reach it); and how much of the way from "
+          "`random` to the dense set's limit the policy made\n")
     mean = {name: {key: np.mean(values) for key, values in store.items()}
-            for name, store in (("views", views), ("ways", ways), ("counted", counted), ("least", least), ("own", own_least))}
+            for name, store in (("views", views), ("ways", ways), ("counted", counted), ("least", least))}
     rows = []
     for policy in policies:
         for goal in GOALS:
             key, random = (policy, goal), mean["views"].get(("random", goal), np.nan)
-            rows.append([policy, f"{100 * goal:.0f} %", *(f"{mean[name][key]:.2f}" for name in ("views", "least", "own")),
+            reach = own_least[key]
+            rows.append([policy, f"{100 * goal:.0f} %", f"{mean['views'][key]:.2f}", f"{mean['least'][key]:.2f}",
+                         f"{np.mean(reach):.2f} ({len(reach)})" if reach else "never",
                          part_of_way(random, mean["views"][key], mean["least"][key]), f"{mean['ways'][key]:.2f}",
                          f"{mean['counted'][key]:.2f}"])
-    table(["policy", "share", "views", "limit, dense", "limit, own", "of the way", "way [m]", "views by the study's count"], rows)
+    table(["policy", "share", "views", "limit, dense", "limit, own (runs)", "of the way", "way [m]", "views by the study's count"], rows)
 
 
 def parse_arguments():
