@@ -237,6 +237,9 @@ def parse_arguments():
 
 def main():
     options = parse_arguments()
+    for path in (options.spec, options.dir / "results.json"):
+        if not path.exists():
+            sys.exit(f"{path} is missing")
     spec = tomllib.loads(options.spec.read_text(encoding="utf-8"))
     if spec.get("flags"):
         sys.exit(f"{options.spec}: has flags, which may change what can be seen; limits.py knows none")

@@ -177,9 +177,10 @@ def figures_of(stage, views, covered, taken, seconds, checkpoints):
 def directions_of(path, count):
     if path is None:
         return tammes.tammes(count)
-    directions = np.loadtxt(path, ndmin=2)
-    if directions.ndim != 2 or directions.shape[1] != 3:
-        sys.exit(f"{path}: not three numbers a line")
+    try:
+        directions = np.loadtxt(path, ndmin=2).reshape(-1, 3)
+    except (OSError, ValueError) as error:
+        sys.exit(f"{path}: not three numbers a line: {error}")
     return directions / np.linalg.norm(directions, axis=1)[:, None]
 
 
@@ -196,6 +197,8 @@ def parse_arguments():
     options.sectors = options.sectors.split(",")
     if not set(options.sectors) <= set(SECTORS):
         parser.error(f"--sectors: of {', '.join(SECTORS)}")
+    if options.budget < 1:
+        parser.error("--budget must be positive")
     return options
 
 
