@@ -20,22 +20,12 @@ import bisect
 import itertools
 import math
 import os
+import pathlib
 import random
+import sys
 
-
-def read_off(path):
-    """Vertices and triangles of an OFF file."""
-    with open(path, encoding="utf-8") as file:
-        words = iter(" ".join(line.split("#")[0] for line in file).split())
-    if next(words, "") != "OFF":
-        raise SystemExit(f"{path}: does not begin with OFF")
-    vertex_count, face_count, _ = (int(next(words)) for _ in range(3))
-    vertices = [tuple(float(next(words)) for _ in range(3)) for _ in range(vertex_count)]
-    triangles = []
-    for _ in range(face_count):
-        corners = [int(next(words)) for _ in range(int(next(words)))]
-        triangles += [(corners[0], b, c) for b, c in zip(corners[1:], corners[2:])]
-    return vertices, triangles
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+import meshes  # noqa: E402
 
 
 def sub(a, b):
@@ -104,7 +94,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     generator = random.Random(arguments.seed)
-    points = sample(*read_off(arguments.mesh), arguments.points, generator)
+    points = sample(*(part.tolist() for part in meshes.read_mesh(arguments.mesh)), arguments.points, generator)
     unit = 0.001 if any(abs(x) >= 10 for p in points for x in p) else 1.0
     metres = [tuple(unit * x for x in p) for p in points]
     # What is larger is made as large.

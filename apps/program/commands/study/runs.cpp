@@ -13,6 +13,7 @@
 #include "program/cli/json_text.hpp"
 #include "program/commands/study/claims.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/pose_io.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -196,6 +197,9 @@ void StudyFolder::write(const StudyRun& run, const StudyResult& result) const {
   make_folder(runs() / run.hash);
   write_file_atomically(file(run, "prediction.csv"),
                         std::string(kHead).append("\n").append(result.prediction_rows));
+  if (!result.candidates.empty()) {
+    write_tum(file(run, "candidates.txt"), result.candidates, result.candidate_views);
+  }
   write_file_atomically(file(run, "run.json"), json_text(result.run));
 }
 

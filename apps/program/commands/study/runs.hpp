@@ -23,8 +23,8 @@ struct StudyProgress {
   double seconds = 0;             ///< that it took
 };
 
-/// The runs of a study in a folder: DIR/runs/HASH/run.json and prediction.csv, run.json last, so
-/// that a run that is there is whole.
+/// The runs of a study in a folder: DIR/runs/HASH/run.json, prediction.csv and, where the spec asks
+/// for them, candidates.txt; run.json last, so that a run that is there is whole.
 class StudyFolder {
  public:
   /// Makes the folders that are missing. Throws Error(io).

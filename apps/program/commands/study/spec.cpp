@@ -251,6 +251,10 @@ StudySpec read_study_spec(const fs::path& path) {
     spec.tolerance = reader.number("tolerance");
     if (!(spec.tolerance > 0)) reader.fail("tolerance", "must be a positive number [m]");
   }
+  if (reader.find("kept_candidates") != nullptr) {
+    spec.kept_candidates = static_cast<std::size_t>(whole_number(
+        reader, reader.require("kept_candidates"), "kept_candidates", 1, kMostCandidates));
+  }
   if (reader.find("against") != nullptr) spec.against = policy_at(reader, "against", spec);
   spec.prediction = prediction_of(reader, spec);
   reader.refuse_unknown_keys();
@@ -289,6 +293,7 @@ StudySpec read_study_spec(const fs::path& path) {
                   {"max_views", spec.max_views},
                   {"tolerance", spec.tolerance},
                   {"flags", flags},
+                  {"kept_candidates", spec.kept_candidates},
                   {"prediction_views", spec.prediction.views},
                   {"prediction_candidates", spec.prediction.candidates},
                   {"prediction_policies", names_of(spec, scored_policies(spec, run))}};

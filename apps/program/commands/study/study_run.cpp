@@ -228,6 +228,10 @@ std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& stud
   const auto watch_view = [&](const ViewRecord& record) {
     for (const auto& [stage, value] : record.seconds) seconds[stage] += value;
     report.add_view(record, run.model.quality().back(), seconds);
+    for (const Candidate& candidate : evenly(record.proposal.candidates, spec.kept_candidates)) {
+      result.candidates.push_back(candidate.T_world_camera);
+      result.candidate_views.push_back(static_cast<double>(record.index + 1));
+    }
     const bool is_asked = std::find(views.begin(), views.end(), record.index + 1) != views.end();
     if (scorers.empty() || !is_asked || stop.stop_requested()) return;
     const Stopwatch watch;

@@ -5,16 +5,20 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "program/cli/json.hpp"
 #include "program/commands/study/spec.hpp"
+#include "viewgain/core/pose.hpp"
 
 namespace viewgain::app {
 
 /// What a run leaves in the study's folder.
 struct StudyResult {
-  Json run;                     ///< run.json: configuration, figures, those of each view, seconds
-  std::string prediction_rows;  ///< prediction.csv without its head: a row a score of a candidate
+  Json run;                      ///< run.json: configuration, figures, those of each view, seconds
+  std::string prediction_rows;   ///< prediction.csv without its head: a row a score of a candidate
+  std::vector<Pose> candidates;  ///< T_world_camera, evenly taken from the proposals
+  std::vector<double> candidate_views;  ///< after how many views each was proposed
 };
 
 /// The columns of prediction.csv after `policy`, whose score it is.

@@ -86,6 +86,7 @@ TEST_F(StudySpecTest, HashesFollowWhatCanChangeAResult) {
   for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
            {"max_views = 5", "max_views = 6"},
            {"max_views", "tolerance = 0.01\nmax_views"},
+           {"max_views", "kept_candidates = 5\nmax_views"},
            {"--up=y", "--up=x"},
            {"candidates = 7", "candidates = 8"},
            {"[4, 1]", "[1]"}}) {
@@ -108,7 +109,7 @@ TEST_F(StudySpecTest, HashesFollowWhatCanChangeAResult) {
   write("poses.txt", "2");
   EXPECT_NE(spec_of(with_reach).runs.back().hash, by_poses);
   ++cases;
-  EXPECT_EQ(cases, 8U);
+  EXPECT_EQ(cases, 9U);
   // A value that is none is not looked for on the disk.
   const std::string box = with("--up=y", "--body=" + reach), box_before = spec_of(box).runs[0].hash;
   write("reach.toml", "# changed\n");
@@ -149,6 +150,7 @@ TEST_F(StudySpecTest, WhatIsWrongIsNamedWithItsLine) {
        {"line 2", "unknown_count:paper", "twice"}},
       {"\"frontier\", ", "\"unknown_count\", ", {"line 2", "is \"gain:unknown_count\""}},
       {"max_views", "tolerance = 0\nmax_views", {"line 7", "tolerance", "positive"}},
+      {"max_views", "kept_candidates = 0\nmax_views", {"line 7", "kept_candidates"}},
       {"candidates = 7", "candidates = 2", {"line 11", "candidates"}},
       {"candidates = 7", "maps = \"random\"", {"line 11", "maps", "none of the policies"}},
       {"candidates = 7", "canddates = 7", {"line 11", "canddates", "candidates"}},

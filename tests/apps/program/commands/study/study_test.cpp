@@ -19,6 +19,7 @@
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
 #include "program/commands/study/statistics.hpp"
+#include "viewgain/core/pose_io.hpp"
 
 namespace viewgain {
 namespace {
@@ -111,6 +112,28 @@ TEST_F(Study, LeavesWhatItSays) {
   for (const char* key : {"coverage_visible", "rms_error", "consistency", "travelled"}) {
     EXPECT_EQ(printed[4][key], alone[key]) << key;
   }
+}
+
+TEST_F(Study, KeepsCandidatesOfEachView) {
+  const std::string spec = read("spec.toml");
+  write("spec.toml", "kept_candidates = 7\n" + spec.substr(0, spec.find("[prediction]")));
+  run_well(study("out", {"--plots", "off"}));
+  std::size_t cases = 0;
+  for (const std::string& hash : list("out/runs")) {
+    const std::string folder = "out/runs/" + hash;
+    const json run = json::parse(read(folder + "/run.json"));
+    const PoseList kept = read_tum(dir / folder / "candidates.txt");
+    // For each view but the first, which is given.
+    for (std::size_t view = 1; view < 3; ++view) {
+      const auto count =
+          std::count(kept.timestamps.begin(), kept.timestamps.end(), static_cast<double>(view));
+      EXPECT_EQ(count, std::min(7, run["per_view"][view]["candidates"].get<int>()));
+      ++cases;
+    }
+    EXPECT_EQ(kept.poses.size(), kept.timestamps.size());
+  }
+  EXPECT_EQ(cases, 12U);
+  EXPECT_FALSE(fs::exists(dir / "out" / "candidates.txt"));
 }
 
 TEST_F(Study, PredictionIsThatOfItsRows) {

@@ -1,0 +1,284 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""How far a study's policies are from the best possible, as Markdown. Needs PYTHONPATH of a build, and scipy.
+
+    limits.py SPEC.toml DIR [--samples 1000] [--seconds 20] [--dense 162] [--own 160]
+
+DIR is what `viewgain study SPEC.toml --out DIR` left; its spec has kept_candidates. What each view sees of the true surface
+(visibility.py) is kept in DIR/visibility. Shares are of the samples that some view of the object sees: of the dense set (so
+many poses on each of three spheres, at 0.8, 1 and 1.25 times the start's distance), of any run's candidates or views. The
+first view is given and counts. The least number of views to a share, and the best k views, are integer programs; where one is
+not done in its seconds, the table says what is proven.
+"""
+import argparse
+import collections
+import json
+import pathlib
+import sys
+import tomllib
+
+import numpy as np
+import viewgain.mesh
+from scipy.spatial import cKDTree
+
+import covers
+import meshes
+import visibility
+
+GOALS = (0.80, 0.90, 0.95)
+RADII = (0.8, 1, 1.25)  # of the dense set [start's distance]
+MOST = 12  # views of the curve
+
+
+class Run:
+    """A run of the study, and what its views and its candidates see."""
+
+    def __init__(self, row, folder, most):
+        self.row = row
+        self.policy = f"gain:{row['gain']}" if row["gain"] else row["policy"]
+        record = json.loads((folder / "runs" / row["hash"] / "run.json").read_text(encoding="utf-8"))
+        self.taken = np.array([view["pose"] for view in record["per_view"]])
+        candidates = folder / "runs" / row["hash"] / "candidates.txt"
+        if not candidates.exists():
+            sys.exit(f"{candidates} is missing: the study's spec must say kept_candidates")
+        own = viewgain.read_poses(candidates)
+        own = own[np.unique(np.linspace(0, len(own) - 1, most).astype(int))]
+        self.poses = np.concatenate([self.taken, own])
+
+
+def kept_matrix(path, known, poses):
+    """known.matrix(poses), from the file if that is of the same poses and samples."""
+    if path.exists():
+        kept = np.load(path)
+        if kept["poses"].shape == poses.shape and np.array_equal(kept["poses"], poses) and np.array_equal(kept["samples"], known.points):
+            return np.unpackbits(kept["seen"], axis=1, count=len(known.points)).astype(bool)
+    seen = known.matrix(poses)
+    path.parent.mkdir(exist_ok=True)
+    np.savez(path, poses=poses, samples=known.points, seen=np.packbits(seen, axis=1), area=known.area / len(known.points))
+    return seen
+
+
+class Problem:
+    """Runs on one object; rows of `seen` are a start for each seed, then the dense set."""
+
+    def __init__(self, runs, mesh, folder, options):
+        row = runs[0].row
+        vertices, triangles = meshes.read_mesh(mesh)
+        self.mesh = meshes.scaled(vertices, row["size"]), triangles
+        self.sensor, self.voxel = viewgain.Sensor.load(row["sensor"]), row["voxel"]
+        known = visibility.KnownObject(*self.mesh, self.sensor, options.samples)
+        starts = {run.row["seed"]: run.taken[0] for run in runs}
+        for run in runs:
+            if not np.array_equal(run.taken[0], starts[run.row["seed"]]):
+                sys.exit(f"runs of seed {run.row['seed']} on {row['object']} start at different places")
+        distance = np.mean([np.linalg.norm(pose[:3, 3]) for pose in starts.values()])
+        spheres = [viewgain.sphere_poses(options.dense, factor * distance) for factor in RADII]
+        self.name, self.runs, self.seeds, self.tolerance = row["object"], runs, list(starts), options.tolerance
+        self.poses = np.concatenate([np.array(list(starts.values())), *spheres])
+        self.seen = kept_matrix(folder / f"{self.name}.npz", known, self.poses)
+        for run in runs:
+            run.seen = kept_matrix(folder / f"{run.row['hash']}.npz", known, run.poses)
+        counted = self.seen.any(axis=0) | np.any([run.seen.any(axis=0) for run in runs], axis=0)
+        self.visible = counted.mean()
+        self.seen = self.seen[:, counted]
+        for run in runs:
+            run.seen = run.seen[:, counted]
+        self.area = np.ones(int(counted.sum()))
+        self.points = known.points[counted]
+
+    def rows_of(self, seed):
+        """Rows of the dense set with this seed's start as the first."""
+        return [self.seeds.index(seed), *range(len(self.seeds), len(self.poses))]
+
+
+    def modelled(self, poses, seed):
+        """The share that the surface has after a frame from each pose, simulated as `reconstruct` does, to a percent as it counts."""
+        half = 0.5 * 0.4 / 0.35 * np.ptp(self.mesh[0], axis=0).max()
+        camera = viewgain.SimulatedSensor(*self.mesh, self.sensor, background_radius=1.5, noise=True, lateral_noise=True, sub_rays=3,
+                                          seed=seed)
+        planner = viewgain.ViewPlanner(self.sensor, voxel_size=self.voxel, workspace=[[-half] * 3, [half] * 3])
+        for i, pose in enumerate(poses):
+            frame = camera.acquire(pose, i)
+            planner.add(frame.depth, pose, amplitude=frame.amplitude)
+        surface = viewgain.mesh.surface_of_grid(planner.grid)
+        return np.mean(cKDTree(surface.vertices).query(self.points)[0] <= self.tolerance)
+
+
+def way_of(poses):
+    return float(np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1).sum())
+
+
+def table(head, rows):
+    print("| " + " | ".join(head) + " |\n|" + "---|" * len(head))
+    for row in rows:
+        print("| " + " | ".join(str(cell) for cell in row) + " |")
+    print()
+
+
+def shown(least):
+    """"4", or "3-4" where 3 is not refuted; the linear program's bound in brackets where it is lower than what is proven."""
+    if least.views is None:
+        return "never"
+    size = len(least.views)
+    text = str(size) if least.bound == size else f"{least.bound}-{size}"
+    return text if least.lp_bound == least.bound else f"{text} ({least.lp_bound})"
+
+
+def limits_of(problem, seconds):
+    """By seed and goal: the dense set's least views, greedy's count, the shortest way. By run and goal: its own candidates'."""
+    dense, own = {}, {}
+    for seed in problem.seeds:
+        rows = problem.rows_of(seed)
+        seen, poses = problem.seen[rows], problem.poses[rows]
+        order = [0, *with_first(seen, problem.area)]
+        for goal in GOALS:
+            least = covers.least_views(seen, problem.area, goal, first=0, seconds=seconds)
+            simple = next((k for k in range(1, len(order) + 1) if covers.share_of(seen, problem.area, order[:k]) >= goal - covers.SLACK),
+                          None)
+            way = None
+            if least.views is not None:
+                start, *stops = poses[least.views, :3, 3]
+                costs = np.linalg.norm(np.array([*stops, start])[:, None] - np.array(stops).reshape(1, -1, 3), axis=2)
+                way = viewgain.order_stops(costs)[1]
+            dense[seed, goal] = (least, simple, way)
+            print(f"{problem.name}, seed {seed}, {goal}: {shown(least)}", file=sys.stderr)
+    for run in problem.runs:
+        for goal in GOALS:
+            own[run, goal] = covers.least_views(run.seen, problem.area, goal, first=0, seconds=seconds)
+        print(f"{problem.name}, {run.policy}: {[shown(own[run, goal]) for goal in GOALS]}", file=sys.stderr)
+    return dense, own
+
+
+def with_first(seen, area):
+    """Greedy's order after view 0."""
+    return covers.greedy(seen, np.where(seen[0], 0, area))
+
+
+def print_curve(problems, seconds):
+    """The best k views of the dense set and what comes of them, beside the policies: means over objects, first seeds."""
+    rows, proven = [], 0
+    policies = list(dict.fromkeys(run.policy for problem in problems for run in problem.runs))
+    for k in range(1, MOST + 1):
+        best, simple, modelled, others = [], [], [], collections.defaultdict(list)
+        for problem in problems:
+            of_seed = problem.rows_of(problem.seeds[0])
+            seen = problem.seen[of_seed]
+            found = covers.best_of(seen, problem.area, k, first=0, seconds=seconds)
+            best.append(found)
+            simple.append(covers.share_of(seen, problem.area, [0, *with_first(seen, problem.area)][:k]))
+            modelled.append(problem.modelled(problem.poses[of_seed][found.views], problem.seeds[0]))
+            proven += found.bound - found.share < 1e-4
+            for run in problem.runs:
+                if run.row["seed"] == problem.seeds[0]:
+                    others[run.policy].append(run.row["coverage_by_view"][min(k, len(run.row["coverage_by_view"])) - 1])
+        mean = lambda values: f"{100 * np.mean(values):.1f}"
+        rows.append([k, mean(simple), mean([b.share for b in best]), mean([b.bound for b in best]), mean(modelled),
+                     *(mean(others[policy]) for policy in policies)])
+        print(f"best {k}: {rows[-1]}", file=sys.stderr)
+    print(f"Best k views of the dense set [%], means of {len(problems)} objects at their first seed; {proven} of {MOST * len(problems)} "
+          "proven to 0.01. Seen: greedy's, the best known, the bound. Modelled: the surface after a frame from each of the best, with all "
+          "noise, as the study counts it; beside it what the policies' runs had after k views\n")
+    table(["k", "greedy, seen", "best, seen", "bound", "best, modelled", *policies], rows)
+
+
+def part_of_way(random, value, limit):
+    return f"{100 * (random - value) / (random - limit):.0f} %" if random > limit else "-"
+
+
+def print_policies(problems, dense, own):
+    """Views by policy, and how much of the way from random to the limit that is."""
+    runs = [(problem, run) for problem in problems for run in problem.runs]
+    policies = list(dict.fromkeys(run.policy for _, run in runs))
+    reached = {run: [covers.share_of(run.seen, problem.area, range(k + 1)) for k in range(len(run.taken))] for problem, run in runs}
+    views, counted, ways, least, own_least = (collections.defaultdict(list) for _ in range(5))
+    for problem, run in runs:
+        for i, goal in enumerate(GOALS):
+            key, never = (run.policy, goal), len(run.row["coverage_by_view"]) + 1
+            count = next((k for k, share in enumerate(reached[run], 1) if share >= goal - covers.SLACK), never)
+            views[key].append(count)
+            ways[key].append(way_of(run.taken[:count]))
+            counted[key].append(run.row[("views_to_80", "views_to_90", "views_to_95")[i]] or never)
+            best = dense[problem.name, run.row["seed"], goal][0]
+            least[key].append(len(best.views) if best.views is not None else never)
+            one = own[run, goal]
+            if one.views is not None:
+                own_least[key].append(len(one.views))
+    print("Views of each policy to a share of what can be seen, by what its views see; the least of the dense set and of the run's own "
+          "candidates from the same starts (the runs that it is known for: others' never reach it); and how much of the way from "
+          "`random` to the dense set's limit the policy made\n")
+    mean = {name: {key: np.mean(values) for key, values in store.items()}
+            for name, store in (("views", views), ("ways", ways), ("counted", counted), ("least", least))}
+    rows = []
+    for policy in policies:
+        for goal in GOALS:
+            key, random = (policy, goal), mean["views"].get(("random", goal), np.nan)
+            reach = own_least[key]
+            rows.append([policy, f"{100 * goal:.0f} %", f"{mean['views'][key]:.2f}", f"{mean['least'][key]:.2f}",
+                         f"{np.mean(reach):.2f} ({len(reach)})" if reach else "never",
+                         part_of_way(random, mean["views"][key], mean["least"][key]), f"{mean['ways'][key]:.2f}",
+                         f"{mean['counted'][key]:.2f}"])
+    table(["policy", "share", "views", "limit, dense", "limit, own (runs)", "of the way", "way [m]", "views by the study's count"], rows)
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("spec", type=pathlib.Path)
+    parser.add_argument("dir", type=pathlib.Path)
+    parser.add_argument("--samples", type=int, default=1000, help="of the surface")
+    parser.add_argument("--seconds", type=float, default=20, help="an integer program may take")
+    parser.add_argument("--dense", type=int, default=162, help="poses on each of three spheres")
+    parser.add_argument("--own", type=int, default=160, help="of a run's candidates at most, evenly taken")
+    options = parser.parse_args()
+    if min(options.samples, options.seconds, options.dense, options.own) <= 0:
+        parser.error("--samples, --seconds, --dense and --own must be positive")
+    return options
+
+
+def main():
+    options = parse_arguments()
+    for path in (options.spec, options.dir / "results.json"):
+        if not path.exists():
+            sys.exit(f"{path} is missing")
+    spec = tomllib.loads(options.spec.read_text(encoding="utf-8"))
+    if spec.get("flags"):
+        sys.exit(f"{options.spec}: has flags, which may change what can be seen; limits.py knows none")
+    files = {pathlib.Path(name).stem: options.spec.parent / name for name in spec["objects"]}
+    rows = json.loads((options.dir / "results.json").read_text(encoding="utf-8"))
+    if len({(row["sensor"], row["voxel"], row["size"]) for row in rows}) != 1:
+        sys.exit(f"{options.spec}: limits.py takes studies of one sensor, voxel and size")
+    groups = collections.defaultdict(list)
+    for row in rows:
+        groups[row["object"]].append(Run(row, options.dir, options.own))
+    options.tolerance = spec.get("tolerance", 5e-3)
+    problems, dense, own = [], {}, {}
+    for name, runs in groups.items():
+        problem = Problem(runs, files[name], options.dir / "visibility", options)
+        problems.append(problem)
+        by_seed, by_run = limits_of(problem, options.seconds)
+        dense.update({(name, *key): value for key, value in by_seed.items()})
+        own.update(by_run)
+    print(f"{sum(len(problem.runs) for problem in problems)} runs; {options.samples} samples an object, of which views see "
+          f"{', '.join(f'{problem.name} {100 * problem.visible:.1f} %' for problem in problems)}; a dense set of "
+          f"{len(RADII) * options.dense} views.\n")
+    for goal in GOALS:
+        all_dense = [value[0] for key, value in dense.items() if key[-1] == goal]
+        all_own = [value for key, value in own.items() if key[-1] == goal]
+        closed = lambda found: sum(one.views is not None and one.bound == len(one.views) for one in found)
+        by_lp = lambda found: sum(one.views is not None and one.lp_bound == len(one.views) for one in found)
+        never = sum(one.views is None for one in all_own)
+        print(f"- {100 * goal:.0f} %: proven for {closed(all_dense)} of {len(all_dense)} starts in the dense set ({by_lp(all_dense)} by "
+              f"the linear program alone), for {closed(all_own)} of {len(all_own)} runs' own candidates ({by_lp(all_own)}); {never} of "
+              "these cannot reach it.")
+    print("\nLeast views of the dense set: `3-4` is proven to be no less than 3; in brackets what the linear program says where that is "
+          "less. Beside it greedy's count and the shortest way through the cover [m]\n")
+    table(["object", "seed", *(f"{100 * goal:.0f} %, greedy, way" for goal in GOALS)],
+          [[problem.name, seed, *(f"{shown(least)}, {simple}, {way:.2f}" if way is not None else "never"
+                                  for least, simple, way in (dense[problem.name, seed, goal] for goal in GOALS))]
+           for problem in problems for seed in problem.seeds])
+    print_curve(problems, options.seconds)
+    print_policies(problems, dense, own)
+
+
+if __name__ == "__main__":
+    main()
