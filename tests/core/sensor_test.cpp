@@ -111,7 +111,9 @@ TEST(Sensor, ValidateNamesTheField) {
   });
   expect_bad("pose_sigma", [](Sensor& s) { s.pose_sigma.translation = -0.001; });
   expect_bad("pose_sigma", [](Sensor& s) { s.pose_sigma.rotation = kNan; });
-  EXPECT_EQ(cases, 21);
+  expect_bad("scale_sigma", [](Sensor& s) { s.scale_sigma = -0.001; });
+  expect_bad("scale_sigma", [](Sensor& s) { s.scale_sigma = kNan; });
+  EXPECT_EQ(cases, 23);
   Sensor touching = sensor_preset("sr4000");
   touching.noise = ShotNoise{.modulation_frequency = 0, .min_amplitude = 0};
   touching.min_range = 0;

@@ -48,6 +48,7 @@ Sensor sensor_of(const vg_sensor* given) {
   result.working_distance = sensor.working_distance;
   result.noise = noise_of(sensor);
   result.pose_sigma = {sensor.pose_sigma[0], sensor.pose_sigma[1]};
+  result.scale_sigma = sensor.scale_sigma;
   return result;
 }
 
@@ -71,6 +72,7 @@ void write_sensor(const Sensor& sensor, vg_sensor* out) {
                      [&, i = 0U](double value, const auto&) mutable { whole.noise[i++] = value; });
   whole.pose_sigma[0] = sensor.pose_sigma.translation;
   whole.pose_sigma[1] = sensor.pose_sigma.rotation;
+  whole.scale_sigma = sensor.scale_sigma;
   write_struct(out, whole);
 }
 

@@ -113,6 +113,7 @@ Sensor sensor_of(const toml::table& root, const std::string& file) {
     const std::vector<double> sigmas = reader.numbers("pose_sigma", *node, 2);
     sensor.pose_sigma = {sigmas[0], sigmas[1]};
   }
+  if (reader.find("scale_sigma") != nullptr) sensor.scale_sigma = reader.number("scale_sigma");
   if (reader.find("out_of_range") != nullptr) {
     const std::string meaning = reader.text("out_of_range");
     if (meaning != "carve" && meaning != "invalid") {
@@ -172,6 +173,10 @@ std::string sensor_toml(const Sensor& sensor) {
   if (sensor.pose_sigma != PoseSigma{}) {
     text << "pose_sigma = [" << toml_float(sensor.pose_sigma.translation) << ", "
          << toml_float(sensor.pose_sigma.rotation) << "]  # of the poses of frames [m], [rad]\n";
+  }
+  if (sensor.scale_sigma > 0) {
+    text << "scale_sigma = " << toml_float(sensor.scale_sigma)
+         << "  # of one factor, that all ranges are off by\n";
   }
   if (sensor.out_of_range) {
     text << "out_of_range = "

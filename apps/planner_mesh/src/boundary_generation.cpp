@@ -7,15 +7,24 @@
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <string>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/fused_points.hpp"
+#include "viewgain/planner/hazard_views.hpp"
 #include "viewgain/planner/pose_sets.hpp"
 #include "viewgain/planner/view_sight.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
+namespace {
+
+// Where boundaries have fewer candidates, the hazard's places have the rest. As many beside any
+// number of theirs bring the loop nothing (perf/results/loop.md).
+constexpr std::size_t kFewCandidates = 200;
+
+}  // namespace
 
 EstimatorConfig default_estimator(double spacing) {
   if (!(spacing > 0) || !std::isfinite(spacing)) {
@@ -97,7 +106,16 @@ Proposal BoundaryGeneration::generate(const Pose&) {
   }
   estimated_ =
       boundary_views(surface, map_.scene(), map_.grid().views(), map_.sensor(), config_, exec_);
-  return {candidates_of(estimated_), {}};
+  Proposal proposal{candidates_of(estimated_), {}};
+  const std::size_t found = proposal.candidates.size();
+  if (found >= kFewCandidates) return proposal;
+  const std::vector<Pose> views =
+      hazard_views(*map_.scene(), config_.working_distance, 0.5 * config_.estimator.patch_length,
+                   kFewCandidates - found);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    proposal.candidates.push_back({views[i], std::string(kHazardViews), std::nullopt, i});
+  }
+  return proposal;
 }
 
 }  // namespace viewgain

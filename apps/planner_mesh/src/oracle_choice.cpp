@@ -26,6 +26,7 @@ const KnownObject& checked(const KnownObject& object) {
 
 SimulationConfig without_noise(SimulationConfig config) {
   config.noise = config.lateral_noise = false;
+  config.scale_error = 0;
   config.sub_rays = 1;
   return config;
 }

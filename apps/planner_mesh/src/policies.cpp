@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/planner/hazard_views.hpp"
 #include "viewgain/planner/proximity_measure.hpp"
 #include "viewgain/planner/rank_views.hpp"
 #include "viewgain/planner/stop_settings.hpp"
@@ -219,7 +220,8 @@ std::optional<std::size_t> PolicyDecision::choose_by_boundary(
     std::span<const Candidate> candidates) {
   if (const auto next = order_.next(candidates, generation_.estimated())) return next;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!candidates[i].boundary_class) return i;  // a pose of the reachable list
+    // A pose of the reachable list.
+    if (!candidates[i].boundary_class && candidates[i].generator != kHazardViews) return i;
   }
   return std::nullopt;
 }

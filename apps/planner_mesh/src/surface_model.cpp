@@ -11,6 +11,14 @@
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain {
+namespace {
+
+SurfaceModelConfig with_scale(SurfaceModelConfig config, const Sensor& sensor) {
+  config.points.scale_sigma = sensor.scale_sigma;
+  return config;
+}
+
+}  // namespace
 
 SurfaceMesh surface_of(const std::vector<FusedPoint>& points, const Pooling& pooling,
                        const ExecConfig& exec) {
@@ -35,11 +43,16 @@ std::vector<double> surface_sigmas(const SurfaceMesh& surface,
 
 SurfaceModel::SurfaceModel(const Sensor& sensor, const SurfaceModelConfig& config,
                            std::shared_ptr<const Truth> truth, const ExecConfig& exec)
-    : config_(config), exec_(exec), truth_(std::move(truth)), map_(sensor, config.map, exec) {}
+    : config_(with_scale(config, sensor)),
+      exec_(exec),
+      truth_(std::move(truth)),
+      map_(sensor, config.map, exec) {}
 
 SurfaceModel::SurfaceModel(BeliefGrid grid, const Sensor& sensor, const SurfaceModelConfig& config,
                            const ExecConfig& exec)
-    : config_(config), exec_(exec), map_(std::move(grid), sensor, config.map, exec) {
+    : config_(with_scale(config, sensor)),
+      exec_(exec),
+      map_(std::move(grid), sensor, config.map, exec) {
   derive_surface();
 }
 

@@ -172,8 +172,8 @@ Command add_candidates(App& program) {
   Options& o = *options;
   app->add_option("MAP", o.map, kMapHelp)->required();
   app->add_option("--generator", o.proposal.generator,
-                  "boundary (open boundaries of the surface in the map), sphere, dome, "
-                  "rings, shell or sequence")
+                  "boundary (open boundaries of the surface in the map, and where more of it is "
+                  "expected), sphere, dome, rings, shell or sequence")
       ->required()
       ->one_of(generator_names(), "generator");
   app->add_option("--sensor", o.sensor, kMapSensorHelp);

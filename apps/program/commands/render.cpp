@@ -73,7 +73,7 @@ std::string map_file(const std::string& input) {
   std::error_code ignored;
   return fs::is_directory(input, ignored) ? (fs::path(input) / "map.vdb").string() : input;
 }
-BeliefGrid map_of(const std::string& input) { return load_map(map_file(input)); }
+MapOfSensor map_of(const std::string& input) { return load_map_of_sensor(map_file(input)); }
 
 // The surface in a map and the points that it goes through.
 struct MapSurface {
@@ -81,9 +81,10 @@ struct MapSurface {
   SurfaceMesh surface;
   std::vector<double> sigmas;
 
-  MapSurface(const BeliefGrid& grid, const ExecConfig& exec)
-      : points(fused_points(grid, {}, exec)),
-        surface(surface_of(points, pooling_of(grid.snapshot()), exec)),
+  MapSurface(const MapOfSensor& map, const ExecConfig& exec)
+      : points(fused_points(map.grid, {.scale_sigma = map.sensor ? map.sensor->scale_sigma : 0.0},
+                            exec)),
+        surface(surface_of(points, pooling_of(map.grid.snapshot()), exec)),
         sigmas(surface_sigmas(surface, points)) {}
 };
 
@@ -142,10 +143,10 @@ Picture gain_picture(const Options& options, const ExecConfig& exec) {
 Picture picture_of(const Options& options, const ExecConfig& exec) {
   if (options.what == "sigma") return sigma_picture(options, exec);
   if (options.what == "gain") return gain_picture(options, exec);
-  const BeliefGrid grid = map_of(options.input);
+  const MapOfSensor map = map_of(options.input);
   const Viewer viewer = viewer_of(options);
-  if (options.what == "map") return {map_picture(grid.snapshot(), viewer, exec)};
-  return {surface_image(MapSurface(grid, exec), false, {}, viewer, exec)};
+  if (options.what == "map") return {map_picture(map.grid.snapshot(), viewer, exec)};
+  return {surface_image(MapSurface(map, exec), false, {}, viewer, exec)};
 }
 
 void render(const Options& options, const App& app) {

@@ -165,6 +165,7 @@ void simulate(const Options& options) {
                 {"invalid", counts.invalid},
                 {"noise", sensing.noise == "on"},
                 {"flying_pixels", sensing.has_flying_pixels(sensor)},
+                {"scale_error", sensing.scale_error},
                 {"support_plane", sensing.support_plane},
                 {"pose_noise", pose_sigma_json(pose_noise)},
                 {"amplitude", options.writes_amplitude(sensor)},

@@ -123,7 +123,8 @@ void surface(const Options& options, const App& app) {
   const ExecConfig exec{options.common.threads};
   const std::shared_ptr<const SurfaceScene> truth = truth_of(options, exec);
   const MapOfSensor map = load_map_of_sensor(options.map, nullptr);
-  const std::vector<FusedPoint> points = fused_points(map.grid, {}, exec);
+  const std::vector<FusedPoint> points =
+      fused_points(map.grid, {.scale_sigma = map.sensor ? map.sensor->scale_sigma : 0.0}, exec);
   if (points.empty()) refuse(options.map + ": no voxel has readings that make a surface");
   const SurfaceMesh surface = surface_of(points, pooling_of(map.grid.snapshot()), exec);
   std::optional<QualityFigures> figures;

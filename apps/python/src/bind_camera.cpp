@@ -49,6 +49,8 @@ noise : bool
     Gaussian noise along the ray and of the amplitude, by the sensor's model.
 lateral_noise : bool
     Readings are of places beside their rays, by the model's lateral sigma.
+scale_error : float
+    Ranges read 1 + scale_error times what they are.
 sub_rays : int
     A pixel is sub_rays**2 rays, 1 to 16; their returns mix for sensors with a modulation frequency.
 seed : int
@@ -65,13 +67,14 @@ made; a frame is linear in pixels and sub_rays**2, 2 ms for 176x144 pixels on tw
   refuse_pickling(type);
   type.def(py::init([](const py::object& vertices, const py::object& triangles,
                        const Given<Sensor>& of, double background_radius, bool noise,
-                       bool lateral_noise, int sub_rays, std::uint64_t seed,
+                       bool lateral_noise, double scale_error, int sub_rays, std::uint64_t seed,
                        std::optional<double> support_plane, int num_threads) {
              const Sensor& sensor = *of;
              SimulationConfig config;
              config.background_radius = background_radius;
              config.noise = noise;
              config.lateral_noise = lateral_noise;
+             config.scale_error = scale_error;
              config.sub_rays = sub_rays;
              config.seed = seed;
              config.support_plane = support_plane;
@@ -84,8 +87,9 @@ made; a frame is linear in pixels and sub_rays**2, 2 ms for 176x144 pixels on tw
            py::arg("vertices"), py::arg("triangles"), py::arg("sensor"), py::kw_only(),
            py::arg("background_radius") = defaults.background_radius,
            py::arg("noise") = defaults.noise, py::arg("lateral_noise") = defaults.lateral_noise,
-           py::arg("sub_rays") = defaults.sub_rays, py::arg("seed") = defaults.seed,
-           py::arg("support_plane") = py::none(), py::arg("num_threads") = 0)
+           py::arg("scale_error") = defaults.scale_error, py::arg("sub_rays") = defaults.sub_rays,
+           py::arg("seed") = defaults.seed, py::arg("support_plane") = py::none(),
+           py::arg("num_threads") = 0)
       .def(
           "acquire",
           [](const Simulation& self, const py::object& T_world_camera, std::uint64_t frame_index) {

@@ -158,7 +158,7 @@ bool is_same(const Sensor& a, const Sensor& b) {
          a.max_range == b.max_range && a.working_distance == b.working_distance &&
          a.noise == b.noise && a.T_flange_camera == b.T_flange_camera &&
          a.body_size == b.body_size && a.range_calibration == b.range_calibration &&
-         a.pose_sigma == b.pose_sigma;
+         a.pose_sigma == b.pose_sigma && a.scale_sigma == b.scale_sigma;
 }
 
 }  // namespace
@@ -188,18 +188,22 @@ pose_sigma : sequence of float, (2,), optional
     How far the poses that frames come with may be off, standard deviations about the camera's
     centre: of its position in each axis [m], of each component of the rotation vector [rad]. Maps
     and gains count it into each reading.
+scale_sigma : float, optional
+    Standard deviation of the factor, less 1, that all ranges are off by. No number of readings makes
+    a point surer of it: ``BeliefGrid.points``.
 
 Notes
 -----
 Equal by value; can be pickled. Refuses parameters of the noise that are out of their bounds. Holds the GIL. Cost: some µs; linear in the rows of
 range_calibration.)");
-  pickle_as_call(type, {"camera", "min_range", "max_range", "working_distance", "noise", "name",
-                        "T_flange_camera", "body_size", "range_calibration", "pose_sigma"});
+  pickle_as_call(
+      type, {"camera", "min_range", "max_range", "working_distance", "noise", "name",
+             "T_flange_camera", "body_size", "range_calibration", "pose_sigma", "scale_sigma"});
   type.def(py::init([](const Given<PinholeCamera>& camera, double min_range, double max_range,
                        double working_distance, const NoiseModel& noise, std::string name,
                        const py::object& T_flange_camera,
                        std::optional<std::array<double, 3>> body_size, const py::object& table,
-                       const std::array<double, 2>& pose_sigma) {
+                       const std::array<double, 2>& pose_sigma, double scale_sigma) {
              Sensor sensor{std::move(name),
                            *camera,
                            min_range,
@@ -209,7 +213,8 @@ range_calibration.)");
                            optional_pose(T_flange_camera, "T_flange_camera"),
                            body_size,
                            range_calibration(table),
-                           {pose_sigma[0], pose_sigma[1]}};
+                           {pose_sigma[0], pose_sigma[1]},
+                           scale_sigma};
              sensor.validate();
              return sensor;
            }),
@@ -217,7 +222,7 @@ range_calibration.)");
            py::arg("working_distance"), py::arg("noise"), py::arg("name") = "custom",
            py::arg("T_flange_camera") = py::none(), py::arg("body_size") = py::none(),
            py::arg("range_calibration") = py::none(),
-           py::arg("pose_sigma") = std::array<double, 2>{0, 0})
+           py::arg("pose_sigma") = std::array<double, 2>{0, 0}, py::arg("scale_sigma") = 0.0)
       .def_readonly("name", &Sensor::name, "str")
       .def_readonly("camera", &Sensor::camera, "PinholeCamera")
       .def_readonly("min_range", &Sensor::min_range, "float: along the ray [m]")
@@ -246,6 +251,8 @@ range_calibration.)");
             return py::make_tuple(sensor.pose_sigma.translation, sensor.pose_sigma.rotation);
           },
           "(float, float): of the poses of frames [m], [rad]; zeros where they are exact")
+      .def_readonly("scale_sigma", &Sensor::scale_sigma,
+                    "float: of the factor, less 1, that all ranges are off by; 0: none")
       .def(
           "corrected",
           [](const Sensor& sensor, const py::object& depth) {

@@ -135,6 +135,9 @@ void Sensor::validate() const {
       fail("pose_sigma must be finite and not negative, not " + short_text(sigma));
     }
   }
+  if (!(std::isfinite(scale_sigma) && scale_sigma >= 0)) {
+    fail("scale_sigma must be finite and not negative, not " + short_text(scale_sigma));
+  }
   range_calibration.validate();
   for (const auto& [measured, error] : range_calibration.table) {
     if (measured > 0 && measured > error) continue;

@@ -45,6 +45,8 @@ void check(const FusedPointsConfig& config) {
        config.min_distance);
   need(config.min_relative_evidence >= 0 && config.min_relative_evidence <= 1,
        "min_relative_evidence", config.min_relative_evidence);
+  need(config.scale_sigma >= 0 && std::isfinite(config.scale_sigma), "scale_sigma",
+       config.scale_sigma);
   if (config.floor_sigma) {
     need(*config.floor_sigma >= 0 && std::isfinite(*config.floor_sigma), "floor_sigma",
          *config.floor_sigma);
@@ -129,6 +131,25 @@ double evidence(const Seed& seed, double column_area) {
 /// What of the resolution's floor is left after so much evidence, as readings of more views lie at
 /// other places in a voxel (perf/results/honesty.md).
 double floor_share(double evidence) { return std::min(1.0, 0.2 + 2.0 / std::max(evidence, 1.0)); }
+
+/// By how much a point moves if all ranges are off by the same factor 1 + x, over x [m]: the mean
+/// of the ways to it from the views before which it lies on the side of `normal`, by the readings
+/// that each has of a piece of surface, cosθ / t². Zero without such views. All in the world's
+/// frame.
+Eigen::Vector3d mean_way(const std::vector<Pose>& views, const Eigen::Vector3d& point,
+                         const Eigen::Vector3d& normal) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double weights = 0;
+  for (const Pose& view : views) {
+    const Eigen::Vector3d way = point - view.translation();
+    const double squared = way.squaredNorm(), towards = -way.dot(normal);
+    if (!(towards > 0 && way.dot(view.rotation().col(2)) > 0)) continue;
+    const double weight = towards / (squared * std::sqrt(squared));
+    sum += weight * way;
+    weights += weight;
+  }
+  return weights > 0 ? Eigen::Vector3d(sum / weights) : sum;
+}
 
 }  // namespace
 
@@ -219,9 +240,13 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
     const Eigen::Vector3d p = T_world_grid * (seed.position * V);
     const Eigen::Vector3d n = R * seed.normal;
     const double share = falls ? floor_share(evidence(seed, column_area)) : 1.0;
-    const Eigen::Matrix3d covariance =
+    Eigen::Matrix3d covariance =
         R * seed.covariance.matrix() * R.transpose() +
         Eigen::Matrix3d(Eigen::Vector3d::Constant(share * floor * floor).asDiagonal());
+    if (config.scale_sigma > 0) {
+      const Eigen::Vector3d moves = config.scale_sigma * mean_way(grid.views(), p, n);
+      covariance += moves * moves.transpose();
+    }
     points.push_back({{p.x(), p.y(), p.z()},
                       SymmetricMatrix3::from(covariance),
                       {n.x(), n.y(), n.z()},

@@ -40,6 +40,9 @@ void check(const Sensor& sensor, const SimulationConfig& config) {
     fail("sub-rays " + std::to_string(config.sub_rays) + " are not in 1.." +
          std::to_string(kMaxSubRays));
   }
+  if (!(std::abs(config.scale_error) < 1)) {
+    fail("scale error " + short_text(config.scale_error) + " is not in (-1, 1)");
+  }
   if (config.support_plane && !std::isfinite(*config.support_plane)) {
     fail("support plane " + short_text(*config.support_plane) + " m is not finite");
   }
@@ -213,6 +216,7 @@ struct SimulatedSensor::Impl {
     if (reading.range < sensor.min_range) return {};
     if (reading.range > sensor.max_range) return {DepthFrame::kOutOfRange, 0};
     reading = pixel_model.disturbed(reading, random);
+    reading.range *= 1 + config.scale_error;
     if (reading.range < sensor.min_range || pixel_model.too_dark(reading)) return {};
     if (reading.range > sensor.max_range) return {DepthFrame::kOutOfRange, 0};
     return {static_cast<float>(reading.range / ray_length), static_cast<float>(reading.amplitude)};

@@ -131,6 +131,22 @@ TEST_F(Files, SensorsSayHowSurePosesAre) {
   }
 }
 
+TEST_F(Files, SensorsSayHowSureTheirScaleIs) {
+  Sensor sensor = sensor_preset("sr4000");
+  EXPECT_EQ(sensor_toml(sensor).find("scale_sigma"), std::string::npos);
+  sensor.scale_sigma = 0.005;
+  const std::string text = sensor_toml(sensor);
+  const std::string key = "scale_sigma = ";
+  EXPECT_NE(text.find(key + "0.005"), std::string::npos) << text;
+  write("sensor.toml", text);
+  EXPECT_EQ(read_sensor_toml(dir / "sensor.toml").scale_sigma, 0.005);
+  for (const char* bad : {"-0.005", "nan", "inf", "[0.005]", "\"0.005\""}) {
+    std::string damaged = text;
+    damaged.replace(damaged.find(key), key.size() + 5, key + bad);
+    expect_sensor_error(damaged, "scale_sigma");
+  }
+}
+
 TEST_F(Files, StereoWithoutAFocalLengthGoesByTheCameras) {
   Sensor sensor = sensor_preset("d435");
   StereoNoise noise;

@@ -133,6 +133,9 @@ def test_frames_make_a_map(sensor):
     assert np.allclose(grid.views(), poses)
     points = grid.points()
     assert len(points) > 300
+    # A scale that may be off is shared by all readings, about half a metre away.
+    added = (grid.points(scale_sigma=0.01)["covariance"] - points["covariance"])[:, :3].sum(1)
+    assert (added >= 0).all() and 0.003**2 < np.median(added) < 0.006**2
     distance = np.abs(np.max(np.abs(points["position"]), axis=1) - 0.1)
     assert np.median(distance) < 0.005
     # A frame's pose that is less sure makes beliefs as a sensor with that sigma does.

@@ -90,7 +90,9 @@ def test_poses_that_may_be_off(protocol, tmp_path):
     camera = viewgain.PinholeCamera(7, 5, fx=4.0, fy=5.0, cx=2.5, cy=2.25)
     exact = viewgain.Sensor(camera, **settings)
     assert exact.pose_sigma == (0, 0)
-    sensor = viewgain.Sensor(camera, **settings, pose_sigma=[0.004, 0.01])
+    assert exact.scale_sigma == 0
+    assert viewgain.Sensor(camera, **settings, scale_sigma=0.005) != exact
+    sensor = viewgain.Sensor(camera, **settings, pose_sigma=[0.004, 0.01], scale_sigma=0.005)
     assert sensor != exact
     # C + s_t^2 I + s_r^2 t^2 (I - d d^T)
     axial, lateral = sensor.sigmas(0.5)
@@ -100,9 +102,12 @@ def test_poses_that_may_be_off(protocol, tmp_path):
     for again in (pickle.loads(pickle.dumps(sensor, protocol)), viewgain.Sensor.load(tmp_path / "sensor.toml")):
         assert again.pose_sigma == sensor.pose_sigma == (0.004, 0.01)
         assert again.sigmas(0.5) == sensor.sigmas(0.5)
+        assert again.scale_sigma == sensor.scale_sigma == 0.005
     for wrong in ([-1e-3, 0], [0, np.inf]):
         with pytest.raises(ValueError, match="pose_sigma"):
             viewgain.Sensor(camera, **settings, pose_sigma=wrong)
+    with pytest.raises(ValueError, match="scale_sigma"):
+        viewgain.Sensor(camera, **settings, scale_sigma=-1e-3)
 
 
 def test_wrong_values_are_named():

@@ -126,6 +126,43 @@ TEST(FusedPoints, PooledPointsLieOnThePlaneOncePerPlaceAndPointAtTheCamera) {
   EXPECT_GT(pairs, 100'000U);
 }
 
+// What readings share is added once, along the mean way from the views that see the free side.
+TEST(FusedPoints, AScaleErrorIsSharedByAllReadings) {
+  const Eigen::Matrix3d back = Vector3d(1, -1, -1).asDiagonal();  // looks along -z
+  const Pose placed({back}, {0.3, -0.2, 0.7});
+  BeliefGrid grid = noisy_plane(0.003125, 10, placed);
+  FrameIntegrator integrator(plane_sensor());
+  const DepthFrame nothing{64, 64, std::vector<float>(64 * 64, DepthFrame::kInvalid)};
+  const Vector3d beside(0.15, 0, 0.1);
+  integrator.integrate(grid, nothing, placed * Pose(Eigen::Matrix3d::Identity(), beside));
+  // Behind the plane, and before it but looking away: they count for nothing.
+  integrator.integrate(grid, nothing, placed * Pose(back, Vector3d(0, 0, 0.8)));
+  integrator.integrate(grid, nothing, placed * Pose(back, Vector3d(0, 0, 0.1)));
+  constexpr double kScaleSigma = 0.02;
+  const std::vector<FusedPoint> own = fused_points(grid);
+  const std::vector<FusedPoint> all = fused_points(grid, {.scale_sigma = kScaleSigma});
+  ASSERT_EQ(own.size(), all.size());
+  std::size_t checked = 0;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const Vector3d p = placed.inverse() * vector(own[i].position);
+    const Vector3d n = placed.rotation().transpose() * vector(own[i].toward_free);
+    const auto readings = [&](const Vector3d& way) {
+      return -n.dot(way.normalized()) / way.squaredNorm();
+    };
+    if (!inner({{p.x(), p.y(), p.z()}}) || n.z() > -0.95) continue;
+    const double often = 10 * readings(p), seldom = readings(p - beside);
+    const Vector3d mean = (often * p + seldom * (p - beside)) / (often + seldom);
+    const Vector3d moves = kScaleSigma * (placed.rotation() * mean);
+    const Eigen::Matrix3d added = all[i].covariance.matrix() - own[i].covariance.matrix();
+    EXPECT_LT((added - moves * moves.transpose()).norm(), 1e-9 * added.norm());
+    EXPECT_EQ(all[i].position, own[i].position);
+    ++checked;
+  }
+  EXPECT_GT(checked, 300U);
+  expect_error(ErrorCode::invalid_argument, "scale_sigma",
+               [&] { (void)fused_points(grid, {.scale_sigma = -0.1}); });
+}
+
 TEST(FusedPoints, WhereCutsOutAPartAndFarFromItsBorderChangesNothing) {
   const BeliefGrid grid = noisy_plane(0.003125, 10);
   const std::vector<FusedPoint> all = fused_points(grid);

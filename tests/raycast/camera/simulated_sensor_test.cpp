@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/expect_error.hpp"
 #include "raycast/scene_makers.hpp"
 #include "support/meshes.hpp"
 #include "viewgain/core/error.hpp"
@@ -40,6 +41,27 @@ TEST(SimulatedSensor, DepthIsAlongTheOpticalAxis) {
   ASSERT_EQ(frame.height, 144);
   ASSERT_EQ(frame.depth.size(), 176U * 144U);
   for (const float z : frame.depth) EXPECT_NEAR(z, 0.75, 1e-5);
+}
+
+TEST(SimulatedSensor, ScaleErrorsAreThoseOfEveryReading) {
+  const Sensor sensor = sensor_without_distortion();
+  int cases = 0;
+  for (const double error : {-0.02, 0.004}) {
+    for (const bool noise : {false, true}) {
+      SimulationConfig config{.noise = noise, .lateral_noise = noise};
+      const DepthFrame exact = SimulatedSensor(plane_at(0.75), sensor, config).acquire(Pose{});
+      config.scale_error = error;
+      const DepthFrame off = SimulatedSensor(plane_at(0.75), sensor, config).acquire(Pose{});
+      for (std::size_t i = 0; i < exact.depth.size(); ++i, ++cases) {
+        EXPECT_NEAR(off.depth[i], (1 + error) * static_cast<double>(exact.depth[i]), 1e-6);
+      }
+    }
+  }
+  EXPECT_EQ(cases, 4 * 176 * 144);
+  for (const double bad : {-1.0, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    test::expect_error(ErrorCode::invalid_argument, "scale error",
+                       [&] { SimulatedSensor(plane_at(0.75), sensor, {.scale_error = bad}); });
+  }
 }
 
 // How sure poses are is nothing that the camera knows.

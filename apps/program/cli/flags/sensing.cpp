@@ -28,6 +28,7 @@ SimulationConfig simulation_config(const SensingOptions& options, const Sensor& 
   config.background_radius = options.background;
   config.noise = options.noise == "on";
   config.lateral_noise = config.noise;
+  config.scale_error = options.scale_error;
   config.seed = options.seed;
   config.sub_rays = options.has_flying_pixels(sensor) ? kFlyingPixelSubRays : 1;
   config.support_plane = options.support_plane;

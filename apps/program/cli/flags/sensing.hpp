@@ -21,6 +21,7 @@ struct SensingOptions {
   std::string flying_pixels;              ///< --flying-pixels on|off; empty: as --noise
   std::uint64_t seed = 1;                 ///< --seed
   std::optional<double> support_plane{};  ///< --support-plane, world z [m]
+  double scale_error = 0;                 ///< --scale-error [1]
   std::string pose_noise;                 ///< --pose-noise SIGMA_M,SIGMA_DEG; empty: none
 
   /// Sub-rays mix only in sensors with a modulation frequency.

@@ -23,6 +23,9 @@ void describe_sensing(Options& o, Visitor& visit) {
   visit.option("background", "--background", o.background,
                "radius of a sphere round the origin that stands for the room [m]; 0: none",
                shows_default);
+  visit.option("scale_error", "--scale-error", o.scale_error,
+               "ranges read 1 + this times what they are, as by a calibration that is off",
+               shows_default);
   visit.option("pose_noise", "--pose-noise", o.pose_noise,
                "SIGMA_M,SIGMA_DEG: reported poses are off by this, in each axis [m] and each "
                "component of the rotation vector [deg]; the first view's is exact and defines the "

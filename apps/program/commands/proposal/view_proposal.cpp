@@ -92,7 +92,8 @@ void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
   o.gain = default_gain();
   app.add_option("--generator", o.generator,
                  "where views come from: boundary (open boundaries of the surface in the "
-                 "map), sphere, dome, rings, shell or sequence; default: boundary, and a "
+                 "map, and where more of it is expected), sphere, dome, rings, shell or sequence; "
+                 "default: boundary, and a "
                  "sphere round the workspace of a map without a surface or views")
       ->one_of(generator_names(), "generator");
   app.add_option(

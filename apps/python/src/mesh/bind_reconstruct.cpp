@@ -232,7 +232,8 @@ policy : {"gain", "kriegel", "random", "frontier", "proximity", "sequence"}
 gain : {"combined", "surface", "paper"}
     Of policy "gain": expected new surface and refinement, new surface alone, entropy removed.
 boundary : bool, optional
-    Propose views at the surface's open boundaries, before the candidates. Default: not for the
+    Propose views at the surface's open boundaries and where more of it is expected, before the
+    candidates. Default: not for the
     policies "sequence" and "random".
 candidates : array_like, (n, 4, 4), optional
     T_world_camera of further poses, proposed after every view; needed without boundary.

@@ -50,6 +50,10 @@ struct VIEWGAIN_EXPORT Sensor {
   RangeCalibration range_calibration{};
 
   PoseSigma pose_sigma{};  ///< zero: poses are exact
+  /// Of the factor that all ranges are off by, less 1; zero: none. All readings share it, so that
+  /// no number of them makes a point surer of it: it is in points' covariances
+  /// (FusedPointsConfig::scale_sigma), and in no reading's sigmas().
+  double scale_sigma = 0;
   /// In its depth images; nothing: as the folder's layout has it (FrameSequence).
   std::optional<OutOfRange> out_of_range{};
 
@@ -73,9 +77,9 @@ struct VIEWGAIN_EXPORT Sensor {
   /// Throws Error(invalid_argument), naming the field: camera as in PinholeCamera::validate(),
   /// 0 <= min_range < max_range, working_distance > 0 and within them, all noise parameters
   /// positive and finite (modulation frequency and least amplitude may be 0), T_flange_camera
-  /// rigid (1e-3), body_size positive and finite, pose_sigma not negative and finite,
-  /// range_calibration as in RangeCalibration::validate() with ranges that are positive, measured
-  /// and corrected.
+  /// rigid (1e-3), body_size positive and finite, pose_sigma and scale_sigma not negative
+  /// and finite, range_calibration as in RangeCalibration::validate() with ranges that are
+  /// positive, measured and corrected.
   void validate() const;
 };
 

@@ -46,6 +46,12 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
   /// that are pooled (a voxel, where the footprint is no longer), and F times min(1, 0.2 + 2 / e)
   /// for pooled points that were seen in e frontal views, as these meet a voxel at many places.
   std::optional<double> floor_sigma{};
+  /// Sensor::scale_sigma of the camera. What an error of that size moves a point by, once for all
+  /// its readings, is added to its covariance: scale_sigma² w wᵀ, w the mean way [m] to it from the
+  /// map's views that have it before them on its free side, each by the readings it makes of a
+  /// piece of surface there; what hides the point from a view is not asked. A map without views has
+  /// none.
+  double scale_sigma = 0;
   /// Points begin only at voxels, or cubes, of whose centre [m, world frame] this is true; empty:
   /// at all. Those within some lengths of its border may differ from those of the whole map.
   std::function<bool(const Eigen::Vector3d&)> where{};
@@ -56,11 +62,11 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
 /// in its column, those of voxels that have turned free included (leaving them out would bias the
 /// mean away from the camera), and survives if no point with more readings is within min_distance.
 /// Its covariance is that of this mean, in which every reading counts once; a point of per_voxel
-/// has Λ_v⁻¹. Both with F. Points are in the order of the voxels, or cubes, that they start at. A
-/// belief whose fused position is more than 24 voxels away from its voxel makes no point.
-/// Deterministic for any number of threads. Costs about 1 µs a voxel that was ever hit, where
-/// config.where says so, and a tenth elsewhere. Throws Error(invalid_argument) naming a setting
-/// that is negative, not finite or too large.
+/// has Λ_v⁻¹. Both with F, and with what all readings share. Points are in the order of the voxels,
+/// or cubes, that they start at. A belief whose fused position is more than 24 voxels away from its
+/// voxel makes no point. Deterministic for any number of threads. Costs about 1 µs a voxel that was
+/// ever hit, where config.where says so, and a tenth elsewhere. Throws Error(invalid_argument)
+/// naming a setting that is negative, not finite or too large.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<FusedPoint> fused_points(
     const BeliefGrid& grid, const FusedPointsConfig& config = {}, const ExecConfig& exec = {});
 

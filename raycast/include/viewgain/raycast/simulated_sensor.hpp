@@ -32,6 +32,9 @@ struct VIEWGAIN_EXPORT SimulationConfig {
   /// of the two directions across the ray (at the range of the centre's return, at max_range where
   /// there is none): the reading is of a place beside the ray but reported on it. Needs no `noise`.
   bool lateral_noise = false;
+  /// Ranges read 1 + scale_error times what they are: as the camera's calibration may be off, the
+  /// same in all frames. In (-1, 1).
+  double scale_error = 0;
   /// Ranges fold back to [0, c / (2 modulation_frequency)). Always so where returns mix, as their
   /// sum knows only the phase; this makes single rays do so too.
   bool ambiguity = false;

@@ -105,6 +105,43 @@ TEST_F(Sensing, FlyingPixelsFollowTheNoiseUnlessAsked) {
   EXPECT_NE(load("noisy"), load("noise_alone"));
 }
 
+TEST_F(Sensing, AScaleErrorIsInTheFramesAndWhatIsDeclaredOfItInThePoints) {
+  EXPECT_EQ(simulate("exact").at("scale_error"), 0.0);
+  EXPECT_EQ(simulate("off", {"--scale-error", "0.05"}).at("scale_error"), 0.05);
+  const std::vector<DepthFrame> exact = load("exact"), off = load("off");
+  int readings = 0;
+  ASSERT_EQ(exact.size(), off.size());
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    for (std::size_t i = 0; i < exact[k].depth.size(); ++i) {
+      const float z = exact[k].depth[i];
+      if (!(z > 0 && std::isfinite(z))) continue;
+      EXPECT_NEAR(off[k].depth[i], 1.05F * z, 2e-3F);  // images have whole steps
+      ++readings;
+    }
+  }
+  EXPECT_GT(readings, 100);
+
+  const auto median_sigma = [&](const std::string& frames) {
+    integrate(frames);
+    return json::parse(run_well({"surface", "map.vdb", "--points", "points.ply", "--json"}))
+        .at("median_sigma")
+        .get<double>();
+  };
+  const double own = median_sigma("exact");
+  write("declared.toml", "scale_sigma = 0.05\n" + read("tof.toml"));
+  simulate("declared", {}, "declared.toml");
+  EXPECT_EQ(load("declared"), exact);
+  // 0.05 times half a metre and less, seen at a slant.
+  const double added = std::sqrt(std::pow(median_sigma("declared"), 2) - own * own);
+  EXPECT_GT(added, 0.05 * 0.2);
+  EXPECT_LT(added, 0.05 * 0.6);
+  for (const char* bad : {"1", "-1", "nan", "x"}) {
+    expect_refused_with({"simulate", "cube.off", "--orbit", "2,0.6,27,0,46", "--sensor", "tof.toml",
+                         "--size", "0.3", "--out", "new"},
+                        {{{"--scale-error", bad}, "scale"}});
+  }
+}
+
 TEST_F(Sensing, BadFlagsAndImagesAreRefused) {
   simulate("frames");
   write("frames/frame-000001.amplitude.png", "no image");

@@ -38,6 +38,7 @@ typedef struct vg_sensor {
   int32_t noise_model;         /* VG_NOISE_ */
   double noise[6];             /* the model's parameters, in the order of VG_NOISE_; the rest 0 */
   double pose_sigma[2];        /* of the poses of frames, in this order: [m], [rad]; 0: exact */
+  double scale_sigma;          /* of one factor, less 1, that all ranges are off by; 0: none */
 } vg_sensor;
 VG_API void vg_sensor_init(vg_sensor* sensor, size_t struct_size); /* all 0: nothing is valid yet */
 

@@ -48,11 +48,13 @@ boundary_views(const SurfaceMesh& surface, const std::shared_ptr<const VoxelScen
 /// Costs O(candidates).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Candidate> candidates_of(const EstimatedViews& estimated);
 
-/// VIEWPOINTSGENERATION at the boundaries of the surface in a map, made anew for each proposal:
-/// what ViewPlanner::add_generation() takes. Nothing is dropped; the planner looks what is
-/// possible. Where the map has no surface yet, or no views (as an OctoMap), a sphere round the
-/// workspace is proposed. Thread safety: one call at a time. Cost: the
-/// surface is made anew, fused_points() and reconstruct_surface(), and estimate_views().
+/// VIEWPOINTSGENERATION at the boundaries of the surface in a map, made anew for each proposal.
+/// Where these are fewer than 200, hazard_views() are the rest: holes that no boundary names, and
+/// surface that is still expected where nothing is open. What ViewPlanner::add_generation() takes.
+/// Nothing is dropped; the planner looks what is possible. Where the map has no surface yet, or no
+/// views (as an OctoMap), a sphere round the workspace is proposed. Thread safety: one call at a
+/// time. Cost: the surface is made anew, fused_points() and reconstruct_surface(), estimate_views()
+/// and hazard_views().
 class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
  public:
   /// Of the surface in a map, say ViewPlanner::map(), which must outlive it; it is made anew for
@@ -63,7 +65,8 @@ class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
   BoundaryGeneration(const SurfaceModel& model, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
 
-  /// Views at the open boundaries of the surface as it is. Throws as boundary_views().
+  /// Those at the open boundaries of the surface as it is, and the hazard's. Throws as
+  /// boundary_views().
   Proposal generate(const Pose& T_world_camera) override;
 
   /// Behind the last proposal.

@@ -19,7 +19,7 @@ namespace viewgain {
 
 /// Where candidates come from, and which are possible.
 struct VIEWGAIN_EXPORT GenerationConfig {
-  bool at_boundaries = true;        ///< candidates at the surface's open boundaries
+  bool at_boundaries = true;        ///< candidates of BoundaryGeneration
   BoundaryViewsConfig boundary{};   ///< views at the surface's open boundaries
   std::vector<PoseSet> sets{};      ///< fixed poses, in the order of proposal
   std::vector<Pose> tried{};        ///< views that brought nothing, beside the model's

@@ -23,7 +23,7 @@ namespace viewgain {
 /// What changes the model.
 struct VIEWGAIN_EXPORT SurfaceModelConfig {
   MapModelConfig map{};        ///< how the map is kept
-  FusedPointsConfig points{};  ///< how beliefs become points
+  FusedPointsConfig points{};  ///< how beliefs become points; scale_sigma is the sensor's
 };
 
 /// The surface through the points of a map with this pooling (pooling_of()), whose length is how
