@@ -40,15 +40,16 @@ bool is_octomap(const std::filesystem::path& path) {
   return small_ending(path) == ".ot" || small_ending(path) == ".bt";
 }
 
-BeliefGrid load_map(const std::filesystem::path& path, const Sensor* sensor, OctomapConfig config) {
-  return load_map_of_sensor(path, sensor, config).grid;
+BeliefGrid load_map(const std::filesystem::path& path, const Sensor* sensor, OctomapConfig config,
+                    const ExecConfig& exec) {
+  return load_map_of_sensor(path, sensor, config, exec).grid;
 }
 
 MapOfSensor load_map_of_sensor(const std::filesystem::path& path, const Sensor* sensor,
-                               OctomapConfig config) {
+                               OctomapConfig config, const ExecConfig& exec) {
   if (!is_octomap(path)) {
     std::map<std::string, std::string> notes;
-    MapOfSensor result{load_vdb(path, &notes), std::nullopt};
+    MapOfSensor result{load_vdb(path, &notes, exec), std::nullopt};
     if (const auto note = notes.find(kSensorNote); note != notes.end()) {
       result.sensor = parse_sensor_toml(note->second, path.string());
     }

@@ -89,7 +89,7 @@ void refuse_none(const Options& options, const Proposal& proposal) {
 void candidates(const Options& options) {
   check(options.proposal);
   const ExecConfig exec = exec_of(options.common);
-  SensedMap map = load_sensed_map(options.map, options.sensor);
+  SensedMap map = load_sensed_map(options.map, options.sensor, exec);
   require_known(map.grid, options.map);
   const Sensor sensor = with_body(std::move(map.sensor), options.proposal);
   const GenerationConfig config =

@@ -49,7 +49,8 @@ void convert(const Options& options) {
   config.prior_sigma = options.prior_sigma;
   std::optional<Sensor> sensor;
   if (!options.sensor.empty()) sensor = load_sensor(options.sensor);
-  const MapOfSensor map = load_map_of_sensor(options.in, sensor ? &*sensor : nullptr, config);
+  const MapOfSensor map =
+      load_map_of_sensor(options.in, sensor ? &*sensor : nullptr, config, exec_of(options.common));
   const BeliefGrid& grid = map.grid;
   VdbWriteConfig how = noting_frames(map.frames, {options.with_covariance == "on"});
   if (map.sensor) how = noting_sensor(*map.sensor, std::move(how));

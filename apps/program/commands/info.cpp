@@ -71,7 +71,7 @@ Json hazard_factors(const BeliefGrid& grid) {
 
 void info(const Options& options) {
   const Criterion criterion = parse_criterion(options.criterion);
-  const MapOfSensor map = load_map_of_sensor(options.map);
+  const MapOfSensor map = load_map_of_sensor(options.map, nullptr, {}, exec_of(options.common));
   const BeliefGrid& grid = map.grid;
   if (options.hash) {
     if (options.common.json) {

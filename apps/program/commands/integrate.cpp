@@ -66,7 +66,7 @@ GrownMap continued_map(const Sensor& sensor, const Options& options) {
   OctomapConfig tree;  // which has no prior or workspace of its own
   tree.prior_sigma = options.prior_sigma;
   if (!options.workspace.empty()) tree.workspace = parse_box("--workspace", options.workspace);
-  MapOfSensor map = load_map_of_sensor(options.map, &sensor, tree);
+  MapOfSensor map = load_map_of_sensor(options.map, &sensor, tree, exec_of(options.common));
   const bool is_of_two =
       warn_of_other_sensor(options.map, map, sensor) || (!map.sensor && !map.grid.views().empty());
   BeliefGrid& grid = map.grid;

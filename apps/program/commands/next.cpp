@@ -39,7 +39,8 @@ struct Frames {
 
 SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<Frames>& frames) {
   if (options.frames.folder.folder.empty()) {
-    SensedMap map = load_sensed_map(options.source, options.frames.folder.sensor);
+    SensedMap map =
+        load_sensed_map(options.source, options.frames.folder.sensor, exec_of(options.common));
     require_known(map.grid, options.source);
     return {std::move(map.grid), with_body(std::move(map.sensor), options.proposal)};
   }

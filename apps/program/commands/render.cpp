@@ -73,7 +73,9 @@ std::string map_file(const std::string& input) {
   std::error_code ignored;
   return fs::is_directory(input, ignored) ? (fs::path(input) / "map.vdb").string() : input;
 }
-MapOfSensor map_of(const std::string& input) { return load_map_of_sensor(map_file(input)); }
+MapOfSensor map_of(const std::string& input, const ExecConfig& exec) {
+  return load_map_of_sensor(map_file(input), nullptr, {}, exec);
+}
 
 // The surface in a map and the points that it goes through.
 struct MapSurface {
@@ -108,7 +110,7 @@ RgbImage surface_image(const MapSurface& made, bool with_sigma, std::array<doubl
 }
 
 Picture sigma_picture(const Options& options, const ExecConfig& exec) {
-  const MapSurface made(map_of(options.input), exec);
+  const MapSurface made(map_of(options.input, exec), exec);
   const Viewer viewer = viewer_of(options);
   if (!options.ellipsoids) {
     const auto range = usual_range(made.sigmas);
@@ -125,7 +127,7 @@ Picture sigma_picture(const Options& options, const ExecConfig& exec) {
 Picture gain_picture(const Options& options, const ExecConfig& exec) {
   if (options.poses.none()) refuse("--what gain needs poses, say --sphere 500,0.6");
   const std::vector<Pose> poses = make_poses(options.poses, options.seed).poses;
-  const auto [grid, sensor] = load_sensed_map(map_file(options.input), options.sensor);
+  const auto [grid, sensor] = load_sensed_map(map_file(options.input), options.sensor, exec);
   const auto scene = VoxelScene::build(grid, {}, exec);
   GainConfig config;
   config.model = parse_gain_model(options.gain);
@@ -143,7 +145,7 @@ Picture gain_picture(const Options& options, const ExecConfig& exec) {
 Picture picture_of(const Options& options, const ExecConfig& exec) {
   if (options.what == "sigma") return sigma_picture(options, exec);
   if (options.what == "gain") return gain_picture(options, exec);
-  const MapOfSensor map = map_of(options.input);
+  const MapOfSensor map = map_of(options.input, exec);
   const Viewer viewer = viewer_of(options);
   if (options.what == "map") return {map_picture(map.grid.snapshot(), viewer, exec)};
   return {surface_image(MapSurface(map, exec), false, {}, viewer, exec)};

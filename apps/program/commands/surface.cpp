@@ -122,7 +122,7 @@ void surface(const Options& options, const App& app) {
   check(options, app);
   const ExecConfig exec{options.common.threads};
   const std::shared_ptr<const SurfaceScene> truth = truth_of(options, exec);
-  const MapOfSensor map = load_map_of_sensor(options.map, nullptr);
+  const MapOfSensor map = load_map_of_sensor(options.map, nullptr, {}, exec);
   const std::vector<FusedPoint> points =
       fused_points(map.grid, {.scale_sigma = map.sensor ? map.sensor->scale_sigma : 0.0}, exec);
   if (points.empty()) refuse(options.map + ": no voxel has readings that make a surface");

@@ -3,7 +3,9 @@
 #include "viewgain/core/jump_edge_filter.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "viewgain/core/error.hpp"
@@ -24,6 +26,32 @@ bool along_ray(const Eigen::Vector3d& p, const Eigen::Vector3d& q, double sin2_a
   return p.cross(edge).squaredNorm() < sin2_angle * p.squaredNorm() * edge.squaredNorm();
 }
 
+/// Ranges r and (1 + t) r of directions d apart span an edge within angle a of the farther one's
+/// ray if t² + 2 (1 + t) (1 - cos d) > sin² d / sin² a: not below the bound found here on (1 + t)²,
+/// for the least d of neighbours in the image; at right angles and beyond none is.
+double smooth_ratio(const std::vector<Eigen::Vector3d>& rays, std::size_t width,
+                    double sin2_angle) {
+  double sin2_least = std::numeric_limits<double>::infinity();
+  const auto look = [&](std::size_t p, std::size_t q) {
+    const double squares = rays[p].squaredNorm() * rays[q].squaredNorm();
+    if (!std::isfinite(squares)) return;  // no ray
+    const double sin2 = rays[p].cross(rays[q]).squaredNorm() / squares;
+    sin2_least = std::min(sin2_least, rays[p].dot(rays[q]) > 0 ? sin2 : 0.0);
+  };
+  for (std::size_t p = 0; p < rays.size(); ++p) {
+    const bool is_first = p % width == 0, is_last = p % width == width - 1;
+    if (!is_last) look(p, p + 1);
+    if (p + width >= rays.size()) continue;
+    if (!is_first) look(p, p + width - 1);
+    look(p, p + width);
+    if (!is_last) look(p, p + width + 1);
+  }
+  // With t <= 1/2 and d <= 30 degrees 2 (1 + t) (1 - cos d) is below 1.7 sin² d.
+  if (!(sin2_least <= 0.25)) return 1;
+  const double t = 0.99 * std::min(std::sqrt(sin2_least * (1 / sin2_angle - 1.7)), 0.5);
+  return (1 + t) * (1 + t);
+}
+
 }  // namespace
 
 JumpEdgeFilter::JumpEdgeFilter(const PinholeCamera& camera, const JumpEdgeFilter::Config& config)
@@ -34,6 +62,8 @@ JumpEdgeFilter::JumpEdgeFilter(const PinholeCamera& camera, const JumpEdgeFilter
                                                  short_text(config_.angle / kDegree));
   }
   rays_ = camera_.ray_table();
+  const double sin_angle = std::sin(config_.angle);
+  smooth_ = smooth_ratio(rays_, static_cast<std::size_t>(camera_.width), sin_angle * sin_angle);
 }
 
 std::size_t JumpEdgeFilter::apply(DepthFrame& frame) const {
@@ -43,29 +73,43 @@ std::size_t JumpEdgeFilter::apply(DepthFrame& frame) const {
   const auto height = static_cast<std::size_t>(camera_.height);
 
   // Zero where there is no reading; a reading cannot be at the camera's centre.
-  std::vector<Eigen::Vector3d> points(pixels, Eigen::Vector3d::Zero());
   std::vector<double> squared_ranges(pixels, 0.0);
+  std::vector<float> depth = frame.depth;
+  const auto point = [&](std::size_t i) -> Eigen::Vector3d {
+    return static_cast<double>(depth[i]) * rays_[i];
+  };
   for (std::size_t i = 0; i < pixels; ++i) {
-    const float depth = frame.depth[i];
-    if (!(depth > 0 && std::isfinite(depth)) || !rays_[i].allFinite()) continue;
-    points[i] = static_cast<double>(depth) * rays_[i];
-    squared_ranges[i] = points[i].squaredNorm();
+    if (!(depth[i] > 0 && std::isfinite(depth[i])) || !rays_[i].allFinite()) continue;
+    squared_ranges[i] = point(i).squaredNorm();
   }
 
   const double sin_angle = std::sin(config_.angle);
   const double sin2_angle = sin_angle * sin_angle;
   std::size_t removed = 0;
+  // Of three rows the least squared range, and so of all neighbours; infinite where nothing is.
+  std::vector<double> least(width + 2);
   for (std::size_t v = 0; v < height; ++v) {
+    std::fill(least.begin(), least.end(), std::numeric_limits<double>::infinity());
+    for (std::size_t j = v > 0 ? v - 1 : v; j <= v + 1 && j < height; ++j) {
+      for (std::size_t u = 0; u < width; ++u) {
+        const double squared = squared_ranges[j * width + u];
+        least[u + 1] = squared > 0 && squared < least[u + 1] ? squared : least[u + 1];
+      }
+    }
     for (std::size_t u = 0; u < width; ++u) {
       const std::size_t p = v * width + u;
       if (!(squared_ranges[p] > 0)) continue;
+      const double nearest = std::min({least[u], least[u + 1], least[u + 2]});
+      if (!config_.two_sided && squared_ranges[p] < smooth_ * nearest) continue;
       bool flying = false;
       for (std::size_t j = v > 0 ? v - 1 : v; j <= v + 1 && j < height && !flying; ++j) {
         for (std::size_t i = u > 0 ? u - 1 : u; i <= u + 1 && i < width && !flying; ++i) {
           const std::size_t q = j * width + i;
-          if (q == p || !(squared_ranges[q] > 0)) continue;
+          const double near = std::min(squared_ranges[p], squared_ranges[q]);
+          const double far = std::max(squared_ranges[p], squared_ranges[q]);
+          if (far < smooth_ * near || !(near > 0)) continue;
           if (!config_.two_sided && !(squared_ranges[q] < squared_ranges[p])) continue;
-          flying = along_ray(points[p], points[q], sin2_angle);
+          flying = along_ray(point(p), point(q), sin2_angle);
         }
       }
       if (!flying) continue;

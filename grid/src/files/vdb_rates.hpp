@@ -54,7 +54,7 @@ class RateReader {
   [[nodiscard]] openvdb::FloatGrid::Ptr grid_of(const VdbContents& contents) const {
     openvdb::FloatGrid::Ptr found;
     std::size_t count = 0;
-    for (const auto& grid : *contents.grids) {
+    for (const auto& grid : contents.grids) {
       const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
       if (floats && grid->getName() == kHazardGridName) return floats;
       if (floats) found = floats, ++count;

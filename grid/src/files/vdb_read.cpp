@@ -10,8 +10,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "map/belief_check.hpp"
 #include "pose_text.hpp"
@@ -23,6 +25,7 @@
 #include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/solid_voxels.hpp"
 #include "viewgain/support/text.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -34,19 +37,22 @@ using openvdb::FloatGrid;
 using openvdb::FloatTree;
 using openvdb::Vec3f;
 using openvdb::Vec3SGrid;
+using FloatLeaf = FloatTree::LeafNodeType;
+using Vec3Leaf = openvdb::Vec3STree::LeafNodeType;
 
 class Loader {
  public:
-  explicit Loader(std::filesystem::path path) : path_(std::move(path)) {}
+  Loader(std::filesystem::path path, const ExecConfig& exec)
+      : path_(std::move(path)), pool_(exec.num_threads) {}
 
-  [[nodiscard]] BeliefGrid load(std::map<std::string, std::string>* notes) const {
-    const VdbContents contents(path_);
+  [[nodiscard]] BeliefGrid load(std::map<std::string, std::string>* notes) {
+    const VdbContents contents(path_, pool_);
     try {
-      check_version(*contents.metadata);
-      auto storage = make_storage(*contents.metadata);
+      check_version(contents.metadata);
+      auto storage = make_storage(contents.metadata);
       load_states(contents, *storage);
       load_beliefs(contents, *storage);
-      if (notes != nullptr) *notes = notes_of(*contents.metadata);
+      if (notes != nullptr) *notes = notes_of(contents.metadata);
       return GridAccess::wrap(std::move(storage));
     } catch (const openvdb::Exception& error) {
       fail(std::string("cannot be read by OpenVDB: ") + error.what());
@@ -126,7 +132,7 @@ class Loader {
   }
 
   [[nodiscard]] static bool has_grid(const VdbContents& contents, const std::string& name) {
-    return std::any_of(contents.grids->begin(), contents.grids->end(),
+    return std::any_of(contents.grids.begin(), contents.grids.end(),
                        [&](const auto& grid) { return grid->getName() == name; });
   }
 
@@ -135,7 +141,7 @@ class Loader {
                                                     const GridStorage& s,
                                                     const std::string& name) const {
     typename Grid::Ptr found;
-    for (const auto& grid : *contents.grids) {
+    for (const auto& grid : contents.grids) {
       if (grid->getName() != name) continue;
       found = openvdb::gridPtrCast<Grid>(grid);
       if (!found) fail("grid '" + name + "' has values of type " + grid->valueType());
@@ -156,50 +162,55 @@ class Loader {
     return found->tree();
   }
 
+  [[nodiscard]] static float state_of(std::uint8_t code) { return is_occupied(code) ? 2.0F : 1.0F; }
+
+  [[nodiscard]] static std::string where(const Coord& at) {
+    return " at voxel [" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
+           std::to_string(at.z()) + "]";
+  }
+
   [[nodiscard]] std::uint8_t checked_code(const Coord& at, float log_odds, float state) const {
-    const auto where = [&at] {
-      return " at voxel [" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
-             std::to_string(at.z()) + "]";
-    };
     if (!(log_odds > -2.001F && log_odds < 3.501F)) {
-      fail("log_odds " + short_text(log_odds) + where() + " is not within -2 .. 3.5");
+      fail("log_odds " + short_text(log_odds) + where(at) + " is not within -2 .. 3.5");
     }
     const std::uint8_t code = log_odds_code(log_odds);
     if (std::abs(code_log_odds(code) - log_odds) > 1e-4F) {
-      fail("log_odds " + short_text(log_odds) + where() + " is no multiple of 0.05");
+      fail("log_odds " + short_text(log_odds) + where(at) + " is no multiple of 0.05");
     }
-    if (state != (is_occupied(code) ? 2.0F : 1.0F)) {
-      fail("state " + short_text(state) + where() + " contradicts log_odds " +
+    if (state != state_of(code)) {
+      fail("state " + short_text(state) + where(at) + " contradicts log_odds " +
            short_text(log_odds));
     }
     return code;
   }
 
-  void load_states(const VdbContents& contents, GridStorage& s) const {
+  static constexpr const char* kOtherVoxels =
+      "grids 'state' and 'log_odds' do not know the same voxels";
+
+  void load_states(const VdbContents& contents, GridStorage& s) {
     const auto& log_odds = tree<FloatGrid>(contents, s, "log_odds");
     const auto& state = tree<FloatGrid>(contents, s, "state");
     if (log_odds.activeVoxelCount() != state.activeVoxelCount()) {
-      fail("grids 'state' and 'log_odds' do not know the same voxels");
+      fail(kOtherVoxels);
+    }
+    struct Made {
+      std::unique_ptr<CodeLeaf> leaf;
+      std::uint8_t first_code = kUnknownCode;
+    };
+    std::vector<const FloatLeaf*> leaves;
+    log_odds.getNodes(leaves);
+    std::vector<Made> made(leaves.size());
+    for_each_leaf(leaves.size(), [&](std::size_t i) {
+      std::array<std::uint8_t, kBlockVoxels> codes;
+      codes.fill(kUnknownCode);
+      fill_codes(*leaves[i], state, codes);
+      made[i] = {GridStorage::make_leaf(to_index(leaves[i]->origin()), codes.data()), codes[0]};
+    });
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+      if (leaves[i]->isEmpty()) continue;
+      s.put_leaf(to_index(leaves[i]->origin()), std::move(made[i].leaf), made[i].first_code);
     }
     const openvdb::tree::ValueAccessor<const FloatTree, false> states(state);
-    const auto state_at = [&](const Coord& at) {
-      float found = 0;
-      if (!states.probeValue(at, found)) {
-        fail("grids 'state' and 'log_odds' do not know the same voxels");
-      }
-      return found;
-    };
-
-    std::array<std::uint8_t, kBlockVoxels> codes;
-    for (auto leaf = log_odds.cbeginLeaf(); leaf; ++leaf) {
-      codes.fill(kUnknownCode);
-      bool any = false;
-      for (auto it = leaf->cbeginValueOn(); it; ++it) {
-        codes[it.pos()] = checked_code(it.getCoord(), *it, state_at(it.getCoord()));
-        any = true;
-      }
-      if (any) s.put_block(to_index(leaf->origin()), codes.data());
-    }
     SolidVoxels solid(path_.string());
     auto tile = log_odds.cbeginValueOn();
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
@@ -217,8 +228,49 @@ class Loader {
           check_states(*state.probeConstLeaf(at), *tile);
         }
       }
-      load_tile(tile.getBoundingBox(), checked_code(at, *tile, state_at(at)), solid, s);
+      float value = 0;
+      if (!states.probeValue(at, value)) fail(kOtherVoxels);
+      load_tile(tile.getBoundingBox(), checked_code(at, *tile, value), solid, s);
     }
+  }
+
+  /// Calls body(i) for i < count, side by side. Of several errors the first is thrown.
+  template <typename Body>
+  void for_each_leaf(std::size_t count, const Body& body) {
+    constexpr std::size_t kChunk = 64;
+    try {
+      pool_.for_each_chunk(count, kChunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) body(i);
+      });
+    } catch (const Error&) {
+      for (std::size_t i = 0; i < count; ++i) body(i);
+      throw;
+    }
+  }
+
+  void fill_codes(const FloatLeaf& log_odds, const FloatTree& state,
+                  std::array<std::uint8_t, kBlockVoxels>& codes) const {
+    const FloatLeaf* const states = state.probeConstLeaf(log_odds.origin());
+    for_each_bit(leaf_mask(log_odds.getValueMask()), [&](unsigned offset) {
+      float known = 0;
+      if (!probe(state, states, log_odds, offset, known)) fail(kOtherVoxels);
+      const float value = log_odds.getValue(offset);
+      // Of nearly all this is the code; the others are looked at closely.
+      const bool is_within = value >= -2 && value <= 3.5F;
+      const auto guess = static_cast<std::uint8_t>(is_within ? 20 * value + 41.5F : 0.0F);
+      const bool is_code = code_log_odds(guess) == value && known == state_of(guess);
+      codes[offset] =
+          is_code ? guess : checked_code(log_odds.offsetToGlobalCoord(offset), value, known);
+    });
+  }
+
+  /// What a tree has at a voxel of a leaf of another; `own` is its own leaf there, null if none.
+  template <typename Tree, typename Leaf>
+  [[nodiscard]] static bool probe(const Tree& tree, const typename Tree::LeafNodeType* own,
+                                  const Leaf& leaf, unsigned offset,
+                                  typename Tree::ValueType& value) {
+    return own != nullptr ? own->probeValue(offset, value)
+                          : tree.probeValue(leaf.offsetToGlobalCoord(offset), value);
   }
 
   // Looks at the states of a node in a tile of one log-odds, by the node's own tiles: one by one,
@@ -226,7 +278,7 @@ class Loader {
   template <typename Node>
   void check_states(const Node& states, float log_odds) const {
     for (auto it = states.cbeginValueAll(); it; ++it) {
-      if (!it.isValueOn()) fail("grids 'state' and 'log_odds' do not know the same voxels");
+      if (!it.isValueOn()) fail(kOtherVoxels);
       (void)checked_code(it.getCoord(), log_odds, *it);
     }
     if constexpr (Node::LEVEL > 0) {
@@ -252,102 +304,92 @@ class Loader {
     }
   }
 
-  /// The hits of a voxel, whichever grids say them.
-  class Hits {
-   public:
-    Hits(const Loader& loader, const VdbContents& contents, const GridStorage& s)
-        : loader_(loader), hits_(loader.tree<FloatGrid>(contents, s, "hits")) {
-      if (loader.has_grid(contents, "hits_rest")) {
-        rest_ = &loader.tree<FloatGrid>(contents, s, "hits_rest");
-      }
-    }
+  static constexpr const char* kOtherBeliefs = "the grids of beliefs do not hold the same voxels";
 
-    [[nodiscard]] std::uint64_t voxels() const { return hits_.activeVoxelCount(); }
-
-    [[nodiscard]] std::uint32_t at(const Coord& voxel) const {
-      float rounded = 0;
-      if (!hits_.probeValue(voxel, rounded)) {
-        loader_.fail("the grids of beliefs do not hold the same voxels");
-      }
-      const double hits =
-          double{rounded} + double{rest_ != nullptr ? rest_->getValue(voxel) : 0.0F};
-      constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-      if (!(hits >= 0 && hits <= kMost && hits == std::floor(hits))) {
-        loader_.fail("grid 'hits' has the count " + short_text(hits));
-      }
-      return static_cast<std::uint32_t>(hits);
-    }
-
-   private:
-    const Loader& loader_;
-    const FloatTree& hits_;
-    const FloatTree* rest_ = nullptr;
+  /// Where the grids of beliefs are.
+  struct BeliefTrees {
+    std::array<const openvdb::Vec3STree*, 3> parts;
+    const FloatTree* hits;
+    const FloatTree* hits_rest;  ///< null if there is none
   };
 
-  void load_beliefs(const VdbContents& contents, GridStorage& s) const {
-    const Hits hits(*this, contents, s);
-    const std::array<const openvdb::Vec3STree*, 3> parts{
-        &tree<Vec3SGrid>(contents, s, "information_diagonal"),
-        &tree<Vec3SGrid>(contents, s, "information_offdiagonal"),
-        &tree<Vec3SGrid>(contents, s, "information_vector")};
-    for (const openvdb::Vec3STree* part : parts) {
-      if (part->activeVoxelCount() != hits.voxels()) {
-        fail("the grids of beliefs do not hold the same voxels");
-      }
+  void load_beliefs(const VdbContents& contents, GridStorage& s) {
+    const BeliefTrees trees{
+        {&tree<Vec3SGrid>(contents, s, "information_diagonal"),
+         &tree<Vec3SGrid>(contents, s, "information_offdiagonal"),
+         &tree<Vec3SGrid>(contents, s, "information_vector")},
+        &tree<FloatGrid>(contents, s, "hits"),
+        has_grid(contents, "hits_rest") ? &tree<FloatGrid>(contents, s, "hits_rest") : nullptr};
+    for (const openvdb::Vec3STree* part : trees.parts) {
+      if (part->activeVoxelCount() != trees.hits->activeVoxelCount()) fail(kOtherBeliefs);
     }
-    if (parts[0]->activeTileCount() != 0) fail("grid 'information_diagonal' has tiles");
-    for (auto leaf = parts[0]->cbeginLeaf(); leaf; ++leaf) {
-      if (leaf->isEmpty()) continue;
-      auto block = std::make_shared<BeliefBlock>();
-      for (openvdb::Index i = 0; i < 8; ++i) {
-        block->mask[i] = leaf->getValueMask().getWord<std::uint64_t>(i);
-      }
-      block->beliefs.reserve(leaf->onVoxelCount());
-      for (auto it = leaf->cbeginValueOn(); it; ++it) {
-        block->beliefs.push_back(
-            checked_belief(it.getCoord(), hits.at(it.getCoord()), parts, s.voxel_size));
-        if (s.tree.getValue(it.getCoord()) == kUnknownCode) {
-          fail("grid 'hits' has a voxel that is unknown in 'state'");
-        }
-      }
-      s.beliefs[s.lattice.key(to_index(leaf->cbeginValueOn().getCoord()))] = std::move(block);
+    if (trees.parts[0]->activeTileCount() != 0) fail("grid 'information_diagonal' has tiles");
+    std::vector<const Vec3Leaf*> leaves;
+    trees.parts[0]->getNodes(leaves);
+    std::vector<std::shared_ptr<BeliefBlock>> blocks(leaves.size());
+    for_each_leaf(leaves.size(),
+                  [&](std::size_t i) { blocks[i] = block_of(*leaves[i], trees, s); });
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+      if (blocks[i]->beliefs.empty()) continue;
+      s.beliefs[s.lattice.key(to_index(leaves[i]->origin()))] = std::move(blocks[i]);
     }
   }
 
-  [[nodiscard]] Belief checked_belief(const Coord& at, std::uint32_t hits,
-                                      const std::array<const openvdb::Vec3STree*, 3>& parts,
-                                      double voxel_size) const {
-    Belief belief;
+  [[nodiscard]] std::shared_ptr<BeliefBlock> block_of(const Vec3Leaf& leaf,
+                                                      const BeliefTrees& trees,
+                                                      const GridStorage& s) const {
+    auto block = std::make_shared<BeliefBlock>();
+    block->mask = leaf_mask(leaf.getValueMask());
+    block->beliefs.reserve(leaf.onVoxelCount());
+    std::array<const Vec3Leaf*, 3> parts;
     for (std::size_t part = 0; part < 3; ++part) {
-      Vec3f value;
-      if (!parts[part]->probeValue(at, value))
-        fail("the grids of beliefs do not hold the same voxels");
-      for (int i = 0; i < 3; ++i) {
-        const auto position = static_cast<std::size_t>(i);
-        if (part < 2) belief.information[3 * part + position] = value[i];
-        if (part == 2) belief.information_vector[position] = value[i];
+      parts[part] = trees.parts[part]->probeConstLeaf(leaf.origin());
+    }
+    const FloatLeaf* const hits = trees.hits->probeConstLeaf(leaf.origin());
+    for_each_bit(block->mask, [&](unsigned offset) {
+      Belief belief;
+      for (std::size_t part = 0; part < 3; ++part) {
+        Vec3f value;
+        if (!probe(*trees.parts[part], parts[part], leaf, offset, value)) fail(kOtherBeliefs);
+        float* const to =
+            part < 2 ? &belief.information[3 * part] : belief.information_vector.data();
+        std::copy_n(value.asPointer(), 3, to);
       }
-    }
-    belief.hits = hits;
-    const std::string fault = fault_of_belief(belief, voxel_size);
-    if (!fault.empty()) {
-      fail("belief at voxel [" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
-           std::to_string(at.z()) + "] " + fault);
-    }
-    return belief;
+      const Coord at = leaf.offsetToGlobalCoord(offset);
+      float rounded = 0;
+      if (!probe(*trees.hits, hits, leaf, offset, rounded)) fail(kOtherBeliefs);
+      const double count =
+          double{rounded} +
+          double{trees.hits_rest != nullptr ? trees.hits_rest->getValue(at) : 0.0F};
+      constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+      if (!(count >= 0 && count <= kMost && count == std::floor(count))) {
+        fail("grid 'hits' has the count " + short_text(count));
+      }
+      belief.hits = static_cast<std::uint32_t>(count);
+      const std::string fault = fault_of_belief(belief, s.voxel_size);
+      if (!fault.empty()) fail("belief" + where(at) + " " + fault);
+      if (s.tree.getValue(at) == kUnknownCode) {
+        fail("grid 'hits' has a voxel that is unknown in 'state'");
+      }
+      block->beliefs.push_back(belief);
+    });
+    return block;
   }
 
   std::filesystem::path path_;
+  ThreadPool pool_;
 };
 
 }  // namespace
 
-BeliefGrid load_vdb(const std::filesystem::path& path, std::map<std::string, std::string>* notes) {
-  return Loader(path).load(notes);
+BeliefGrid load_vdb(const std::filesystem::path& path, std::map<std::string, std::string>* notes,
+                    const ExecConfig& exec) {
+  return Loader(path, exec).load(notes);
 }
 
 HazardConfig::Volume load_hazard_vdb(const std::filesystem::path& path, const BeliefGrid& grid) {
-  const VdbContents contents(path);
+  ThreadPool pool(1);
+  const VdbContents contents(path, pool);
   try {
     return RateReader(path, contents).rates_in(grid);
   } catch (const openvdb::Exception& error) {

@@ -142,20 +142,27 @@ detail::GridStorage::GridStorage(double voxel_size_in, const Pose& T_world_grid_
       kUnknownCode, true);
 }
 
-void detail::GridStorage::put_block(Index3 origin, const std::uint8_t* codes) {
+std::unique_ptr<detail::CodeLeaf> detail::GridStorage::make_leaf(Index3 origin,
+                                                                 const std::uint8_t* codes) {
   const bool uniform =
       std::all_of(codes, codes + kBlockVoxels, [&](std::uint8_t code) { return code == codes[0]; });
-  if (uniform && may_be_tile(codes[0])) {
-    tree.addTile(kBlockTileLevel, to_coord(origin), codes[0], is_non_free(codes[0]));
-    return;
-  }
+  if (uniform && may_be_tile(codes[0])) return nullptr;
   auto leaf = std::make_unique<CodeLeaf>(to_coord(origin), kUnknownCode, true);
   std::memcpy(leaf->buffer().data(), codes, kBlockVoxels);
   const LeafMask known = known_mask(codes), occupied = occupied_mask(codes);
   for (openvdb::Index i = 0; i < 8; ++i) {
     leaf->getValueMask().getWord<std::uint64_t>(i) = ~known[i] | occupied[i];
   }
-  tree.addLeaf(leaf.release());
+  return leaf;
+}
+
+void detail::GridStorage::put_leaf(Index3 origin, std::unique_ptr<CodeLeaf> leaf,
+                                   std::uint8_t code) {
+  if (leaf == nullptr) {
+    tree.addTile(kBlockTileLevel, to_coord(origin), code, is_non_free(code));
+  } else {
+    tree.addLeaf(leaf.release());
+  }
 }
 
 std::uint64_t detail::GridStorage::bytes() const {

@@ -105,8 +105,14 @@ struct GridStorage {
   /// Memory of all of it [bytes].
   [[nodiscard]] std::uint64_t bytes() const;
 
-  /// Writes the 512 codes of a block, as a leaf or, if they are uniform, as a tile.
-  void put_block(Index3 origin, const std::uint8_t* codes);
+  /// A leaf of the 512 codes of a block; null if they are a tile.
+  [[nodiscard]] static std::unique_ptr<CodeLeaf> make_leaf(Index3 origin,
+                                                           const std::uint8_t* codes);
+  /// Puts what make_leaf() made of a block whose first code this is.
+  void put_leaf(Index3 origin, std::unique_ptr<CodeLeaf> leaf, std::uint8_t code);
+  void put_block(Index3 origin, const std::uint8_t* codes) {
+    put_leaf(origin, make_leaf(origin, codes), codes[0]);
+  }
 };
 
 /// The way from a grid to what it holds, and back.

@@ -3,6 +3,7 @@
 #include "belief_bricks.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace viewgain::detail {
 namespace {
@@ -174,27 +175,45 @@ Eigen::Vector3d BrickNeighborhood::free_side(const Eigen::Vector3d& position) co
       {voxel.x + kRadius + 1, voxel.y + kRadius + 1,
        voxel.z + kRadius +
            1}}.intersection(bricks_->workspace_cells());
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  // Of the rows along z as bits.
+  const auto count = [](std::uint32_t bits) { return std::popcount(bits); };
+  const auto places = [&](std::uint32_t bits) {
+    return count(bits & 0b0101010U) + 2 * count(bits & 0b1001100U) + 4 * count(bits & 0b1110000U);
+  };
+  const std::uint32_t all = (1U << static_cast<unsigned>(near.max.z - near.min.z)) - 1U;
+  Index3 sum{0, 0, 0};
   for (std::int32_t x = near.min.x; x < near.max.x; ++x) {
     for (std::int32_t y = near.min.y; y < near.max.y; ++y) {
-      for (std::int32_t z = near.min.z; z < near.max.z; ++z) {
-        const Index3 v{x, y, z};
-        const std::int32_t brick = brick_of(v);
-        bool free, unknown;
-        if (brick != BeliefBricks::kNone) {
-          free = bricks_->is_free(static_cast<std::size_t>(brick), block_offset(v));
-          unknown = bricks_->is_unknown(static_cast<std::size_t>(brick), block_offset(v));
-        } else {
-          unknown = bricks_->is_unknown_tile(v);
-          free = !unknown;
-        }
-        const Eigen::Vector3d d(x - voxel.x, y - voxel.y, z - voxel.z);
-        if (free) sum += d;
-        if (unknown) sum -= d;
+      Row row;
+      for (std::int32_t z = near.min.z; z < near.max.z; z = (z | 7) + 1) {
+        const Row part = row_from({x, y, z});
+        const auto shift = static_cast<unsigned>(z - near.min.z);
+        row.free |= part.free << shift & all;
+        row.unknown |= part.unknown << shift & all;
       }
+      const int more_free = count(row.free) - count(row.unknown);
+      sum.x += (x - voxel.x) * more_free;
+      sum.y += (y - voxel.y) * more_free;
+      sum.z += (near.min.z - voxel.z) * more_free + places(row.free) - places(row.unknown);
     }
   }
-  return sum;
+  return {static_cast<double>(sum.x), static_cast<double>(sum.y), static_cast<double>(sum.z)};
+}
+
+BrickNeighborhood::Row BrickNeighborhood::row_from(Index3 v) const {
+  const std::int32_t brick = brick_of(v);
+  const auto first = static_cast<unsigned>(v.z & 7);
+  if (brick != BeliefBricks::kNone) {
+    const auto of_brick = [&](const LeafMask& mask) {
+      const auto row = static_cast<unsigned>(v.y & 7) << 3U;
+      return static_cast<std::uint32_t>(mask[static_cast<std::size_t>(v.x & 7)] >> row & 255U);
+    };
+    const std::uint32_t non_free = of_brick(bricks_->non_free(static_cast<std::size_t>(brick)));
+    const std::uint32_t occupied = of_brick(bricks_->occupied(static_cast<std::size_t>(brick)));
+    return {(~non_free & 255U) >> first, (non_free & ~occupied) >> first};
+  }
+  const std::uint32_t rest = 255U >> first;
+  return bricks_->is_unknown_tile(v) ? Row{0, rest} : Row{rest, 0};
 }
 
 }  // namespace viewgain::detail

@@ -45,11 +45,11 @@ class BeliefBricks {
     const std::int32_t i = bricks_[brick].belief[offset];
     return i == kNone ? nullptr : &beliefs_[static_cast<std::size_t>(i)];
   }
-  [[nodiscard]] bool is_free(std::size_t brick, unsigned offset) const {
-    return !test_bit(bricks_[brick].non_free, offset);
+  [[nodiscard]] const LeafMask& non_free(std::size_t brick) const {
+    return bricks_[brick].non_free;
   }
-  [[nodiscard]] bool is_unknown(std::size_t brick, unsigned offset) const {
-    return !is_free(brick, offset) && !test_bit(bricks_[brick].occupied, offset);
+  [[nodiscard]] const LeafMask& occupied(std::size_t brick) const {
+    return bricks_[brick].occupied;
   }
 
   /// Number of the brick with this origin, kNone if there is none.
@@ -99,21 +99,12 @@ class BrickNeighborhood {
   /// Round the place of a brick, whether there is one or not.
   BrickNeighborhood(const BeliefBricks& bricks, Index3 origin);
 
-  /// f(belief, from the centre of `voxel` to that of the belief's [voxels]) for the voxels
-  /// whose centres are within `radius` [voxels]; the radius must be at most kMaxReach.
-  template <typename F>
-  void for_each_in_ball(Index3 voxel, double radius, F&& f) const {
-    const int r = static_cast<int>(radius);
-    const double limit = radius * radius;
-    for (int x = -r; x <= r; ++x) {
-      for (int y = -r; y <= r; ++y) {
-        for (int z = -r; z <= r; ++z) {
-          if (x * x + y * y + z * z > limit) continue;
-          const PlacedBelief* belief = find({voxel.x + x, voxel.y + y, voxel.z + z});
-          if (belief != nullptr) f(*belief, Eigen::Vector3d(x, y, z));
-        }
-      }
-    }
+  /// The belief of a voxel in the neighbourhood; null if it has none.
+  [[nodiscard]] const PlacedBelief* find(Index3 v) const {
+    const std::int32_t brick = brick_of(v);
+    return brick == BeliefBricks::kNone
+               ? nullptr
+               : bricks_->find(static_cast<std::size_t>(brick), block_offset(v));
   }
 
   /// f(belief, from `start` to the centre of the belief's voxel [voxels]) for the voxels whose
@@ -175,6 +166,13 @@ class BrickNeighborhood {
   }
 
  private:
+  /// Voxels along z as bits.
+  struct Row {
+    std::uint32_t free = 0, unknown = 0;
+  };
+  /// From a voxel to the end of its block.
+  [[nodiscard]] Row row_from(Index3 v) const;
+
   /// Number of the brick of a voxel, kNone if there is none or it is not in the neighbourhood.
   [[nodiscard]] std::int32_t brick_of(Index3 v) const {
     const std::int32_t x = (v.x >> 3) - low_.x, y = (v.y >> 3) - low_.y, z = (v.z >> 3) - low_.z;
@@ -183,12 +181,6 @@ class BrickNeighborhood {
       return BeliefBricks::kNone;
     }
     return numbers_[static_cast<std::size_t>(9 * x + 3 * y + z)];
-  }
-  [[nodiscard]] const PlacedBelief* find(Index3 v) const {
-    const std::int32_t brick = brick_of(v);
-    return brick == BeliefBricks::kNone
-               ? nullptr
-               : bricks_->find(static_cast<std::size_t>(brick), block_offset(v));
   }
 
   const BeliefBricks* bricks_;

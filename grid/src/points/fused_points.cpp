@@ -10,6 +10,7 @@
 #include <string>
 
 #include "belief_bricks.hpp"
+#include "hit_moments.hpp"
 #include "point_support.hpp"
 #include "point_thinning.hpp"
 #include "reading_sigma.hpp"
@@ -64,19 +65,10 @@ struct Seed {
 };
 
 /// The direction in which the readings around a voxel spread least.
-Eigen::Vector3d local_normal(const BrickNeighborhood& around, Index3 voxel, double radius) {
-  double weight = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  around.for_each_in_ball(voxel, radius, [&](const PlacedBelief& belief, const Eigen::Vector3d& d) {
-    const double w = belief.hits;
-    weight += w;
-    sum += w * d;
-    squares.noalias() += w * d * d.transpose();
-  });
-  const Eigen::Vector3d mean = sum / weight;
+Eigen::Vector3d local_normal(const HitMoments::Sums& around) {
+  const Eigen::Vector3d mean = around.first / around.weight;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(squares / weight - mean * mean.transpose());
+  solver.computeDirect(around.second / around.weight - mean * mean.transpose());
   return solver.eigenvectors().col(0);
 }
 
@@ -179,13 +171,17 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
   ThreadPool pool(exec.num_threads);
   std::vector<Seed> seeds(occupied.size());
   pool.for_each_chunk(occupied.size(), 256, [&](std::size_t begin, std::size_t end) {
+    HitMoments moments(lengths.normal_radius);
     for (std::size_t i = begin; i < end; ++i) {
       const auto [brick, offset] = occupied[i];
       const BrickNeighborhood around(bricks, brick);
+      if (i == begin || brick != occupied[i - 1].first) {
+        moments.look_at(around, bricks.origin(brick));
+      }
       const Index3 voxel = offset_voxel(bricks.origin(brick), offset);
       const PlacedBelief& own = *bricks.find(brick, offset);
       Seed& seed = seeds[i];
-      seed.normal = local_normal(around, voxel, lengths.normal_radius);
+      seed.normal = local_normal(moments.round(offset));
       const Eigen::Vector3d center = Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5;
       seed.position = center + own.mean / V;
       seed.information = own.information;
@@ -216,10 +212,10 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
     for (const std::size_t i : kept) {
       support.push_back({seeds[i].position, evidence(seeds[i], column_area)});
     }
-    const std::vector<bool> good =
-        well_supported(support, lengths.support_radius, config.min_relative_evidence);
+    const std::vector<std::uint8_t> good =
+        well_supported(support, lengths.support_radius, config.min_relative_evidence, pool);
     std::size_t next = 0;
-    std::erase_if(kept, [&](std::size_t) { return !good[next++]; });
+    std::erase_if(kept, [&](std::size_t) { return good[next++] == 0; });
   }
 
   pool.for_each_chunk(kept.size(), 256, [&](std::size_t begin, std::size_t end) {

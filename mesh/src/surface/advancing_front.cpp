@@ -18,6 +18,7 @@
 #include <iterator>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace viewgain::detail {
 namespace {
@@ -79,8 +80,32 @@ class OrderedBorder : public Base {
 using Vertex =
     OrderedBorder<Stamped<CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Kernel>>>;
 using Cell = Stamped<CGAL::Advancing_front_surface_reconstruction_cell_base_3<Kernel>>;
-using Triangulation =
+using Delaunay =
     CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<Vertex, Cell>>;
+
+// CGAL goes through all facets for each piece of surface: here by a list of them, in their order.
+class Triangulation : public Delaunay {
+ public:
+  using Delaunay::Delaunay;
+  using Finite_facets_iterator = std::vector<Delaunay::Facet>::const_iterator;
+
+  [[nodiscard]] Finite_facets_iterator finite_facets_begin() { return listed().begin(); }
+  [[nodiscard]] Finite_facets_iterator finite_facets_end() { return listed().end(); }
+  void remove(Delaunay::Vertex_handle vertex) {
+    Delaunay::remove(vertex);
+    facets_.clear();
+  }
+
+ private:
+  const std::vector<Delaunay::Facet>& listed() {
+    if (facets_.empty()) {
+      facets_.assign(Delaunay::finite_facets_begin(), Delaunay::finite_facets_end());
+    }
+    return facets_;
+  }
+
+  std::vector<Delaunay::Facet> facets_;
+};
 
 // CGAL's own measure, the radius of the smallest empty sphere, but infinite, which means never, for
 // long edges.

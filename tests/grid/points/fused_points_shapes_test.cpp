@@ -27,6 +27,27 @@ using Eigen::Vector3d;
 
 Vector3d vector(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
 
+/// From where unknown voxels are round a point's to where free ones are, voxel by voxel.
+Vector3d free_side(const BeliefGrid& grid, const FusedPoint& point) {
+  const VoxelBox workspace = VoxelBox::from_dims(grid.min_index(), grid.dims());
+  const Vector3d at = vector(point.position) / grid.voxel_size();
+  Vector3d side = Vector3d::Zero();
+  for (int x = -3; x <= 3; ++x) {
+    for (int y = -3; y <= 3; ++y) {
+      for (int z = -3; z <= 3; ++z) {
+        const Index3 v{static_cast<std::int32_t>(std::floor(at.x())) + x,
+                       static_cast<std::int32_t>(std::floor(at.y())) + y,
+                       static_cast<std::int32_t>(std::floor(at.z())) + z};
+        if (!workspace.contains(v)) continue;
+        const VoxelState state = grid.state(v);
+        if (state == VoxelState::free) side += Vector3d(x, y, z);
+        if (state == VoxelState::unknown) side -= Vector3d(x, y, z);
+      }
+    }
+  }
+  return side;
+}
+
 TEST(FusedPointsShapes, OnASphereTheyLieOnItAndPointOutwards) {
   constexpr double kRadius = 0.12, kSigma = 0.003;
   Sensor sensor = small_sensor(96, 72);
@@ -91,29 +112,38 @@ TEST(FusedPointsShapes, FreeSideBesideLargeUnknownTiles) {
   config.per_voxel = true;  // so that each point is its voxel's centre
   const std::vector<FusedPoint> points = fused_points(grid, config);
   ASSERT_EQ(points.size(), 27U * 49U);
-  const VoxelBox workspace = VoxelBox::from_dims(grid.min_index(), grid.dims());
   std::size_t compared = 0;
   for (const FusedPoint& point : points) {
-    const Vector3d at = vector(point.position) / grid.voxel_size();
-    Vector3d side = Vector3d::Zero();
-    for (int x = -3; x <= 3; ++x) {
-      for (int y = -3; y <= 3; ++y) {
-        for (int z = -3; z <= 3; ++z) {
-          const Index3 v{static_cast<std::int32_t>(std::floor(at.x())) + x,
-                         static_cast<std::int32_t>(std::floor(at.y())) + y,
-                         static_cast<std::int32_t>(std::floor(at.z())) + z};
-          if (!workspace.contains(v)) continue;
-          const VoxelState state = grid.state(v);
-          if (state == VoxelState::free) side += Vector3d(x, y, z);
-          if (state == VoxelState::unknown) side -= Vector3d(x, y, z);
-        }
-      }
-    }
-    const double along = side.dot(vector(point.toward_free));
-    EXPECT_GE(along, 0) << at.transpose();
+    const double along = free_side(grid, point).dot(vector(point.toward_free));
+    EXPECT_GE(along, 0) << vector(point.position).transpose();
     if (along > 0) ++compared;
   }
   EXPECT_GT(compared, 1200U);
+}
+
+TEST(FusedPointsShapes, TheFreeSideIsThatOfAllVoxelsAround) {
+  RandomValues random(5);
+  BeliefGrid grid({0.01, {{0.03, -0.05, 0}, {0.27, 0.17, 0.29}}, {}, 0.01});
+  const VoxelBox all = VoxelBox::from_dims(grid.min_index(), grid.dims());
+  for (std::int32_t x = all.min.x; x < all.max.x; ++x) {
+    for (std::int32_t y = all.min.y; y < all.max.y; ++y) {
+      for (std::int32_t z = all.min.z; z < all.max.z; ++z) {
+        const double dice = random.uniform(0, 1);
+        if (dice < 0.5) grid.set({x, y, z}, -1);
+        if (dice > 0.8) grid.set({x, y, z}, 1, Belief{{1e6F, 2e6F, 3e6F, 0, 0, 0}, {}, 4});
+      }
+    }
+  }
+  FusedPointsConfig config;
+  config.per_voxel = true;
+  const std::vector<FusedPoint> points = fused_points(grid, config);
+  std::size_t compared = 0;
+  for (const FusedPoint& point : points) {
+    const double along = free_side(grid, point).dot(vector(point.toward_free));
+    EXPECT_GE(along, 0) << vector(point.position).transpose();
+    if (along > 0) ++compared;
+  }
+  EXPECT_GT(compared, 2500U);
 }
 
 // Two layers of a wall at each face of the workspace, free space before them, pooled by one and by

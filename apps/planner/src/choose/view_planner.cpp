@@ -312,7 +312,7 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
                               const PlannerConfig& config, const ExecConfig& exec) {
   const MapModelConfig map = detail::map_config(config);
   std::map<std::string, std::string> notes;
-  BeliefGrid grid = load_vdb(path, &notes);
+  BeliefGrid grid = load_vdb(path, &notes, exec);
   const auto note = notes.find(kNote);
   if (note == notes.end()) {
     throw Error(ErrorCode::format, path.string() + ": is a map without the state of a planner");

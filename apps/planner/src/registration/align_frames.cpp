@@ -112,15 +112,18 @@ struct FrameAlignment::Impl {
     obstacles.mark(frame, T_world_camera);
     // What does not count is not to thin out the rest.
     DepthFrame inside = frame;
-    for (std::size_t i = 0; i < inside.depth.size(); ++i) {
-      const double z = static_cast<double>(inside.depth[i]);
-      if (!(z > 0) || !std::isfinite(z) || !rays[i].allFinite()) continue;
-      const Eigen::Vector3d sight = T_world_camera.rotation() * (z * rays[i]);
-      const Eigen::Vector3d point = sight + T_world_camera.translation();
-      if (!layout.index_of(point) || is_on_plane(point, sight)) {
-        inside.depth[i] = DepthFrame::kInvalid;
+    const Eigen::Matrix3d R = T_world_camera.rotation();
+    pool.for_each_chunk(inside.depth.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const double z = static_cast<double>(inside.depth[i]);
+        if (!(z > 0) || !std::isfinite(z) || !rays[i].allFinite()) continue;
+        const Eigen::Vector3d sight = R * (z * rays[i]);
+        const Eigen::Vector3d point = sight + T_world_camera.translation();
+        if (!layout.index_of(point) || is_on_plane(point, sight)) {
+          inside.depth[i] = DepthFrame::kInvalid;
+        }
       }
-    }
+    });
     return detail::view_of(
         frame, sensor.camera,
         detail::readings_of(inside, sensor, rays,

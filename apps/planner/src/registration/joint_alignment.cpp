@@ -70,7 +70,7 @@ PairSums JointAlignment::sums(const JointFrame& source, const Pose& T_source,
     return PoseSigma{frame.slack * frame.sigma.translation, frame.slack * frame.sigma.rotation};
   };
   return pair_sums({source.seen, T_source, slack(source)}, {target.seen, target.T, slack(target)},
-                   kAlongSurface * length_, rim_width, level, is_paired);
+                   kAlongSurface * length_, rim_width, level, pool_, is_paired);
 }
 
 Matrix6 JointAlignment::of_single_pairs(const Matrix6& agreed) const {
@@ -108,11 +108,14 @@ JointAlignment::System JointAlignment::system(const Pass& pass) const {
   }
   const int level = level_of(pass);
   std::vector<PairSums> sums_of(pairs.size());
-  pool_.for_each_chunk(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
+  const auto add_up = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       sums_of[k] = sums(frames[pairs[k].first], frames[pairs[k].second], level);
     }
-  });
+  };
+  // One pair shares its readings out among the threads.
+  if (pairs.size() == 1) add_up(0, 1);
+  if (pairs.size() > 1) pool_.for_each_chunk(pairs.size(), 1, add_up);
   const auto motions = static_cast<Eigen::Index>(6 * pass.movable.size());
   const Eigen::Index n = motions + (pass.with_rims ? 1 : 0);
   System s{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};

@@ -71,56 +71,90 @@ RegistrationView view_of(const DepthFrame& frame, const PinholeCamera& camera,
   return view;
 }
 
-PairSums pair_sums(const PosedView& source, const PosedView& target, double along, double rim_width,
-                   int level, std::vector<std::uint8_t>* is_paired) {
-  const Pose T_target_source = target.T_world_view.inverse() * source.T_world_view;
-  const Eigen::Matrix3d R = T_target_source.rotation();
-  const Eigen::Vector3d t = T_target_source.translation();
-  const bool of_map = target.view.grid != nullptr;
-  PairSums sums;  // the target's axes
-  sums.of_parts.assign(target.view.parts, Vector6::Zero());
-  for (std::size_t i = 0; i < source.view.readings.size(); ++i) {
-    const Reading& s = source.view.readings[i];
-    if (s.level > level) continue;
-    const Eigen::Vector3d arm = R * (s.point - rim_width * s.rim * s.normal);
-    const Eigen::Vector3d p = arm + t;
-    if (!(p.z() > 0)) continue;
+namespace {
+
+/// A reading that falls on one of the target, in the target's axes.
+struct Pair {
+  const Reading* on = nullptr;  ///< null: falls on none
+  Eigen::Vector3d arm;          ///< to it from the source's camera
+  Eigen::Vector3d source_normal, normal;
+  double e = 0, square = 0;  ///< off along the normal [m], and in sigmas, squared
+};
+
+class PairFinder {
+ public:
+  PairFinder(const PosedView& source, const PosedView& target, double along, double rim_width)
+      : source_(source), target_(target), along_(along), rim_width_(rim_width) {}
+
+  [[nodiscard]] Pair pair_of(const Reading& s) const {
+    Pair pair;
+    pair.arm = R_ * (s.point - rim_width_ * s.rim * s.normal);
+    const Eigen::Vector3d p = pair.arm + t_;
+    if (!(p.z() > 0)) return pair;
     double u = 0, v = 0;
-    target.view.camera.project(p, u, v);
-    const Eigen::Vector3d source_normal = R * s.normal;
-    const double own_slack = source.slack_variance(s.point.norm());
-    const Reading* best = nullptr;
-    Eigen::Vector3d normal;
-    double e = 0, square = 0, variance = 0, nearest = std::numeric_limits<double>::infinity();
+    target_.view.camera.project(p, u, v);
+    pair.source_normal = R_ * s.normal;
+    const bool of_map = target_.view.grid != nullptr;
+    const double own_slack = source_.slack_variance(s.point.norm());
+    double nearest = std::numeric_limits<double>::infinity();
     // Points of a map lie anywhere in their nodes.
     for (int k = of_map ? 0 : 4; k < (of_map ? 9 : 5); ++k) {
-      const int stride = target.view.stride;
+      const int stride = target_.view.stride;
       const std::int32_t at =
-          target.view.reading_at(u + stride * (k % 3 - 1), v + stride * (k / 3 - 1));
+          target_.view.reading_at(u + stride * (k % 3 - 1), v + stride * (k / 3 - 1));
       if (at < 0) continue;
-      const Reading& m = target.view.readings[static_cast<std::size_t>(at)];
-      if (source_normal.dot(m.normal) < kMinCosine) continue;
-      const Eigen::Vector3d d = p - (m.point - rim_width * m.rim * m.normal);
+      const Reading& m = target_.view.readings[static_cast<std::size_t>(at)];
+      if (pair.source_normal.dot(m.normal) < kMinCosine) continue;
+      const Eigen::Vector3d d = p - (m.point - rim_width_ * m.rim * m.normal);
       const double distance = d.squaredNorm();
       if (distance >= nearest) continue;
       // Along the mean of both: of one alone the noise pulls more, and on what is curved a point
       // beside the other lies off its plane. That it turns with the frames is left out of J, as is
       // usual: d is short. A map's are of so many readings that they do better alone.
-      const Eigen::Vector3d n = of_map ? m.normal : (source_normal + m.normal).normalized();
+      const Eigen::Vector3d n = of_map ? m.normal : (pair.source_normal + m.normal).normalized();
       const double off = n.dot(d);
-      const double slack = own_slack + target.slack_variance(m.point.norm());
+      const double slack = own_slack + target_.slack_variance(m.point.norm());
       const double squared = off * off / (s.variance + m.variance + slack);
       if (squared > kGateSigmas * kGateSigmas) continue;
-      if (distance - off * off > along * along + slack) continue;
-      best = &m, normal = n, e = off, square = squared, nearest = distance;
-      variance = s.variance + m.variance;
+      if (distance - off * off > along_ * along_ + slack) continue;
+      pair.on = &m, pair.normal = n, pair.e = off, pair.square = squared, nearest = distance;
     }
-    if (best == nullptr) continue;
-    const Reading& m = *best;
-    const double weight = 1 / (1 + square / (kCauchy * kCauchy)) / variance;
-    const auto derivative_along = [&arm](const Eigen::Vector3d& n) {
+    return pair;
+  }
+
+ private:
+  const PosedView& source_;
+  const PosedView& target_;
+  double along_, rim_width_;
+  Pose T_target_source_ = target_.T_world_view.inverse() * source_.T_world_view;
+  Eigen::Matrix3d R_ = T_target_source_.rotation();
+  Eigen::Vector3d t_ = T_target_source_.translation();
+};
+
+}  // namespace
+
+PairSums pair_sums(const PosedView& source, const PosedView& target, double along, double rim_width,
+                   int level, ThreadPool& pool, std::vector<std::uint8_t>* is_paired) {
+  const std::vector<Reading>& readings = source.view.readings;
+  const PairFinder finder(source, target, along, rim_width);
+  std::vector<Pair> pairs(readings.size());
+  pool.for_each_chunk(readings.size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (readings[i].level <= level) pairs[i] = finder.pair_of(readings[i]);
+    }
+  });
+  PairSums sums;  // the target's axes
+  sums.of_parts.assign(target.view.parts, Vector6::Zero());
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (pairs[i].on == nullptr) continue;
+    const auto& [on, arm, source_normal, normal, e, square] = pairs[i];
+    const Reading& s = readings[i];
+    const Reading& m = *on;
+    const double weight = 1 / (1 + square / (kCauchy * kCauchy)) / (s.variance + m.variance);
+    const auto derivative_along = [&arm = arm](const Eigen::Vector3d& n) {
       Vector6 derivative;
-      derivative << n, arm.cross(n);
+      derivative.head<3>() = n;
+      derivative.tail<3>() = arm.cross(n);
       return derivative;
     };
     const Vector6 derivative = derivative_along(normal);

@@ -82,7 +82,7 @@ struct PairSums {
 /// within `along` [m] of it. Readings are taken back along their normals by `rim_width` times their
 /// `rim`. Marks in `is_paired`, if given, the readings that do.
 [[nodiscard]] PairSums pair_sums(const PosedView& source, const PosedView& target, double along,
-                                 double rim_width, int level,
+                                 double rim_width, int level, ThreadPool& pool,
                                  std::vector<std::uint8_t>* is_paired = nullptr);
 
 }  // namespace viewgain::detail

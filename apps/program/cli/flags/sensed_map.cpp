@@ -29,10 +29,11 @@ bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const
   return true;
 }
 
-SensedMap load_sensed_map(const std::string& path, const std::string& sensor_flag) {
+SensedMap load_sensed_map(const std::string& path, const std::string& sensor_flag,
+                          const ExecConfig& exec) {
   std::optional<Sensor> asked;
   if (!sensor_flag.empty()) asked = load_sensor(sensor_flag);
-  MapOfSensor map = load_map_of_sensor(path, asked ? &*asked : nullptr);
+  MapOfSensor map = load_map_of_sensor(path, asked ? &*asked : nullptr, {}, exec);
   if (!asked && !map.sensor) {
     refuse(path + ": does not say which sensor its readings come from; give --sensor");
   }

@@ -18,7 +18,8 @@ struct SensedMap {
 /// The map, and the sensor of `sensor_flag` (--sensor), or, where that is empty, the one that the
 /// map's readings come from. Warns on stderr where both are there and differ. Throws
 /// Error(invalid_argument) where there is neither, and as load_map() and load_sensor().
-[[nodiscard]] SensedMap load_sensed_map(const std::string& path, const std::string& sensor_flag);
+[[nodiscard]] SensedMap load_sensed_map(const std::string& path, const std::string& sensor_flag,
+                                        const ExecConfig& exec);
 
 /// Do readings of both say the same? Housing and mounting change none.
 [[nodiscard]] bool is_same_sensor(const Sensor& a, const Sensor& b);

@@ -159,7 +159,7 @@ void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gai
   const ExecConfig exec = exec_of(options.common);
   const Shard shard = shard_of(options);
   const PoseSource source = make_poses(options.poses, options.seed, shard);
-  const SensedMap map = load_sensed_map(options.map, options.sensor);
+  const SensedMap map = load_sensed_map(options.map, options.sensor, exec);
   const auto& [grid, sensor] = map;
   const auto scene =
       VoxelScene::build(grid, {obstacles_of(options.obstacles), options.support_plane}, exec);
@@ -201,7 +201,7 @@ void score(const Options& options) {
   const GainConfig config = gain_config(options);
   const Shard shard = shard_of(options);
   PoseSource source = make_poses(options.poses, options.seed, shard);
-  const SensedMap map = load_sensed_map(options.map, options.sensor);
+  const SensedMap map = load_sensed_map(options.map, options.sensor, exec);
   const BeliefGrid& grid = map.grid;
   const Sensor& sensor = map.sensor;
   source.costs = costs_of(options, source, grid);

@@ -41,6 +41,7 @@ class VIEWGAIN_EXPORT JumpEdgeFilter {
   PinholeCamera camera_;
   Config config_;
   std::vector<Eigen::Vector3d> rays_;
+  double smooth_ = 1;  ///< squared ranges of neighbours whose ratio is below this are no jump
 };
 
 }  // namespace viewgain

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/hazard.hpp"
@@ -33,9 +34,10 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 /// the layout or no viewgain map; Error(capacity) if tiles hold more than 2^27 occupied voxels, or
 /// the file is over 16 GiB. `notes`, if not null, becomes the file's VdbWriteConfig::notes: both
 /// are of one state of the file, whoever rewrites it meanwhile. Cost: grows with the leaves and
-/// beliefs of the map; the file is read once.
+/// beliefs of the map, shared by the threads; the file is read once.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid
-load_vdb(const std::filesystem::path& path, std::map<std::string, std::string>* notes = nullptr);
+load_vdb(const std::filesystem::path& path, std::map<std::string, std::string>* notes = nullptr,
+         const ExecConfig& exec = {});
 
 /// Rates of the unknown for HazardConfig::volume, from a .vdb file of any program, say a prior of
 /// the object's shape: the grid of floats [1/m] named "hazard", or the only one. Its transform may

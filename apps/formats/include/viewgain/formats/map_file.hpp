@@ -27,7 +27,8 @@ namespace viewgain {
 /// the sensor where there is one. Throws what load_vdb and load_octomap throw.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_map(const std::filesystem::path& path,
                                                   const Sensor* sensor = nullptr,
-                                                  OctomapConfig config = {});
+                                                  OctomapConfig config = {},
+                                                  const ExecConfig& exec = {});
 
 /// A map, and where its readings come from as far as its file says so.
 struct VIEWGAIN_EXPORT MapOfSensor {
@@ -40,7 +41,8 @@ struct VIEWGAIN_EXPORT MapOfSensor {
 /// Error(format), naming the file, for a note that is no sensor (and its key) or no list of frames.
 [[nodiscard]] VIEWGAIN_EXPORT MapOfSensor load_map_of_sensor(const std::filesystem::path& path,
                                                              const Sensor* sensor = nullptr,
-                                                             OctomapConfig config = {});
+                                                             OctomapConfig config = {},
+                                                             const ExecConfig& exec = {});
 
 /// So that save_map() notes in a .vdb which sensor the map's readings come from. It is unchecked.
 [[nodiscard]] VIEWGAIN_EXPORT VdbWriteConfig noting_sensor(const Sensor& sensor,
