@@ -4,14 +4,98 @@
 
 // OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
 #pragma GCC visibility push(default)
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
 #pragma GCC visibility pop
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <istream>
+#include <new>
+#include <stdexcept>
+#include <streambuf>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include "file_seal.hpp"
+#include "map/grid_storage.hpp"
+#include "vdb_layout.hpp"
+#include "vdb_outline.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
+
+/// Reads bytes that several threads share.
+class BytesBuffer : public std::streambuf {
+ public:
+  explicit BytesBuffer(std::string_view bytes) {
+    char* const begin = const_cast<char*>(bytes.data());  // never written to
+    setg(begin, begin, begin + bytes.size());
+  }
+
+ protected:
+  pos_type seekoff(off_type offset, std::ios_base::seekdir way, std::ios_base::openmode) override {
+    char* const from = way == std::ios_base::beg   ? eback()
+                       : way == std::ios_base::cur ? gptr()
+                                                   : egptr();
+    if (offset < eback() - from || offset > egptr() - from) return {off_type(-1)};
+    setg(eback(), from + offset, egptr());
+    return {gptr() - eback()};
+  }
+  pos_type seekpos(pos_type position, std::ios_base::openmode which) override {
+    return seekoff(position, std::ios_base::beg, which);
+  }
+};
+
+/// Reads the image of a .vdb file, its grids side by side where it says where they are.
+class ImageReader : public openvdb::io::Archive {
+ public:
+  void read(std::string_view bytes, openvdb::MetaMap& metadata, openvdb::GridPtrVec& grids,
+            ThreadPool& pool) {
+    BytesBuffer buffer(bytes);
+    std::istream stream(&buffer);
+    begin(stream);
+    metadata.readMeta(stream);
+    std::vector<openvdb::io::GridDescriptor> descriptors;
+    NamedGridMap named;
+    for (auto count = readGridCount(stream); count > 0; --count) {
+      openvdb::io::GridDescriptor& next = descriptors.emplace_back();
+      grids.push_back(next.read(stream));
+      named[next.uniqueName()] = grids.back();
+      if (inputHasGridOffsets()) {
+        next.seekToEnd(stream);
+      } else {
+        readGrid(grids.back(), next, stream);
+      }
+    }
+    if (inputHasGridOffsets()) {
+      pool.for_each_chunk(descriptors.size(), 1, [&](std::size_t i, std::size_t) {
+        BytesBuffer own_buffer(bytes);
+        std::istream own(&own_buffer);
+        ImageReader().begin(own);
+        descriptors[i].seekToGrid(own);
+        readGrid(grids[i], descriptors[i], own);
+      });
+    }
+    for (const openvdb::io::GridDescriptor& each : descriptors) connectInstance(each, named);
+  }
+
+ private:
+  // OpenVDB takes from the stream what the head says of all that follows.
+  void begin(std::istream& stream) {
+    // It does not look whether a read came short.
+    stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
+    readHeader(stream);
+    setFormatVersion(stream);
+    setLibraryVersion(stream);
+    setDataCompression(stream);
+  }
+};
 
 /// What a .vdb file holds. Its trees are taken down by the threads of the pool, which outlives it.
 struct VdbContents {
@@ -20,12 +104,48 @@ struct VdbContents {
 
   /// Reads the grids side by side. Throws Error(io) if the file cannot be opened, Error(format),
   /// naming it and what is wrong, if it is truncated, corrupt or no .vdb file.
-  VdbContents(const std::filesystem::path& path, ThreadPool& pool);
+  VdbContents(const std::filesystem::path& path, ThreadPool& pool) : pool_(pool) {
+    const auto fail = [&path](const std::string& what) {
+      throw Error(ErrorCode::format, path.string() + ": " + what);
+    };
+    const std::string bytes = file_bytes(path);
+    const std::string fault = fault_in_outline(bytes);
+    if (!fault.empty()) fail(fault);
+    if (check_seal(bytes) == SealCheck::broken) fail("is corrupt: its checksum does not fit");
+
+    initialize_openvdb();
+    try {
+      ImageReader().read(bytes, metadata, grids, pool);
+    } catch (const std::ios_base::failure&) {
+      fail("is truncated or corrupt");
+    } catch (const std::bad_alloc&) {
+      fail("is corrupt: it asks for more memory than there is");
+    } catch (const std::length_error&) {
+      fail("is corrupt: it asks for more memory than there is");
+    } catch (const std::exception& error) {
+      fail(std::string("cannot be read by OpenVDB: ") + error.what());
+    }
+  }
   VdbContents(const VdbContents&) = delete;
   VdbContents& operator=(const VdbContents&) = delete;
-  ~VdbContents();
+  ~VdbContents() {
+    pool_.for_each_chunk(grids.size(), 1, [this](std::size_t i, std::size_t) {
+      const auto shares_tree = [&](const auto& other) {
+        return &other->baseTree() == &grids[i]->baseTree();
+      };
+      const auto begin = grids.begin(), here = begin + static_cast<std::ptrdiff_t>(i);
+      if (std::any_of(begin, here, shares_tree)) return;
+      take_down_a<openvdb::FloatGrid>(*grids[i]);
+      take_down_a<openvdb::Vec3SGrid>(*grids[i]);
+    });
+  }
 
  private:
+  template <typename Grid>
+  static void take_down_a(openvdb::GridBase& grid) {
+    if (grid.isType<Grid>()) take_down(static_cast<Grid&>(grid).tree());
+  }
+
   ThreadPool& pool_;
 };
 

@@ -135,7 +135,7 @@ class Following {
       throw Error(ErrorCode::io, frames_.string() + ": no such folder");
     }
     lock_.emplace(out_);
-    saved_ = saved_frames(out_ / "state.vdb");
+    saved_ = saved_frames(out_ / "state.vdb", exec_of(options.common));
     if (saved_) {
       views_.recall(out_ / "next.json", saved_->frames);
     } else {

@@ -56,10 +56,10 @@ FolderLock::~FolderLock() {
   ::close(lock_);
 }
 
-std::optional<SavedFrames> saved_frames(const fs::path& state) {
+std::optional<SavedFrames> saved_frames(const fs::path& state, const ExecConfig& exec) {
   std::error_code code;
   if (!fs::exists(state, code)) return std::nullopt;
-  MapOfSensor map = load_map_of_sensor(state);
+  MapOfSensor map = load_map_of_sensor(state, nullptr, {}, exec);
   if (map.frames.size() != map.grid.views().size()) {
     throw Error(ErrorCode::format, state.string() + ": has " +
                                        std::to_string(map.grid.views().size()) + " views of " +

@@ -46,7 +46,8 @@ struct SavedFrames {
 
 /// Of FollowedMap::save(); nothing where there is no file. Throws Error(format), naming the file,
 /// for a map that does not say which frames all its views are of, and as load_map_of_sensor().
-[[nodiscard]] std::optional<SavedFrames> saved_frames(const std::filesystem::path& state);
+[[nodiscard]] std::optional<SavedFrames> saved_frames(const std::filesystem::path& state,
+                                                      const ExecConfig& exec);
 
 /// A map that frames are put into as they come, the next best views on it, and the file that keeps
 /// both.
