@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "gain/task_weight.hpp"
-#include "viewgain/support/mix64.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -16,46 +15,6 @@ std::uint64_t key_of(Index3 v) {
   const auto bits = [](std::int32_t i) { return static_cast<std::uint64_t>(i) & 0x1FFFFFU; };
   return bits(v.x) << 42U | bits(v.y) << 21U | bits(v.z);
 }
-
-// Numbers of keys in the order in which they are first met, by open addressing: a view meets some
-// hundred thousand, most of them many times.
-class Numbering {
- public:
-  /// Of the key; `next` if it is new.
-  std::uint32_t number(std::uint64_t key, std::uint32_t next) {
-    if (2 * count_ >= slots_.size()) grow();
-    Slot& slot = find(key);
-    if (slot.key != key) {
-      slot = {key, next};
-      ++count_;
-    }
-    return slot.number;
-  }
-
- private:
-  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};  // keys have 63 bits
-  struct Slot {
-    std::uint64_t key = kEmpty;
-    std::uint32_t number = 0;
-  };
-
-  Slot& find(std::uint64_t key) {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t at = mix64(key) & mask;
-    while (slots_[at].key != key && slots_[at].key != kEmpty) at = (at + 1) & mask;
-    return slots_[at];
-  }
-  void grow() {
-    std::vector<Slot> before(2 * slots_.size());
-    before.swap(slots_);
-    for (const Slot& slot : before) {
-      if (slot.key != kEmpty) find(slot.key) = slot;
-    }
-  }
-
-  std::vector<Slot> slots_ = std::vector<Slot>(std::size_t{1} << 14);
-  std::size_t count_ = 0;
-};
 
 }  // namespace
 
@@ -88,7 +47,7 @@ SurfaceSet::Look SurfaceSet::look(const Pose& T_world_camera, Workspace& workspa
     Index3 least;
     double rate, area;
   };
-  Numbering places;
+  std::unordered_map<std::uint64_t, std::size_t> places;
   std::vector<Seen> cells;
   const int shift = surface_.cell_shift();
   workspace.occupied.begin();
@@ -103,10 +62,9 @@ SurfaceSet::Look SurfaceSet::look(const Pose& T_world_camera, Workspace& workspa
         if (!(share.area > 0)) return;
         const Index3& v = share.voxel;
         const Index3 least{v.x >> shift << shift, v.y >> shift << shift, v.z >> shift << shift};
-        const std::uint32_t place =
-            places.number(key_of(least), static_cast<std::uint32_t>(cells.size()));
-        if (place == cells.size()) cells.push_back({least, share.rate, 0});
-        cells[place].area += share.area;
+        const auto [found, is_new] = places.try_emplace(key_of(least), cells.size());
+        if (is_new) cells.push_back({least, share.rate, 0});
+        cells[found->second].area += share.area;
       });
   for (const Seen& cell : cells) {
     const double worth = worth_of(cell.least, cell.rate);

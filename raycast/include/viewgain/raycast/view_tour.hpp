@@ -18,7 +18,7 @@ namespace viewgain {
 
 /// By what plan_tour() chooses.
 struct VIEWGAIN_EXPORT TourConfig {
-  std::size_t max_stops = std::numeric_limits<std::size_t>::max();
+  std::size_t max_stops = std::numeric_limits<std::size_t>::max();  ///< at most
   /// Between poses by their indices, kTourStart being where the camera is, in a unit of the user's
   /// own. It may price a way by what a motion planner says, or veto it: infinity. None: ways cost
   /// nothing, and stops stay in the order of their choice.
