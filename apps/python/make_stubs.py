@@ -36,7 +36,8 @@ WORDS = {
 # What is called, by what it is called.
 CALLED = {
     "progress": "[int, int], object", "predicate": "[NDArray[np.float64]], object", "generator": "[BeliefGrid], ArrayLike",
-    "measure": "[NDArray[np.float64], Any], float", "acquire": "[NDArray[np.float64]], Any", "observer": "[ViewRecord], object",
+    "measure": "[NDArray[np.float64], Any], float", "way": "[int, int], float", "acquire": "[NDArray[np.float64]], Any",
+    "observer": "[ViewRecord], object",
 }
 # Of named tuples that a switch return_... gives.
 TUPLES = {"return_gains": "ChosenViews", "return_timestamps": "TimedPoses"}

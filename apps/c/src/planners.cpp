@@ -98,6 +98,8 @@ PlannerConfig settings_of(const vg_planner_config& config) {
   settings.max_views = static_cast<std::size_t>(config.max_views);
   settings.idle_views = static_cast<std::size_t>(config.idle_views);
   settings.broken_promises = static_cast<std::size_t>(config.broken_promises);
+  settings.ahead.plan = static_cast<std::size_t>(config.plan);
+  settings.ahead.take = static_cast<std::size_t>(config.take);
   settings.stop_gain = given(config.stop_gain);
   settings.stop_area = given(config.stop_area);
   return settings;
@@ -188,6 +190,8 @@ vg_planner_config viewgain::c_api::defaults() noexcept {
   config.max_views = own.max_views;
   config.idle_views = own.idle_views;
   config.broken_promises = own.broken_promises;
+  config.plan = own.ahead.plan;
+  config.take = own.ahead.take;
   config.stop_gain = config.stop_area = kNone;
   return config;
 }

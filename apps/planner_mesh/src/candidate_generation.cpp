@@ -21,10 +21,18 @@ CandidateGeneration::CandidateGeneration(const SurfaceModel& model, const Genera
   if (config.at_boundaries) proposer_.add_generation(boundaries_);
 }
 
-Proposal CandidateGeneration::generate(const Pose&) {
+std::vector<Pose> CandidateGeneration::tried() const {
   std::vector<Pose> tried = config_.tried;
   tried.insert(tried.end(), model_.tried().begin(), model_.tried().end());
-  return proposer_.propose(model_.grid(), model_.scene(), tried);
+  return tried;
+}
+
+Proposal CandidateGeneration::generate(const Pose&) {
+  return proposer_.propose(model_.grid(), model_.scene(), tried());
+}
+
+Proposal CandidateGeneration::propose_these(const PoseSet& set) {
+  return proposer_.propose_these(set, model_.grid(), model_.scene(), tried());
 }
 
 }  // namespace viewgain

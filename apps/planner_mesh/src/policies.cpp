@@ -10,8 +10,8 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/planner/hazard_views.hpp"
 #include "viewgain/planner/proximity_measure.hpp"
-#include "viewgain/planner/rank_views.hpp"
 #include "viewgain/planner/stop_settings.hpp"
+#include "viewgain/planner_mesh/mesh_area.hpp"
 #include "viewgain/support/mix64.hpp"
 #include "viewgain/support/nearest_name.hpp"
 
@@ -41,7 +41,7 @@ void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                  stop_area);
 }
 
-PolicyDecision::PolicyDecision(const SurfaceModel& model, const CandidateGeneration& generation,
+PolicyDecision::PolicyDecision(const SurfaceModel& model, CandidateGeneration& generation,
                                const Sensor& sensor, const PolicyConfig& config,
                                const ExecConfig& exec)
     : model_(model),
@@ -50,20 +50,58 @@ PolicyDecision::PolicyDecision(const SurfaceModel& model, const CandidateGenerat
       config_(config),
       exec_(exec),
       order_(0.5 * generation.config().boundary.estimator.patch_length) {
+  config.ahead.check();
+  if (config.ahead.is_on() && !is_by_gain()) {
+    throw Error(ErrorCode::invalid_argument,
+                "views are planned ahead by policy gain by the gains paper, surface and combined");
+  }
   if (config.policy == Policy::oracle) oracle_.emplace(model, sensor, config.object, exec);
   if (config.policy == Policy::gain && config.classic) {
     classic_.emplace(model, sensor, *config.classic, exec);
   }
 }
 
+Proposal PolicyDecision::generate(const Pose& T_world_camera) {
+  is_of_plan_ = false;
+  if (!planned_.empty()) {
+    Proposal left = generation_.propose_these({std::string(kPlanned), planned_});
+    keep_worth(evaluator(), config_.ahead, mesh_area(model_.surface()), left);
+    planned_ = poses_of(left.candidates);
+    is_of_plan_ = !planned_.empty();
+    if (is_of_plan_) return left;
+  }
+  return generation_.generate(T_world_camera);
+}
+
+std::optional<DecisionMaking::Decision> PolicyDecision::decide_by_gain(
+    const Pose& T_world_camera, std::span<const Candidate> candidates) {
+  const std::vector<Pose> poses = poses_of(candidates);
+  const Eigen::Vector3d here = T_world_camera.translation();
+  const GainEvaluator& by = evaluator();
+  const RankConfig rank{.cost_per_metre = config_.travel_cost};
+  if (is_of_plan_) {
+    planned_.erase(planned_.begin());
+    return decision_of(rank_in_turn(by, poses, rank, here), config_.model);
+  }
+  const Ranking ranking =
+      config_.ahead.is_on()
+          ? plan_views(by, poses, config_.ahead, mesh_area(model_.surface()), rank, here)
+          : rank_views(by, poses, 1, rank, here);
+  planned_.clear();
+  for (std::size_t i = 1; i < std::min(config_.ahead.take, ranking.views.size()); ++i) {
+    planned_.push_back(ranking.views[i].T_world_camera);
+  }
+  return decision_of(ranking, config_.model);
+}
+
 std::optional<DecisionMaking::Decision> PolicyDecision::decide(
     const Pose& T_world_camera, std::span<const Candidate> candidates) {
   if (candidates.empty()) return std::nullopt;
-  const bool by_gain = config_.policy == Policy::gain && !classic_;
+  if (is_by_gain()) return decide_by_gain(T_world_camera, candidates);
   const GainEvaluator& evaluator = this->evaluator();
-  const bool scored = by_gain || classic_ || config_.policy == Policy::frontier;
+  const bool scored = classic_ || config_.policy == Policy::frontier;
   const std::vector<ViewGain> gains = classic_ ? score_classic(candidates)
-                                      : scored ? score(T_world_camera, candidates)
+                                      : scored ? evaluator.evaluate(poses_of(candidates))
                                                : std::vector<ViewGain>(candidates.size());
   const std::optional<std::size_t> chosen = choose(T_world_camera, candidates, gains);
   if (!chosen) return std::nullopt;
@@ -72,22 +110,9 @@ std::optional<DecisionMaking::Decision> PolicyDecision::decide(
   DecisionMaking::Decision decision;
   decision.candidate = *chosen;
   decision.gain = gain.gain;
-  const std::uint32_t touched = gain.unknown_voxels + gain.occupied_voxels;
+  // A fixed order of views does not stop because one of them promises little.
   decision.area =
       std::isnan(gain.area) ? expected_area(candidates[*chosen].T_world_camera) : gain.area;
-  // A fixed order of views does not stop because one of them promises little.
-  if (!by_gain) return decision;
-  if (config_.travel_cost > 0) {
-    const Eigen::Vector3d way =
-        candidates[*chosen].T_world_camera.translation() - T_world_camera.translation();
-    decision.worth = gain.gain - config_.travel_cost * way.norm();
-  }
-  if (config_.model == GainModel::paper) {
-    decision.gain_per_voxel = touched > 0 ? gain.gain / touched : 0.0;
-  } else {
-    decision.best_area = 0;
-    for (const ViewGain& g : gains) decision.best_area = std::fmax(decision.best_area, g.area);
-  }
   return decision;
 }
 
@@ -98,7 +123,7 @@ const GainEvaluator& PolicyDecision::evaluator() {
     GainConfig gain;
     gain.criterion = config_.criterion;
     // Other policies count unknown voxels, as the paper's gain does.
-    gain.model = config_.policy == Policy::gain && !classic_ ? config_.model : GainModel::paper;
+    gain.model = is_by_gain() ? config_.model : GainModel::paper;
     evaluator_.emplace(model_.scene(), sensor_, gain, exec_);
   }
   return *evaluator_;
@@ -115,7 +140,7 @@ std::optional<CandidateScores> PolicyDecision::scores(std::span<const Candidate>
     scores.score = classic_->gains(poses_of(candidates), /*all=*/true);
     return scores;
   }
-  const bool by_gain = config_.policy == Policy::gain;
+  const bool by_gain = is_by_gain();
   if (!by_gain && config_.policy != Policy::frontier) return std::nullopt;
   const std::vector<ViewGain> gains = evaluator().evaluate(poses_of(candidates));
   for (std::size_t i = 0; i < gains.size(); ++i) {
@@ -123,26 +148,6 @@ std::optional<CandidateScores> PolicyDecision::scores(std::span<const Candidate>
     scores.area[i] = gains[i].area;
   }
   return scores;
-}
-
-std::vector<ViewGain> PolicyDecision::score(const Pose& T_world_camera,
-                                            std::span<const Candidate> candidates) const {
-  const std::vector<Pose> poses = poses_of(candidates);
-  ViewGain none;
-  none.gain = none.area = std::numeric_limits<double>::quiet_NaN();
-  std::vector<ViewGain> gains(poses.size(), none);
-  const bool in_two_stages = config_.policy == Policy::gain && config_.model != GainModel::paper;
-  if (!in_two_stages) {
-    evaluator_->evaluate(poses, gains);
-    return gains;
-  }
-  RankConfig rank;
-  rank.cost_per_metre = config_.travel_cost;
-  const Ranking ranking = rank_views(*evaluator_, poses, 1, rank, T_world_camera.translation());
-  for (std::size_t j = 0; j < ranking.scored_indices.size(); ++j) {
-    gains[ranking.scored_indices[j]] = ranking.scored_gains[j];
-  }
-  return gains;
 }
 
 std::vector<ViewGain> PolicyDecision::score_classic(std::span<const Candidate> candidates) {

@@ -26,7 +26,6 @@ struct Options {
   FrameMapOptions frames;
   ProposalOptions proposal;
   std::size_t top = 10;
-  std::optional<std::size_t> tour{};
   std::string out;
   bool explain = false;
 };
@@ -58,9 +57,6 @@ SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<F
 void next(const Options& options) {
   const Stopwatch watch;
   check(options.proposal);
-  if (options.tour && !options.proposal.costs.none()) {
-    refuse("--costs and --cost-per-metre do not go with --tour");
-  }
   const ExecConfig exec = exec_of(options.common);
   std::optional<Frames> frames;
   auto [grid, sensor] = map_of(options, exec, frames);
@@ -70,9 +66,7 @@ void next(const Options& options) {
   CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});
   const GainEvaluator evaluator = evaluator_of(options.proposal, model, sensor, exec);
-  NextViews views =
-      options.tour ? tour_views(evaluator, proposal, model.grid(), *options.tour)
-                   : best_views(evaluator, proposal, options.proposal, model.grid(), options.top);
+  NextViews views = best_views(evaluator, proposal, options.proposal, model.grid(), options.top);
   if (options.explain) explain(views, proposal, evaluator);
   if (!options.out.empty()) write_tum(options.out, poses_of(views));
   if (options.common.json) {
@@ -97,11 +91,7 @@ void next(const Options& options) {
 void add_options(App& app, Options& o) {
   add_next_view_options(app, o.proposal, o.top);
   app.add_option("--out", o.out,
-                 "TUM file of camera-to-world poses to write, best first, or in the tour's order");
-  app.add_option("--tour", o.tour,
-                 "K views at most that are good together, instead of --top, in the order that is "
-                 "short to drive from the last view by straight ways")
-      ->range(std::size_t{1}, std::size_t{1000}, "count");
+                 "TUM file of camera-to-world poses to write, best first, or in the plan's order");
   app.add_flag("--explain", o.explain,
                "say of each view what becomes of its rays: how many come to unknown space, end in "
                "known surface, leave the map, ...; where no view gains, of all candidates'");

@@ -19,6 +19,7 @@
 #include "evaluator_docs.hpp"
 #include "gil.hpp"
 #include "given.hpp"
+#include "viewgain/raycast/view_tour.hpp"
 
 namespace viewgain::python {
 
@@ -201,6 +202,47 @@ py::object best_set(const Evaluator& self, const py::object& T_world_camera, std
   return named("ChosenViews", indices, to_array_1d<ViewGain>(set.marginal));
 }
 
+// The way between poses by a function of Python's, to which the start is -1; none: none.
+WayCost way_of(const py::object& way) {
+  if (way.is_none()) return {};
+  if (PyCallable_Check(way.ptr()) == 0) throw py::type_error("way must be callable");
+  const auto number = [](std::size_t stop) {
+    return stop == kTourStart ? std::int64_t{-1} : static_cast<std::int64_t>(stop);
+  };
+  return [call = PythonCall(way), number](std::size_t from, std::size_t to) {
+    return with_gil([&] { return call(number(from), number(to)).cast<double>(); });
+  };
+}
+
+py::object tour(const Evaluator& self, const py::object& T_world_camera, const py::object& way,
+                std::optional<std::size_t> max_stops, double cost_per_way,
+                std::optional<double> budget, bool per_way, const py::object& costs,
+                double least_area, const GivenOrNone<Control>& control) {
+  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const std::vector<double> own_costs = costs_or_none(costs);
+  const TourConfig config{.max_stops = max_stops.value_or(batch.poses.size()),
+                          .way = way_of(way),
+                          .cost_per_way = cost_per_way,
+                          .budget = budget.value_or(TourConfig{}.budget),
+                          .per_way = per_way,
+                          .costs = own_costs,
+                          .least_area = least_area};
+  ViewTour made;
+  run_batch(control, [&](const BatchControl& watched) {
+    made = plan_tour(self.evaluator, batch.poses, config, watched);
+  });
+  std::vector<std::size_t> indices;
+  std::vector<ViewGain> gains;
+  std::vector<double> worth;
+  for (const std::size_t place : made.tour.stops) {
+    indices.push_back(made.set.indices[place]);
+    gains.push_back(made.set.marginal[place]);
+    worth.push_back(made.worth[place]);
+  }
+  return named("ViewTour", index_array(indices), to_array_1d<ViewGain>(gains),
+               to_array_1d<double>(worth), made.tour.cost);
+}
+
 py::object approximate(const Evaluator& self, const py::object& T_world_camera, double share,
                        std::uint64_t seed, const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
@@ -266,6 +308,11 @@ void bind_evaluator(py::module_& module) {
            py::arg("control") = py::none(), kRaceUntilDoc)
       .def("best_set", &best_set, py::arg("T_world_camera"), py::arg("k"), py::kw_only(),
            py::arg("return_gains") = false, py::arg("control") = py::none(), kBestSetDoc)
+      .def("plan_tour", &tour, py::arg("T_world_camera"), py::arg("way") = py::none(),
+           py::kw_only(), py::arg("max_stops") = py::none(), py::arg("cost_per_way") = 0.0,
+           py::arg("budget") = py::none(), py::arg("per_way") = false,
+           py::arg("costs") = py::none(), py::arg("least_area") = 0.0,
+           py::arg("control") = py::none(), kPlanTourDoc)
       .def("approximate", &approximate, py::arg("T_world_camera"), py::kw_only(),
            py::arg("share") = approximate_defaults.share,
            py::arg("seed") = approximate_defaults.seed, py::arg("control") = py::none(),

@@ -94,15 +94,18 @@ class PythonGeneration : public ViewpointGeneration {
   const MapModel& map_;
 };
 
-std::unique_ptr<Planner> make(
-    const Given<Sensor>& of, double voxel_size, const py::object& workspace,
-    const py::object& T_world_grid, std::optional<double> prior_sigma,
-    std::optional<double> support_plane, const py::object& boxes, const py::iterable& meshes,
-    const std::string& gain, const std::string& criterion, std::optional<double> object_size,
-    const GivenOrNone<ReachRegion>& reach, const py::object& body_size, double clearance,
-    bool jump_edges, bool check_feasibility, std::size_t max_views, std::size_t idle_views,
-    std::size_t broken_promises, std::optional<double> stop_gain, std::optional<double> stop_area,
-    const py::object& state, const std::string& tracer, int num_threads) {
+std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
+                              const py::object& workspace, const py::object& T_world_grid,
+                              std::optional<double> prior_sigma,
+                              std::optional<double> support_plane, const py::object& boxes,
+                              const py::iterable& meshes, const std::string& gain,
+                              const std::string& criterion, std::optional<double> object_size,
+                              const GivenOrNone<ReachRegion>& reach, const py::object& body_size,
+                              double clearance, bool jump_edges, bool check_feasibility,
+                              std::size_t max_views, std::size_t idle_views,
+                              std::size_t broken_promises, std::size_t plan, std::size_t take,
+                              std::optional<double> stop_gain, std::optional<double> stop_area,
+                              const py::object& state, const std::string& tracer, int num_threads) {
   Sensor sensor = *of;
   PlannerConfig config;
   config.grid.voxel_size = voxel_size;
@@ -124,6 +127,8 @@ std::unique_ptr<Planner> make(
   config.max_views = max_views;
   config.idle_views = idle_views;
   config.broken_promises = broken_promises;
+  config.ahead.plan = plan;
+  config.ahead.take = take;
   config.stop_gain = stop_gain;
   config.stop_area = stop_area;
   const ExecConfig exec{num_threads, parse_tracer(tracer)};
@@ -215,12 +220,13 @@ py::object propose(Planner& self) {
 }
 
 py::object rank(Planner& self, std::size_t k, const py::object& poses, const py::object& costs,
-                double cost_per_metre, bool exact, const py::object& measure,
+                double cost_per_metre, bool together, bool exact, const py::object& measure,
                 const GivenOrNone<Control>& control) {
   const std::optional<PythonMeasure> own = measure_or_none(measure);
   RankConfig config;
   if (own) config.measure = &*own;
   config.cost_per_metre = cost_per_metre;
+  config.together = together;
   config.exact = exact;
   const std::vector<double> own_costs = costs_or_none(costs);
   config.costs = own_costs;
@@ -264,9 +270,11 @@ void bind_planner(py::module_& module) {
            py::arg("body_size") = py::none(), py::arg("clearance") = defaults.clearance,
            py::arg("jump_edges") = true, py::arg("check_feasibility") = true,
            py::arg("max_views") = defaults.max_views, py::arg("idle_views") = defaults.idle_views,
-           py::arg("broken_promises") = defaults.broken_promises, py::arg("stop_gain") = py::none(),
-           py::arg("stop_area") = py::none(), py::arg("state") = py::none(),
-           py::arg("tracer") = "automatic", py::arg("num_threads") = 0)
+           py::arg("broken_promises") = defaults.broken_promises,
+           py::arg("plan") = defaults.ahead.plan, py::arg("take") = defaults.ahead.take,
+           py::arg("stop_gain") = py::none(), py::arg("stop_area") = py::none(),
+           py::arg("state") = py::none(), py::arg("tracer") = "automatic",
+           py::arg("num_threads") = 0)
       .def_static(
           "load",
           [](const py::object& path, const py::args& args, const py::kwargs& settings) {
@@ -322,8 +330,9 @@ void bind_planner(py::module_& module) {
            kRegisterFrameDoc)
       .def("propose", &propose, kProposeDoc)
       .def("rank", &rank, py::arg("k") = 1, py::kw_only(), py::arg("poses") = py::none(),
-           py::arg("costs") = py::none(), py::arg("cost_per_metre") = 0.0, py::arg("exact") = false,
-           py::arg("measure") = py::none(), py::arg("control") = py::none(), kRankDoc)
+           py::arg("costs") = py::none(), py::arg("cost_per_metre") = 0.0,
+           py::arg("together") = false, py::arg("exact") = false, py::arg("measure") = py::none(),
+           py::arg("control") = py::none(), kRankDoc)
       .def(
           "outcomes",
           [](Planner& self, const py::object& T_world_camera) {

@@ -186,6 +186,39 @@ indices : ndarray, (<= k,), int64
 gains : ndarray, (<= k,), structured
     What each adds to those before it; only if return_gains.)";
 
+inline constexpr const char* kPlanTourDoc =
+    R"(Poses that are good together, as ``best_set``, and a short way through them.
+
+Each choice is by what a view adds to those chosen before it less what it costs: its own cost, and
+what it adds to the way through the others. The first is chosen even if it is not worth its cost, others
+only if they are. Cost: that of ``best_set``, and two calls of way for every pose and stop.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+way : callable, optional
+    ``way(i, j)`` is what the way from pose i to pose j costs, i being -1 where the camera is, in a unit of
+    your own, say seconds of an arm; inf: there is none, or it is vetoed. Without it ways cost nothing.
+max_stops : int, optional
+    All unless given.
+cost_per_way : float
+    Of a unit of way, in the gain's unit.
+budget : float, optional
+    Of all ways together, in the unit of way: no stop is chosen beyond it.
+per_way : bool
+    Choose what adds most per way, instead of what adds most less its cost: for a budget.
+costs : array_like, (n,), optional
+    Of each pose by itself, subtracted from its gain.
+least_area : float
+    Stops beyond the first that add less new surface are not chosen [m**2]; not by gain "paper".
+control : BatchControl, optional
+    After a stop the result is of what was chosen so far.
+
+Returns
+-------
+ViewTour
+    In the order in which they are driven to.)";
+
 inline constexpr const char* kApproximateDoc =
     R"(Estimates of the gains from a part of each view's rays.
 

@@ -53,6 +53,10 @@ max_views, idle_views : int
 broken_promises : int
     End after so many views in a row, taken where the best of the last ranking was, that brought
     less than a fifth of the new surface (by gain "paper" the entropy) that was promised; 0: never.
+plan, take : int
+    So many views are planned together, in a short order, and so many of them taken before it is planned
+    anew, at most ``plan``; 1, 1: one at a time. ``rank`` says the plan; ``propose`` what is left of it, less what
+    has become impossible or promises too little, by the generator "plan".
 stop_gain : float, optional
     By gain "paper": end when the best candidate promises less than this per touched voxel [nat, m**2 for
     trace]. Default: 1.2; for trace 0.01 of the first ranking's.
@@ -225,8 +229,11 @@ costs : array_like, (n,), optional
 cost_per_metre : float
     Of the way from the last view, in the gain's unit per metre. The combined gain of new surface goes with 1 / voxel**2,
     and so should this.
+together : bool
+    Each view by what it adds to those before it, so that no two show the same; not with measure.
 exact : bool
-    Score all in full. Else, but by gain "paper", in two stages: see ``GainEvaluator.race``.
+    Score all in full. Else, but by gain "paper", in two stages: see ``GainEvaluator.race``; views that go together
+    are chosen of few poses, at least 32, by a quarter of their rays.
 measure : callable, optional
     A gain of your own in the planner's place, as of ``GainEvaluator.evaluate_own``; gain and area are NaN then.
 control : BatchControl, optional

@@ -186,6 +186,16 @@ class Proposal(NamedTuple):
 
 
 @named("viewgain")
+class ViewTour(NamedTuple):
+    """Views in the order in which they are driven to, of ``GainEvaluator.plan_tour``."""
+
+    indices: Annotated[NDArray[np.int64], "(k,), int64: of the poses."]
+    gains: Annotated[NDArray[np.void], "(k,), structured: what each added to those that were chosen before it."]
+    worth: Annotated[_Floats, "(k,), float64: its gain less what it and its way cost when it was chosen."]
+    way: Annotated[float, "Of all ways together, in the unit of way."]
+
+
+@named("viewgain")
 class Ranking(NamedTuple):
     """The best candidates in their order, of ``ViewPlanner.rank``.
 
@@ -194,7 +204,7 @@ class Ranking(NamedTuple):
 
     index: Annotated[NDArray[np.int64], "(k,), int64: indices into the candidates or poses."]
     T_world_camera: Annotated[_Floats, "(k, 4, 4), float64."]
-    gain: Annotated[_Floats, "(k,), float64 [nat; by gain \"surface\" m**2]."]
+    gain: Annotated[_Floats, "(k,), float64 [nat; by gain \"surface\" m**2]; together or in a new plan what each view adds."]
     area: Annotated[_Floats, "(k,), float64: new surface to be expected [m**2]; NaN by gain \"paper\"."]
     worth: Annotated[_Floats, "(k,), float64: the gain less the cost, in its unit; 0 or less: the way costs more than the view brings."]
     complete: Annotated[bool, "False if a stop was requested."]

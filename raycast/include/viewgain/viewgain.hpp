@@ -36,5 +36,6 @@
 #include "viewgain/raycast/obstacle_view.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
+#include "viewgain/raycast/view_tour.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 #include "viewgain/version.hpp"

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "choose/way_pricing.hpp"
 #include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
 #include "gain/sampled_views.hpp"
@@ -39,15 +40,7 @@ constexpr std::size_t kAnchors = 8;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 void check(const BestConfig& config, std::size_t poses) {
-  if (!config.costs.empty() && config.costs.size() != poses) {
-    throw Error(ErrorCode::invalid_argument, std::to_string(config.costs.size()) + " costs for " +
-                                                 std::to_string(poses) + " poses");
-  }
-  for (const double cost : config.costs) {
-    if (!std::isfinite(cost)) {
-      throw Error(ErrorCode::invalid_argument, "a cost is " + short_text(cost) + ", not finite");
-    }
-  }
+  detail::check_costs(config.costs, poses);
   if (config.measure != nullptr && config.run_measure != nullptr) {
     throw Error(ErrorCode::invalid_argument, "views are chosen by one measure, not by two");
   }

@@ -25,12 +25,11 @@ class SurfaceSet {
   /// is never more after another has been chosen; of refinement it hardly ever is.
   [[nodiscard]] static bool is_lazy() { return true; }
   static constexpr bool kBoundIsFirst = false;
+  static constexpr double kBoundFactor = 1 + 1e-4;  // the kernel's single precision
   /// The view's gain, which its cells cannot exceed but for rounding; an eighth of after()'s time.
   [[nodiscard]] ViewGain bound(std::size_t /*i*/, const Pose& T_world_camera,
                                ViewDriver::Lease& lease) const {
-    ViewGain gain = driver_.evaluate(T_world_camera, lease);
-    gain.gain *= 1 + kBoundSlack;
-    return gain;
+    return driver_.evaluate(T_world_camera, lease);
   }
   /// What view `i` adds to those chosen. What it reaches is kept while there is room, so that it is
   /// traced once.
@@ -40,7 +39,6 @@ class SurfaceSet {
   [[nodiscard]] double by_best_alone() const;
 
  private:
-  static constexpr double kBoundSlack = 1e-4;                     // the kernel's single precision
   static constexpr std::size_t kMostKept = std::size_t{1} << 28;  // [bytes]
 
   struct Cell {

@@ -4,12 +4,20 @@
 // Views that are good together, chosen greedily on a frozen map.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
 #include <unordered_map>
 
+#include "choose/ray_lattices.hpp"
 #include "choose/surface_set.hpp"
+#include "choose/way_pricing.hpp"
 #include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
 #include "viewgain/core/criterion.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/raycast/view_tour.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -22,6 +30,7 @@ using Overlay = std::unordered_map<std::uint64_t, SymmetricMatrix3>;
 constexpr double kRounding = 1 + 1e-9;
 // Poses that are scored anew together in lazy evaluation, whatever the number of threads.
 constexpr std::size_t kLazyBatch = 8;
+constexpr double kNoStop = -std::numeric_limits<double>::infinity();
 
 double log_of_diagonal(const SymmetricMatrix3& sigma) {
   return std::log(sigma.xx) + std::log(sigma.yy) + std::log(sigma.zz);
@@ -77,6 +86,7 @@ class PaperSet {
   }
   // Before any is chosen what a view adds is the first round's result.
   static constexpr bool kBoundIsFirst = true;
+  static constexpr double kBoundFactor = 1;
   [[nodiscard]] ViewGain bound(std::size_t i, const Pose& T_world_camera,
                                ViewDriver::Lease& lease) const {
     return after(i, T_world_camera, lease);
@@ -95,14 +105,19 @@ class PaperSet {
   Overlay chosen_;
 };
 
+// With `config` the choice ends where no view is worth its cost; null: nothing costs, and k are
+// chosen.
 template <typename Chosen>
-ViewSet choose_greedily(const ViewDriver& driver, Chosen& chosen,
-                        std::span<const Pose> T_world_camera, std::size_t k,
-                        const BatchControl& control) {
+ViewTour choose_greedily(const ViewDriver& driver, Chosen& chosen,
+                         std::span<const Pose> T_world_camera, std::size_t k,
+                         const TourConfig* config, const BatchControl& control) {
   const std::size_t count = T_world_camera.size();
+  const TourConfig free;
+  detail::WayPricing pricing(config != nullptr ? *config : free, count);
   k = std::min(k, count);
-  ViewSet set;
-  if (k == 0) return set;
+  ViewTour made;
+  ViewSet& set = made.set;
+  if (k == 0) return made;
   if (control.progress) control.progress(0, k);
   const bool lazy = chosen.is_lazy();
   std::vector<ViewGain> gains(count);     // marginal, as of round[i]
@@ -126,7 +141,15 @@ ViewSet choose_greedily(const ViewDriver& driver, Chosen& chosen,
     });
   };
   const auto better = [&](std::size_t a, std::size_t b) {
+    const double of_a = pricing.rank(a, gains[a].gain), of_b = pricing.rank(b, gains[b].gain);
+    if (of_a != of_b) return of_a > of_b;
     return gains[a].gain != gains[b].gain ? gains[a].gain > gains[b].gain : a < b;
+  };
+  // A view of an earlier round may yet be worth so much.
+  const auto bound_of = [&](std::size_t i) { return pricing.rank(i, gains[i].gain * kRounding); };
+  const auto finished = [&] {
+    made.tour = pricing.tour();
+    return std::move(made);
   };
 
   for (std::size_t now = 1; now <= k && !open.empty(); ++now) {
@@ -134,25 +157,30 @@ ViewSet choose_greedily(const ViewDriver& driver, Chosen& chosen,
       const auto bound = [&](std::size_t i, ViewDriver::Lease& lease) {
         return chosen.bound(i, T_world_camera[i], lease);
       };
-      if (!score_by(open, Chosen::kBoundIsFirst ? 1 : 0, bound)) return set;
-      std::erase_if(open, [&](std::size_t i) { return std::isnan(gains[i].gain); });
+      if (!score_by(open, Chosen::kBoundIsFirst ? 1 : 0, bound)) return finished();
+      std::erase_if(open, [&](std::size_t i) {
+        return std::isnan(gains[i].gain) || (config != nullptr && !(gains[i].gain > 0));
+      });
+      if (config != nullptr) made.alone = gains;
+      for (ViewGain& gain : gains) gain.gain *= Chosen::kBoundFactor;
       if (open.empty()) break;
     } else if (!lazy) {
-      if (!score(open, now)) return set;
+      if (!score(open, now)) return finished();
     }
     if (lazy) {
       // Earlier gains bound those of now: score from the largest on until one of now beats the
       // rest.
       std::sort(open.begin(), open.end(), better);
-      double largest = -1;
-      for (std::size_t begin = 0;
-           begin < open.size() && gains[open[begin]].gain * kRounding >= largest;) {
+      double largest = kNoStop;
+      for (std::size_t begin = 0; begin < open.size() && bound_of(open[begin]) >= largest;) {
         const std::size_t end = std::min(begin + kLazyBatch, open.size());
         stale.assign(open.begin() + static_cast<std::ptrdiff_t>(begin),
                      open.begin() + static_cast<std::ptrdiff_t>(end));
         std::erase_if(stale, [&](std::size_t i) { return round[i] == now; });
-        if (!score(stale, now)) return set;
-        for (; begin < end; ++begin) largest = std::max(largest, gains[open[begin]].gain);
+        if (!score(stale, now)) return finished();
+        for (; begin < end; ++begin) {
+          largest = std::max(largest, pricing.rank(open[begin], gains[open[begin]].gain));
+        }
       }
     }
     const auto winner =
@@ -161,6 +189,14 @@ ViewSet choose_greedily(const ViewDriver& driver, Chosen& chosen,
           return better(a, b);
         });
     const std::size_t index = *winner;
+    const ViewGain& adds = gains[index];
+    if (config != nullptr &&
+        (!(adds.gain > 0) || pricing.rank(index, adds.gain) == kNoStop ||
+         (now > 1 && (pricing.worth(index, adds.gain) <= 0 || adds.area < config->least_area)))) {
+      if (control.progress) control.progress(k, k);
+      break;
+    }
+    made.worth.push_back(pricing.worth(index, adds.gain));
     open.erase(winner);
     set.indices.push_back(index);
     set.marginal.push_back(gains[index]);
@@ -169,25 +205,111 @@ ViewSet choose_greedily(const ViewDriver& driver, Chosen& chosen,
 
     ViewDriver::Lease lease(driver);
     chosen.choose(index, T_world_camera[index], lease);
+    pricing.choose(index);
   }
-  return set;
+  return finished();
+}
+
+ViewTour choose_by(const ViewDriver& driver, std::span<const Pose> T_world_camera, std::size_t k,
+                   const TourConfig* config, const BatchControl& control) {
+  if (driver.surface() == nullptr) {
+    PaperSet chosen(driver);
+    ViewTour made = choose_greedily(driver, chosen, T_world_camera, k, config, control);
+    made.set.gain_by_best_alone = made.set.gain;
+    return made;
+  }
+  detail::SurfaceSet chosen(driver, T_world_camera.size());
+  ViewTour made = choose_greedily(driver, chosen, T_world_camera, k, config, control);
+  made.set.gain_by_best_alone = chosen.by_best_alone();
+  return made;
+}
+
+// Views that are nearer than this share of the working distance and look the same way are alike.
+constexpr double kAlike = 0.1, kSameWay = 0.966;  // cos 15 degrees
+constexpr double kFewRays = 400;
+
+// Those of the largest gains by few rays, less what they cost by themselves, no two of them alike.
+std::vector<std::size_t> promising(const GainEvaluator& evaluator,
+                                   std::span<const Pose> T_world_camera, const TourConfig& config,
+                                   const BatchControl& control) {
+  const std::size_t count = T_world_camera.size();
+  std::vector<ApproximateGain> estimates(count);
+  const double share = std::min(1.0, kFewRays / static_cast<double>(evaluator.rays_per_pose()));
+  evaluator.approximate(T_world_camera, estimates, {.share = share},
+                        {.stop = control.stop, .is_cancelled = control.is_cancelled});
+  std::vector<double> worth(count);
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < count; ++i) {
+    worth[i] = estimates[i].gain - (config.costs.empty() ? 0 : config.costs[i]);
+    if (!std::isnan(worth[i])) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return worth[a] > worth[b]; });
+  const double near = kAlike * detail::EvaluatorAccess::driver(evaluator).core()->working_distance;
+  std::vector<std::size_t> chosen;
+  for (const std::size_t i : order) {
+    if (chosen.size() == config.max_candidates) break;
+    const Pose& pose = T_world_camera[i];
+    const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](std::size_t j) {
+      const Pose& other = T_world_camera[j];
+      return (pose.translation() - other.translation()).norm() < near &&
+             pose.rotation().col(2).dot(other.rotation().col(2)) > kSameWay;
+    });
+    if (is_new) chosen.push_back(i);
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
 }
 
 }  // namespace
 
 ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                 const BatchControl& control) const {
-  const ViewDriver& driver = impl_->driver;
-  if (driver.surface() == nullptr) {
-    PaperSet chosen(driver);
-    ViewSet set = choose_greedily(driver, chosen, T_world_camera, k, control);
-    set.gain_by_best_alone = set.gain;
-    return set;
+  return choose_by(impl_->driver, T_world_camera, k, nullptr, control).set;
+}
+
+ViewTour plan_tour(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
+                   const TourConfig& config, const BatchControl& control) {
+  const ViewDriver& driver = detail::EvaluatorAccess::driver(evaluator);
+  if (!(config.share > 0 && config.share <= 1)) {
+    throw Error(ErrorCode::invalid_argument,
+                "share is " + short_text(config.share) + "; it must be in (0, 1]");
   }
-  detail::SurfaceSet chosen(driver, T_world_camera.size());
-  ViewSet set = choose_greedily(driver, chosen, T_world_camera, k, control);
-  set.gain_by_best_alone = chosen.by_best_alone();
-  return set;
+  const detail::EvaluatorCore& full = *driver.core();
+  const int step = driver.surface() == nullptr ? 1 : detail::step_for_share(full, config.share);
+  std::optional<ViewDriver> some;
+  if (step > 1) {
+    some.emplace(evaluator.scene(),
+                 std::make_shared<detail::EvaluatorCore>(full, detail::centred_lattice(full, step),
+                                                         full.pool.num_threads()));
+  }
+  const ViewDriver& by = some ? *some : driver;
+  if (T_world_camera.size() <= config.max_candidates) {
+    return choose_by(by, T_world_camera, config.max_stops, &config, control);
+  }
+  detail::check_costs(config.costs, T_world_camera.size());
+  const std::vector<std::size_t> looked_at = promising(evaluator, T_world_camera, config, control);
+  std::vector<Pose> poses;
+  std::vector<double> costs;
+  for (const std::size_t i : looked_at) {
+    poses.push_back(T_world_camera[i]);
+    if (!config.costs.empty()) costs.push_back(config.costs[i]);
+  }
+  TourConfig own = config;
+  own.costs = costs;
+  if (config.way) {
+    own.way = [&](std::size_t from, std::size_t to) {
+      return config.way(from == kTourStart ? from : looked_at[from], looked_at[to]);
+    };
+  }
+  ViewTour made = choose_by(by, poses, own.max_stops, &own, control);
+  for (std::size_t& i : made.set.indices) i = looked_at[i];
+  ViewGain none;
+  none.gain = none.area = std::numeric_limits<double>::quiet_NaN();
+  std::vector<ViewGain> alone(T_world_camera.size(), none);
+  for (std::size_t j = 0; j < made.alone.size(); ++j) alone[looked_at[j]] = made.alone[j];
+  made.alone = std::move(alone);
+  return made;
 }
 
 }  // namespace viewgain

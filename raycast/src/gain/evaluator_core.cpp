@@ -125,7 +125,7 @@ EvaluatorCore::EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config
       ray_count(rays_of(*rays)),
       pool(exec.num_threads) {}
 
-EvaluatorCore::EvaluatorCore(const EvaluatorCore& full, const RayLattice& lattice)
+EvaluatorCore::EvaluatorCore(const EvaluatorCore& full, const RayLattice& lattice, int num_threads)
     : config(full.config),
       sigmas(full.sigmas),
       working_distance(full.working_distance),
@@ -134,7 +134,7 @@ EvaluatorCore::EvaluatorCore(const EvaluatorCore& full, const RayLattice& lattic
       tracer(full.tracer),
       rays(std::make_shared<const SensorRays>(*full.rays, lattice)),
       ray_count(rays_of(*rays)),
-      pool(1) {
+      pool(num_threads) {
   config.pixel_stride = rays->pixel_stride;
 }
 

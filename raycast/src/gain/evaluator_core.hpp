@@ -97,8 +97,8 @@ struct EvaluatorCore {
 
   /// Throws Error(invalid_argument), naming the value, as GainEvaluator's constructor.
   EvaluatorCore(const Sensor& sensor, const GainConfig& gain_config, const ExecConfig& exec);
-  /// The same with some of the rays. Has no threads of its own.
-  EvaluatorCore(const EvaluatorCore& full, const RayLattice& lattice);
+  /// The same with some of the rays. Has no threads of its own unless it is given some.
+  EvaluatorCore(const EvaluatorCore& full, const RayLattice& lattice, int num_threads = 1);
 
   /// The sensor's sigmas at range t [m], frontal.
   [[nodiscard]] MeasurementSigmas frontal(double t) const {

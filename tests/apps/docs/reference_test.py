@@ -26,7 +26,7 @@ CALLS = {
     "reconstruct": "reconstruct meshes/camel.off --size 0.35 --sensor sr4000 --voxel 0.01 --max-views 2 --out run",
     "reconstruct FRAMES_DIR": "reconstruct frames --voxel 0.01 --pictures off --out model",
     "next": "next run/map.vdb --top 2",
-    "next --tour": "next run/map.vdb --tour 2",
+    "next --plan": "next run/map.vdb --plan 2",
     "follow": "follow frames --voxel 0.01 --workspace=-0.2,-0.2,-0.2,0.2,0.2,0.2 --out followed",
     "calibrate": "calibrate wall --sensor sr4000 --wall 0,0,1,1 --out calibrated.toml",
     "calibrate --noise": "calibrate --noise static --out measured.toml",

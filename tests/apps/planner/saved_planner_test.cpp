@@ -180,7 +180,7 @@ TEST(SavedPlanner, RefusesWhatIsNone) {
                                                         {"after_choice", "after_thought"},
                                                         {"missed ", "missed 1 "},
                                                         {"missed ", "missed nan"},
-                                                        {"seen_area", "version 1\nseen_area"}}) {
+                                                        {"seen_area", "version 2\nseen_area"}}) {
     std::string text = note;
     ASSERT_NE(text.find(from), std::string::npos) << from;
     with_note(text.replace(text.find(from), from.size(), to));
@@ -188,8 +188,8 @@ TEST(SavedPlanner, RefusesWhatIsNone) {
   }
   with_note("");
   refuses(ErrorCode::format, "version", config);
-  with_note("version 2\n");
-  refuses(ErrorCode::format, "planner's state of version 2;", config);
+  with_note("version 1\n");
+  refuses(ErrorCode::format, "planner's state of version 1;", config);
   with_note(note + "of_view tired\n");
   refuses(ErrorCode::format, "tired", config);
   with_note(note);

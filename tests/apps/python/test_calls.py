@@ -101,6 +101,7 @@ def test_progress_is_told_and_can_stop(slow):
 def test_progress_hears_of_the_end_of_every_call(evaluator, poses):
     calls = [evaluator.evaluate, evaluator.evaluate_detailed, evaluator.best, evaluator.race,
              evaluator.approximate, lambda batch, control: evaluator.best_set(batch, 2, control=control),
+             lambda batch, control: evaluator.plan_tour(batch, max_stops=2, control=control),
              lambda batch, control: evaluator.evaluate_own(batch, lambda pose, hits: 0.0, control=control)]
     told = []
     for call in calls:
@@ -109,7 +110,7 @@ def test_progress_hears_of_the_end_of_every_call(evaluator, poses):
             call(batch, control=viewgain.BatchControl(lambda *now: told.append(now)))
             assert len(told) > before
             assert len(batch) > 0 or told[before:] == [(0, 0)]
-    assert len(told) >= 21
+    assert len(told) >= 24
 
 
 def test_any_false_answer_of_progress_stops_but_none(slow):

@@ -345,6 +345,33 @@ def test_frames_say_what_the_hazard_is(sensor):
         integrator.calibrate_hazard(grid, viewgain.VoxelScene(grid), depth[1:], pose)
 
 
+def test_a_tour_weighs_the_way_and_keeps_to_its_budget(evaluator, poses):
+    chosen, marginal = evaluator.best_set(poses, 3, return_gains=True)
+    free = evaluator.plan_tour(poses, max_stops=3)
+    assert np.array_equal(free.indices, chosen) and free.way == 0
+    assert np.array_equal(free.gains["gain"], marginal["gain"]) and np.array_equal(free.worth, marginal["gain"])
+
+    eyes, asked = poses[:, :3, 3], []
+    def way(i, j):
+        asked.append((i, j))
+        if j == chosen[0]:
+            return np.inf  # vetoed
+        return float(np.linalg.norm(eyes[j] - (eyes[i] if i >= 0 else eyes[0])))
+    tour = evaluator.plan_tour(poses, way, max_stops=4, cost_per_way=marginal["gain"][0])
+    assert chosen[0] not in tour.indices and 1 <= len(tour.indices) <= 4
+    driven = [way(int(i), int(j)) for i, j in zip((-1, *tour.indices), tour.indices)]
+    assert tour.way == pytest.approx(sum(driven))
+    assert np.all(tour.worth <= tour.gains["gain"]) and {i for i, _ in asked} >= {-1}
+    short = evaluator.plan_tour(poses, way, budget=0.8, per_way=True)
+    assert 0 < short.way <= 0.8 and len(short.indices) >= 1
+    with pytest.raises(TypeError, match="callable"):
+        evaluator.plan_tour(poses, 3)
+    with pytest.raises(ValueError, match="from the start to 0 costs -1"):
+        evaluator.plan_tour(poses, lambda i, j: -1.0)
+    with pytest.raises(KeyError, match="arm"):
+        evaluator.plan_tour(poses, lambda i, j: {}["arm"])
+
+
 def test_stops_are_ordered():
     stops, cost = viewgain.order_stops([[0, 9, 2], [1, 0, 9], [9, 9, 0], [9, 3, 9]])  # from the start to 1, then 0, then 2
     assert stops.tolist() == [1, 0, 2] and cost == 6

@@ -106,6 +106,29 @@ def test_says_what_the_parts_say(gain, sensor, camera, poses):
     assert set(planner.seconds) == {"integrate", "snapshot", "candidates", "score"}
 
 
+def test_views_go_together_and_a_plan_is_taken_in_its_order(sensor, camera, poses):
+    one, ahead = make(sensor), make(sensor, plan=3, take=2)
+    for planner in (one, ahead):
+        planner.add_poses(poses, name="dome")
+        planner.add(camera.acquire(poses[3], 0)[0], poses[3])
+        proposal = planner.propose()
+    scene = viewgain.VoxelScene(one.grid, boxes=[WALL])
+    chosen, marginal = viewgain.GainEvaluator(scene, sensor).best_set(proposal.T_world_camera, 3, return_gains=True)
+    together = one.rank(3, together=True, exact=True)
+    assert np.array_equal(together.index, chosen) and np.array_equal(together.gain, marginal["gain"])
+    planned = ahead.rank(3)
+    assert 0 < len(planned.index) <= 3
+    ahead.add(camera.acquire(planned.T_world_camera[0], 1)[0], planned.T_world_camera[0])
+    left = ahead.propose()
+    if left.generator == ["plan"]:
+        assert np.array_equal(left.T_world_camera[0], planned.T_world_camera[1])
+        ahead.add(camera.acquire(left.T_world_camera[0], 2)[0], left.T_world_camera[0])
+        left = ahead.propose()
+    assert set(left.generator) == {"dome"}  # it is planned anew
+    with pytest.raises(ValueError, match="take is 4"):
+        make(sensor, plan=3, take=4)
+
+
 def test_saved_it_goes_on_bit_for_bit(sensor, camera, poses, tmp_path):
     whole, parts = make(sensor), make(sensor)
     whole.add_poses(poses), parts.add_poses(poses)

@@ -12,7 +12,7 @@
 namespace viewgain::detail {
 namespace {
 
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 constexpr std::uint64_t kMost = std::uint64_t{1} << 53;
 constexpr std::array kReasons{StopReason::gain,          StopReason::area,        StopReason::cost,
                               StopReason::no_candidates, StopReason::unreachable, StopReason::idle,
@@ -85,11 +85,11 @@ struct Entry {
   std::string_view name;
   std::size_t words;
 };
-constexpr std::array kEntries{Entry{"version", 2},        Entry{"seen_area", 2},
-                              Entry{"before_choice", 13}, Entry{"after_choice", 13},
-                              Entry{"frames", 3},         Entry{"reached", 13},
-                              Entry{"missed", 13},        Entry{"promised", 13},
-                              Entry{"of_view", 2},        Entry{"of_choice", 2}};
+constexpr std::array kEntries{
+    Entry{"version", 2},       Entry{"seen_area", 2}, Entry{"before_choice", 13},
+    Entry{"after_choice", 13}, Entry{"frames", 3},    Entry{"reached", 13},
+    Entry{"missed", 13},       Entry{"planned", 13},  Entry{"promised", 13},
+    Entry{"of_view", 2},       Entry{"of_choice", 2}};
 
 }  // namespace
 
@@ -105,6 +105,7 @@ std::string text_of(const PlannerState& state) {
   }
   for (const Pose& pose : state.reached) text += line_of("reached", pose);
   for (const Pose& pose : state.missed) text += line_of("missed", pose);
+  for (const Pose& pose : state.planned) text += line_of("planned", pose);
   if (state.promised) text += line_of("promised", *state.promised);
   text += line_of("of_view", state.of_view);
   text += line_of("of_choice", state.of_choice);
@@ -140,6 +141,8 @@ PlannerState state_of(const std::string& name, std::string_view text) {
       state.reached.push_back(pose_of(reader));
     } else if (key == "missed") {
       state.missed.push_back(pose_of(reader));
+    } else if (key == "planned") {
+      state.planned.push_back(pose_of(reader));
     } else if (key == "promised") {
       state.promised = pose_of(reader);
     } else if (key == "of_view") {

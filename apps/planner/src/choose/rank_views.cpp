@@ -4,12 +4,96 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 #include <utility>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/tour.hpp"
+#include "viewgain/planner/view_proposer.hpp"
+#include "viewgain/raycast/view_tour.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
+namespace {
+
+constexpr std::size_t kMostPlanned = 1000;
+// What is looked at of views that go together: of the rays, and of the poses by stop and at least.
+constexpr double kFewRays = 0.25;
+constexpr std::size_t kByStop = 3, kFewPoses = 32;
+
+void refuse_measures(const RankConfig& config) {
+  if (config.measure == nullptr && config.run_measure == nullptr) return;
+  throw Error(ErrorCode::invalid_argument,
+              "views that go together are chosen by the gain, not by a measure");
+}
+
+double least_area_of(const PlanAhead& ahead, double surface_area) {
+  return ahead.least_share * std::fmax(surface_area, 0);
+}
+
+bool has_costs(const RankConfig& config) {
+  return !config.costs.empty() || config.cost_per_metre > 0;
+}
+
+// In the order of the tour.
+Ranking ranking_of(ViewTour tour, std::span<const Pose> T_world_camera) {
+  Ranking ranking;
+  ranking.complete = tour.set.complete;
+  for (const std::size_t place : tour.tour.stops) {
+    const std::size_t at = tour.set.indices[place];
+    ranking.views.push_back({at, T_world_camera[at], tour.set.marginal[place], tour.worth[place]});
+  }
+  for (std::size_t i = 0; i < tour.alone.size(); ++i) {
+    if (std::isnan(tour.alone[i].gain)) continue;
+    ranking.scored_indices.push_back(i);
+    ranking.scored_gains.push_back(tour.alone[i]);
+  }
+  ranking.way = tour.tour.cost;
+  return ranking;
+}
+
+// The views that were chosen by few rays, alone.
+void score_in_full(const GainEvaluator& evaluator, Ranking& ranking) {
+  std::vector<std::size_t>& indices = ranking.scored_indices;
+  indices.clear();
+  std::vector<Pose> poses;
+  for (const RankedView& view : ranking.views) indices.push_back(view.index);
+  std::sort(indices.begin(), indices.end());
+  for (const std::size_t index : indices) {
+    const auto at = std::find_if(ranking.views.begin(), ranking.views.end(),
+                                 [&](const RankedView& view) { return view.index == index; });
+    poses.push_back(at->T_world_camera);
+  }
+  ranking.scored_gains = evaluator.evaluate(poses);
+}
+
+// Unless it is to be exact, of few poses, by some of their rays.
+Ranking chosen_together(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
+                        TourConfig tour, bool exact, const BatchControl& control) {
+  if (!exact) {
+    tour.max_candidates = std::max(kFewPoses, kByStop * tour.max_stops);
+    tour.share = kFewRays;
+  }
+  Ranking ranking = ranking_of(plan_tour(evaluator, T_world_camera, tour, control), T_world_camera);
+  if (!exact) score_in_full(evaluator, ranking);
+  return ranking;
+}
+
+}  // namespace
+
+void PlanAhead::check() const {
+  const auto fail = [](const std::string& what) { throw Error(ErrorCode::invalid_argument, what); };
+  if (plan < 1 || plan > kMostPlanned) {
+    fail("plan is " + std::to_string(plan) + "; it must be 1 to " + std::to_string(kMostPlanned));
+  }
+  if (take < 1 || take > plan) {
+    fail("take is " + std::to_string(take) + "; it must be 1 to plan, " + std::to_string(plan));
+  }
+  if (!(least_share >= 0 && least_share < 1)) {
+    fail("least_share " + short_text(least_share) + " must be at least 0 and less than 1");
+  }
+}
 
 std::vector<double> view_costs(std::span<const Pose> poses, const RankConfig& config,
                                const std::optional<Eigen::Vector3d>& here) {
@@ -33,6 +117,13 @@ Ranking rank_views(const GainEvaluator& evaluator, std::span<const Pose> T_world
                    std::size_t k, const RankConfig& config,
                    const std::optional<Eigen::Vector3d>& here, const BatchControl& control) {
   const std::vector<double> costs = view_costs(T_world_camera, config, here);
+  if (config.together) {
+    refuse_measures(config);
+    Ranking chosen = chosen_together(evaluator, T_world_camera, {.max_stops = k, .costs = costs},
+                                     config.exact, control);
+    if (!chosen.views.empty() && has_costs(config)) chosen.worth = chosen.views.front().worth;
+    if (!chosen.views.empty() || !chosen.complete) return chosen;
+  }
   const BestConfig best_by{
       .costs = costs, .measure = config.measure, .run_measure = config.run_measure};
   // Of all of them where all are scored, since the rule of area asks for the most that any
@@ -51,7 +142,86 @@ Ranking rank_views(const GainEvaluator& evaluator, std::span<const Pose> T_world
   }
   if (!best.scored_gains.empty()) ranking.scored_indices = std::move(best.scored_indices);
   ranking.scored_gains = std::move(best.scored_gains);
+  if (has_costs(config) && !ranking.views.empty()) ranking.worth = ranking.views.front().worth;
   return ranking;
+}
+
+Ranking plan_views(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
+                   const PlanAhead& ahead, double surface_area, const RankConfig& config,
+                   const std::optional<Eigen::Vector3d>& here, const BatchControl& control) {
+  ahead.check();
+  refuse_measures(config);
+  const Pose start = here ? Pose(Eigen::Matrix3d::Identity(), *here) : Pose();
+  TourConfig tour{.max_stops = ahead.plan,
+                  .way = straight_ways(start, T_world_camera),
+                  .cost_per_way = config.cost_per_metre,
+                  .costs = config.costs,
+                  .least_area = least_area_of(ahead, surface_area)};
+  if (!here) {
+    tour.way = [between = std::move(tour.way)](std::size_t from, std::size_t to) {
+      return from == kTourStart ? 0.0 : between(from, to);
+    };
+  }
+  Ranking planned =
+      chosen_together(evaluator, T_world_camera, std::move(tour), config.exact, control);
+  if (has_costs(config)) {
+    planned.worth = 0;
+    for (const RankedView& view : planned.views) planned.worth += view.worth;
+  }
+  if (!planned.views.empty() || !planned.complete) return planned;
+  return rank_views(evaluator, T_world_camera, 1, config, here, control);
+}
+
+void keep_worth(const GainEvaluator& evaluator, const PlanAhead& ahead, double surface_area,
+                Proposal& planned) {
+  const std::vector<ViewGain> gains = evaluator.evaluate(poses_of(planned.candidates));
+  const double least = least_area_of(ahead, surface_area);
+  std::vector<Candidate> kept;
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    const bool is_little = !(gains[i].gain > 0) || gains[i].area < least;
+    if (!is_little) kept.push_back(std::move(planned.candidates[i]));
+  }
+  planned.candidates = std::move(kept);
+}
+
+Ranking rank_in_turn(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
+                     RankConfig config, const std::optional<Eigen::Vector3d>& here,
+                     const BatchControl& control) {
+  refuse_measures(config);
+  config.exact = true;
+  config.together = false;
+  Ranking ranking =
+      rank_views(evaluator, T_world_camera, T_world_camera.size(), config, here, control);
+  ranking.worth = std::numeric_limits<double>::quiet_NaN();
+  std::sort(ranking.views.begin(), ranking.views.end(),
+            [](const RankedView& a, const RankedView& b) { return a.index < b.index; });
+  return ranking;
+}
+
+DecisionMaking::Decision decision_of(const Ranking& ranking, GainModel model) {
+  const RankedView& first = ranking.views.front();
+  const auto& indices = ranking.scored_indices;
+  const auto scored = std::lower_bound(indices.begin(), indices.end(), first.index);
+  const ViewGain& gain =
+      scored == indices.end()
+          ? first.gain
+          : ranking.scored_gains[static_cast<std::size_t>(scored - indices.begin())];
+  DecisionMaking::Decision decision;
+  decision.candidate = first.index;
+  decision.gain = gain.gain;
+  decision.area = gain.area;
+  decision.worth = ranking.worth;
+  if (std::isnan(gain.gain)) return decision;  // bad poses, or a measure of the user's own
+  if (model == GainModel::paper) {
+    const std::uint32_t touched = gain.unknown_voxels + gain.occupied_voxels;
+    decision.gain_per_voxel = touched > 0 ? gain.gain / touched : 0.0;
+  } else {
+    decision.best_area = 0;
+    for (const ViewGain& of : ranking.scored_gains) {
+      decision.best_area = std::fmax(decision.best_area, of.area);
+    }
+  }
+  return decision;
 }
 
 void leave_out_gainless(Ranking& ranking, const RankConfig& config) {

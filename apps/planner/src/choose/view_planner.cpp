@@ -40,27 +40,6 @@ std::string layout_text(const BeliefGrid& grid) {
   return text;
 }
 
-// What the stopping rules want to know of a ranking.
-DecisionMaking::Decision decision_of(const Ranking& ranking, GainModel model, bool has_costs) {
-  DecisionMaking::Decision decision;
-  const ViewGain& best = ranking.views.front().gain;
-  decision.candidate = ranking.views.front().index;
-  decision.gain = best.gain;
-  decision.area = best.area;
-  if (has_costs) decision.worth = ranking.views.front().worth;
-  if (std::isnan(best.gain)) return decision;  // bad poses, or a measure of the user's own
-  if (model == GainModel::paper) {
-    const std::uint32_t touched = best.unknown_voxels + best.occupied_voxels;
-    decision.gain_per_voxel = touched > 0 ? best.gain / touched : 0.0;
-  } else {
-    decision.best_area = 0;
-    for (const ViewGain& gain : ranking.scored_gains) {
-      decision.best_area = std::fmax(decision.best_area, gain.area);
-    }
-  }
-  return decision;
-}
-
 std::optional<StopReason> limit_reached(const PlanningConfig& limits, const StopMemory& memory) {
   if (memory.views == 0) return std::nullopt;
   if (memory.views >= limits.max_views) return StopReason::max_views;
@@ -81,6 +60,7 @@ struct ViewPlanner::Impl {
   ViewProposer proposer;
   std::optional<GainEvaluator> evaluator;
   std::optional<Proposal> proposal;
+  bool is_of_plan = false;  // the proposal
   StageSeconds seconds;
   std::once_flag is_registering;
   std::optional<FrameAlignment> registration;  // once it is asked for
@@ -92,6 +72,7 @@ struct ViewPlanner::Impl {
         map(std::move(map_in)),
         proposer(map.scene(), detail::proposer_config(config, map.sensor()), exec) {
     (void)StopRules(planning);  // refuses what no run can have
+    config.ahead.check();
   }
 
   GainEvaluator& current_evaluator() {
@@ -122,6 +103,7 @@ struct ViewPlanner::Impl {
     added.entropy_removed = added.progress.entropy_removed - before;
     seconds = added.update.seconds;
     proposal.reset();
+    pass_planned(T_world_camera);
     forget_promise_unless_kept_at(T_world_camera);
     StopRules rules(planning, state.after_choice);
     state.of_view = rules.after_view(added.progress);
@@ -137,6 +119,34 @@ struct ViewPlanner::Impl {
       state.before_choice.idle_views = state.after_choice.idle_views = 0;
     }
     return added;
+  }
+
+  // The view is one of the plan, or came in the place of its next one.
+  void pass_planned(const std::optional<Pose>& T_world_camera) {
+    if (state.planned.empty()) return;
+    const auto is_it = [&](const Pose& pose) {
+      return T_world_camera &&
+             is_among(*T_world_camera, std::span(&pose, 1), config.taken_tolerance);
+    };
+    const auto found = std::find_if(state.planned.begin(), state.planned.end(), is_it);
+    state.planned.erase(found == state.planned.end() ? state.planned.begin() : found);
+  }
+
+  // What is left of the plan; nothing if it is not worth taking any more.
+  Proposal planned_proposal() {
+    Proposal left = proposer.propose_these({std::string(kPlanned), state.planned}, map.grid(),
+                                           map.scene(), state.reached, state.missed);
+    keep_worth(current_evaluator(), config.ahead, state.seen_area, left);
+    state.planned = poses_of(left.candidates);
+    return left;
+  }
+
+  Ranking plan(std::span<const Pose> poses, const RankConfig& rank_config,
+               const std::optional<Eigen::Vector3d>& here, const BatchControl& control) {
+    const GainEvaluator& by = current_evaluator();
+    return is_of_plan
+               ? rank_in_turn(by, poses, rank_config, here, control)
+               : plan_views(by, poses, config.ahead, state.seen_area, rank_config, here, control);
   }
 
   // A view from elsewhere was not what promised.
@@ -175,20 +185,27 @@ struct ViewPlanner::Impl {
     std::optional<Eigen::Vector3d> here;
     if (!views.empty()) here = views.back().translation();
     const GainEvaluator& by = current_evaluator();
+    const bool plans = from != nullptr && config.ahead.is_on();
     // The first one says why to end, whatever k.
     Ranking ranking =
-        rank_views(by, poses, std::max<std::size_t>(k, 1), rank_config, here, control);
+        plans ? plan(poses, rank_config, here, control)
+              : rank_views(by, poses, std::max<std::size_t>(k, 1), rank_config, here, control);
     if (from != nullptr && ranking.complete) {
       std::optional<DecisionMaking::Decision> decision;
-      const bool has_costs = !rank_config.costs.empty() || rank_config.cost_per_metre > 0;
       state.promised.reset();
       if (!ranking.views.empty()) {
-        decision = decision_of(ranking, by.model(), has_costs);
+        decision = decision_of(ranking, by.model());
         state.promised = ranking.views.front().T_world_camera;
       }
       remember(decision, *from);
     }
     if (from != nullptr) leave_out_gainless(ranking, rank_config);
+    if (plans && !is_of_plan && ranking.complete) {
+      state.planned.clear();
+      for (const RankedView& view : ranking.views) {
+        if (state.planned.size() < config.ahead.take) state.planned.push_back(view.T_world_camera);
+      }
+    }
     ranking.views.resize(std::min(ranking.views.size(), k));
     seconds["score"] += watch.seconds();
     return ranking;
@@ -256,8 +273,12 @@ const Proposal& ViewPlanner::propose() {
   Impl& m = *impl_;
   m.require_a_usable_frame();
   const Stopwatch watch;
-  Proposal proposal =
-      m.proposer.propose(m.map.grid(), m.map.scene(), m.state.reached, m.state.missed);
+  Proposal proposal;
+  if (!m.state.planned.empty()) proposal = m.planned_proposal();
+  m.is_of_plan = !proposal.candidates.empty();
+  if (!m.is_of_plan) {
+    proposal = m.proposer.propose(m.map.grid(), m.map.scene(), m.state.reached, m.state.missed);
+  }
   m.state.of_choice.reset();
   m.state.after_choice = m.state.before_choice;
   m.state.promised.reset();

@@ -33,6 +33,12 @@ bool is_in_workspace(const BeliefGrid& grid, const Pose& pose) {
   return true;
 }
 
+void add(const PoseSet& set, std::vector<Candidate>& candidates) {
+  for (std::size_t i = 0; i < set.poses.size(); ++i) {
+    candidates.push_back({set.poses[i], set.generator, std::nullopt, i});
+  }
+}
+
 }  // namespace
 
 std::vector<Pose> poses_of(std::span<const Candidate> candidates) {
@@ -84,16 +90,23 @@ bool ViewProposer::stays_inside(const BeliefGrid& grid) const {
                      [&grid](const Pose& view) { return is_in_workspace(grid, view); });
 }
 
+Proposal ViewProposer::propose_these(const PoseSet& set, const BeliefGrid& grid,
+                                     std::shared_ptr<const VoxelScene> scene,
+                                     std::span<const Pose> reached, std::span<const Pose> missed) {
+  checker_ = checker_.with_scene(std::move(scene));
+  Proposal proposal;
+  std::vector<Candidate> candidates;
+  add(set, candidates);
+  keep_possible(std::move(candidates), set.poses.size(), grid, reached, missed, proposal);
+  return proposal;
+}
+
 Proposal ViewProposer::propose(const BeliefGrid& grid, std::shared_ptr<const VoxelScene> scene,
                                std::span<const Pose> reached, std::span<const Pose> missed) {
   checker_ = checker_.with_scene(std::move(scene));
   Proposal proposal;
   std::vector<Candidate> candidates;
-  for (const PoseSet& set : sets_) {
-    for (std::size_t i = 0; i < set.poses.size(); ++i) {
-      candidates.push_back({set.poses[i], set.generator, std::nullopt, i});
-    }
-  }
+  for (const PoseSet& set : sets_) add(set, candidates);
   const std::size_t of_sets = candidates.size();
   const Pose here = grid.views().empty() ? Pose() : grid.views().back();
   for (const auto& generation : generations_) {
@@ -101,7 +114,13 @@ Proposal ViewProposer::propose(const BeliefGrid& grid, std::shared_ptr<const Vox
     std::move(made.candidates.begin(), made.candidates.end(), std::back_inserter(candidates));
     for (const auto& [reason, count] : made.dropped) proposal.dropped[reason] += count;
   }
+  keep_possible(std::move(candidates), of_sets, grid, reached, missed, proposal);
+  return proposal;
+}
 
+void ViewProposer::keep_possible(std::vector<Candidate> candidates, std::size_t of_sets,
+                                 const BeliefGrid& grid, std::span<const Pose> reached,
+                                 std::span<const Pose> missed, Proposal& proposal) {
   std::vector<Infeasibility> found(candidates.size(), Infeasibility::none);
   if (stays_inside(grid)) {
     for (std::size_t i = of_sets; i < candidates.size(); ++i) {
@@ -143,7 +162,6 @@ Proposal ViewProposer::propose(const BeliefGrid& grid, std::shared_ptr<const Vox
       dropped_.push_back({std::move(candidates[i]), std::string(reason)});
     }
   }
-  return proposal;
 }
 
 void ViewProposer::drop(const Pose& tried, std::string_view reason, Proposal& proposal) {

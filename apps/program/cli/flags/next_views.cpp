@@ -62,7 +62,28 @@ void add(const GainEvaluator::RayOutcomes& from, GainEvaluator::RayOutcomes& to)
   for (const Outcome& outcome : kOutcomes) to.*outcome.count += from.*outcome.count;
 }
 
+double total_gain(const NextViews& next) {
+  double total = 0;
+  for (const NextView& view : next.views) total += view.gain.gain;
+  return total;
+}
+
 }  // namespace
+
+void add_plan_options(App& app, PlanOptions& options) {
+  app.add_option("--plan", options.plan, kPlanHelp)
+      ->capture_default_str()
+      ->range(std::size_t{1}, std::size_t{1000}, "count");
+  app.add_option("--take", options.take, kTakeHelp)
+      ->range(std::size_t{1}, std::size_t{1000}, "count");
+}
+
+void check(const PlanOptions& options) {
+  if (options.take.value_or(1) > options.plan) {
+    refuse("--take " + std::to_string(*options.take) + " goes with --plan of as many, not " +
+           std::to_string(options.plan));
+  }
+}
 
 NextViews next_views(const Ranking& ranking, const Proposal& proposal, GainModel model) {
   NextViews next{{}, proposal.candidates.size(), proposal.dropped, model};
@@ -92,11 +113,13 @@ Json to_json(const NextViews& next) {
             {"dropped", next.dropped},
             {"next", Json::array()}};
   if (next.no_gain) json["no_gain"] = to_json(next.no_gain);
-  if (next.tour_metres) json["tour_metres"] = *next.tour_metres;
+  if (next.plan_metres) json["plan_metres"] = *next.plan_metres;
+  const double total = total_gain(next);
   for (const NextView& view : next.views) {
     const auto& of = view.boundary_class;
     json["next"].push_back({{"gain", view.gain.gain},  // a NaN becomes null
                             {"worth", view.worth},
+                            {"share", view.gain.gain / total},
                             {"area", view.gain.area},
                             {"generator", view.generator},
                             {"class", of ? Json(boundary_class_name(*of)) : Json()},
@@ -121,24 +144,22 @@ std::string text_of(const NextViews& next) {
   const bool has_area = next.model != GainModel::paper;
   const std::string gain = "gain [" + std::string(gain_unit(next.model, kCriterion)) + "]";
   std::string text =
-      formatted("rank %12s%s  %-26s %-23s why\n", gain.c_str(), has_area ? "   area [cm^2]" : "",
-                "eye x y z [m]", "looks along x y z");
+      formatted("rank %12s  share%s  %-26s %-23s why\n", gain.c_str(),
+                has_area ? "   area [cm^2]" : "", "eye x y z [m]", "looks along x y z");
+  const double total = total_gain(next);
   for (std::size_t i = 0; i < next.views.size(); ++i) {
     const NextView& view = next.views[i];
     const Eigen::Vector3d eye = view.T_world_camera.translation();
     const Eigen::Vector3d axis = view.T_world_camera.rotation().col(2);
-    text += formatted("%4zu %12.6g", i + 1, view.gain.gain);
+    text += formatted("%4zu %12.6g %4.0f %%", i + 1, view.gain.gain, 100 * view.gain.gain / total);
     if (has_area) text += formatted(" %13.4g", 1e4 * view.gain.area);
     text += formatted("  %8.3f %8.3f %8.3f %7.3f %7.3f %7.3f  %s\n", eye.x(), eye.y(), eye.z(),
                       axis.x(), axis.y(), axis.z(), why(view).c_str());
     if (view.rays) text.append("     ").append(text_of(*view.rays)).append("\n");
   }
-  if (next.tour_metres) {
-    text += formatted("a tour of %.3f m by straight ways; gains are what each view adds\n",
-                      *next.tour_metres);
-  } else if (next.views.front().worth <= 0) {
-    text += "no view is worth its way\n";
-  }
+  if (next.views.size() > 1) text += "gain and area are what each view adds to the others\n";
+  if (next.plan_metres) text += formatted("%.3f m by straight ways\n", *next.plan_metres);
+  if (next.views.front().worth <= 0) text += "no view is worth its way\n";
   return text;
 }
 

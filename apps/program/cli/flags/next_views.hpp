@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "program/cli/app.hpp"
 #include "program/cli/json.hpp"
 #include "viewgain/core/boundary_class.hpp"
 #include "viewgain/core/planning.hpp"
@@ -17,12 +18,29 @@
 
 namespace viewgain::app {
 
+/// --plan and --take.
+struct PlanOptions {
+  std::size_t plan = 1;
+  std::optional<std::size_t> take{};  ///< none: all of them
+
+  [[nodiscard]] PlanAhead ahead() const { return {.plan = plan, .take = take.value_or(plan)}; }
+};
+inline constexpr const char* kPlanHelp =
+    "K views are planned together, at most, as a set, and taken in an order that is short to drive "
+    "by straight ways; 1: one at a time";
+inline constexpr const char* kTakeHelp =
+    "of the views of --plan so many are taken before it is planned anew, if they are possible and "
+    "promise enough by then; default: all";
+void add_plan_options(App& app, PlanOptions& options);
+/// Throws Error(invalid_argument), naming the flag.
+void check(const PlanOptions& options);
+
 /// A view worth taking, and why it was proposed.
 struct NextView {
   Pose T_world_camera;
   std::size_t index = 0;  ///< of the candidate in its proposal
-  ViewGain gain;
-  double worth = 0;  ///< its gain less its cost
+  ViewGain gain;          ///< what it adds to the views before it
+  double worth = 0;       ///< that less its cost
   std::string generator;
   std::optional<BoundaryClass> boundary_class{};     ///< of the boundary that it looks beyond
   std::optional<GainEvaluator::RayOutcomes> rays{};  ///< what becomes of them, by explain()
@@ -30,13 +48,13 @@ struct NextView {
 
 /// Where a camera should look next.
 struct NextViews {
-  std::vector<NextView> views;                 ///< best first, or in a tour's order
+  std::vector<NextView> views;                 ///< best first, or in a plan's order
   std::size_t candidates = 0;                  ///< that were possible; `views` are the best of them
   std::map<std::string, std::size_t> dropped;  ///< the impossible ones: reason -> count
   GainModel model = kDefaultGain;              ///< of the gains
   std::optional<GainEvaluator::RayOutcomes>
       no_gain{};                        ///< by explain(): candidates' rays, if none gains
-  std::optional<double> tour_metres{};  ///< of a tour: its way, from the last view on [m]
+  std::optional<double> plan_metres{};  ///< of a new plan: its way, from the last view on [m]
 };
 
 /// Of a ranking of a proposal's candidates.

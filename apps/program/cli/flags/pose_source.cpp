@@ -118,10 +118,7 @@ void add_cost_options(App& app, CostOptions& options, const std::string& of) {
   app.add_option("--costs", options.file,
                  "file of one number for each of " + of +
                      ", which is subtracted from its gain, in the gain's unit");
-  app.add_option("--cost-per-metre", options.per_metre,
-                 "subtracted for each metre of the way from the map's last view, in the gain's "
-                 "unit")
-      ->capture_default_str();
+  app.add_option("--cost-per-metre", options.per_metre, kCostPerMetreHelp)->capture_default_str();
 }
 
 Shard parse_shard(const std::string& text) {

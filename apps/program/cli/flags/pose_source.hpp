@@ -72,6 +72,8 @@ struct CostOptions {
   [[nodiscard]] bool none() const { return file.empty() && per_metre == 0; }
 };
 
+inline constexpr const char* kCostPerMetreHelp =
+    "subtracted for each metre of the way from the map's last view, in the gain's unit";
 /// The flags of CostOptions; `of`: whose costs a file has.
 void add_cost_options(App& app, CostOptions& options, const std::string& of);
 

@@ -16,6 +16,7 @@
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/next_views.hpp"
+#include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/interrupt.hpp"
@@ -27,7 +28,6 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frame_watch.hpp"
-#include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/atomic_file.hpp"
@@ -56,6 +56,8 @@ struct Options {
   std::string body;
   std::optional<double> support_plane;
   std::size_t top = 10;
+  PlanOptions plan;
+  double cost_per_metre = 0;
   std::size_t max_views = PlannerConfig{}.max_views;
   std::size_t stop_promises = PlannerConfig{}.broken_promises;
   RegistrationOptions registration;
@@ -78,35 +80,10 @@ PlannerConfig planner_config(const Options& options) {
   if (!options.reach.empty()) config.reach = read_reach_toml(options.reach);
   config.max_views = options.max_views;
   config.broken_promises = options.stop_promises;
+  check_at_least_0("--cost-per-metre", options.cost_per_metre);
+  check(options.plan);
+  config.ahead = options.plan.ahead();
   return config;
-}
-
-// Not yet with a mask in it: they come with the frames.
-MaskFolder mask_folder(const char* flag, const fs::path& folder, const fs::path& frames,
-                       std::optional<std::uint8_t> least_confidence = {}) {
-  std::error_code ignored;
-  if (fs::equivalent(folder, frames, ignored)) {
-    refuse(std::string(flag) + " " + folder.string() +
-           ": has the depth images, whose names masks have; name a folder in it");
-  }
-  return MaskFolder(folder, least_confidence);
-}
-
-FrameWatch watch_of(const FrameFolderOptions& options, const std::optional<SavedFrames>& saved) {
-  if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
-  FrameWatchConfig config;
-  config.sensor = options.sensor;
-  config.depth_scale = options.depth_scale;
-  config.out_of_range = out_of_range_of(options);
-  if (!options.mask.empty()) {
-    config.masks.push_back(mask_folder("--mask", options.mask, options.folder));
-  }
-  if (!options.confidence.empty()) {
-    config.masks.push_back(mask_folder("--confidence", options.confidence, options.folder,
-                                       static_cast<std::uint8_t>(options.least_confidence)));
-  }
-  if (saved) config.taken = saved->frames;
-  return {options.folder, std::move(config)};
 }
 
 // Files of these names that are somebody else's stay.
@@ -273,7 +250,7 @@ class Following {
   // First the state: what is next takes longest, and can be made of it again.
   void write() {
     map_->save(watch_->taken());
-    next_ = map_->next(options_.top);
+    next_ = map_->next(options_.top, options_.cost_per_metre);
     views_.ask(poses_of(next_), watch_->taken());
     write_tum(out_ / "next.txt", poses_of(next_));
     write_json();
@@ -377,9 +354,12 @@ Command add_follow(App& program) {
   app->add_option("--body", o.body, kBodyHelp);
   app->add_option("--support-plane", o.support_plane,
                   "height z of the table [m]: its readings carve but do not hit; default: none");
-  app->add_option("--top", o.top, "how many views to say, at most")
+  app->add_option("--top", o.top,
+                  "how many views to say, at most, each by what it adds to those before it")
       ->capture_default_str()
       ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
+  add_plan_options(*app, o.plan);
+  app->add_option("--cost-per-metre", o.cost_per_metre, kCostPerMetreHelp)->capture_default_str();
   app->add_option("--max-views", o.max_views, "view budget: a reason to stop")
       ->capture_default_str()
       ->range(std::size_t{1}, std::size_t{1'000'000}, "count");

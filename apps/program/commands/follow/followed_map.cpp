@@ -9,6 +9,8 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -16,6 +18,7 @@
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/masks.hpp"
 #include "viewgain/planner/suspect_frames.hpp"
 #include "viewgain/planner_mesh/boundary_generation.hpp"
 
@@ -35,7 +38,35 @@ ViewPlanner planner_of(Sensor sensor, std::optional<std::array<double, 3>> body,
   return saved ? ViewPlanner::load(state, sensor, config, exec) : ViewPlanner(sensor, config, exec);
 }
 
+// Not yet with a mask in it: they come with the frames.
+MaskFolder mask_folder(const char* flag, const fs::path& folder, const fs::path& frames,
+                       std::optional<std::uint8_t> least_confidence = {}) {
+  std::error_code ignored;
+  if (fs::equivalent(folder, frames, ignored)) {
+    refuse(std::string(flag) + " " + folder.string() +
+           ": has the depth images, whose names masks have; name a folder in it");
+  }
+  return MaskFolder(folder, least_confidence);
+}
+
 }  // namespace
+
+FrameWatch watch_of(const FrameFolderOptions& options, const std::optional<SavedFrames>& saved) {
+  if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
+  FrameWatchConfig config;
+  config.sensor = options.sensor;
+  config.depth_scale = options.depth_scale;
+  config.out_of_range = out_of_range_of(options);
+  if (!options.mask.empty()) {
+    config.masks.push_back(mask_folder("--mask", options.mask, options.folder));
+  }
+  if (!options.confidence.empty()) {
+    config.masks.push_back(mask_folder("--confidence", options.confidence, options.folder,
+                                       static_cast<std::uint8_t>(options.least_confidence)));
+  }
+  if (saved) config.taken = saved->frames;
+  return {options.folder, std::move(config)};
+}
 
 FolderLock::FolderLock(const fs::path& folder) : folder_(folder) {
   std::error_code code;
@@ -119,7 +150,7 @@ void FollowedMap::answer(std::span<const Pose> asked, const std::optional<Pose>&
   planner_.tried(asked.front(), false);
 }
 
-NextViews FollowedMap::next(std::size_t top) {
+NextViews FollowedMap::next(std::size_t top, double cost_per_metre) {
   const FrameCounts& frames = planner_.frames();
   if (frames.empty() || !is_in_map(frames.begin()->first)) {
     NextViews none;
@@ -127,7 +158,8 @@ NextViews FollowedMap::next(std::size_t top) {
     return none;
   }
   const Proposal& proposal = planner_.propose();
-  return next_views(planner_.rank(top), proposal, model_);
+  return next_views(planner_.rank(top, {.cost_per_metre = cost_per_metre, .together = true}),
+                    proposal, model_);
 }
 
 void FollowedMap::save(const std::set<std::string>& frames) const {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -49,6 +50,10 @@ struct SavedFrames {
 [[nodiscard]] std::optional<SavedFrames> saved_frames(const std::filesystem::path& state,
                                                       const ExecConfig& exec);
 
+/// What is looked for in the frames' folder. Throws Error, naming the flag or the file.
+[[nodiscard]] FrameWatch watch_of(const FrameFolderOptions& options,
+                                  const std::optional<SavedFrames>& saved);
+
 /// A map that frames are put into as they come, the next best views on it, and the file that keeps
 /// both.
 class FollowedMap {
@@ -81,8 +86,9 @@ class FollowedMap {
   void answer(std::span<const Pose> asked, const std::optional<Pose>& T_world_camera);
 
   /// Nothing while no frame could be used; else the best of the views at the surface's open
-  /// boundaries and of the reach region's poses.
-  [[nodiscard]] NextViews next(std::size_t top);
+  /// boundaries and of the reach region's poses, each by what it adds to those before it; or a
+  /// plan's. `cost_per_metre` in the gain's unit.
+  [[nodiscard]] NextViews next(std::size_t top, double cost_per_metre);
 
   /// Why to end, as ViewPlanner::should_stop().
   [[nodiscard]] std::optional<StopReason> should_stop() const { return planner_.should_stop(); }

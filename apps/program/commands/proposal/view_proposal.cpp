@@ -11,7 +11,6 @@
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
-#include "viewgain/core/tour.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/planner/pose_sets.hpp"
 #include "viewgain/planner/rank_views.hpp"
@@ -105,7 +104,10 @@ void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
   app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
       ->capture_default_str()
       ->one_of(gain_model_names(), "gain");
-  app.add_option("--top", top, "views to name at most")
+  add_plan_options(app, o.plan);
+  app.add_option("--top", top,
+                 "views to name at most, each by what it adds to those before it, so that no two "
+                 "show the same; with --plan that has the numbers")
       ->capture_default_str()
       ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
 }
@@ -126,6 +128,7 @@ void check(const ProposalOptions& options) {
   if (options.region_depth) check_positive("--region-depth", *options.region_depth);
   if (options.distance) check_positive("--distance", *options.distance);
   check_at_least_0("--cost-per-metre", options.costs.per_metre);
+  check(options.plan);
   if (!options.poses.empty() && options.generator.empty() &&
       (options.count || options.distance || !options.center.empty())) {
     refuse("--count, --distance and --center go with --generator, not with --poses alone");
@@ -185,42 +188,21 @@ GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& m
 NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
                      const ProposalOptions& options, const BeliefGrid& grid, std::size_t top) {
   const std::vector<double> costs = costs_of(options, proposal);
-  const RankConfig config{.costs = costs, .cost_per_metre = options.costs.per_metre};
-  std::optional<Eigen::Vector3d> here;
-  if (!grid.views().empty()) here = grid.views().back().translation();
-  // With costs, views that gain nothing may be worth more than ones that gain.
-  Ranking ranking =
-      rank_views(evaluator, poses_of(proposal.candidates),
-                 options.costs.none() ? top : proposal.candidates.size(), config, here);
-  leave_out_gainless(ranking, config);
-  ranking.views.resize(std::min(ranking.views.size(), top));
-  return next_views(ranking, proposal, evaluator.model());
-}
-
-NextViews tour_views(const GainEvaluator& evaluator, const Proposal& proposal,
-                     const BeliefGrid& grid, std::size_t count) {
+  const RankConfig config{
+      .costs = costs, .cost_per_metre = options.costs.per_metre, .together = true};
   const std::vector<Pose> poses = poses_of(proposal.candidates);
-  const ViewSet set = evaluator.best_set(poses, count);
-  Ranking chosen;
-  for (std::size_t i = 0; i < set.indices.size(); ++i) {
-    const ViewGain& adds = set.marginal[i];
-    chosen.views.push_back({set.indices[i], poses[set.indices[i]], adds, adds.gain});
-  }
-  leave_out_gainless(chosen, {});
-  std::vector<Pose> stops;
-  for (const RankedView& view : chosen.views) stops.push_back(view.T_world_camera);
-  WayCost way = straight_ways(grid.views().empty() ? Pose() : grid.views().back(), stops);
-  if (grid.views().empty()) {
-    // It may begin anywhere.
-    way = [between = std::move(way)](std::size_t from, std::size_t to) {
-      return from == kTourStart ? 0.0 : between(from, to);
-    };
-  }
-  const Tour tour = order_stops(stops.size(), way);
-  Ranking ordered;
-  for (const std::size_t stop : tour.stops) ordered.views.push_back(chosen.views[stop]);
-  NextViews next = next_views(ordered, proposal, evaluator.model());
-  next.tour_metres = tour.cost;
+  const std::vector<Pose>& seen_from = grid.views();
+  std::optional<Eigen::Vector3d> here;
+  if (!seen_from.empty()) here = seen_from.back().translation();
+  PlanAhead ahead = options.plan.ahead();
+  ahead.least_share = 0;  // what adds little is named, too
+  Ranking ranking = ahead.is_on() ? plan_views(evaluator, poses, ahead, 0.0, config, here)
+                                  : rank_views(evaluator, poses, top, config, here);
+  leave_out_gainless(ranking, config);
+  const std::size_t most = ahead.is_on() ? ahead.take : top;
+  ranking.views.resize(std::min(ranking.views.size(), most));
+  NextViews next = next_views(ranking, proposal, evaluator.model());
+  if (ahead.is_on()) next.plan_metres = ranking.way;
   return next;
 }
 

@@ -35,7 +35,8 @@ struct ProposalOptions {
   std::string
       poses;  ///< file of candidates of the user's own; they alone unless `generator` is set
   CostOptions costs;  ///< of these, and of the way
-  std::string gain;   ///< empty: they are not ranked
+  PlanOptions plan;
+  std::string gain;  ///< empty: they are not ranked
   std::optional<double> object_size{};
   std::string hazard;
   std::uint64_t seed = 1;
@@ -44,7 +45,8 @@ struct ProposalOptions {
 /// The flags, but for --generator and --gain: what these do by default is not the same everywhere.
 void add_proposal_options(App& app, ProposalOptions& options);
 
-/// With --generator, --poses, costs and --gain of the best views, which --top limits.
+/// With --generator, --poses, costs and --gain of the best views, which --top limits, and of a
+/// plan.
 void add_next_view_options(App& app, ProposalOptions& options, std::size_t& top);
 
 /// Throws Error(invalid_argument), naming the flag: also for what a generator or a gain has no use
@@ -71,18 +73,12 @@ void check(const ProposalOptions& options);
 [[nodiscard]] GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& model,
                                          const Sensor& sensor, const ExecConfig& exec);
 
-/// The candidates of most worth, which is their gain less --costs and --cost-per-metre of the way
-/// from the map's last view, at most `top` of them, by the paper's gain all scored in full, by the
-/// others in two stages (GainEvaluator::race()). Those that gain nothing are not among them. Throws
-/// Error(invalid_argument), naming the file and the line, for costs that are not one a pose.
+/// At most `top` candidates that go together (rank_views()), or the first views of a plan
+/// (plan_views()): each with what it adds to those chosen before it, and that less --costs and
+/// --cost-per-metre of the way from the map's last view. Those that add nothing are not among them.
+/// Throws Error(invalid_argument), naming the file and the line, for costs that are not one a pose.
 [[nodiscard]] NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
                                    const ProposalOptions& options, const BeliefGrid& grid,
                                    std::size_t top);
-
-/// At most `count` of the candidates that are good together (GainEvaluator::best_set()), in the
-/// order that is short to drive from the map's last view by straight ways. Each has for gain and
-/// worth what it adds to those chosen before it; those that add nothing are not among them.
-[[nodiscard]] NextViews tour_views(const GainEvaluator& evaluator, const Proposal& proposal,
-                                   const BeliefGrid& grid, std::size_t count);
 
 }  // namespace viewgain::app

@@ -101,7 +101,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
     progress.update(views.size(), options.max_views);
   };
   const PlanningResult result =
-      active_view_planning(setup.start, parts.acquisition, parts.representation(), parts.generation,
+      active_view_planning(setup.start, parts.acquisition, parts.representation(), parts.decision,
                            parts.decision, setup.planning, watch);
 
   progress.wipe();

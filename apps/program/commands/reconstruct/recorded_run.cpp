@@ -204,7 +204,9 @@ class Recording {
         {"gain", proposal_.gain},
         {"reach", Json::or_null(proposal_.reach)},
         {"obstacles", proposal_.obstacles},
-        {"top", options_.top}};
+        {"top", options_.top},
+        {"plan", proposal_.plan.plan},
+        {"take", proposal_.plan.ahead().take}};
   }
 
   const Options& options_;

@@ -183,6 +183,8 @@ PolicyConfig policy_config(const ReconstructOptions& options) {
   policy.policy = parse_policy(options.policy);
   policy.criterion = parse_criterion(options.criterion);
   policy.travel_cost = options.travel_cost;
+  policy.ahead = options.plan.ahead();
+  if (options.stop_area.value_or(0) > 0) policy.ahead.least_share = *options.stop_area;
   policy.seed = options.sensing.seed;
   if (options.gain.empty()) return policy;
   const std::vector<std::string>& classic = classic_gain_names();
@@ -228,6 +230,9 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.planning = planning_config(options, setup.policy);
   setup.settings = settings_json(options, resolved_settings(options, setup));
   if (!options.obstacles.empty()) setup.settings["obstacles"] = options.obstacles;
+  if (const PlanAhead& ahead = setup.policy.ahead; ahead.is_on()) {
+    setup.settings.update(Json{{"plan", ahead.plan}, {"take", ahead.take}});
+  }
   return setup;
 }
 

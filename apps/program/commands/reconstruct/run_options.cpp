@@ -121,6 +121,9 @@ void describe(Options& o, Visitor& visit) {
                shows_default);
   visit.option("travel_cost", "--travel-cost", o.travel_cost,
                "rank by gain - L * distance [nat/m, surface: m^2/m]", shows_default);
+  // Recorded where it is planned ahead.
+  visit.option(nullptr, "--plan", o.plan.plan, kPlanHelp, counted_with_default(1, 1000));
+  visit.option(nullptr, "--take", o.plan.take, kTakeHelp, counted(1, 1000));
   visit.option("reach", "--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach",
                as_it_is);
   // Recorded where there are any.
@@ -182,13 +185,17 @@ void check(const ReconstructOptions& options) {
     refuse("--gain " + options.gain + " goes with --policy gain, not " + options.policy);
   }
   const std::vector<std::string>& classic = classic_gain_names();
-  if (!options.semantics.empty() &&
-      std::find(classic.begin(), classic.end(), options.gain) == classic.end()) {
+  const bool is_classic = std::find(classic.begin(), classic.end(), options.gain) != classic.end();
+  if (!options.semantics.empty() && !is_classic) {
     refuse("--semantics " + options.semantics + " goes with a gain of the literature (--gain " +
            classic.front() + ", ...)");
   }
   check_positive("--tolerance", options.tolerance);
   check_at_least_0("--travel-cost", options.travel_cost);
+  check(options.plan);
+  if (options.plan.plan > 1 && (parse_policy(options.policy) != Policy::gain || is_classic)) {
+    refuse("--plan goes with --policy gain by the gains paper, surface and combined");
+  }
   if (options.distance) check_positive("--distance", *options.distance);
   if (options.sensing.support_plane) {
     check_finite("--support-plane", *options.sensing.support_plane);

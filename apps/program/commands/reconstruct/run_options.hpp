@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "program/cli/flags/common_options.hpp"
+#include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/json.hpp"
 #include "viewgain/core/planning.hpp"
@@ -58,6 +59,7 @@ struct ReconstructOptions {
   std::optional<double> stop_coverage;
   double tolerance = kCovered;
   double travel_cost = 0;
+  PlanOptions plan;
   std::string reach;
   std::vector<std::string> obstacles;
   std::string body;

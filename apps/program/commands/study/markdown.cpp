@@ -78,8 +78,12 @@ std::vector<std::size_t> objects_of(const Rows& rows) {
   return objects;
 }
 
+Figure metres_to(std::size_t goal) {
+  return [goal](const ResultRow& row) { return row.metres_to[goal]; };
+}
+
 // Mean / median / runs that never got there, which are beyond all others and make of the mean a
-// lower bound.
+// lower bound, and the way until then.
 std::string counts(const Rows& rows, std::size_t goal) {
   std::vector<double> views;
   std::size_t never = 0;
@@ -89,13 +93,14 @@ std::string counts(const Rows& rows, std::size_t goal) {
   }
   const double median = median_of(std::move(views));
   return (never > 0 ? "≥ " : "") + mean_cell(rows, views_to(goal), 2) + " / " +
-         (median == HUGE_VAL ? "never" : fixed(median, 1)) + " / " + std::to_string(never);
+         (median == HUGE_VAL ? "never" : fixed(median, 1)) + " / " + std::to_string(never) + "; " +
+         mean_cell(rows, metres_to(goal), 2) + " m";
 }
 
 std::string means(const Group& group) {
   std::string text =
       head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "AUC ↑", "in the end ↑",
-               "RMS [mm] ↓", "consistency", "way [m] ↓", "time [s] ↓"});
+               "RMS [mm] ↓", "consistency", "way [m] ↓", "decisions", "s a view", "time [s] ↓"});
   for (std::size_t policy = 0; policy < group.spec.policies.size(); ++policy) {
     const Rows rows = group.of(policy);
     std::vector<std::string> cells{group.spec.policies[policy].name};
@@ -106,6 +111,9 @@ std::string means(const Group& group) {
     cells.push_back(mean_cell(rows, rms_mm, 2));
     cells.push_back(mean_cell(rows, &ResultRow::consistency, 2));
     cells.push_back(mean_cell(rows, &ResultRow::travelled, 1));
+    const auto decisions = [](const ResultRow& row) { return static_cast<double>(row.decisions); };
+    cells.push_back(mean_cell(rows, decisions, 1));
+    cells.push_back(mean_cell(rows, &ResultRow::deciding_seconds, 2));
     cells.push_back(mean_cell(rows, &ResultRow::seconds, 1));
     text += line_of(cells);
   }
@@ -136,11 +144,11 @@ std::string difference(const Rows& of, const Rows& against, const Figure& figure
 std::string pairs(const Group& group) {
   const StudySpec& spec = group.spec;
   if (spec.policies.size() < 2) return "";
-  std::string text =
-      "\nPaired with " + spec.policies[spec.against].name +
-      ": mean difference ± standard error (wins-ties-losses; p of the sign test, of "
-      "Wilcoxon's signed-rank test)\n\n" +
-      head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "AUC ↑", "RMS [mm] ↓"});
+  std::string text = "\nPaired with " + spec.policies[spec.against].name +
+                     ": mean difference ± standard error (wins-ties-losses; p of the sign test, of "
+                     "Wilcoxon's signed-rank test)\n\n" +
+                     head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "way to 95 % [m] ↓",
+                              "AUC ↑", "RMS [mm] ↓"});
   const Rows against = group.of(spec.against);
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
     if (policy == spec.against) continue;
@@ -149,6 +157,7 @@ std::string pairs(const Group& group) {
     for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
       cells.push_back(difference(of, against, views_to(goal), 2, false));
     }
+    cells.push_back(difference(of, against, metres_to(kGoals.size() - 1), 2, false));
     cells.push_back(difference(of, against, &ResultRow::auc, 3, true));
     cells.push_back(difference(of, against, rms_mm, 2, false));
     text += line_of(cells);
@@ -161,13 +170,14 @@ std::string by_object(const Group& group) {
   if (spec.objects.size() < 2) return "";
   std::vector<std::string> names{"policy"};
   for (const StudyObject& object : spec.objects) names.push_back(object.name);
-  std::string text = "\nAUC by object\n\n" + head_of(names);
+  std::string text = "\nAUC and way [m] by object\n\n" + head_of(names);
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
     std::vector<std::string> cells{spec.policies[policy].name};
     for (std::size_t object = 0; object < spec.objects.size(); ++object) {
       Rows rows = group.of(policy);
       std::erase_if(rows, [&](const ResultRow* row) { return row->run->object != object; });
-      cells.push_back(mean_cell(rows, &ResultRow::auc, 3));
+      cells.push_back(mean_cell(rows, &ResultRow::auc, 3) + "; " +
+                      mean_cell(rows, &ResultRow::travelled, 1));
     }
     text += line_of(cells);
   }
@@ -244,7 +254,12 @@ std::string results_markdown(const StudySpec& spec, const std::vector<ResultRow>
       "- Views to a share of the visible surface (within " +
       short_text(1e3 * spec.tolerance) +
       " mm): mean / median / runs that never got there. These count as " + never +
-      " in means, also of differences; a mean with such runs is at least (≥) that.\n"
+      " in means, also of differences; a mean with such runs is at least (≥) that. Then the mean "
+      "way "
+      "until there, of such runs the whole.\n"
+      "- decisions: views that were decided on anew, not taken as a plan said. s a view: "
+      "candidates "
+      "and choice.\n"
       "- AUC: mean coverage over the views. RMS: error of the surface. Consistency: the points' "
       "squared errors by their own sigmas, 1 if these are honest, above if too small.\n- ±: " +
       (objects.size() > 1

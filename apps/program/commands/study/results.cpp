@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/commands/study/results.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "program/commands/study/statistics.hpp"
+#include "viewgain/planner/rank_views.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::app {
@@ -29,6 +31,18 @@ constexpr std::array kFigures{RowFigure{"auc", &ResultRow::auc},
                               RowFigure{"consistency", &ResultRow::consistency},
                               RowFigure{"outliers", &ResultRow::outliers},
                               RowFigure{"travelled", &ResultRow::travelled}};
+constexpr std::array kViewsTo{"views_to_80", "views_to_90", "views_to_95"},
+    kMetresTo{"metres_to_80", "metres_to_90", "metres_to_95"};
+static_assert(kViewsTo.size() == kGoals.size() && kMetresTo.size() == kGoals.size());
+
+// Of a run's stages, by view.
+double deciding_seconds(const Json& json, std::size_t views) {
+  double seconds = 0;
+  for (const char* stage : {"candidates", "score"}) {
+    if (json.at("seconds").contains(stage)) seconds += number_of(json.at("seconds").at(stage));
+  }
+  return views > 1 ? seconds / static_cast<double>(views - 1) : kNone;
+}
 
 double mean_over_views(const Json& prediction, const char* key) {
   std::vector<double> values;
@@ -58,12 +72,16 @@ ResultRow row_of(const StudyRun& run, const Json& json, std::size_t max_views) {
   for (const Json& view : json.at("per_view")) {
     const double coverage = number_of(view.at("coverage_visible"));
     row.coverage_by_view.push_back(std::isnan(coverage) ? 0 : coverage);
+    const Json& generator = view.at("generator");
+    row.decisions += generator != Json("start") && generator != Json(std::string(kPlanned)) ? 1 : 0;
   }
   row.coverage_by_view.resize(max_views, row.coverage_by_view.back());
   for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
     for (std::size_t view = row.coverage_by_view.size(); view > 0; --view) {
       if (row.coverage_by_view[view - 1] >= kGoals[goal]) row.views_to[goal] = view;
     }
+    const std::size_t last = std::min(row.views_to[goal].value_or(row.views), row.views) - 1;
+    row.metres_to[goal] = number_of(json.at("per_view").at(last).at("travelled"));
   }
   row.auc = mean_of(row.coverage_by_view).mean;
   row.coverage_visible = row.coverage_by_view.back();
@@ -72,6 +90,7 @@ ResultRow row_of(const StudyRun& run, const Json& json, std::size_t max_views) {
   row.consistency = number_of(json.at("consistency"));
   row.outliers = number_of(json.at("outliers"));
   row.travelled = number_of(json.at("travelled"));
+  row.deciding_seconds = deciding_seconds(json, row.views);
   row.seconds = number_of(json.at("seconds").at("total"));
   row.isa = json.at("isa").get<std::string>();
   return row;
@@ -100,21 +119,26 @@ std::string run_columns(const StudySpec& spec, const StudyRun& run) {
 std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows) {
   std::string csv =
       std::string(kRunColumns) +
-      ",views,stop_reason,views_to_80,"
-      "views_to_90,views_to_95,auc,coverage_visible,coverage,rms_error,consistency,outliers,"
-      "travelled,spearman_area,spearman_entropy,top1_share,hash,isa,seconds\n";
+      ",views,decisions,stop_reason,views_to_80,"
+      "views_to_90,views_to_95,metres_to_80,metres_to_90,metres_to_95,auc,coverage_visible,"
+      "coverage,"
+      "rms_error,consistency,outliers,travelled,spearman_area,spearman_entropy,top1_share,hash,isa,"
+      "deciding_seconds,seconds\n";
   for (const ResultRow& row : rows) {
     const StudyRun& run = *row.run;
     csv.append(run_columns(spec, run));
-    csv.append(",").append(std::to_string(row.views)).append(",").append(row.stop_reason);
+    csv.append(",").append(std::to_string(row.views));
+    csv.append(",").append(std::to_string(row.decisions)).append(",").append(row.stop_reason);
     for (const auto& views : row.views_to) {
       csv.append(",").append(views ? std::to_string(*views) : "nan");
     }
+    for (const double metres : row.metres_to) csv.append(",").append(exact_text(metres));
     for (const RowFigure& figure : kFigures) csv.append(",").append(exact_text(row.*figure.value));
     for (const char* key : {"spearman_area", "spearman_entropy", "top1_share"}) {
       csv.append(",").append(exact_text(mean_over_views(row.prediction, key)));
     }
     csv.append(",").append(run.hash).append(",").append(row.isa);
+    csv.append(",").append(exact_text(row.deciding_seconds));
     csv.append(",").append(exact_text(row.seconds)).append("\n");
   }
   return csv;
@@ -134,14 +158,18 @@ Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows) {
               {"voxel", run.voxel},
               {"size", run.size},
               {"views", row.views},
+              {"decisions", row.decisions},
               {"stop_reason", row.stop_reason}};
-    const std::array<const char*, kGoals.size()> keys{"views_to_80", "views_to_90", "views_to_95"};
-    for (std::size_t goal = 0; goal < keys.size(); ++goal) json[keys[goal]] = row.views_to[goal];
+    for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
+      json[kViewsTo[goal]] = row.views_to[goal];
+      json[kMetresTo[goal]] = row.metres_to[goal];
+    }
     for (const RowFigure& figure : kFigures) json[figure.key] = row.*figure.value;
     json["coverage_by_view"] = row.coverage_by_view;
     json["prediction"] = row.prediction;
     json["hash"] = run.hash;
     json["isa"] = row.isa;
+    json["deciding_seconds"] = row.deciding_seconds;
     json["seconds"] = row.seconds;
     results.push_back(std::move(json));
   }

@@ -31,7 +31,11 @@ struct ResultRow {
   double consistency = 0;  ///< of the points
   double outliers = 0;
   double travelled = 0;  ///< [m]
-  std::string isa;       ///< instruction set that the run was made with
+  /// Until a goal was reached; the whole way where it never was [m].
+  std::array<double, kGoals.size()> metres_to{};
+  std::size_t decisions = 0;    ///< views that were decided on, not taken as an earlier plan says
+  double deciding_seconds = 0;  ///< candidates and choice, by view after the first [s]
+  std::string isa;              ///< instruction set that the run was made with
   double seconds = 0;
   Json prediction;  ///< as in results.json
 

@@ -82,9 +82,32 @@ std::vector<std::int64_t> whole_numbers(TableReader& reader, const char* key, st
   return values;
 }
 
-// "gain:GAIN:SEMANTICS", "gain:GAIN" or another policy. `reconstruct` knows which names there are.
+bool is_count(const std::string& text) {
+  return !text.empty() && text.size() <= 4 && text.front() != '0' &&
+         text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+// "tour:K:M": K views are planned, M of them taken before it is planned anew.
+StudyPolicy tour_of(TableReader& reader, const std::string& name) {
+  StudyPolicy policy{name, name, "", "", "", ""};
+  const std::string counts = name.substr(name.find(':') + 1);
+  const std::size_t between = counts.find(':');
+  policy.plan = counts.substr(0, between);
+  policy.take = between == std::string::npos ? "" : counts.substr(between + 1);
+  const bool is_right = is_count(policy.plan) && is_count(policy.take) &&
+                        std::stoul(policy.plan) >= 2 && std::stoul(policy.plan) <= 1000 &&
+                        std::stoul(policy.take) <= std::stoul(policy.plan);
+  if (is_right) return policy;
+  reader.fail("policies", "holds \"" + name +
+                              "\"; a tour is \"tour:K:M\", K of 2 to 1000 views planned, M of them "
+                              "taken before it is planned anew");
+}
+
+// "gain:GAIN:SEMANTICS", "gain:GAIN", "tour:K:M" or another policy. `reconstruct` knows which names
+// there are.
 StudyPolicy policy_of(TableReader& reader, const std::string& name) {
-  StudyPolicy policy{name, name, "", ""};
+  if (name == "tour" || name.starts_with("tour:")) return tour_of(reader, name);
+  StudyPolicy policy{name, name, "", "", "", ""};
   if (const std::size_t first = name.find(':'); first != std::string::npos) {
     policy.policy = name.substr(0, first);
     policy.gain = name.substr(first + 1);
@@ -138,9 +161,10 @@ std::vector<StudyObject> objects_of(TableReader& reader, const fs::path& folder)
 // What a run is asked by the study itself.
 const std::set<std::string>& own_flags() {
   static const std::set<std::string> flags{
-      "--sensor",    "--voxel", "--size",      "--seed",     "--policy",      "--gain",
-      "--semantics", "--out",   "--max-views", "--pictures", "--report",      "--save-maps",
-      "--threads",   "--json",  "--quiet",     "--config",   "--save-config", "--tolerance"};
+      "--sensor", "--voxel",     "--size",   "--seed",        "--policy",
+      "--gain",   "--semantics", "--out",    "--max-views",   "--pictures",
+      "--report", "--save-maps", "--plan",   "--take",        "--threads",
+      "--json",   "--quiet",     "--config", "--save-config", "--tolerance"};
   return flags;
 }
 
@@ -323,9 +347,13 @@ std::vector<std::string> reconstruct_words(const StudySpec& spec, const StudyRun
                                  "--seed=" + std::to_string(run.seed),
                                  "--max-views=" + std::to_string(spec.max_views),
                                  "--tolerance=" + short_text(spec.tolerance),
-                                 "--policy=" + policy.policy,
+                                 "--policy=" + (policy.plan.empty() ? policy.policy : "gain"),
                                  "--out=unused"};
   if (!policy.gain.empty()) words.push_back("--gain=" + policy.gain);
+  if (!policy.plan.empty()) {
+    words.push_back("--plan=" + policy.plan);
+    words.push_back("--take=" + policy.take);
+  }
   if (!policy.semantics.empty()) words.push_back("--semantics=" + policy.semantics);
   if (run.size) words.push_back("--size=" + short_text(*run.size));
   // Every policy has the whole budget, unless the spec says otherwise.

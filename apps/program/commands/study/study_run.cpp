@@ -199,7 +199,7 @@ void add_to(StudyResult& result, const StudySpec& spec, const Prediction& predic
 }
 
 // What ranks by the policies whose scores are looked at on a run's maps.
-Scorers scorers_of(const StudySpec& spec, const StudyRun& study_run, const RunParts& run,
+Scorers scorers_of(const StudySpec& spec, const StudyRun& study_run, RunParts& run,
                    const ExecConfig& exec) {
   Scorers scorers;
   for (const std::size_t policy : scored_policies(spec, study_run)) {
@@ -239,7 +239,7 @@ std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& stud
     seconds["prediction"] += watch.seconds();
   };
   const PlanningResult planned =
-      active_view_planning(run.setup.start, run.acquisition, run.representation(), run.generation,
+      active_view_planning(run.setup.start, run.acquisition, run.representation(), run.decision,
                            run.decision, run.setup.planning, watch_view);
   if (stop.stop_requested() || planned.reason == StopReason::interrupted) return std::nullopt;
   result.run["configuration"] = study_run.configuration;

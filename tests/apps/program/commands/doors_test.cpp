@@ -126,7 +126,7 @@ class Doors : public test::ProgramTest {
     const Proposal& proposal = planner.propose();
     EXPECT_EQ(proposal.candidates.size(), of_map["candidates"].get<std::size_t>());
     std::vector<Named> own;
-    for (const RankedView& view : planner.rank(kTop).views) {
+    for (const RankedView& view : planner.rank(kTop, {.together = true}).views) {
       own.push_back({view.T_world_camera.m, view.gain.gain});
     }
     EXPECT_EQ(own, views);
@@ -185,7 +185,7 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
     EXPECT_GT(view["rays"]["unknown"], 0);  // else it would not gain
   }
   // Of the best place one view alone, in the order in which they are driven to from the last one.
-  const json tour = call({"next", "frames", "--tour", "3"});
+  const json tour = call({"next", "frames", "--plan", "3"});
   ASSERT_EQ(tour["next"].size(), 3U);
   std::vector<Eigen::Vector3d> eyes;
   double most = 0;
@@ -203,12 +203,22 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
     const double way = (eyes[order[0]] - here).norm() + (eyes[order[1]] - eyes[order[0]]).norm() +
                        (eyes[order[2]] - eyes[order[1]]).norm();
     if (orders == 0) {
-      EXPECT_NEAR(tour["tour_metres"].get<double>(), way, 1e-9);
+      EXPECT_NEAR(tour["plan_metres"].get<double>(), way, 1e-9);
     }
     ++orders;
-    EXPECT_GE(way, tour["tour_metres"].get<double>() - 1e-9);
+    EXPECT_GE(way, tour["plan_metres"].get<double>() - 1e-9);
   } while (std::next_permutation(order.begin(), order.end()));
   EXPECT_EQ(orders, 6);
+  EXPECT_EQ(named(call({"next", "frames", "--plan", "3", "--take", "1"})),
+            std::vector<Named>{named(tour).front()});
+  // The best ones are of different places: each shows what those before it do not.
+  double share = 0, before = next["next"][0]["gain"].get<double>();
+  for (const json& view : next["next"]) {
+    EXPECT_LE(view["gain"].get<double>(), before * (1 + 1e-6));
+    before = view["gain"].get<double>();
+    share += view["share"].get<double>();
+  }
+  EXPECT_NEAR(share, 1, 1e-9);
   const json followed = call({"follow", "frames", "--out", "plan"});
   const json run = call({"reconstruct", "frames", "--pictures", "off", "--out", "run"});
   const std::string hash = hash_of("map.vdb");

@@ -67,6 +67,37 @@ class Reconstruct : public test::ProgramTest {
   }
 };
 
+TEST_F(Reconstruct, TakesThePlansViewsBeforeItPlansAnew) {
+  const json result = reconstruct("cube.off", {"--max-views", "6", "--size", "0.2", "--plan", "3",
+                                               "--take", "2", "--travel-cost", "10"});
+  ASSERT_EQ(result["views"], 6);
+  std::size_t planned = 0, decided = 0;
+  const json& views = result["per_view"];
+  for (std::size_t i = 1; i < views.size(); ++i) {
+    const bool is_of_plan = views[i]["generator"] == "plan";
+    ++(is_of_plan ? planned : decided);
+    // Two of a plan at most, the first of which was decided on.
+    if (is_of_plan) {
+      EXPECT_EQ(views[i - 1]["generator"], "boundary");
+      EXPECT_EQ(views[i]["candidates"], 1);
+    }
+    EXPECT_GT(views[i]["predicted_area"].get<double>(), 0);
+  }
+  EXPECT_GE(planned, 1U);
+  EXPECT_GE(decided, 3U);
+  const json settings = json::parse(read("run/run.json"))["settings"];
+  EXPECT_EQ(settings["plan"], 3);
+  EXPECT_EQ(settings["take"], 2);
+  for (const auto& [more, part] : std::vector<std::pair<Strings, std::string>>{
+           {{"--plan", "2", "--take", "3"}, "--take 3"},
+           {{"--plan", "3", "--policy", "random"}, "--policy gain"},
+           {{"--plan", "3", "--gain", "unknown_count"}, "--policy gain"}}) {
+    const test::ProgramResult refused = run(arguments("cube.off", more));
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find(part), std::string::npos) << refused.err;
+  }
+}
+
 TEST_F(Reconstruct, LeavesAConsistentFolder) {
   const json result =
       reconstruct("cube.off", {"--max-views", "3", "--save-maps", "on", "--size", "0.2"});

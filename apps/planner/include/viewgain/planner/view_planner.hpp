@@ -43,8 +43,11 @@ struct VIEWGAIN_EXPORT PlannerConfig {
       JumpEdgeFilter::Config{};  ///< nothing: frames are taken as is
   HazardConfig hazard{};         ///< of unknown space
   GainConfig gain{};             ///< what ranks views
-  ReachRegion reach{};           ///< its list of poses, if it has one, is among the candidates
-  double clearance = 0;          ///< round the body [m]
+  /// Where it is on, rank() of a proposal plans that many views, and propose() names what is left
+  /// of the plan while there is any.
+  PlanAhead ahead{};
+  ReachRegion reach{};   ///< its list of poses, if it has one, is among the candidates
+  double clearance = 0;  ///< round the body [m]
   ReachRegion::Tolerance taken_tolerance{};                    ///< when two poses are the same
   double max_near_share = FeasibilityConfig{}.max_near_share;  ///< as there
   /// False: every candidate is possible but those that were taken or tried.
@@ -72,7 +75,8 @@ struct VIEWGAIN_EXPORT AddedView {
 ///
 /// add() a frame, where reported poses are inexact at the one that register_frame() finds; ask
 /// should_stop(); propose() candidates; rank() them; move, and say how that went with tried();
-/// add() the next frame.
+/// add() the next frame. With PlannerConfig::ahead rank() plans some views, and propose() names
+/// what is left of the plan until its share is taken.
 ///
 /// What is refused (Error(invalid_argument)) has changed nothing. What the user's own parts throw,
 /// a generation, the reach region's predicate or a measure, passes through propose() and rank().
@@ -126,7 +130,8 @@ class VIEWGAIN_EXPORT ViewPlanner {
 
   /// The candidates of the reach region's poses, the sets and the generations, in this order, that
   /// are possible now by the rules of ViewProposer, and how many are not and why. Valid until the
-  /// next add() or propose(). An earlier ranking since the last view is void. Throws
+  /// next add() or propose(). While views of a plan are left that are possible and still promise
+  /// enough, these alone, by kPlanned. An earlier ranking since the last view is void. Throws
   /// Error(invalid_argument), as rank() does, if there were frames and none could be used: the
   /// map says nothing, and what is wrong with the set-up would not be noticed.
   const Proposal& propose();
@@ -137,8 +142,9 @@ class VIEWGAIN_EXPORT ViewPlanner {
 
   /// The k best of the proposal, fewer if there are fewer; without a measure of the user's own
   /// those that gain nothing are left out, so none is an answer, too. Ties go to the earlier
-  /// candidate. Throws Error(invalid_argument) without a proposal since the last view, and as
-  /// GainEvaluator::best().
+  /// candidate. With a plan ahead the next k of its views, in its order; it is the same for any k,
+  /// and goes by the gain alone. Throws Error(invalid_argument) without a proposal since the last
+  /// view, and as GainEvaluator::best().
   [[nodiscard]] Ranking rank(std::size_t k = 1, const RankConfig& config = {},
                              const BatchControl& control = {});
   /// The same of any poses, `T_world_camera` in any order; nobody looks whether they are possible.

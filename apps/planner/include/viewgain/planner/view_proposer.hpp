@@ -92,6 +92,12 @@ class VIEWGAIN_EXPORT ViewProposer {
                                  std::span<const Pose> reached = {},
                                  std::span<const Pose> missed = {});
 
+  /// Those of a set alone that are possible, by the same rules.
+  [[nodiscard]] Proposal propose_these(const PoseSet& set, const BeliefGrid& grid,
+                                       std::shared_ptr<const VoxelScene> scene,
+                                       std::span<const Pose> reached = {},
+                                       std::span<const Pose> missed = {});
+
   /// Behind the last proposal, in the order of the candidates.
   [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept { return dropped_; }
 
@@ -99,6 +105,10 @@ class VIEWGAIN_EXPORT ViewProposer {
   void drop(const Pose& tried, std::string_view reason, Proposal& proposal);
 
  private:
+  /// Puts those that are possible into the proposal; the ones from `of_sets` on are of generations.
+  void keep_possible(std::vector<Candidate> candidates, std::size_t of_sets, const BeliefGrid& grid,
+                     std::span<const Pose> reached, std::span<const Pose> missed,
+                     Proposal& proposal);
   [[nodiscard]] bool stays_inside(const BeliefGrid& grid) const;
 
   ProposerConfig config_;

@@ -45,6 +45,9 @@ class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
   /// boundary_views().
   Proposal generate(const Pose& T_world_camera) override;
 
+  /// Those of a set alone that are possible now.
+  [[nodiscard]] Proposal propose_these(const PoseSet& set);
+
   /// What it was made with.
   [[nodiscard]] const GenerationConfig& config() const noexcept { return config_; }
 
@@ -59,6 +62,8 @@ class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
   }
 
  private:
+  [[nodiscard]] std::vector<Pose> tried() const;
+
   const SurfaceModel& model_;
   GenerationConfig config_;
   std::shared_ptr<BoundaryGeneration> boundaries_;

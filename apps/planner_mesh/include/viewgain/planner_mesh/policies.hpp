@@ -11,6 +11,7 @@
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/planning.hpp"
+#include "viewgain/planner/rank_views.hpp"
 #include "viewgain/planner_mesh/boundary_order.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/classic_choice.hpp"
@@ -43,6 +44,7 @@ struct VIEWGAIN_EXPORT PolicyConfig {
   std::optional<ClassicRanking> classic{};        ///< of Policy::gain, instead of `model`
   Criterion criterion = Criterion::log_diagonal;  ///< of the paper's gain
   double travel_cost = 0;                         ///< gain - this * way [the gain's unit per m]
+  PlanAhead ahead{};                              ///< of Policy::gain by `model`
   KnownObject object{};                           ///< of Policy::oracle
   std::uint64_t seed = 1;                         ///< of random choices
 };
@@ -64,14 +66,20 @@ VIEWGAIN_EXPORT void set_stop_rules(PlanningConfig& planning, const PolicyConfig
                                     std::optional<double> stop_gain,
                                     std::optional<double> stop_area);
 
-/// DECISIONMAKER of Algorithm 1 for all policies. Thread safety: one call at a time. Cost: by a
-/// gain or by counts that of scoring the candidates with GainEvaluator, a classic gain
+/// DECISIONMAKER of Algorithm 1 for all policies, and its VIEWPOINTSGENERATION, which proposes what
+/// is left of a plan, or else what the generation does. Thread safety: one call at a time. Cost: by
+/// a gain or by counts that of scoring the candidates with GainEvaluator, a classic gain
 /// ClassicChoice, the oracle OracleChoice; by an order or at random O(candidates).
-class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
+class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGeneration {
  public:
-  /// Throws Error(invalid_argument) for an oracle without an object.
-  PolicyDecision(const SurfaceModel& model, const CandidateGeneration& generation,
-                 const Sensor& sensor, const PolicyConfig& config, const ExecConfig& exec);
+  /// Model and generation must outlive it. Throws Error(invalid_argument) for an oracle without an
+  /// object, a plan ahead by another policy, and as PlanAhead::check().
+  PolicyDecision(const SurfaceModel& model, CandidateGeneration& generation, const Sensor& sensor,
+                 const PolicyConfig& config, const ExecConfig& exec);
+
+  /// The views of a plan that are still to be taken, are possible and promise enough, by kPlanned;
+  /// where there are none, those of the generation.
+  Proposal generate(const Pose& T_world_camera) override;
 
   /// The index of one of the candidates in their order. Nothing if there are no candidates, and for
   /// kriegel if none of them is left to try.
@@ -86,24 +94,26 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
  private:
   /// The evaluator by the policy's gain of the model's scene.
   const GainEvaluator& evaluator();
+  /// By a gain of viewgain's own, which alone may end a run.
+  [[nodiscard]] std::optional<Decision> decide_by_gain(const Pose& T_world_camera,
+                                                       std::span<const Candidate> candidates);
+  [[nodiscard]] bool is_by_gain() const noexcept {
+    return config_.policy == Policy::gain && !config_.classic;
+  }
   [[nodiscard]] std::optional<std::size_t> choose(const Pose& T_world_camera,
                                                   std::span<const Candidate> candidates,
                                                   const std::vector<ViewGain>& gains);
   [[nodiscard]] std::optional<std::size_t> choose_by_boundary(
       std::span<const Candidate> candidates);
 
-  /// Gains of the candidates; by the surface and the combined gain NaN for those that few rays
-  /// showed to be no match for others.
-  [[nodiscard]] std::vector<ViewGain> score(const Pose& T_world_camera,
-                                            std::span<const Candidate> candidates) const;
-  /// The same by a classic gain. Where the way there counts, all have their gain.
+  /// By a classic gain. Where the way there counts, all have their gain.
   [[nodiscard]] std::vector<ViewGain> score_classic(std::span<const Candidate> candidates);
   [[nodiscard]] std::vector<double> proximities(std::span<const Candidate> candidates);
   /// The new surface to be expected of a view [m²], where the policy's own gain does not say.
   [[nodiscard]] double expected_area(const Pose& T_world_camera);
 
   const SurfaceModel& model_;
-  const CandidateGeneration& generation_;
+  CandidateGeneration& generation_;
   Sensor sensor_;
   PolicyConfig config_;
   ExecConfig exec_;
@@ -113,6 +123,8 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking {
   BoundaryOrder order_;
   std::optional<OracleChoice> oracle_;
   std::optional<ClassicChoice> classic_;
+  std::vector<Pose> planned_;  ///< still to be taken, in the plan's order
+  bool is_of_plan_ = false;    ///< the last proposal
 };
 
 }  // namespace viewgain

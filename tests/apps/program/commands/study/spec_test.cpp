@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -145,6 +147,15 @@ TEST_F(StudySpecTest, WhatIsWrongIsNamedWithItsLine) {
       {"--up=y", "--help", {"line 8", "--help"}},
       {"gain:combined", "gain:combine", {"line 2", "combined"}},
       {"gain:combined", "gain:combined:", {"line 2", "gain:NAME"}},
+      {"gain:combined", "tour", {"line 2", "tour:K:M"}},
+      {"gain:combined", "tour:3", {"line 2", "tour:3", "tour:K:M"}},
+      {"gain:combined", "tour:1:1", {"line 2", "tour:K:M"}},
+      {"gain:combined", "tour:3:4", {"line 2", "tour:K:M"}},
+      {"gain:combined", "tour:3:0", {"line 2", "tour:K:M"}},
+      {"gain:combined", "tour:03:1", {"line 2", "tour:K:M"}},
+      {"gain:combined", "tour:3:1:1", {"line 2", "tour:K:M"}},
+      {"gain:combined", "tour:2000:1", {"line 2", "tour:K:M"}},
+      {"--up=y", "--plan=3", {"line 8", "--plan"}},
       {"\"frontier\", ",
        "\"gain:unknown_count\", \"gain:unknown_count:paper\", ",
        {"line 2", "unknown_count:paper", "twice"}},
@@ -164,18 +175,38 @@ TEST_F(StudySpecTest, WhatIsWrongIsNamedWithItsLine) {
   }
 }
 
+TEST_F(StudySpecTest, ATourPlansByTheDefaultGain) {
+  const app::StudySpec spec = spec_of(with("\"frontier\", ", "\"frontier\", \"tour:5:2\", "));
+  const app::StudyRun& run = spec.runs[2];
+  EXPECT_EQ(spec.policies[run.policy].name, "tour:5:2");
+  const Strings words = app::reconstruct_words(spec, run);
+  for (const char* word : {"--policy=gain", "--plan=5", "--take=2"}) {
+    EXPECT_EQ(std::count(words.begin(), words.end(), word), 1) << word;
+  }
+  EXPECT_NE(app::run_columns(spec, run).find("cube,tour:5:2,,,3,"), std::string::npos);
+  EXPECT_NE(spec_of(with("gain:combined", "tour:5:2")).runs[0].hash,
+            spec_of(with("gain:combined", "tour:5:3")).runs[0].hash);
+}
+
 // A run of these coverages; the rest of its figures follow from the first.
 ordered_json run_json(const std::vector<double>& coverage, const char* policy = "gain:combined") {
   ordered_json json{{"stop_reason", "max_views"}, {"views", coverage.size()}};
   json["per_view"] = ordered_json::array();
-  for (const double c : coverage) json["per_view"].push_back({{"coverage_visible", c}});
+  for (std::size_t i = 0; i < coverage.size(); ++i) {
+    // The third view is as planned with the second.
+    json["per_view"].push_back({{"coverage_visible", coverage[i]},
+                                {"travelled", 0.5 * static_cast<double>(i)},
+                                {"generator", i == 0   ? "start"
+                                              : i == 2 ? "plan"
+                                                       : "boundary"}});
+  }
   json["coverage"] = 0.5 * coverage.back();
   json["rms_error"] = 1e-3 * coverage.front();
   json["consistency"] = ordered_json();
   json["outliers"] = 2;
   json["travelled"] = 1.5;
   json["isa"] = "AVX2";
-  json["seconds"] = {{"total", 4.0}};
+  json["seconds"] = {{"candidates", 0.75}, {"score", 0.25}, {"total", 4.0}};
   json["prediction"] = ordered_json::array();
   for (const int view : {1, 4}) {
     json["prediction"].push_back({{"policy", policy},
@@ -202,6 +233,9 @@ TEST_F(StudySpecTest, FiguresOfARun) {
   EXPECT_EQ(row.counted_views_to(2), 6);
   EXPECT_DOUBLE_EQ(row.auc, (0.5 + 0.85 + 0.79 + 0.9 + 0.9) / 5);
   EXPECT_TRUE(std::isnan(row.consistency));
+  EXPECT_EQ(row.metres_to, (std::array{0.5, 1.5, 1.5}));
+  EXPECT_EQ(row.decisions, 2U);
+  EXPECT_DOUBLE_EQ(row.deciding_seconds, 1.0 / 3);
 
   const ordered_json json = app::results_json(spec, {row});
   ASSERT_EQ(json.size(), 1U);
@@ -210,9 +244,10 @@ TEST_F(StudySpecTest, FiguresOfARun) {
   EXPECT_EQ(json[0]["gain"], "combined");
   EXPECT_EQ(json[0]["views_to_90"], 4);
   EXPECT_TRUE(json[0]["views_to_95"].is_null());
+  EXPECT_EQ(json[0]["metres_to_80"], 0.5);
   EXPECT_EQ(json[0]["prediction"].size(), 2U);
   const std::string csv = app::results_csv(spec, {row});
-  EXPECT_NE(csv.find("\ncube,gain,combined,,3,sr4000,0.01,,4,max_views,2,4,nan,"),
+  EXPECT_NE(csv.find("\ncube,gain,combined,,3,sr4000,0.01,,4,2,max_views,2,4,nan,0.5,1.5,1.5,"),
             std::string::npos)
       << csv;
 }
@@ -236,12 +271,14 @@ TEST_F(StudySpecTest, TheTableIsThatByHand) {
   const std::string table = table_of(text, {{0.6, 0.9}, {0.4, 0.7}, {0.8, 0.8}, {0.8, 0.8}});
   for (const char* line :
        {"4 runs: cube; 2 seeds; 2 views.", "(within 5 mm)", "the one object",
-        "| gain:combined | 1.50 / 1.5 / 0 | ≥ 2.50 / never / 1 | ≥ 3.00 / never / 2 | 0.775 | "
-        "85.0 % | 0.70 | - | 1.5 | 4.0 |",
-        "| frontier | ≥ 2.00 / never / 1 | ≥ 3.00 / never / 2 | ≥ 3.00 / never / 2 | 0.675 | "
-        "75.0 % | 0.60 | - | 1.5 | 4.0 |",
+        "| gain:combined | 1.50 / 1.5 / 0; 0.25 m | ≥ 2.50 / never / 1; 0.50 m | ≥ 3.00 / never / "
+        "2; 0.50 m | 0.775 | 85.0 % | 0.70 | - | 1.5 | 1.0 | 1.00 | 4.0 |",
+        "| frontier | ≥ 2.00 / never / 1; 0.25 m | ≥ 3.00 / never / 2; 0.50 m | ≥ 3.00 / never / "
+        "2; "
+        "0.50 m | 0.675 | 75.0 % | 0.60 | - | 1.5 | 1.0 | 1.00 | 4.0 |",
         "| gain:combined | -0.50 ± 0.50 (1-1-0; 1.000, 1.000) | -0.50 ± 0.50 (1-1-0; 1.000, 1.000) "
-        "| 0.00 ± 0.00 (0-2-0; 1.000, 1.000) | 0.100 ± 0.100 (1-1-0; 1.000, 1.000) | 0.10 ± 0.10 "
+        "| 0.00 ± 0.00 (0-2-0; 1.000, 1.000) | 0.00 ± 0.00 (0-2-0; 1.000, 1.000) | 0.100 ± 0.100 "
+        "(1-1-0; 1.000, 1.000) | 0.10 ± 0.10 "
         "(0-1-1; 1.000, 1.000) |"}) {
     EXPECT_NE(table.find(line), std::string::npos) << line << "\n" << table;
   }

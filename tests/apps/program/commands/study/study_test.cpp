@@ -67,11 +67,13 @@ candidates = 8
     return found;
   }
 
-  // The lines without their last column, seconds.
+  // The lines without their last columns, seconds.
   [[nodiscard]] std::string rows(const std::string& out) const {
     std::istringstream lines(read(out + "/results.csv"));
     std::string text;
-    for (std::string line; std::getline(lines, line);) text += line.substr(0, line.rfind(','));
+    for (std::string line; std::getline(lines, line);) {
+      text += line.substr(0, line.rfind(',', line.rfind(',') - 1));
+    }
     return text;
   }
 
@@ -109,6 +111,8 @@ TEST_F(Study, LeavesWhatItSays) {
                 "--pictures",  "off",      "--quiet",     "--json",   "--out",           "alone"}));
   EXPECT_EQ(printed[4]["policy"], "frontier");
   EXPECT_EQ(printed[4]["seed"], 2);
+  EXPECT_EQ(printed[4]["decisions"], 2);
+  EXPECT_GT(printed[4]["deciding_seconds"], 0);
   for (const char* key : {"coverage_visible", "rms_error", "consistency", "travelled"}) {
     EXPECT_EQ(printed[4][key], alone[key]) << key;
   }

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "choose/way_pricing.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/text.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+[[noreturn]] void fail(const std::string& what) { throw Error(ErrorCode::invalid_argument, what); }
+
+}  // namespace
+
+void check_costs(std::span<const double> costs, std::size_t poses) {
+  if (!costs.empty() && costs.size() != poses) {
+    fail(std::to_string(costs.size()) + " costs for " + std::to_string(poses) + " poses");
+  }
+  for (const double cost : costs) {
+    if (!std::isfinite(cost)) fail("a cost is " + short_text(cost) + ", not finite");
+  }
+}
+
+WayPricing::WayPricing(const TourConfig& config, std::size_t poses)
+    : config_(config), poses_(poses), added_(poses, 0.0), place_(poses, 0) {
+  check_costs(config.costs, poses);
+  if (!(config.cost_per_way >= 0 && std::isfinite(config.cost_per_way))) {
+    fail("cost_per_way " + short_text(config.cost_per_way) + " must be at least 0 and finite");
+  }
+  if (!(config.budget >= 0)) fail("the budget is " + short_text(config.budget) + ", not >= 0");
+  if (!(config.least_area >= 0)) {
+    fail("least_area is " + short_text(config.least_area) + ", not >= 0");
+  }
+  if (!config.way) return;
+  std::vector<double>& out = out_.emplace_back(poses);
+  for (std::size_t to = 0; to < poses; ++to) out[to] = way(kTourStart, to);
+  price();
+}
+
+double WayPricing::way(std::size_t from, std::size_t to) const {
+  const double value = config_.way(from, to);
+  if (value >= 0) return value;
+  fail("the way from " + (from == kTourStart ? "the start" : std::to_string(from)) + " to " +
+       std::to_string(to) + " costs " + short_text(value));
+}
+
+double WayPricing::worth(std::size_t i, double gain) const {
+  const double own = config_.costs.empty() ? 0 : config_.costs[i];
+  return gain - own - (config_.cost_per_way > 0 ? config_.cost_per_way * added_[i] : 0);
+}
+
+double WayPricing::rank(std::size_t i, double gain) const {
+  if (added_[i] == kInfinity || cost_ + added_[i] > config_.budget) return -kInfinity;
+  const double value = worth(i, gain);
+  if (!config_.per_way || !config_.way || value <= 0) return value;
+  return added_[i] > 0 ? value / added_[i] : kInfinity;
+}
+
+void WayPricing::choose(std::size_t i) {
+  stops_.push_back(i);
+  if (!config_.way) return;
+  order_.insert(order_.begin() + static_cast<std::ptrdiff_t>(place_[i]), stops_.size() - 1);
+  cost_ += added_[i];
+  std::vector<double> out(poses_), back(poses_);
+  for (std::size_t pose = 0; pose < poses_; ++pose) {
+    if (pose == i) continue;
+    out[pose] = way(i, pose);
+    back[pose] = way(pose, i);
+  }
+  out_.push_back(std::move(out));
+  back_.push_back(std::move(back));
+  if (stops_.size() <= Tour::kMostExact) {
+    Tour exact = tour();
+    order_ = std::move(exact.stops);
+    cost_ = exact.cost;
+  }
+  price();
+}
+
+void WayPricing::price() {
+  for (std::size_t pose = 0; pose < poses_; ++pose) {
+    double least = kInfinity;
+    for (std::size_t place = 0; place <= order_.size(); ++place) {
+      const std::size_t from = place == 0 ? 0 : order_[place - 1] + 1;  // row of out_
+      double added = out_[from][pose];
+      if (place < order_.size()) {
+        const std::size_t to = order_[place];
+        added += back_[to][pose] - out_[from][stops_[to]];
+      }
+      if (added >= least) continue;
+      least = added;
+      place_[pose] = place;
+    }
+    // Where ways are longer than by a detour a stop may take something off.
+    added_[pose] = std::max(least, 0.0);
+  }
+}
+
+Tour WayPricing::tour() const {
+  if (!config_.way) {
+    Tour as_chosen;
+    as_chosen.stops.resize(stops_.size());
+    std::iota(as_chosen.stops.begin(), as_chosen.stops.end(), std::size_t{0});
+    return as_chosen;
+  }
+  Tour tour = order_stops(stops_.size(), [this](std::size_t from, std::size_t to) {
+    return from == kTourStart ? out_[0][stops_[to]] : between(from, to);
+  });
+  if (tour.cost <= cost_ || tour.is_exact) return tour;
+  tour.stops = order_;
+  tour.cost = cost_;
+  return tour;
+}
+
+}  // namespace viewgain::detail
