@@ -7,7 +7,6 @@
 #include "measure.hpp"
 #include "methods/dense_dda.hpp"
 #include "methods/embree_quads.hpp"
-#include "methods/nanovdb_method.hpp"
 #include "methods/octomap_methods.hpp"
 #include "methods/openvdb_methods.hpp"
 #include "methods/tree64.hpp"
@@ -46,7 +45,6 @@ std::vector<TraceEntry> make_entries(const TraceTask& task, const ScenePointer& 
   if (wants("openvdb")) {
     const std::vector<Pose> some = thinned(task.poses, 8, least);
     for (auto& method : make_openvdb_methods(task)) entries.emplace_back(std::move(method), some);
-    entries.emplace_back(make_nanovdb_method(task), some);
   }
   if (wants("octomap")) {
     const std::vector<Pose> some = thinned(task.poses, 25, least);
