@@ -3,6 +3,7 @@
 
 // Views that are good together, chosen greedily on a frozen map.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -224,8 +225,13 @@ ViewTour choose_by(const ViewDriver& driver, std::span<const Pose> T_world_camer
   return made;
 }
 
-// Views that are nearer than this share of the working distance and look the same way are alike.
-constexpr double kAlike = 0.1, kSameWay = 0.966;  // cos 15 degrees
+// Views that are nearer than this share of the working distance and look the same way, by the
+// cosine between them, are alike. First those are taken that are far from alike, so that all sides
+// of what is to be seen have some.
+struct Alike {
+  double distance, same_way;
+};
+constexpr std::array kAlike{Alike{0.3, 0.866}, Alike{0.1, 0.966}};
 constexpr double kFewRays = 400;
 
 // Those of the largest gains by few rays, less what they cost by themselves, no two of them alike.
@@ -245,17 +251,19 @@ std::vector<std::size_t> promising(const GainEvaluator& evaluator,
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return worth[a] > worth[b]; });
-  const double near = kAlike * detail::EvaluatorAccess::driver(evaluator).core()->working_distance;
+  const double unit = detail::EvaluatorAccess::driver(evaluator).core()->working_distance;
   std::vector<std::size_t> chosen;
-  for (const std::size_t i : order) {
-    if (chosen.size() == config.max_candidates) break;
-    const Pose& pose = T_world_camera[i];
-    const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](std::size_t j) {
-      const Pose& other = T_world_camera[j];
-      return (pose.translation() - other.translation()).norm() < near &&
-             pose.rotation().col(2).dot(other.rotation().col(2)) > kSameWay;
-    });
-    if (is_new) chosen.push_back(i);
+  for (const Alike& alike : kAlike) {
+    for (const std::size_t i : order) {
+      if (chosen.size() == config.max_candidates) break;
+      const Pose& pose = T_world_camera[i];
+      const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](std::size_t j) {
+        const Pose& other = T_world_camera[j];
+        return (pose.translation() - other.translation()).norm() < alike.distance * unit &&
+               pose.rotation().col(2).dot(other.rotation().col(2)) > alike.same_way;
+      });
+      if (is_new) chosen.push_back(i);
+    }
   }
   std::sort(chosen.begin(), chosen.end());
   return chosen;

@@ -31,7 +31,8 @@ struct VIEWGAIN_EXPORT TourConfig {
   bool per_way = false;
   std::span<const double> costs{};  ///< as BestConfig::costs: of each pose by itself
   /// For haste: so many poses are looked at, those of the largest gain by few rays, no two of them
-  /// much alike (a tenth of the working distance, 15 degrees).
+  /// much alike: first those three tenths of the working distance or 30 degrees apart, then those a
+  /// tenth or 15 degrees apart.
   std::size_t max_candidates = std::numeric_limits<std::size_t>::max();
   /// For haste, too: of each view's rays, evenly spread, that the choice goes by, in (0, 1]; by the
   /// paper's gain 1. Gains are estimates then, in which refinement counts for less.

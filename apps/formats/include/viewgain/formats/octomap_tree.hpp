@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "viewgain/core/error.hpp"
 #include "viewgain/formats/octomap_io.hpp"
 
 namespace viewgain {
