@@ -16,6 +16,7 @@
 
 #include "apps/planner/planner_scene.hpp"
 #include "core/expect_error.hpp"
+#include "support/meshes.hpp"
 #include "viewgain/planner_mesh/boundary_generation.hpp"
 
 namespace viewgain {
@@ -31,7 +32,7 @@ constexpr std::array<std::array<int, 3>, 6> kSides{
 SurfaceModel box_model(const std::vector<Pose>& views) {
   const Sensor sensor = test::half_sr4000();
   SurfaceModel model(sensor, test::model_config(sensor, 0.2, kVoxel), nullptr, {});
-  const SimulatedSensor camera(std::make_shared<const SurfaceScene>(test::box_mesh(0.1)), sensor,
+  const SimulatedSensor camera(std::make_shared<const SurfaceScene>(test::cube_mesh(0.1)), sensor,
                                {});
   for (std::size_t i = 0; i < views.size(); ++i) {
     (void)model.update({views[i], std::vector<DepthFrame>(3, camera.acquire(views[i], i)), {}});
