@@ -262,7 +262,7 @@ Voxels that are that already keep log-odds and belief, the others have no belief
 
 Parameters
 ----------
-first : 3 whole numbers
+first : array_like, (3,), whole numbers
     The box's lowest voxel, on the lattice: ``min_index`` for a box that begins where the arrays do.
 labels : array_like, (nx, ny, nz), whole numbers
     0 unknown, 1 free, 2 occupied, as in ``from_labels``.
