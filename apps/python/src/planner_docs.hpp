@@ -232,8 +232,8 @@ cost_per_metre : float
 together : bool
     Each view by what it adds to those before it, so that no two show the same; not with measure.
 exact : bool
-    Score all in full. Else, but by gain "paper", in two stages: see ``GainEvaluator.race``; views that go together
-    are chosen of few poses, at least 32, by a quarter of their rays.
+    Score all in full. Else, but by gain "paper", in two stages: see ``GainEvaluator.race``. Of views that go together
+    the first is found so, the others are chosen of few poses, at least 32, by a quarter of their rays.
 measure : callable, optional
     A gain of your own in the planner's place, as of ``GainEvaluator.evaluate_own``; gain and area are NaN then.
 control : BatchControl, optional

@@ -315,7 +315,7 @@ def test_the_program_says_the_same(tmp_path):
     assert verdicts.count("used") == said["frames"] == 24
     assert planner.grid.content_hash() == said["hash"]
     planner.propose()
-    best = planner.rank(3)
+    best = planner.rank(3, together=True)
     assert len(best.index) == len(following["next"]) > 0
     assert best.gain.tolist() == [view["gain"] for view in following["next"]]
     assert best.T_world_camera.tolist() == [view["T_world_camera"] for view in following["next"]]

@@ -21,6 +21,7 @@ constexpr std::size_t kMostPlanned = 1000;
 // What is looked at of views that go together: of the rays, and of the poses by stop and at least.
 constexpr double kFewRays = 0.25;
 constexpr std::size_t kByStop = 3, kFewPoses = 32;
+constexpr double kFirst = 1e15;  // [gain's unit]: beyond what any view gains
 
 void refuse_measures(const RankConfig& config) {
   if (config.measure == nullptr && config.run_measure == nullptr) return;
@@ -80,6 +81,29 @@ Ranking chosen_together(const GainEvaluator& evaluator, std::span<const Pose> T_
   return ranking;
 }
 
+// A set without ways. Its first view is the best one, as it is alone, even if others are estimates.
+Ranking set_of(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera, std::size_t k,
+               const std::vector<double>& costs, bool exact, const BatchControl& control) {
+  TourConfig tour{.max_stops = k, .costs = costs};
+  if (exact) return chosen_together(evaluator, T_world_camera, tour, exact, control);
+  const BestViews best = evaluator.race(T_world_camera, 1, {.costs = costs}, control);
+  if (!best.complete || best.indices.empty() || !(best.gains.front().gain > 0)) {
+    Ranking none;
+    none.complete = best.complete;
+    return none;
+  }
+  std::vector<double> first_costs_least = costs;
+  first_costs_least.resize(T_world_camera.size());
+  first_costs_least[best.indices.front()] = -kFirst;
+  tour.costs = first_costs_least;
+  Ranking chosen = chosen_together(evaluator, T_world_camera, tour, exact, control);
+  if (!chosen.views.empty()) {
+    chosen.views.front().gain = best.gains.front();
+    chosen.views.front().worth = best.worth.front();
+  }
+  return chosen;
+}
+
 }  // namespace
 
 void PlanAhead::check() const {
@@ -119,8 +143,7 @@ Ranking rank_views(const GainEvaluator& evaluator, std::span<const Pose> T_world
   const std::vector<double> costs = view_costs(T_world_camera, config, here);
   if (config.together) {
     refuse_measures(config);
-    Ranking chosen = chosen_together(evaluator, T_world_camera, {.max_stops = k, .costs = costs},
-                                     config.exact, control);
+    Ranking chosen = set_of(evaluator, T_world_camera, k, costs, config.exact, control);
     if (!chosen.views.empty() && has_costs(config)) chosen.worth = chosen.views.front().worth;
     if (!chosen.views.empty() || !chosen.complete) return chosen;
   }

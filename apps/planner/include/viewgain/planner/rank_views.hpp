@@ -33,8 +33,9 @@ struct VIEWGAIN_EXPORT RankConfig {
   /// show the same (plan_tour() without ways). Not with measures.
   bool together = false;
   /// All poses are scored in full. Else, but by the paper's gain, where it is always so, by two
-  /// stages: see GainEvaluator::race(). Views that go together are chosen of few poses, 32
-  /// or more, by a quarter of their rays; what they add is an estimate then.
+  /// stages: see GainEvaluator::race(). Of views that go together the first is found so; the others
+  /// are chosen of few poses, 32 or more, by a quarter of their rays, and what they add is an
+  /// estimate.
   bool exact = false;
 };
 
@@ -49,6 +50,7 @@ struct VIEWGAIN_EXPORT PlanAhead {
   /// no longer taken; by the paper's gain one that gains nothing.
   double least_share = kStopArea;
 
+  /// Is more than one view planned?
   [[nodiscard]] bool is_on() const noexcept { return plan > 1; }
   /// Throws Error(invalid_argument) unless 1 <= take <= plan <= 1000 and the share is in [0, 1).
   void check() const;
