@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// write_seeds FOLDER: the mesh dialects as files, FOLDER/off and so on, for the fuzzers to begin with.
+// write_seeds FOLDER: the mesh dialects as files, FOLDER/off and so on, for the fuzzers to begin
+// with.
 
 #include <cctype>
 #include <filesystem>

@@ -59,7 +59,8 @@ TEST_F(ViewPlan, ViewsThatGoTogetherAreTheBestSets) {
       EXPECT_EQ(together.views[i].index, set.indices[i]);
       EXPECT_EQ(together.views[i].gain.gain, set.marginal[i].gain);
     }
-    EXPECT_EQ(together.views[0].index, planner.rank(1, {.together = true, .exact = true}).views[0].index);
+    EXPECT_EQ(together.views[0].index,
+              planner.rank(1, {.together = true, .exact = true}).views[0].index);
     const Height height;
     expect_error(ErrorCode::invalid_argument, "not by a measure",
                  [&] { (void)planner.rank(2, {.measure = &height, .together = true}); });

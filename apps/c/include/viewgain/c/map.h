@@ -154,11 +154,11 @@ VG_API vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* 
 VG_API vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double max[3],
                                 uint64_t* forgotten);
 
-/* Makes the voxels of a box of the lattice, from its lowest voxel `first`, what labels say, [x][y][z]
-   with z fastest, as vg_grid_from_labels has it: for a planner whose own map grows. Voxels that are
-   that already stay as they are, the others have no belief afterwards. *changed, or null: how many
-   voxels have changed. VG_INVALID_ARGUMENT, with nothing changed: a box that is not inside the
-   workspace, another label. */
+/* Makes the voxels of a box of the lattice, from its lowest voxel `first`, what labels say,
+   [x][y][z] with z fastest, as vg_grid_from_labels has it: for a planner whose own map grows.
+   Voxels that are that already stay as they are, the others have no belief afterwards. *changed, or
+   null: how many voxels have changed. VG_INVALID_ARGUMENT, with nothing changed: a box that is not
+   inside the workspace, another label. */
 VG_API vg_status vg_grid_update_box(vg_grid* grid, const int32_t first[3], const int32_t dims[3],
                                     const uint8_t* labels, uint64_t* changed);
 
