@@ -22,7 +22,7 @@ tests=(
   pkg-config python3 pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
   libgtest-dev liboctomap-dev libompl-dev libopenvdb-tools groff-base file locales parallel python3-distributed
 )
-perf=(libbenchmark-dev libnanovdb-dev python3-scipy)
+perf=(libbenchmark-dev python3-scipy)
 browser=(chromium-headless-shell)
 docs=(doxygen doxygen-awesome-css python3-sphinx python3-myst-parser furo libjs-mathjax)
 case "${1:-}" in

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "openvdb_methods.hpp"
 
-#include <nanovdb/util/HDDA.h>
-#include <nanovdb/util/OpenToNanoVDB.h>
-#include <nanovdb/util/Ray.h>
 #include <openvdb/math/DDA.h>
 #include <openvdb/math/Ray.h>
 #include <openvdb/openvdb.h>
@@ -12,7 +9,6 @@
 
 #include <optional>
 #include <utility>
-#include <vector>
 
 namespace viewgain::bench {
 namespace {
@@ -128,66 +124,6 @@ class OpenvdbHdda final : public OpenvdbMethod {
   }
 };
 
-using NanoRay = nanovdb::Ray<double>;
-using Vec3 = nanovdb::Vec3<double>;
-
-constexpr double kBeyond = 1e-6;  // a face [voxel]
-
-class NanovdbHdda final : public TraceMethod {
- public:
-  NanovdbHdda(const TraceTask& task, const Mask& mask)
-      : TraceMethod("nanovdb_hdda", task.sensor.camera.ray_table().size()),
-        map_(task.map),
-        T_grid_world_(task.map.T_world_grid.inverse()),
-        max_range_(task.sensor.max_range / task.map.voxel_size),
-        handle_(nanovdb::openToNanoVDB(
-            openvdb::MaskGrid(std::make_shared<openvdb::MaskTree>(mask.tree)))),
-        grid_(handle_.grid<nanovdb::ValueMask>()) {
-    for (const Eigen::Vector3d& d : task.sensor.camera.ray_table()) {
-      directions_.push_back(d.normalized());
-    }
-    const Index3 low = map_.min_index, n = map_.dims;
-    box_ = {Vec3(low.x, low.y, low.z), Vec3(low.x + n.x, low.y + n.y, low.z + n.z)};
-  }
-
-  void trace(const Pose& T_world_camera, std::span<Ending> endings) const override {
-    const auto accessor = grid_->getAccessor();
-    const Pose T_grid_camera = T_grid_world_ * T_world_camera;
-    const Eigen::Vector3d o = T_grid_camera.translation() / map_.voxel_size;
-    const Eigen::Matrix3d R = T_grid_camera.rotation();
-    for (std::size_t i = 0; i < directions_.size(); ++i) {
-      const Eigen::Vector3d d = R * directions_[i];
-      NanoRay ray(Vec3(o.x(), o.y(), o.z()), Vec3(d.x(), d.y(), d.z()), 0.0, max_range_);
-      endings[i] = ray.clip(box_) ? ending_of(ray, accessor) : kMiss;
-    }
-  }
-
- private:
-  template <typename Accessor>
-  [[nodiscard]] Ending ending_of(const NanoRay& ray, const Accessor& accessor) const {
-    const auto voxel_at = [&](double t) {
-      return nanovdb::RoundDown<nanovdb::Coord>(ray(t + kBeyond));
-    };
-    nanovdb::Coord at = voxel_at(ray.t0());
-    nanovdb::HDDA<NanoRay> walk(ray, static_cast<int>(accessor.getDim(at, ray)));
-    while (!accessor.isActive(at)) {
-      if (!walk.step()) return kMiss;
-      at = voxel_at(walk.time());
-      walk.update(ray, static_cast<int>(accessor.getDim(at, ray)));
-    }
-    const Index3 voxel{at.x(), at.y(), at.z()};
-    return map_.inside(voxel) ? static_cast<Ending>(map_.position(voxel)) : kMiss;
-  }
-
-  const oracle::DenseMap& map_;
-  Pose T_grid_world_;
-  double max_range_;  // [voxel]
-  std::vector<Eigen::Vector3d> directions_;
-  nanovdb::GridHandle<> handle_;
-  const nanovdb::NanoGrid<nanovdb::ValueMask>* grid_;
-  nanovdb::BBox<Vec3> box_;  // the workspace, index coordinates
-};
-
 }  // namespace
 
 std::vector<std::unique_ptr<TraceMethod>> make_openvdb_methods(const TraceTask& task) {
@@ -196,7 +132,6 @@ std::vector<std::unique_ptr<TraceMethod>> make_openvdb_methods(const TraceTask& 
   std::vector<std::unique_ptr<TraceMethod>> methods;
   methods.push_back(std::make_unique<OpenvdbDda>("openvdb_dda", task, mask));
   methods.push_back(std::make_unique<OpenvdbHdda>("openvdb_hdda", task, mask));
-  methods.push_back(std::make_unique<NanovdbHdda>(task, *mask));
   return methods;
 }
 
