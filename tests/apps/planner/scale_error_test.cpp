@@ -6,9 +6,9 @@
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 #include "apps/planner/planner_scene.hpp"
+#include "support/meshes.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/grid/integrate.hpp"
@@ -21,31 +21,10 @@ namespace {
 constexpr double kScaleSigma = 0.015;
 constexpr double kRadius = 0.1;  // [m]
 
-TriangleMesh ball(double radius) {
-  constexpr std::uint32_t kAround = 96, kDown = 48;
-  TriangleMesh mesh;
-  for (std::uint32_t i = 0; i <= kDown; ++i) {
-    const double polar = std::numbers::pi * i / kDown;
-    for (std::uint32_t k = 0; k < kAround; ++k) {
-      const double azimuth = 2 * std::numbers::pi * k / kAround;
-      mesh.vertices.push_back({radius * std::sin(polar) * std::cos(azimuth),
-                               radius * std::sin(polar) * std::sin(azimuth),
-                               radius * std::cos(polar)});
-    }
-  }
-  for (std::uint32_t i = 0; i < kDown; ++i) {
-    for (std::uint32_t k = 0; k < kAround; ++k) {
-      const std::uint32_t a = i * kAround + k, b = i * kAround + (k + 1) % kAround;
-      mesh.triangles.push_back({a, a + kAround, b + kAround});
-      mesh.triangles.push_back({a, b + kAround, b});
-    }
-  }
-  return mesh;
-}
-
 // What twelve views, taken `times` times, make of the ball.
 BeliefGrid map_of_ball(const Sensor& sensor, double scale_error, std::size_t times) {
-  const SimulatedSensor camera(std::make_shared<const SurfaceScene>(ball(kRadius)), sensor,
+  const SimulatedSensor camera(std::make_shared<const SurfaceScene>(test::sphere_mesh(kRadius, 48)),
+                               sensor,
                                {.noise = true, .lateral_noise = true, .scale_error = scale_error});
   BeliefGrid grid(test::model_config(sensor, 0.125, 0.005).map.grid);
   FrameIntegrator integrator(sensor);
@@ -62,7 +41,7 @@ double consistency(const BeliefGrid& grid, double scale_sigma) {
   const PointArrays points = arrays_of(fused_points(grid, {.scale_sigma = scale_sigma}));
   EXPECT_GT(points.positions.size(), 1000U);
   const Consistency found =
-      GroundTruth(ball(kRadius)).consistency(points.positions, points.covariances);
+      GroundTruth(test::sphere_mesh(kRadius, 48)).consistency(points.positions, points.covariances);
   EXPECT_LT(found.outliers, points.positions.size() / 100);
   return found.mean_clipped;
 }

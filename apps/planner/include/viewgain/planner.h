@@ -63,9 +63,10 @@ typedef struct vg_planner_config {
                        void* user);                /* may the camera be there? null: anywhere */
   void* user;                                      /* handed to reachable */
   uint64_t max_views, idle_views, broken_promises; /* 20, 3, 3; the last two 0: never */
-  uint64_t
-      plan; /* so many views are planned together, in a short order (C++'s PlanAhead); 1: one */
-  uint64_t take; /* so many of them are taken before it is planned anew, 1 to `plan` */
+  /* So many views are planned together, in a short order (C++'s PlanAhead); 1: one. */
+  uint64_t plan;
+  /* So many of them are taken before it is planned anew, 1 to `plan`. */
+  uint64_t take;
   double stop_gain, stop_area; /* NaN: the defaults of the gain; 0: never */
   int32_t tracer;              /* VG_TRACER_AUTOMATIC; never changes a result */
 } vg_planner_config;

@@ -97,10 +97,14 @@ Ranking set_of(const GainEvaluator& evaluator, std::span<const Pose> T_world_cam
   first_costs_least[best.indices.front()] = -kFirst;
   tour.costs = first_costs_least;
   Ranking chosen = chosen_together(evaluator, T_world_camera, tour, exact, control);
-  if (!chosen.views.empty()) {
-    chosen.views.front().gain = best.gains.front();
-    chosen.views.front().worth = best.worth.front();
+  // It gains something in full, but may gain nothing by a quarter of its rays.
+  if (chosen.views.empty() || chosen.views.front().index != best.indices.front()) {
+    Ranking none;
+    none.complete = chosen.complete;
+    return none;
   }
+  chosen.views.front().gain = best.gains.front();
+  chosen.views.front().worth = best.worth.front();
   return chosen;
 }
 
