@@ -106,8 +106,7 @@ def function(name, doc, depth, owner, decorator=""):
         if argument.arg not in parameters:
             faults.append(f"{name}: the docstring says no type of {argument.arg}")
         said = type_of(parameters.get(argument.arg, "callable").removesuffix(", optional"))
-        if said.startswith("Callable"):
-            said = f"Callable[{CALLED.get(argument.arg)}]"
+        said = said.replace("Callable[..., Any]", f"Callable[{CALLED.get(argument.arg)}]")
         argument.annotation = ast.Name(said)
     for argument, default in [*zip(arguments.args[::-1], arguments.defaults[::-1]), *zip(arguments.kwonlyargs, arguments.kw_defaults)]:
         if isinstance(default, ast.Constant) and default.value is None:

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 
 #include "viewgain/support/text.hpp"
 
@@ -89,6 +90,19 @@ bool is_elsewhere(const py::handle& value) {
 }
 
 }  // namespace
+
+WayCost way_table(const py::handle& value, const char* name, std::size_t& stops) {
+  const Doubles table = doubles(value, name, {-1, -1});
+  stops = table.size() == 0 ? 0 : static_cast<std::size_t>(table.shape(1));
+  if (table.size() != 0 && table.shape(0) != table.shape(1) + 1) {
+    throw py::value_error(std::string(name) + " must have the shape (k + 1, k), not " +
+                          shape_text(table));
+  }
+  return [stops, costs = std::make_shared<const std::vector<double>>(
+                     table.data(), table.data() + table.size())](std::size_t from, std::size_t to) {
+    return (*costs)[std::min(from, stops) * stops + to];
+  };
+}
 
 std::string shape_text(const py::array& array) {
   std::string text = "(";

@@ -15,6 +15,7 @@
 
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/core/tour.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 
 namespace viewgain::python {
@@ -48,6 +49,9 @@ using Shape = std::vector<py::ssize_t>;
 /// The same for a wanted shape; -1 stands for any extent. Where the first axis has any extent, []
 /// is an array without rows.
 [[nodiscard]] Doubles doubles(const py::handle& value, const char* name, const Shape& wanted);
+
+/// A table of ways between `stops`, shape (stops + 1, stops), its last row from the start; copied.
+[[nodiscard]] WayCost way_table(const py::handle& value, const char* name, std::size_t& stops);
 
 /// The same for the shape (..., *item); [] is an array without items.
 [[nodiscard]] Doubles items(const py::handle& value, const char* name, const Shape& item);

@@ -202,10 +202,17 @@ py::object best_set(const Evaluator& self, const py::object& T_world_camera, std
   return named("ChosenViews", indices, to_array_1d<ViewGain>(set.marginal));
 }
 
-// The way between poses by a function of Python's, to which the start is -1; none: none.
-WayCost way_of(const py::object& way) {
+// The way between poses by a table, or by a function of Python's to which the start is -1; none:
+// none.
+WayCost way_of(const py::object& way, std::size_t poses) {
   if (way.is_none()) return {};
-  if (PyCallable_Check(way.ptr()) == 0) throw py::type_error("way must be callable");
+  if (PyCallable_Check(way.ptr()) == 0) {
+    std::size_t count = 0;
+    WayCost table = way_table(way, "way", count);
+    if (count == poses) return table;
+    throw py::value_error("way is a table of " + std::to_string(count) + " stops for " +
+                          std::to_string(poses) + " poses");
+  }
   const auto number = [](std::size_t stop) {
     return stop == kTourStart ? std::int64_t{-1} : static_cast<std::int64_t>(stop);
   };
@@ -215,13 +222,14 @@ WayCost way_of(const py::object& way) {
 }
 
 py::object tour(const Evaluator& self, const py::object& T_world_camera, const py::object& way,
-                std::optional<std::size_t> max_stops, double cost_per_way,
-                std::optional<double> budget, bool per_way, const py::object& costs,
-                double least_area, const GivenOrNone<Control>& control) {
+                std::optional<std::size_t> max_stops, std::optional<std::size_t> first,
+                double cost_per_way, std::optional<double> budget, bool per_way,
+                const py::object& costs, double least_area, const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
   const std::vector<double> own_costs = costs_or_none(costs);
   const TourConfig config{.max_stops = max_stops.value_or(batch.poses.size()),
-                          .way = way_of(way),
+                          .first = first,
+                          .way = way_of(way, batch.poses.size()),
                           .cost_per_way = cost_per_way,
                           .budget = budget.value_or(TourConfig{}.budget),
                           .per_way = per_way,
@@ -309,9 +317,9 @@ void bind_evaluator(py::module_& module) {
       .def("best_set", &best_set, py::arg("T_world_camera"), py::arg("k"), py::kw_only(),
            py::arg("return_gains") = false, py::arg("control") = py::none(), kBestSetDoc)
       .def("plan_tour", &tour, py::arg("T_world_camera"), py::arg("way") = py::none(),
-           py::kw_only(), py::arg("max_stops") = py::none(), py::arg("cost_per_way") = 0.0,
-           py::arg("budget") = py::none(), py::arg("per_way") = false,
-           py::arg("costs") = py::none(), py::arg("least_area") = 0.0,
+           py::kw_only(), py::arg("max_stops") = py::none(), py::arg("first") = py::none(),
+           py::arg("cost_per_way") = 0.0, py::arg("budget") = py::none(),
+           py::arg("per_way") = false, py::arg("costs") = py::none(), py::arg("least_area") = 0.0,
            py::arg("control") = py::none(), kPlanTourDoc)
       .def("approximate", &approximate, py::arg("T_world_camera"), py::kw_only(),
            py::arg("share") = approximate_defaults.share,

@@ -43,15 +43,9 @@ py::array_t<double> look_at_all(const py::object& eyes, const py::object& target
 }
 
 py::tuple order_stops_of(const py::object& costs) {
-  const Doubles table = doubles(costs, "costs", {-1, -1});
-  const auto count = static_cast<std::size_t>(table.shape(1));
-  if (table.size() != 0 && table.shape(0) != table.shape(1) + 1) {
-    throw py::value_error("costs must have the shape (k + 1, k), not " + shape_text(table));
-  }
-  const Tour tour =
-      order_stops(table.size() == 0 ? 0 : count, [&](std::size_t from, std::size_t to) {
-        return table.data()[std::min(from, count) * count + to];
-      });
+  std::size_t count = 0;
+  const WayCost way = way_table(costs, "costs", count);
+  const Tour tour = order_stops(count, way);
   py::array_t<std::int64_t> stops(static_cast<py::ssize_t>(tour.stops.size()));
   std::copy(tour.stops.begin(), tour.stops.end(), stops.mutable_data());
   return py::make_tuple(stops, tour.cost);

@@ -196,11 +196,14 @@ only if they are. Cost: that of ``best_set``, and two calls of way for every pos
 Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)
-way : callable, optional
+way : callable or array_like, (n + 1, n), optional
     ``way(i, j)`` is what the way from pose i to pose j costs, i being -1 where the camera is, in a unit of
-    your own, say seconds of an arm; inf: there is none, or it is vetoed. Without it ways cost nothing.
+    your own, say seconds of an arm; inf: there is none, or it is vetoed. Or a table of these, last the row
+    from where the camera is. Without it ways cost nothing.
 max_stops : int, optional
     All unless given.
+first : int, optional
+    This pose is chosen first, whatever it gains and costs.
 cost_per_way : float
     Of a unit of way, in the gain's unit.
 budget : float, optional

@@ -16,9 +16,7 @@
 #include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
 #include "viewgain/core/criterion.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/raycast/view_tour.hpp"
-#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -160,7 +158,8 @@ ViewTour choose_greedily(const ViewDriver& driver, Chosen& chosen,
       };
       if (!score_by(open, Chosen::kBoundIsFirst ? 1 : 0, bound)) return finished();
       std::erase_if(open, [&](std::size_t i) {
-        return std::isnan(gains[i].gain) || (config != nullptr && !(gains[i].gain > 0));
+        return std::isnan(gains[i].gain) ||
+               (config != nullptr && i != config->first && !(gains[i].gain > 0));
       });
       if (config != nullptr) made.alone = gains;
       for (ViewGain& gain : gains) gain.gain *= Chosen::kBoundFactor;
@@ -191,7 +190,8 @@ ViewTour choose_greedily(const ViewDriver& driver, Chosen& chosen,
         });
     const std::size_t index = *winner;
     const ViewGain& adds = gains[index];
-    if (config != nullptr &&
+    const bool is_given = config != nullptr && now == 1 && index == config->first;
+    if (config != nullptr && !is_given &&
         (!(adds.gain > 0) || pricing.rank(index, adds.gain) == kNoStop ||
          (now > 1 && (pricing.worth(index, adds.gain) <= 0 || adds.area < config->least_area)))) {
       if (control.progress) control.progress(k, k);
@@ -253,6 +253,7 @@ std::vector<std::size_t> promising(const GainEvaluator& evaluator,
                    [&](std::size_t a, std::size_t b) { return worth[a] > worth[b]; });
   const double unit = detail::EvaluatorAccess::driver(evaluator).core()->working_distance;
   std::vector<std::size_t> chosen;
+  if (config.first) chosen.push_back(*config.first);
   for (const Alike& alike : kAlike) {
     for (const std::size_t i : order) {
       if (chosen.size() == config.max_candidates) break;
@@ -279,10 +280,7 @@ ViewSet GainEvaluator::best_set(std::span<const Pose> T_world_camera, std::size_
 ViewTour plan_tour(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
                    const TourConfig& config, const BatchControl& control) {
   const ViewDriver& driver = detail::EvaluatorAccess::driver(evaluator);
-  if (!(config.share > 0 && config.share <= 1)) {
-    throw Error(ErrorCode::invalid_argument,
-                "share is " + short_text(config.share) + "; it must be in (0, 1]");
-  }
+  detail::check_tour(config, T_world_camera.size());
   const detail::EvaluatorCore& full = *driver.core();
   const int step = driver.surface() == nullptr ? 1 : detail::step_for_share(full, config.share);
   std::optional<ViewDriver> some;
@@ -295,7 +293,6 @@ ViewTour plan_tour(const GainEvaluator& evaluator, std::span<const Pose> T_world
   if (T_world_camera.size() <= config.max_candidates) {
     return choose_by(by, T_world_camera, config.max_stops, &config, control);
   }
-  detail::check_costs(config.costs, T_world_camera.size());
   const std::vector<std::size_t> looked_at = promising(evaluator, T_world_camera, config, control);
   std::vector<Pose> poses;
   std::vector<double> costs;
@@ -305,6 +302,10 @@ ViewTour plan_tour(const GainEvaluator& evaluator, std::span<const Pose> T_world
   }
   TourConfig own = config;
   own.costs = costs;
+  if (config.first) {
+    own.first = static_cast<std::size_t>(
+        std::lower_bound(looked_at.begin(), looked_at.end(), *config.first) - looked_at.begin());
+  }
   if (config.way) {
     own.way = [&](std::size_t from, std::size_t to) {
       return config.way(from == kTourStart ? from : looked_at[from], looked_at[to]);

@@ -29,9 +29,11 @@ void check_costs(std::span<const double> costs, std::size_t poses) {
   }
 }
 
-WayPricing::WayPricing(const TourConfig& config, std::size_t poses)
-    : config_(config), poses_(poses), added_(poses, 0.0), place_(poses, 0) {
+void check_tour(const TourConfig& config, std::size_t poses) {
   check_costs(config.costs, poses);
+  if (config.first && *config.first >= poses) {
+    fail("first is " + std::to_string(*config.first) + " of " + std::to_string(poses) + " poses");
+  }
   if (!(config.cost_per_way >= 0 && std::isfinite(config.cost_per_way))) {
     fail("cost_per_way " + short_text(config.cost_per_way) + " must be at least 0 and finite");
   }
@@ -39,6 +41,13 @@ WayPricing::WayPricing(const TourConfig& config, std::size_t poses)
   if (!(config.least_area >= 0)) {
     fail("least_area is " + short_text(config.least_area) + ", not >= 0");
   }
+  if (!(config.share > 0 && config.share <= 1)) {
+    fail("share is " + short_text(config.share) + "; it must be in (0, 1]");
+  }
+}
+
+WayPricing::WayPricing(const TourConfig& config, std::size_t poses)
+    : config_(config), poses_(poses), added_(poses, 0.0), place_(poses, 0) {
   if (!config.way) return;
   std::vector<double>& out = out_.emplace_back(poses);
   for (std::size_t to = 0; to < poses; ++to) out[to] = way(kTourStart, to);
@@ -59,6 +68,7 @@ double WayPricing::worth(std::size_t i, double gain) const {
 
 double WayPricing::rank(std::size_t i, double gain) const {
   if (added_[i] == kInfinity || cost_ + added_[i] > config_.budget) return -kInfinity;
+  if (stops_.empty() && i == config_.first) return kInfinity;
   const double value = worth(i, gain);
   if (!config_.per_way || !config_.way || value <= 0) return value;
   return added_[i] > 0 ? value / added_[i] : kInfinity;

@@ -12,11 +12,13 @@ namespace viewgain::detail {
 
 /// Throws Error(invalid_argument) if there are costs and they are not one a pose, or not finite.
 void check_costs(std::span<const double> costs, std::size_t poses);
+/// Throws Error(invalid_argument), naming the value, for what plan_tour() refuses of these.
+void check_tour(const TourConfig& config, std::size_t poses);
 
 /// What poses cost in a tour that grows stop by stop, and what that makes of their gains.
 class WayPricing {
  public:
-  /// Throws Error(invalid_argument), naming the value.
+  /// Of what check_tour() accepts. Throws Error(invalid_argument) for a bad way.
   WayPricing(const TourConfig& config, std::size_t poses);
 
   /// What pose `i` is chosen by if it adds `gain`; -infinity: it cannot be a stop.

@@ -364,8 +364,17 @@ def test_a_tour_weighs_the_way_and_keeps_to_its_budget(evaluator, poses):
     assert np.all(tour.worth <= tour.gains["gain"]) and {i for i, _ in asked} >= {-1}
     short = evaluator.plan_tour(poses, way, budget=0.8, per_way=True)
     assert 0 < short.way <= 0.8 and len(short.indices) >= 1
-    with pytest.raises(TypeError, match="callable"):
-        evaluator.plan_tour(poses, 3)
+    table = np.array([[way(i, j) for j in range(len(poses))] for i in (*range(len(poses)), -1)])
+    same = evaluator.plan_tour(poses, table, max_stops=4, cost_per_way=marginal["gain"][0])
+    assert np.array_equal(same.indices, tour.indices) and same.way == tour.way
+    given = evaluator.plan_tour(poses, table, max_stops=2, first=int(tour.indices[-1]))
+    assert tour.indices[-1] in given.indices
+    with pytest.raises(ValueError, match="way must have the shape"):
+        evaluator.plan_tour(poses, np.ones((3, 3)))
+    with pytest.raises(ValueError, match="a table of 2 stops for"):
+        evaluator.plan_tour(poses, np.ones((3, 2)))
+    with pytest.raises(ValueError, match="first is 100000 of"):
+        evaluator.plan_tour(poses, first=100000)
     with pytest.raises(ValueError, match="from the start to 0 costs -1"):
         evaluator.plan_tour(poses, lambda i, j: -1.0)
     with pytest.raises(KeyError, match="arm"):

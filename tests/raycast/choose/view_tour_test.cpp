@@ -199,6 +199,31 @@ TEST(ViewTour, FewRaysChooseNearlyAsWell) {
   EXPECT_GE(sum / maps, 0.95);
 }
 
+TEST(ViewTour, AGivenFirstStopIsFirstAndTheOthersAddToIt) {
+  const Made made(313);
+  const GainEvaluator evaluator(made.scene, made.sensor, {.model = GainModel::surface});
+  const std::vector<double> dear(kPoses, 0.2 * evaluator.best_set(made.poses, 1).gain);
+  int given = 0;
+  for (std::size_t first = 0; first < kPoses; ++first) {
+    TourConfig config{.max_stops = 3, .first = first, .costs = dear};
+    const ViewTour tour = plan_tour(evaluator, made.poses, config);
+    ASSERT_FALSE(tour.set.indices.empty());
+    EXPECT_EQ(tour.set.indices[0], first);
+    EXPECT_DOUBLE_EQ(tour.worth[0], tour.set.marginal[0].gain - dear[first]);
+    for (std::size_t j = 1; j < tour.worth.size(); ++j) {
+      EXPECT_GT(tour.worth[j], 0);
+      if (j > 1) {
+        EXPECT_LE(tour.worth[j], tour.worth[j - 1]);
+      }
+    }
+    // In haste it is among the few that are looked at.
+    config.max_candidates = 4;
+    EXPECT_EQ(plan_tour(evaluator, made.poses, config).set.indices[0], first);
+    ++given;
+  }
+  EXPECT_EQ(given, int(kPoses));
+}
+
 TEST(ViewTour, LimitsAndOddRequestsAreTaken) {
   const Made made(311);
   const GainEvaluator evaluator(made.scene, made.sensor, {.model = GainModel::surface});
@@ -261,6 +286,7 @@ TEST(ViewTour, RefusesWhatCannotBe) {
   refuses({.cost_per_way = -1}, "cost_per_way -1");
   refuses({.budget = -1}, "budget");
   refuses({.least_area = std::nan("")}, "least_area");
+  refuses({.first = kPoses}, "first is 14 of 14 poses");
   refuses({.share = 0}, "share is 0");
   refuses({.share = 1.5}, "share is 1.5");
   refuses({.way = [](std::size_t, std::size_t) { return -1.0; }}, "from the start to 0 costs -1");

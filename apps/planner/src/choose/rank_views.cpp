@@ -21,7 +21,6 @@ constexpr std::size_t kMostPlanned = 1000;
 // What is looked at of views that go together: of the rays, and of the poses by stop and at least.
 constexpr double kFewRays = 0.25;
 constexpr std::size_t kByStop = 3, kFewPoses = 32;
-constexpr double kFirst = 1e15;  // [gain's unit]: beyond what any view gains
 
 void refuse_measures(const RankConfig& config) {
   if (config.measure == nullptr && config.run_measure == nullptr) return;
@@ -92,17 +91,9 @@ Ranking set_of(const GainEvaluator& evaluator, std::span<const Pose> T_world_cam
     none.complete = best.complete;
     return none;
   }
-  std::vector<double> first_costs_least = costs;
-  first_costs_least.resize(T_world_camera.size());
-  first_costs_least[best.indices.front()] = -kFirst;
-  tour.costs = first_costs_least;
+  tour.first = best.indices.front();
   Ranking chosen = chosen_together(evaluator, T_world_camera, tour, exact, control);
-  // It gains something in full, but may gain nothing by a quarter of its rays.
-  if (chosen.views.empty() || chosen.views.front().index != best.indices.front()) {
-    Ranking none;
-    none.complete = chosen.complete;
-    return none;
-  }
+  if (chosen.views.empty()) return chosen;  // stopped
   chosen.views.front().gain = best.gains.front();
   chosen.views.front().worth = best.worth.front();
   return chosen;

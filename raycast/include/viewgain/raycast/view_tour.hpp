@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,8 @@ namespace viewgain {
 /// By what plan_tour() chooses.
 struct VIEWGAIN_EXPORT TourConfig {
   std::size_t max_stops = std::numeric_limits<std::size_t>::max();  ///< at most
+  /// This pose is chosen first, whatever it gains and costs, unless its way is vetoed or it is bad.
+  std::optional<std::size_t> first{};
   /// Between poses by their indices, kTourStart being where the camera is, in a unit of the user's
   /// own. It may price a way by what a motion planner says, or veto it: infinity. None: ways cost
   /// nothing, and stops stay in the order of their choice.
@@ -57,8 +60,8 @@ struct VIEWGAIN_EXPORT ViewTour {
 /// chosen even if it is not worth its cost, others only if they are. Costs like best_set(), and
 /// calls `way` twice for every pose and stop, in the caller's thread. Obstacles and reach are not
 /// looked at. The same for any number of threads. Throws Error(invalid_argument) for costs that are
-/// not one a pose or not finite, a share out of range, a negative or NaN way or limit; what `way`
-/// throws passes through.
+/// not one a pose or not finite, a share or `first` out of range, a negative or NaN way or limit;
+/// what `way` throws passes through.
 [[nodiscard]] VIEWGAIN_EXPORT ViewTour plan_tour(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  const TourConfig& config,
