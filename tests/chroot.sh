@@ -19,11 +19,15 @@ make_bare_system() {
   mv "$2.new" "$2"
 }
 
-# open_system FOLDER: name resolution and /proc for what will run in it, until the script ends.
+# open_system FOLDER: name resolution, /proc and terminals for what will run in it, until the script ends.
 open_system() {
   system=$1
   cp /etc/resolv.conf "$system/etc/resolv.conf" 2>/dev/null || true
-  trap 'umount "$system/proc" 2>/dev/null || true' EXIT
+  trap 'umount "$system/dev/pts" "$system/proc" 2>/dev/null || true' EXIT
   mountpoint -q "$system/proc" || mount -t proc proc "$system/proc" 2>/dev/null ||
     echo "$(basename "$0"): no /proc in the chroot" >&2
+  mkdir -p "$system/dev/pts"
+  mountpoint -q "$system/dev/pts" || mount -t devpts -o newinstance,ptmxmode=0666 devpts "$system/dev/pts" 2>/dev/null ||
+    echo "$(basename "$0"): no terminals in the chroot" >&2
+  ln -sf pts/ptmx "$system/dev/ptmx"
 }

@@ -86,6 +86,12 @@ std::string ProgramTest::run_well(const std::vector<std::string>& arguments) con
   return result.out;
 }
 
+bool ProgramTest::has_report_page() {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(VIEWGAIN_REPORT_PAGE, error);
+  return !error && size > 0;
+}
+
 void ProgramTest::expect_refused(const std::vector<std::string>& arguments,
                                  const std::string& word) const {
   const auto before = contents();

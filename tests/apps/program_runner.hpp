@@ -53,6 +53,8 @@ class ProgramTest : public testing::Test {
 
   /// As run(), and fails the test unless the exit code is 0 and stderr empty. Returns stdout.
   std::string run_well(const std::vector<std::string>& arguments) const;
+  /// Whether the program was built with npm at hand, and so can write reports.
+  [[nodiscard]] static bool has_report_page();
 
   /// The call ends with 2, one line on stderr that has the word, nothing on stdout, and every byte
   /// as it was.

@@ -3,11 +3,12 @@
 #include "free_share.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace viewgain::detail {
 namespace {
 
-constexpr int kAround = 3;  // cells on each side
+constexpr std::size_t kAround = 3;  // cells on each side
 
 }  // namespace
 
@@ -80,24 +81,28 @@ void FreeShare::settle(const VoxelBox& workspace, int shift) {
   }
 }
 
-// Sums of 7 along an axis, of which the first and last go on beyond the ends.
+// Sums of 7 along an axis, of which the first and last go on beyond the ends: of rows of `stride`
+// cells side by side, `count` of them one after another.
 void FreeShare::add_up(std::size_t stride, std::size_t count) {
-  std::vector<std::int32_t> line(count + 2 * kAround + 1);
-  const auto add_up_from = [&](std::size_t first) {
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      const std::size_t at = std::min(i > kAround ? i - kAround : 0, count - 1);
-      line[i] = sums_[first + at * stride];
+  const std::vector<std::int32_t> in =
+      std::exchange(sums_, std::vector<std::int32_t>(sums_.size()));
+  std::vector<std::int32_t> sum(stride);
+  for (std::size_t outer = 0; outer < in.size(); outer += stride * count) {
+    const auto row = [&](std::size_t i) {  // kAround before the first is 0
+      return &in[outer + std::min(std::max(i, kAround) - kAround, count - 1) * stride];
+    };
+    std::fill(sum.begin(), sum.end(), 0);
+    for (std::size_t i = 0; i < 2 * kAround; ++i) {
+      for (std::size_t j = 0; j < stride; ++j) sum[j] += row(i)[j];
     }
-    std::int32_t sum = 0;
-    for (int i = 0; i < 2 * kAround; ++i) sum += line[static_cast<std::size_t>(i)];
     for (std::size_t i = 0; i < count; ++i) {
-      sum += line[i + 2 * kAround];
-      sums_[first + i * stride] = sum;
-      sum -= line[i];
+      const std::int32_t *first = row(i), *last = row(i + 2 * kAround);
+      std::int32_t* out = &sums_[outer + i * stride];
+      for (std::size_t j = 0; j < stride; ++j) {
+        out[j] = sum[j] + last[j];
+        sum[j] = out[j] - first[j];
+      }
     }
-  };
-  for (std::size_t outer = 0; outer < sums_.size(); outer += stride * count) {
-    for (std::size_t inner = 0; inner < stride; ++inner) add_up_from(outer + inner);
   }
 }
 

@@ -3,48 +3,108 @@
 #include "nearest_cells.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace viewgain::detail {
 namespace {
 
-// On the way distances are capped, so that adding a square of at most 127² stays below 2^16.
-constexpr std::uint16_t kFar = 40000;
+// On the way distances are capped, so that adding a square of at most 127² stays below 2^15, where
+// instruction sets have minima of 16 bits.
+constexpr std::int16_t kFar = 128 * 128;
+constexpr std::size_t kChunk = 32;  // cells in which a pass runs through its steps at once
 
-// out[i] = min over |k| <= reach of in[i + k stride] + k², one row of `length` cells after another,
-// and `best` the k; `position` of `count` rows along the axis. Branchless in the inner loop, so
-// that compilers make vectors of it.
-void lower(const std::uint16_t* in, std::uint16_t* out, std::int16_t* best, std::size_t length,
-           std::size_t stride, std::size_t position, std::size_t count, int reach) {
-  std::copy(in, in + length, out);
-  std::fill(best, best + length, std::int16_t{0});
-  const auto take = [&](const std::uint16_t* other, std::uint16_t square, std::int16_t k) {
-    for (std::size_t i = 0; i < length; ++i) {
-      const auto through = static_cast<std::uint16_t>(other[i] + square);
-      best[i] = through < out[i] ? k : best[i];
-      out[i] = std::min(out[i], through);
+// Rows of cells in chunks; the last one lies over the one before it where it would be short.
+struct Chunks {
+  std::size_t length;
+  [[nodiscard]] std::size_t count() const { return (length + kChunk - 1) / kChunk; }
+  [[nodiscard]] std::size_t begin(std::size_t chunk) const {
+    return length < kChunk ? 0 : std::min(chunk * kChunk, length - kChunk);
+  }
+  [[nodiscard]] std::size_t size() const { return std::min(length, kChunk); }
+};
+
+// An axis: rows follow one another at `stride`, `count` of them.
+struct Axis {
+  std::size_t stride, count;
+};
+
+// out[i] = min over |k| <= reach of in[i + k stride] + k² for a chunk of a row, the `position`-th
+// of the axis, and `best` the k, from the nearest row on, first that before. What another row
+// cannot lower, or not to at most reach², is not looked at: `least` has the least of each row's
+// chunk.
+void lower(const std::int16_t* in, std::int16_t* out, std::int8_t* best, std::size_t size,
+           const Axis& axis, std::size_t position, const std::int16_t* least,
+           std::size_t least_stride, int reach) {
+  std::array<std::int16_t, kChunk> lowest{}, step{};
+  std::copy(in, in + size, lowest.begin());
+  std::int16_t most = *std::max_element(lowest.begin(), lowest.begin() + std::ptrdiff_t(size));
+  const int limit = reach * reach;
+  const auto take = [&](std::ptrdiff_t rows, int square) {
+    const int from = least[rows * std::ptrdiff_t(least_stride)] + square;
+    if (from > limit || from >= most) return;
+    const std::int16_t* other = in + rows * std::ptrdiff_t(axis.stride);
+    const auto added = static_cast<std::int16_t>(square), k = static_cast<std::int16_t>(rows);
+    const auto each = [&](std::size_t i) {
+      const auto through = static_cast<std::int16_t>(other[i] + added);
+      step[i] = through < lowest[i] ? k : step[i];
+      lowest[i] = std::min(lowest[i], through);
+    };
+    if (size == kChunk) {  // of a known length, for vectors
+      for (std::size_t i = 0; i < kChunk; ++i) each(i);
+    } else {
+      for (std::size_t i = 0; i < size; ++i) each(i);
     }
   };
-  for (int k = 1; k <= reach; ++k) {
-    const auto steps = static_cast<std::size_t>(k);
-    const auto square = static_cast<std::uint16_t>(k * k);
-    if (steps <= position) take(in - steps * stride, square, static_cast<std::int16_t>(-k));
-    if (position + steps < count) take(in + steps * stride, square, static_cast<std::int16_t>(k));
+  for (int k = 1; k <= reach && k * k < most; ++k) {
+    const auto rows = static_cast<std::size_t>(k);
+    if (rows <= position) take(-k, k * k);
+    if (position + rows < axis.count) take(k, k * k);
+    most = 0;
+    for (const std::int16_t value : lowest) most = std::max(most, value);
+  }
+  std::copy_n(lowest.begin(), size, out);
+  std::transform(step.begin(), step.begin() + std::ptrdiff_t(size), best,
+                 [](std::int16_t k) { return static_cast<std::int8_t>(k); });
+}
+
+// lower() for all rows of `length` cells along an axis that takes every `rows_apart`-th of them.
+void pass(const std::vector<std::int16_t>& in, std::vector<std::int16_t>& out,
+          std::vector<std::int8_t>& best, std::size_t length, std::size_t rows_apart,
+          std::size_t count, int reach) {
+  const Chunks chunks{length};
+  const std::size_t rows = in.size() / length, per_row = chunks.count();
+  std::vector<std::int16_t> least(rows * per_row);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t chunk = 0; chunk < per_row; ++chunk) {
+      const auto begin = in.begin() + std::ptrdiff_t(row * length + chunks.begin(chunk));
+      least[row * per_row + chunk] =
+          *std::min_element(begin, begin + std::ptrdiff_t(chunks.size()));
+    }
+  }
+  const Axis axis{rows_apart * length, count};
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t chunk = 0; chunk < per_row; ++chunk) {
+      const std::size_t at = row * length + chunks.begin(chunk);
+      lower(&in[at], &out[at], &best[at], chunks.size(), axis, row / rows_apart % count,
+            &least[row * per_row + chunk], rows_apart * per_row, reach);
+    }
   }
 }
 
 // Along z: from the nearest 0 before, then from the nearest behind.
-void along_row(std::uint16_t* row, std::int16_t* best, std::size_t length) {
-  constexpr int kNone = 200;
+void along_row(const std::uint16_t* row, std::int16_t* squared, std::int8_t* best,
+               std::size_t length) {
+  constexpr int kNone = 128;  // whose square is kFar
   int away = kNone;
   for (std::size_t i = 0; i < length; ++i) {
     away = row[i] == 0 ? 0 : std::min(away + 1, kNone);
-    best[i] = static_cast<std::int16_t>(-away);
+    best[i] = static_cast<std::int8_t>(-away);
   }
   away = kNone;
   for (std::size_t i = length; i-- > 0;) {
     away = row[i] == 0 ? 0 : std::min(away + 1, kNone);
-    if (away < -best[i]) best[i] = static_cast<std::int16_t>(away);
-    row[i] = std::min(row[i], static_cast<std::uint16_t>(best[i] * best[i]));
+    if (away < -best[i]) best[i] = static_cast<std::int8_t>(away);
+    squared[i] = static_cast<std::int16_t>(best[i] * best[i]);
   }
 }
 
@@ -52,25 +112,15 @@ void along_row(std::uint16_t* row, std::int16_t* best, std::size_t length) {
 
 NearestCells::NearestCells(std::vector<std::uint16_t>& cells, const CellBox& size, int reach)
     : size_(size), along_x_(cells.size()), along_y_(cells.size()), along_z_(cells.size()) {
-  for (std::uint16_t& cell : cells) cell = std::min(cell, kFar);
-  const std::size_t plane = size[1] * size[2];
+  std::vector<std::int16_t> squared(cells.size()), other(cells.size());
   for (std::size_t i = 0; i < cells.size(); i += size[2]) {
-    along_row(&cells[i], &along_z_[i], size[2]);
+    along_row(&cells[i], &squared[i], &along_z_[i], size[2]);
   }
-  std::vector<std::uint16_t> other(cells.size());
-  for (std::size_t x = 0; x < size[0]; ++x) {
-    for (std::size_t y = 0; y < size[1]; ++y) {
-      const std::size_t at = x * plane + y * size[2];
-      lower(&cells[at], &other[at], &along_y_[at], size[2], size[2], y, size[1], reach);
-    }
-  }
-  for (std::size_t x = 0; x < size[0]; ++x) {
-    lower(&other[x * plane], &cells[x * plane], &along_x_[x * plane], plane, plane, x, size[0],
-          reach);
-  }
-  const auto most = static_cast<std::uint16_t>(reach * reach);
-  for (std::uint16_t& cell : cells) {
-    if (cell > most) cell = kNoDistance;
+  pass(squared, other, along_y_, size[2], 1, size[1], reach);
+  pass(other, squared, along_x_, size[2], size[1], size[0], reach);
+  const int most = reach * reach;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells[i] = squared[i] > most ? kNoDistance : static_cast<std::uint16_t>(squared[i]);
   }
 }
 

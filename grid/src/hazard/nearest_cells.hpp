@@ -18,8 +18,9 @@ using CellBox = std::array<std::size_t, 3>;
 class NearestCells {
  public:
   /// Replaces 0 (something is here) and kNoDistance in a dense array by the squared Euclidean
-  /// distance to the nearest 0 [cells²], exactly; kNoDistance beyond `reach`, at most 127. Costs
-  /// reach × cells / 2 steps of 16 cells or so, and 6 bytes a cell.
+  /// distance to the nearest 0 [cells²], exactly; kNoDistance beyond `reach`, at most 127. Costs at
+  /// most reach × cells / 2 steps of 8 cells, less where something is near or nothing in reach, and
+  /// 3 bytes a cell.
   NearestCells(std::vector<std::uint16_t>& cells, const CellBox& size, int reach);
 
   /// From a cell with a distance to the nearest with 0; to one of them if there are several.
@@ -27,7 +28,7 @@ class NearestCells {
 
  private:
   CellBox size_;
-  std::vector<std::int16_t> along_x_, along_y_, along_z_;  // [cells]; each where it is known
+  std::vector<std::int8_t> along_x_, along_y_, along_z_;  // [cells]; each where it is known
 };
 
 }  // namespace viewgain::detail
