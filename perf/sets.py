@@ -78,6 +78,23 @@ class Model:
         return float((together & ~self.seen).mean()) * self.truth.area
 
 
+def print_tables(choice, rows):
+    print("\n| k of 14 | maps | least share of the best subset's value | mean | exactly the best |", "|---|---|---|---|---|", sep="\n")
+    for k, shares in choice.items():
+        known = np.array(shares)[~np.isnan(shares)]
+        print(f"| {k} | {len(known)} | {100 * known.min():.2f} % | {100 * known.mean():.2f} % | {100 * (known > 1 - 1e-6).mean():.0f} % |")
+    print("\n| views | maps | realised / promised, mean | median | not worse than three singles, seen | better, seen | seen, set / singles"
+          " | not worse, modelled | better, modelled |", "|---|---|---|---|---|---|---|---|---|", sep="\n")
+    for name, part in [(str(v), rows[rows[:, 0] == v]) for v in VIEWS] + [("all", rows)]:
+        if len(part) == 0:
+            continue
+        _, seen, of_singles, promised, covered, covered_by_singles = part.T
+        ratio = seen / promised
+        print(f"| {name} | {len(part)} | {ratio.mean():.2f} | {np.median(ratio):.2f} | {100 * (seen >= of_singles).mean():.0f} % |"
+              f" {100 * (seen > of_singles).mean():.0f} % | {seen.sum() / of_singles.sum():.2f} |"
+              f" {100 * (covered >= covered_by_singles).mean():.0f} % | {100 * (covered > covered_by_singles).mean():.0f} % |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("meshes", nargs="+", type=pathlib.Path)
@@ -112,21 +129,7 @@ def main():
                              model.covered_after(together), model.covered_after(singles)))
                 print(f"map {len(rows)}: {path.stem}, seed {seed}, {views} views", flush=True)
             model.add(around[left.pop(int(coarse.best(around[left], 1)[0]))])
-    rows = np.array(rows)
-    print("\n| k of 14 | maps | least share of the best subset's value | mean | exactly the best |", "|---|---|---|---|---|", sep="\n")
-    for k, shares in choice.items():
-        known = np.array(shares)[~np.isnan(shares)]
-        print(f"| {k} | {len(known)} | {100 * known.min():.2f} % | {100 * known.mean():.2f} % | {100 * (known > 1 - 1e-6).mean():.0f} % |")
-    print("\n| views | maps | realised / promised, mean | median | not worse than three singles, seen | better, seen | seen, set / singles"
-          " | not worse, modelled | better, modelled |", "|---|---|---|---|---|---|---|---|---|", sep="\n")
-    for name, part in [(str(v), rows[rows[:, 0] == v]) for v in VIEWS] + [("all", rows)]:
-        if len(part) == 0:
-            continue
-        _, seen, of_singles, promised, covered, covered_by_singles = part.T
-        ratio = seen / promised
-        print(f"| {name} | {len(part)} | {ratio.mean():.2f} | {np.median(ratio):.2f} | {100 * (seen >= of_singles).mean():.0f} % |"
-              f" {100 * (seen > of_singles).mean():.0f} % | {seen.sum() / of_singles.sum():.2f} |"
-              f" {100 * (covered >= covered_by_singles).mean():.0f} % | {100 * (covered > covered_by_singles).mean():.0f} % |")
+    print_tables(choice, np.array(rows))
 
 
 if __name__ == "__main__":

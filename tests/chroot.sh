@@ -31,3 +31,10 @@ open_system() {
     echo "$(basename "$0"): no terminals in the chroot" >&2
   ln -sf pts/ptmx "$system/dev/ptmx"
 }
+
+# copy_sources FOLDER: the project's, their times kept so that only what has changed is compiled.
+copy_sources() {
+  mkdir -p "$1"
+  find "$1" -mindepth 1 -maxdepth 1 -not -name build -exec rm -rf {} +
+  tar --exclude=./build --exclude=./out --exclude=./.git -cf - . | tar -xf - -C "$1"
+}

@@ -20,10 +20,7 @@ root=$PWD/build/portability/$1/root
 make_bare_system "${code_names[$1]}" "$root"
 open_system "$root"
 
-# A copy of the sources, their times kept so that only what has changed is compiled.
-mkdir -p "$root/source"
-find "$root/source" -mindepth 1 -maxdepth 1 -not -name build -exec rm -rf {} +
-tar --exclude=./build --exclude=./out --exclude=./.git -cf - . | tar -xf - -C "$root/source"
+copy_sources "$root/source"
 
 cat >"$root/inside.sh" <<'INSIDE'
 set -euo pipefail
