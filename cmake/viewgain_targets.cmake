@@ -22,7 +22,8 @@ endfunction()
 
 # viewgain_use_highway(target sources...): SIMD through Highway: on x86-64 each of the sources is compiled
 # for SSE4, AVX2 and AVX-512 and no others, and nothing lower, whatever the compiler's flags. support/isa.hpp
-# chooses among them at run time. On arm64 NEON alone: SVE's vectors cannot be members.
+# chooses among them at run time. On arm64 NEON alone: SVE's vectors cannot be members. Highway takes NEON to have
+# AES, which the compiler must then be told; no instruction of it is used.
 function(viewgain_use_highway target)
   # Each is a translation unit of its own, since it includes itself anew for each instruction set.
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
@@ -35,6 +36,7 @@ function(viewgain_use_highway target)
     target_compile_definitions(${target} PRIVATE
       "HWY_BASELINE_TARGETS=HWY_NEON"
       "HWY_DISABLED_TARGETS=(~HWY_NEON)")
+    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -march=armv8-a+crypto)
   endif()
 endfunction()
 

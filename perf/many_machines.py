@@ -111,7 +111,7 @@ def merge(binaries, folder, count=10_000_000, ending="npy", parts=100, top=1000)
     """Parts of rows that nobody scored, with many ties."""
     from viewgain import _rows, _viewgain
 
-    head = f"# viewgain 0\n# map 0\n# sensor 0 0\n# settings {{}}\n# isa avx2\n# poses {count} 0\n# rows 0:0\n# scored 0\n"
+    head = f"# format 1\n# viewgain 0\n# map 0\n# sensor 0 0\n# settings {{}}\n# isa avx2\n# poses {count} 0\n# rows 0:0\n# scored 0\n"
     random, names, gains = np.random.default_rng(1), [], []
     shutil.rmtree(folder / "parts", ignore_errors=True)
     (folder / "parts").mkdir()

@@ -25,7 +25,7 @@ cd /source
 cmake -B build/arm64 -G Ninja -DCMAKE_TOOLCHAIN_FILE=cmake/aarch64-linux-gnu.cmake -DCMAKE_BUILD_TYPE=Release -DVIEWGAIN_WERROR=ON \
   -DVIEWGAIN_BUILD_PYTHON=OFF -DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/configure.log 2>&1 ||
   { cat /configure.log; exit 1; }
-cmake --build build/arm64 -j "$1" --target viewgain_program raycast_test grid_test view_selection_test c_api_test -- -k 0
+cmake --build build/arm64 -j "$1" --target viewgain_program raycast_test surface_gain_test c_api_test -- -k 0
 file -L build/arm64/bin/viewgain | grep aarch64
 ctest --test-dir build/arm64 --output-on-failure -j "$1" -R "$2"
 INSIDE

@@ -11,11 +11,12 @@
 #     perf        every benchmark at its smallest size
 #     debian13    the release build, the site and their tests in a clean Debian 13 (root)
 #     arm64       the library and the oracles' tests by cross compiler, run by qemu-user (root)
+#     kill        100 kills of runs, of follow and of studies: all end as if nothing had been
 #     vdb         .vdb files: damaged ones, with little memory, read by OpenVDB's own tools
 # Dates, commits and results are appended to tests/nightly.log, which is committed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all="statistics asan tsan golden packages browser docs perf debian13 arm64 vdb"
+all="statistics asan tsan golden packages browser docs perf debian13 arm64 kill vdb"
 
 if [ $# -eq 0 ]; then
   echo "usage: tests/nightly.sh PART [...], of: $all" >&2
@@ -67,6 +68,11 @@ run_part() {
     perf) ./apps/install_dependencies.sh --perf; build perf; run_ctest --preset perf ;;
     debian13) ./tests/portability.sh debian13 ;;
     arm64) ./tests/arm64.sh ;;
+    kill)
+      build program
+      ./apps/extract_mesh.sh camel.off build/kill
+      ./tests/kill.py build/release/bin/viewgain build/kill/camel.off --work build/kill/work | tee build/kill.log
+      ;;
     vdb) build release; run_ctest --preset vdb ;;
   esac
 }
@@ -82,7 +88,7 @@ for part in "$@"; do
   [ $? -eq 0 ] || result=FAILED failed=1
   set -e
   summary=$(grep -E 'tests passed|tests failed' build/ctest.log 2>/dev/null | tail -n 1 || true)
-  case "$part" in golden | packages | debian13 | arm64) summary= ;; esac
+  case "$part" in golden | packages | debian13 | arm64) summary= ;; kill) summary=$(tail -n 1 build/kill.log) ;; esac
   line="$(date -u +%F) $(git describe --always --dirty --exclude "*") $part: $result in $((SECONDS / 60)) min${summary:+, $summary}"
   echo "$line" | tee -a tests/nightly.log
 done

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -107,8 +108,9 @@ int run(int argc, char** argv) {
 
 // Runs the call; what it throws becomes a line and an exit code.
 int guarded_run(int argc, char** argv) {
-  clean_up_when_ended();
+  std::signal(SIGPIPE, SIG_IGN);  // who reads no more what a call says does not end its work
   try {
+    clean_up_when_ended();
     return run(argc, argv);
   } catch (const Error& error) {
     const bool internal = error.code() == ErrorCode::backend;

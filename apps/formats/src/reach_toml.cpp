@@ -80,6 +80,7 @@ std::optional<std::filesystem::path> reach_poses_file(const std::filesystem::pat
 ReachRegion read_reach_toml(const std::filesystem::path& path) {
   const toml::table root = read_toml(path);
   TableReader reader(root, path.string(), "");
+  reader.check_format();
   ReachRegion region;
   region.boxes = read_parts(reader, "box", read_box);
   region.shells = read_parts(reader, "shell", read_shell);
@@ -108,7 +109,7 @@ void write_reach_toml(const std::filesystem::path& path, const ReachRegion& regi
                 path.string() + ": a region with a predicate cannot be written");
   }
   const auto xyz = [](const auto& v) { return toml::array{v[0], v[1], v[2]}; };
-  toml::table root;
+  toml::table root{{"format", kTomlFormat}};
   std::filesystem::path poses = path;
   poses.replace_extension(".poses.txt");
   if (!region.poses.empty()) {

@@ -11,6 +11,7 @@
 
 #include "folders.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
 
 namespace viewgain {
@@ -18,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kFiles{"run.json", "config.toml", "views.txt",  "next.txt",
-                            "map.vdb",  "surface.ply", "points.ply", "report.html"};
+constexpr std::array kFiles{"run.json", kCheckpoint,   "config.toml", "views.txt",  "next.txt",
+                            "map.vdb",  "surface.ply", "points.ply",  "report.html"};
 
 std::string numbered(std::size_t index, const char* ending) {
   std::array<char, 32> number{};
@@ -33,14 +34,18 @@ bool is_numbered(const std::string& name, const char* ending) {
   return digits != std::string::npos && digits >= 2 && name.substr(digits) == ending;
 }
 
-// An earlier run's files, which a new run may replace.
+bool has_mark(const fs::path& file, const char* mark) {
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored) && file_bytes(file).find(mark) != std::string::npos;
+}
+
+// An earlier run's files, which a new run may replace. One that was killed while its files were
+// moved has no run.json.
 std::vector<fs::path> files_of_earlier_run(const fs::path& dir) {
   std::vector<fs::path> files = run_files(dir);
   if (files.empty()) return files;
-  const fs::path report = dir / "run.json";
-  std::error_code ignored;
-  if (!fs::is_regular_file(report, ignored) ||
-      file_bytes(report).find("\"map_hash\"") == std::string::npos) {
+  if (!has_mark(dir / "run.json", "\"map_hash\"") &&
+      !has_mark(dir / kCheckpoint, "\"decisions\"")) {
     throw Error(ErrorCode::invalid_argument,
                 dir.string() + ": holds " + files.front().string() +
                     " but no run.json of a run that left it; choose another folder");
@@ -68,7 +73,28 @@ std::vector<fs::path> run_files(const fs::path& dir) {
   return files;
 }
 
-RunFolder::RunFolder(const fs::path& dir) : earlier_(files_of_earlier_run(dir)), staged_(dir) {}
+RunFolder::RunFolder(const fs::path& dir, bool resume)
+    : dir_(dir),
+      earlier_(files_of_earlier_run(dir)),
+      staged_(dir, resume ? kCheckpoint : nullptr) {}
+
+fs::path RunFolder::last_checkpoint() const {
+  for (const fs::path& path : {file(kCheckpoint), dir_ / kCheckpoint}) {
+    if (is_there(path)) return path;
+  }
+  return {};
+}
+
+void RunFolder::write_checkpoint(const std::string& text) {
+  write_file_atomically(file(kCheckpoint), text);
+  staged_.keep();
+}
+
+void RunFolder::commit(bool goes_on) {
+  staged_.commit(earlier_);
+  std::error_code ignored;
+  if (!goes_on) fs::remove(dir_ / kCheckpoint, ignored);
+}
 
 fs::path RunFolder::view(std::size_t index, const char* ending) const {
   std::error_code ignored;

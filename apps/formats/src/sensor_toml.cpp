@@ -97,6 +97,7 @@ RangeCalibration read_range_calibration(TableReader reader) {
 // What `file` holds.
 Sensor sensor_of(const toml::table& root, const std::string& file) {
   TableReader reader(root, file, "");
+  reader.check_format();
   Sensor sensor;
   sensor.name = reader.text("name");
   sensor.min_range = reader.number("min_range");
@@ -152,7 +153,7 @@ void write_column(std::ostream& text, const char* key, const RangeCalibration& c
 std::string sensor_toml(const Sensor& sensor) {
   std::ostringstream text;
   text << "# A depth camera for viewgain. Ranges are along the ray.\n"
-       << "name = " << toml_string(sensor.name) << "\n"
+       << "format = " << kTomlFormat << "\nname = " << toml_string(sensor.name) << "\n"
        << "min_range = " << toml_float(sensor.min_range) << "  # [m]\n"
        << "max_range = " << toml_float(sensor.max_range) << "  # [m]\n"
        << "working_distance = " << toml_float(sensor.working_distance) << "  # [m]\n";

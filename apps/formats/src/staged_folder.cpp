@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/atomic_file.hpp"
 
 namespace viewgain {
 namespace {
@@ -41,7 +42,8 @@ int lock_of(const fs::path& folder) {
   return -1;
 }
 
-void remove_leftovers(const fs::path& folder, const std::string& prefix) {
+// Of that name, each a process's.
+std::vector<fs::path> leftovers(const fs::path& folder, const std::string& prefix) {
   std::vector<fs::path> found;
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
@@ -51,12 +53,18 @@ void remove_leftovers(const fs::path& folder, const std::string& prefix) {
       found.push_back(entry.path());
     }
   }
-  for (const fs::path& path : found) {
-    const int lock = lock_of(path);
-    if (lock < 0) continue;
-    fs::remove_all(path, ignored);
-    ::close(lock);
+  return found;
+}
+
+// And links, which writers would follow out of the folder.
+void remove_half_written(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, ignored)) {
+    const bool is_hidden = entry.path().filename().string().starts_with(".");
+    if (is_hidden || entry.is_symlink(ignored)) found.push_back(entry.path());
   }
+  for (const fs::path& path : found) fs::remove(path, ignored);
 }
 
 // What says that the other files are there comes after them.
@@ -67,7 +75,27 @@ bool is_record(const fs::path& file) {
 
 }  // namespace
 
-StagedFolder::StagedFolder(const fs::path& target) {
+// Takes up one of them at most and removes the others; those in use stay.
+bool StagedFolder::take_leftovers(const fs::path& folder, const std::string& prefix,
+                                  const char* taken_up) {
+  std::error_code ignored;
+  for (const fs::path& path : leftovers(folder, prefix)) {
+    const int lock = lock_of(path);
+    if (lock < 0) continue;
+    if (taken_up != nullptr && lock_ < 0 && fs::exists(path / taken_up, ignored)) {
+      staging_ = path;
+      lock_ = lock;
+      remove_half_written(staging_);
+      keep();
+      continue;
+    }
+    fs::remove_all(path, ignored);
+    ::close(lock);
+  }
+  return lock_ >= 0;
+}
+
+StagedFolder::StagedFolder(const fs::path& target, const char* taken_up) {
   static std::atomic<unsigned> counter{0};
   std::error_code code;
   target_ = target.has_filename() ? target : target.parent_path();  // a slash at the end
@@ -79,23 +107,31 @@ StagedFolder::StagedFolder(const fs::path& target) {
   if (code) fail(target, "cannot be created: " + code.message());
   const fs::path around = exists ? target_ : target_.parent_path();
   const std::string prefix = hidden_prefix(target_);
-  remove_leftovers(target_, prefix);
-  remove_leftovers(target_.parent_path(), prefix);
+  const bool is_inside = take_leftovers(target_, prefix, taken_up);
+  const bool is_taken_up = take_leftovers(target_.parent_path(), prefix, taken_up) || is_inside;
 
   const std::lock_guard guard(list_mutex);
+  if (is_taken_up) {
+    alive.push_back(this);
+    return;
+  }
   for (fs::path p = around; !fs::exists(p, code) && p.has_relative_path(); p = p.parent_path()) {
     parents_.push_back(p);
   }
-  do {  // again if somebody took the folder for a leftover before it was locked
+  bool is_new = false;
+  do {  // again if the name is another's, or somebody took the folder for a leftover before it was
+        // locked
     staging_ =
         around / (prefix + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1)));
-    fs::create_directories(staging_, code);
+    fs::create_directories(around, code);
+    is_new = !code && fs::create_directory(staging_, code);
     if (code) {
+      staging_.clear();  // is another's
       remove();
       fail(target, "cannot be created: " + code.message());
     }
-    lock_ = lock_of(staging_);
-  } while (lock_ < 0 && !fs::exists(staging_, code));
+    lock_ = is_new ? lock_of(staging_) : -1;
+  } while (!is_new || (lock_ < 0 && !fs::exists(staging_, code)));
   alive.push_back(this);
 }
 
@@ -107,6 +143,7 @@ StagedFolder::~StagedFolder() {
 }
 
 void StagedFolder::remove() const noexcept {
+  if (is_kept_) return;
   std::error_code ignored;
   // Another thread may be putting a file into it when a signal ends the program.
   for (int tries = 0; tries < 10 && fs::exists(staging_, ignored); ++tries) {
@@ -119,7 +156,7 @@ void StagedFolder::commit(const std::vector<fs::path>& earlier) {
   std::error_code code;
   if (!fs::exists(target_, code)) {
     fs::rename(staging_, target_, code);
-    if (!code) return;
+    if (!code) return sync_folder(target_.parent_path());
     code.clear();  // somebody else has made it meanwhile
   }
   std::vector<fs::path> written;
@@ -134,6 +171,8 @@ void StagedFolder::commit(const std::vector<fs::path>& earlier) {
     if (!code) fs::rename(staging_ / file, target_ / file, code);
   }
   if (code) fail(target_, "cannot be written: " + code.message());
+  sync_folder(target_);
+  is_kept_ = false;
   for (const fs::path& file : earlier) {
     if (std::find(written.begin(), written.end(), file) != written.end()) continue;
     fs::remove(target_ / file, code);

@@ -91,6 +91,12 @@ int TableReader::whole_number(std::string_view key) {
   return static_cast<int>(*value);
 }
 
+void TableReader::check_format() {
+  if (find("format") == nullptr || whole_number("format") <= kTomlFormat) return;
+  fail("format", "is " + std::to_string(whole_number("format")) +
+                     "; this library reads files up to format " + std::to_string(kTomlFormat));
+}
+
 std::string TableReader::text(std::string_view key) {
   const toml::node& node = require(key);
   if (!node.is_string()) fail(key, "must be a string");

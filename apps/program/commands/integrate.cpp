@@ -125,7 +125,7 @@ Totals integrate_all(ReadingSource& source, const Options& options, std::set<std
     if (fault.verdict == FrameVerdict::used) fault = source.load(i);
     if (fault.verdict == FrameVerdict::used) {
       if (std::optional<FrameRegistration> registration = source.register_loaded()) {
-        if (registration->status == RegistrationStatus::refused) {
+        if (options.registration.leaves_out(*registration)) {
           fault = {FrameVerdict::contradicts,
                    source.file(i).string() + ": " + registration->reason};
         }

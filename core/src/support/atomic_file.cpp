@@ -165,15 +165,6 @@ bool is_synced(int file) {
   return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP;
 }
 
-/// Makes the new name last; what was there before is whole, too, if this fails.
-void sync_folder_of(const fs::path& path) {
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (file < 0) return;
-  (void)is_synced(file);
-  ::close(file);
-}
-
 }  // namespace
 
 AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
@@ -234,7 +225,8 @@ void AtomicFile::commit() {
     std::error_code code;
     fs::rename(temporary_, resolved_, code);
     if (code) fail(target_, code.value());
-    sync_folder_of(resolved_);
+    // What was there before is whole, too, if this fails.
+    sync_folder(resolved_.has_parent_path() ? resolved_.parent_path() : fs::path("."));
   }
   committed_ = true;
 }
@@ -250,6 +242,13 @@ void remove_temporary_files() noexcept {
     place.compare_exchange_strong(nothing, name);
   }
   errno = error;
+}
+
+void sync_folder(const fs::path& folder) noexcept {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;
+  (void)is_synced(file);
+  ::close(file);
 }
 
 void write_file_atomically(const fs::path& target, std::string_view contents) {

@@ -204,6 +204,27 @@ class Recordings : public test::ProgramTest {
   [[nodiscard]] std::string cut_png() const { return bytes_of(image_of(0)).substr(0, 200); }
 };
 
+// A recording may be of anybody: what it links to elsewhere is none of its frames.
+TEST_F(Recordings, LinksOutOfARecordingAreRefused) {
+  write_bop_recording();
+  run_well({"import", "rec", "--format", "bop", "--out", "good"});
+  fs::create_directory_symlink("depth", dir / "rec/again");  // within
+  run_well({"import", "rec", "--format", "bop", "--out", "good"});
+  write_image("elsewhere/0.png", image_of(0));
+  std::size_t cases = 0;
+  for (const auto& [link, to] :
+       {std::pair{"rec/depth/999999.png", dir / "elsewhere/0.png"},
+        std::pair{"rec/depth/999999.png", fs::path("../../elsewhere/0.png")},
+        std::pair{"rec/more", dir / "elsewhere"}, std::pair{"rec/gone", fs::path("/no/such")}}) {
+    fs::create_symlink(to, dir / link);
+    expect_refused({"import", "rec", "--format", "bop", "--out", "frames"},
+                   std::string(link) + ": is a link out of the recording");
+    fs::remove(dir / link);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 4U);
+}
+
 TEST_F(Recordings, TumComesThroughExactly) {
   write_tum_recording();
   const json result = import_json("tum", {"--intrinsics", "60,61,23.5,17.5"});

@@ -254,7 +254,7 @@ def test_parts_with_the_same_rows_are_named(client, grid, sensor, poses, tmp_pat
     for path in tmp_path.iterdir():
         head = path.read_bytes()[-2000:].decode(errors="replace")
         path.unlink()
-    head = head[head.index("# viewgain"):]
+    head = head[head.index("# format"):]
     for first, second in (((0, 9), (0, 9)), ((0, 9), (0, 20)), ((0, 20), (5, 9)), ((3, 9), (8, 20))):
         for name, (begin, end) in (("rows-a.npy", first), ("rows-b.npy", second)):
             native._write_part(tmp_path / name, head, viewgain.DEFAULT_GAIN, rows[begin:end].tobytes())

@@ -17,7 +17,8 @@
 namespace viewgain {
 namespace {
 
-// The lines before rows and scored: key and text.
+// The lines before rows and scored: a format that grows when its reader would err, key and text.
+constexpr std::uint64_t kPartFormat = 1;
 constexpr std::array<std::pair<const char*, std::string PartHead::*>, 5> kTexts{
     {{"viewgain", &PartHead::version},
      {"map", &PartHead::map},
@@ -91,19 +92,22 @@ std::string text_of(const RowRange& rows) {
 }
 
 std::string head_text(const PartHead& head) {
-  std::string text;
+  std::string text = "# format " + std::to_string(kPartFormat) + "\n";
   for (const auto& [key, member] : kTexts) {
     text.append("# ").append(key).append(" ").append(head.*member).append("\n");
   }
-  text.append("# poses ").append(poses_text(head)).append("\n");
-  text.append("# rows ").append(text_of(head.rows)).append("\n");
-  text.append(head.is_best ? "# best " : "# scored ").append(std::to_string(head.scored));
+  text.append("# poses ").append(poses_text(head)).append("\n# rows ").append(text_of(head.rows));
+  text.append(head.is_best ? "\n# best " : "\n# scored ").append(std::to_string(head.scored));
   return text + "\n";
 }
 
 PartHead parse_head(const std::string& file, std::string_view text) {
   HeadReader reader(file, text);
   PartHead head;
+  if (const std::uint64_t format = reader.count(reader.value("format")); format > kPartFormat) {
+    reader.fail("format " + std::to_string(format) + "; this library reads up to format " +
+                std::to_string(kPartFormat));
+  }
   for (const auto& [key, member] : kTexts) head.*member = reader.value(key);
   const auto [poses, hash] = reader.cut(reader.value("poses"), ' ');
   head.poses = reader.count(poses);

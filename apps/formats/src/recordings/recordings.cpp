@@ -41,6 +41,19 @@ Recording opened(const fs::path& source, RecordingFormat format, const Recording
   throw Error(ErrorCode::invalid_argument, "there is no such format of recordings");
 }
 
+// A recording may be of anybody, and leads to no files of elsewhere.
+void refuse_links_out(const fs::path& source) {
+  std::error_code ignored;
+  const fs::path root = fs::canonical(source, ignored) / "";
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source, ignored)) {
+    if (!entry.is_symlink(ignored)) continue;
+    std::error_code code;  // of one that leads nowhere, too
+    const std::string to = fs::canonical(entry.path(), code).string();
+    if (!code && to.starts_with(root.string())) continue;
+    throw Error(ErrorCode::format, entry.path().string() + ": is a link out of the recording");
+  }
+}
+
 // The camera takes the first frame's size; frames of another one are dropped.
 void keep_one_size(Recording& recording) {
   PinholeCamera& camera = recording.camera;
@@ -129,6 +142,7 @@ Recording open_recording(const fs::path& source, RecordingFormat format,
   if (!fs::is_directory(source, ignored)) {
     throw Error(ErrorCode::io, source.string() + ": no such folder");
   }
+  refuse_links_out(source);
   Recording recording = opened(source, format, config);
   keep_one_size(recording);
   if (recording.frames.empty()) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -213,8 +214,10 @@ class Following {
     config_.hazard = hazard_source(options_.hazard, options_.object_size, BeliefGrid(config_.grid));
     map_.emplace(sensor, body_, config_, out_ / "state.vdb", saved_, sigma_,
                  exec_of(options_.common));
-    // What was next may be missing or older than the state.
+    // What was next may be missing or older than the state, which has not heard of it: a frame that
+    // waits is held against it.
     has_news_ = saved_.has_value();
+    if (saved_) propose(saved_->frames);
   }
 
   void take(const WatchedFrame& frame) {
@@ -224,7 +227,7 @@ class Following {
     FrameVerdict verdict = FrameVerdict::contradicts;
     std::string why = frame.image.string();
     AddedView added;
-    if (registration && registration->status == RegistrationStatus::refused) {
+    if (registration && options_.registration.leaves_out(*registration)) {
       why += ": " + registration->reason;
     } else {
       added = map_->add(frame, registration);
@@ -247,11 +250,15 @@ class Following {
                  1e4 * added.update.new_area, added.entropy_removed);
   }
 
+  void propose(const std::set<std::string>& frames) {
+    next_ = map_->next(options_.top, options_.cost_per_metre);
+    views_.ask(poses_of(next_), frames);
+  }
+
   // First the state: what is next takes longest, and can be made of it again.
   void write() {
     map_->save(watch_->taken());
-    next_ = map_->next(options_.top, options_.cost_per_metre);
-    views_.ask(poses_of(next_), watch_->taken());
+    propose(watch_->taken());
     write_tum(out_ / "next.txt", poses_of(next_));
     write_json();
     has_news_ = false;

@@ -11,6 +11,7 @@
 #include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
 #include "program/commands/commands.hpp"
+#include "program/commands/reconstruct/checkpoint.hpp"
 #include "program/commands/reconstruct/run.hpp"
 #include "program/commands/reconstruct/run_outputs.hpp"
 #include "program/commands/reconstruct/run_report.hpp"
@@ -23,6 +24,7 @@
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/planner_mesh/surface_files.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/isa.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -73,8 +75,14 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   seconds["quality"] = watch_of_set_up.seconds();
   const SurfaceModel& model = parts.model;
 
-  RunFolder folder(outputs.out);
+  RunFolder folder(outputs.out, outputs.resume);
+  Json head = run_head(setup.settings);
+  head["seed"] = options.sensing.seed;
+  head["isa"] = isa_name(select_isa());
+  Checkpoint checkpoint(folder, head, outputs.resume);
   const PolicyConfig& policy = setup.policy;
+  const bool remembers = policy.ahead.is_on() || policy.policy == Policy::kriegel;
+  ResumedDecision decision(checkpoint, parts.decision, remembers);
   RunReport report(policy, setup.visibility.tolerance);
   RunPage page(run_title(options, setup), setup.sensor,
                std::string(criterion_name(policy.criterion)), parts.truth);
@@ -95,6 +103,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
     if (outputs.with_pictures() && !frame.amplitude.empty()) {
       write_amplitude_picture(folder.view(record.index, ".amplitude.png"), frame);
     }
+    checkpoint.add_view(record, model.grid().content_hash());
     report.add_view(record, model.quality().back(), seconds);
     progress.wipe();
     if (!options.common.quiet) std::fprintf(stderr, "%s\n", report.progress_line().c_str());
@@ -102,7 +111,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   };
   const PlanningResult result =
       active_view_planning(setup.start, parts.acquisition, parts.representation(), parts.decision,
-                           parts.decision, setup.planning, watch);
+                           decision, setup.planning, watch);
 
   progress.wipe();
   const std::vector<FrameRegistration> registrations = parts.registrations();
@@ -115,7 +124,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   if (outputs.with_report()) {
     write_report(folder.file("report.html"), page.json(run, setup.stage.scene.get()));
   }
-  commit(folder, app);
+  commit(folder, run, app);
   if (options.common.json) {
     print_json(json);
   } else {

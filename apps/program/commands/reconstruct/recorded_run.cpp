@@ -21,6 +21,7 @@
 #include "program/commands/frames/frame_map.hpp"
 #include "program/commands/frames/registration_json.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
+#include "program/commands/reconstruct/checkpoint.hpp"
 #include "program/commands/reconstruct/recorded_views.hpp"
 #include "program/commands/reconstruct/run_outputs.hpp"
 #include "show/report/page.hpp"
@@ -32,6 +33,7 @@
 #include "viewgain/planner/align_frames.hpp"
 #include "viewgain/planner_mesh/surface_files.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/isa.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -107,7 +109,7 @@ class Recording {
       const Stopwatch watch;
       auto aligned = align_folder(*map_, *sigma_, options.common.quiet, exec_, stop);
       if (!aligned.empty()) aligned_until_ = aligned.rbegin()->first + 1;
-      views_.emplace(*map_, std::move(aligned));
+      views_.emplace(*map_, std::move(aligned), options.registration);
       views_->add_seconds("register", watch.seconds());
     } else {
       views_.emplace(*map_);
@@ -169,6 +171,16 @@ class Recording {
     return run;
   }
 
+  // What the run's bytes depend on: settings, program, and the frames' own bytes.
+  [[nodiscard]] Json head() const {
+    Json head = run_head(settings());
+    head["isa"] = isa_name(select_isa());
+    const FrameSequence& frames = map_->folder().frames();
+    for (std::size_t i = 0; i < frames.poses.size(); ++i) {
+      head["frames"].push_back(frame_identity(frames, i));
+    }
+    return head;
+  }
   [[nodiscard]] const NextViews& next() const { return next_; }
   [[nodiscard]] const FrameCounts& counts() const { return map_->counts(); }
   [[nodiscard]] const Sensor& sensor() const { return map_->model().sensor(); }
@@ -199,6 +211,7 @@ class Recording {
         {"jump_edge_filter", options_.frames.jump_edge_filter},
         {"refine", options_.refine == "on"},
         {"register", sigma_.has_value()},
+        {"on_contradiction", sigma_ ? Json(options_.registration.on_contradiction) : Json()},
         {"pose_sigma", sigma_ ? pose_sigma_json(*sigma_) : Json()},
         {"generator", proposal_.generator.empty() ? "boundary" : proposal_.generator},
         {"gain", proposal_.gain},
@@ -246,10 +259,12 @@ void reconstruct(Options& options, const App& app) {
   if (options.outputs.with_report()) check_report_page("--report");
   const InterruptGuard interrupt;
   Recording recording(options, interrupt.token());
-  RunFolder folder(options.outputs.out);
+  RunFolder folder(options.outputs.out, options.outputs.resume);
+  // Frames are read again, which takes no longer than reading a map; what was drawn is there.
+  const Checkpoint checkpoint(folder, recording.head(), options.outputs.resume);
   recording.add_frames(folder, interrupt.token());
   const Json run = recording.finish(folder);
-  commit(folder, app);
+  commit(folder, run, app);
   if (options.common.json) return print_json(run);
   print(options, run, recording.counts(), recording.next());
 }

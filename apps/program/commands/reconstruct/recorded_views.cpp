@@ -22,8 +22,9 @@ double sum_of(const StageSeconds& seconds) {
 }  // namespace
 
 RecordedViews::RecordedViews(FrameMap& map,
-                             std::optional<std::map<std::size_t, FrameRegistration>> registrations)
-    : map_(map), registrations_(std::move(registrations)) {}
+                             std::optional<std::map<std::size_t, FrameRegistration>> registrations,
+                             RegistrationOptions options)
+    : map_(map), registrations_(std::move(registrations)), options_(std::move(options)) {}
 
 const FrameRegistration* RecordedViews::registration(std::size_t index) const {
   if (!registrations_) return nullptr;
@@ -33,7 +34,7 @@ const FrameRegistration* RecordedViews::registration(std::size_t index) const {
 
 bool RecordedViews::is_refused(std::size_t index) const {
   const FrameRegistration* found = registration(index);
-  return found != nullptr && found->status == RegistrationStatus::refused;
+  return found != nullptr && options_.leaves_out(*found);
 }
 
 void RecordedViews::add(std::size_t index) {

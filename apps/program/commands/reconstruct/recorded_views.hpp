@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "program/cli/flags/next_views.hpp"
+#include "program/cli/flags/sensing.hpp"
 #include "program/cli/json.hpp"
 #include "program/commands/frames/frame_map.hpp"
 #include "viewgain/core/planning.hpp"
@@ -22,9 +23,10 @@ namespace viewgain::app {
 class RecordedViews {
  public:
   /// The map must outlive it. `registrations`: by the frame's index, or nothing where the poses are
-  /// taken as the folder says them.
-  explicit RecordedViews(
-      FrameMap& map, std::optional<std::map<std::size_t, FrameRegistration>> registrations = {});
+  /// taken as the folder says them. `options`: which of them are left out.
+  explicit RecordedViews(FrameMap& map,
+                         std::optional<std::map<std::size_t, FrameRegistration>> registrations = {},
+                         RegistrationOptions options = {});
 
   /// Puts a frame into the map, in order; one that was refused stays out of it, and one that cannot
   /// be used is no view either. Throws as FrameMap::add().
@@ -47,6 +49,7 @@ class RecordedViews {
 
   FrameMap& map_;
   std::optional<std::map<std::size_t, FrameRegistration>> registrations_;
+  RegistrationOptions options_;
   std::size_t asked_ = 0;  ///< frames, whatever became of them
   std::vector<ViewRecord> records_;
   std::vector<double> new_areas_;  ///< one a record [m²]

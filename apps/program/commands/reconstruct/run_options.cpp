@@ -157,6 +157,8 @@ void add_output_options(App& app, RunOutputs& outputs) {
   declaration.option(nullptr, "--pictures", outputs.pictures, "draw views/NN.png", switched);
   declaration.option(nullptr, "--report", outputs.report,
                      "write report.html: the run to look at in a browser, in one file", switched);
+  app.add_flag("--resume", outputs.resume,
+               "go on where the same call was ended, if it was: by a kill, a signal, a full disk");
   declaration.option(nullptr, "--out", outputs.out, "folder to write", needed);
 }
 

@@ -22,6 +22,7 @@ struct RunOutputs {
   std::string save_maps = "off";
   std::string pictures = "on";
   std::string report = "off";
+  bool resume = false;
   std::string out;
 
   [[nodiscard]] bool saves_maps() const { return save_maps == "on"; }

@@ -3,10 +3,13 @@
 #include "program/commands/reconstruct/run_outputs.hpp"
 
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "program/cli/config_file.hpp"
+#include "program/commands/file_format.hpp"
 #include "show/pictures/view_picture.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -17,7 +20,10 @@ namespace viewgain::app {
 StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPage& page,
                        const ShownStep& step, const ExecConfig& exec) {
   StageSeconds seconds;
-  if (!outputs.draws()) return seconds;
+  // One that the run has drawn before it was ended is there.
+  const std::filesystem::path file = folder.view(step.record.index, ".png");
+  std::error_code ignored;
+  if (!outputs.with_report() && std::filesystem::exists(file, ignored)) return seconds;
   Stopwatch watch;
   const Proposal& proposal = step.record.proposal;
   // Without a proposal those that the generation holds are of a surface before.
@@ -34,7 +40,7 @@ StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPa
     }
   }
   const RgbImage picture = view_picture(parts, exec);
-  if (outputs.with_pictures()) write_png(folder.view(step.record.index, ".png"), picture);
+  if (outputs.with_pictures()) write_png(file, picture);
   seconds["pictures"] = watch.seconds();
   if (!outputs.with_report()) return seconds;
   watch = {};
@@ -45,14 +51,15 @@ StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPa
 }
 
 Json run_head(const Json& settings) {
-  return {{"settings", settings},
+  return {{"format", kRunFormat},
+          {"settings", settings},
           {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}}};
 }
 
-void commit(RunFolder& folder, const App& app) {
+void commit(RunFolder& folder, const Json& run, const App& app) {
   write_file_atomically(folder.file("config.toml"),
-                        config_text(app, {"out", "json", "quiet", "threads"}));
-  folder.commit();
+                        config_text(app, {"out", "resume", "json", "quiet", "threads"}));
+  folder.commit(run["stop_reason"] == Json("interrupted"));
 }
 
 void print_left(const RunOutputs& outputs, const char* files) {

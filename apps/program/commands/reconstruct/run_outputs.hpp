@@ -32,8 +32,9 @@ StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPa
 /// `settings` and `versions`, with which run.json begins.
 [[nodiscard]] Json run_head(const Json& settings);
 
-/// Writes the flags of the call into config.toml, for --config, and puts the folder in its place.
-void commit(RunFolder& folder, const App& app);
+/// Writes the flags of the call into config.toml, for --config, and puts the folder in its place;
+/// `run` is what run.json holds.
+void commit(RunFolder& folder, const Json& run, const App& app);
 
 /// Says where the run lies; `files` are those that every such run leaves.
 void print_left(const RunOutputs& outputs, const char* files);

@@ -56,6 +56,9 @@ class VIEWGAIN_EXPORT AtomicFile {
 /// fail or write into nothing afterwards.
 VIEWGAIN_EXPORT void remove_temporary_files() noexcept;
 
+/// Waits until the names in the folder are on the disk, where the file system can say so.
+VIEWGAIN_EXPORT void sync_folder(const std::filesystem::path& folder) noexcept;
+
 /// The common case: the whole contents at once. Throws and costs as AtomicFile.
 VIEWGAIN_EXPORT void write_file_atomically(const std::filesystem::path& target,
                                            std::string_view contents);

@@ -265,7 +265,8 @@ class Merge : public test::ProgramTest {
 
   [[nodiscard]] static std::string head(const std::string& rows, std::size_t scored,
                                         const std::string& isa = "avx2") {
-    return "# viewgain 1.2.3\n# map 0123\n# sensor small 4567\n# settings {\"gain\":\"paper\"}\n# "
+    return "# format 1\n# viewgain 1.2.3\n# map 0123\n# sensor small 4567\n# settings "
+           "{\"gain\":\"paper\"}\n# "
            "isa " +
            isa + "\n# poses 300 89ab\n# rows " + rows + "\n# scored " + std::to_string(scored) +
            "\n";
@@ -383,7 +384,7 @@ TEST_F(Merge, WhatIsCutOffOrBrokenIsNamed) {
   expect("plain.csv", whole.substr(whole.find("index")), "lines of #");
   expect("rows.csv", changed("rows 0:100", "rows 100:0"), "rows 100:0");
   expect("scored.csv", changed("scored 100", "scored 101"), "more were scored");
-  expect("key.csv", changed("# isa avx2\n", ""), "line 5 of #: expected \"# isa ");
+  expect("key.csv", changed("# isa avx2\n", ""), "line 6 of #: expected \"# isa ");
   const std::size_t end = npy.find(head("0:300", 300).substr(0, 10));  // of the rows
   ASSERT_NE(end, std::string::npos);
   expect("saved.npy", npy.substr(0, end), "does not say which rows it has");

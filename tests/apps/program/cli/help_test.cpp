@@ -134,7 +134,8 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
   write("distances.txt", "1\n2\n");
   write("frames/done", "");
   write("part.csv",
-        "# viewgain 1\n# map 1\n# sensor a 1\n# settings {}\n# isa avx2\n# poses 1 1\n# rows "
+        "# format 1\n# viewgain 1\n# map 1\n# sensor a 1\n# settings {}\n# isa avx2\n# poses 1 "
+        "1\n# rows "
         "0:1\n# scored 1\nindex,gain\n0,1\n");
   for (const std::string& subcommand : kSubcommands) {
     const std::vector<Strings> calls = examples({subcommand});

@@ -417,6 +417,79 @@ TEST_F(Follow, WhatContradictsTheMapIsLeftOut) {
   EXPECT_EQ(result["bad"].size(), 1U);
   EXPECT_EQ(result["bad"]["contradicts"], 1);
   EXPECT_EQ(result["frames"], 9);
+
+  std::size_t cases = 0;
+  for (const Strings& call : {Strings{"follow", "moved"}, Strings{"integrate", "moved"},
+                              Strings{"reconstruct", "moved", "--pictures", "off"}}) {
+    const std::string out = "kept" + std::to_string(cases) + (call[0] == "integrate" ? ".vdb" : "");
+    const json kept = json::parse(run_well(test::joined(
+        call, {"--voxel", "0.01", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--register", "on",
+               "--on-contradiction", "keep", "--out", out, "--json", "--quiet"})));
+    EXPECT_EQ(kept["bad"].size(), 0U) << call[0];
+    EXPECT_EQ(kept["frames"], 10) << call[0];
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3U);
+}
+
+// What disks, clocks and other programs do to a folder.
+TEST_F(Follow, FaultsOfFilesAndClocks) {
+  write_half_sensor();
+  run_well({"simulate", "cube.off", "--orbit", "5,0.6,27", "--sensor", "tof.toml", "--size", "0.2",
+            "--recenter", "on", "--out", "taken"});
+  const PoseList poses_of_frames = read_tum(dir / "taken/poses.txt");
+  fs::create_directories(dir / "odd\nname");
+  const fs::path folder = dir / "odd\nname";
+  fs::copy_file(dir / "taken/sensor.toml", folder / "sensor.toml");
+  // Out of order, and dated back and forth.
+  const auto bring = [&](std::size_t frame, std::size_t number, int hours) {
+    char name[32];
+    std::snprintf(name, sizeof name, "frame-%06zu", number);
+    char from[48];
+    std::snprintf(from, sizeof from, "taken/frame-%06zu.depth.png", frame);
+    const fs::path image = folder / (std::string(name) + ".depth.png");
+    fs::copy_file(dir / from, image, fs::copy_options::overwrite_existing);
+    fs::last_write_time(image, fs::file_time_type::clock::now() + std::chrono::hours(hours));
+    std::ofstream(folder / (std::string(name) + ".pose.txt"))
+        << matrix_text(poses_of_frames.poses[frame]);
+  };
+  bring(0, 7, 0);
+  bring(1, 3, 48);
+  bring(2, 5, -48);
+  bring(3, 900, -1000);
+  // One that is cut off, one without a pose, and names that are nobody's.
+  const std::string image = read("taken/frame-000004.depth.png");
+  bring(4, 1, 0);
+  write("odd\nname/frame-000001.depth.png", image.substr(0, image.size() / 2));
+  write("odd\nname/frame-000002.depth.png", image);
+  write("odd\nname/frame-00\n0004.depth.png", image);
+  write("odd\nname/frame-000009.depth.png\n", image);
+  const pid_t child = start({"follow", "odd\nname", "--voxel", "0.0125", "--workspace",
+                             "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "plan", "--quiet"});
+  const auto counted = [&] {
+    return fs::exists(dir / "plan/next.json") ? json::parse(read("plan/next.json")) : json();
+  };
+  const auto wait_for = [&](auto&& is_there) {
+    for (int i = 0; i < 3000 && !is_there(counted()); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  };
+  wait_for([](const json& now) { return now.is_object() && now["frames"] == 4; });
+  // The same again, dated anew, and at last the rest of the one that was cut off.
+  bring(0, 7, 5);
+  wait_for([](const json& now) { return now.is_object() && now["bad"].contains("unreadable"); });
+  EXPECT_EQ(counted()["bad"]["unreadable"], 1);
+  bring(4, 1, -5);
+  wait_for([](const json& now) { return now["frames"] == 5; });
+  write("odd\nname/done", "");
+  int status = 0;
+  EXPECT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  const json last = counted();
+  EXPECT_EQ(last["frames"], 5);
+  EXPECT_EQ(last["bad"].size(), 1U);
+  EXPECT_EQ(last["bad"]["no_pose"], 1);
+  EXPECT_EQ(load_vdb(dir / "plan/state.vdb").views().size(), 5U);
 }
 
 TEST_F(Follow, RefusesWhatItCannotGoOnWith) {

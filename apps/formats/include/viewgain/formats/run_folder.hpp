@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "viewgain/core/export.hpp"
@@ -16,6 +17,10 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::filesystem::path> run_files(
     const std::filesystem::path& dir);
 
+/// What a run has decided, until it is done, for one that goes on: the first of its files to be
+/// there.
+inline constexpr const char* kCheckpoint = "checkpoint.json";
+
 /// The folder that `reconstruct` leaves: run.json, config.toml, views.txt, next.txt, map.vdb,
 /// surface.ply, points.ply, report.html, views/NN.png, views/NN.amplitude.png, maps/NN.vdb. Nothing
 /// is in it, and an earlier run is as it was, until commit(). Thread safety: one call at a time.
@@ -24,8 +29,9 @@ namespace viewgain {
 class VIEWGAIN_EXPORT RunFolder {
  public:
   /// Throws Error(io), and Error(invalid_argument) if the folder holds files of these names without
-  /// an earlier run's run.json.
-  explicit RunFolder(const std::filesystem::path& dir);
+  /// an earlier run's run.json or checkpoint.json. With `resume` goes on with what an ended process
+  /// left that had a checkpoint.
+  explicit RunFolder(const std::filesystem::path& dir, bool resume = false);
 
   /// Where to write.
   [[nodiscard]] std::filesystem::path file(const char* name) const { return staged_.path() / name; }
@@ -34,10 +40,18 @@ class VIEWGAIN_EXPORT RunFolder {
   /// The map after view `index`; makes the folder maps/.
   [[nodiscard]] std::filesystem::path map(std::size_t index) const;
 
-  /// Puts the run in the place of an earlier one. Throws Error(io).
-  void commit() { staged_.commit(earlier_); }
+  /// The checkpoint that was there before this run wrote one: what was gone on with has it, or the
+  /// folder itself; empty if there is none.
+  [[nodiscard]] std::filesystem::path last_checkpoint() const;
+  /// Replaces the checkpoint, and keeps what is there if the process ends. Throws Error(io).
+  void write_checkpoint(const std::string& text);
+
+  /// Puts the run in the place of an earlier one; its checkpoint stays only where it `goes_on`.
+  /// Throws Error(io).
+  void commit(bool goes_on = false);
 
  private:
+  std::filesystem::path dir_;
   std::vector<std::filesystem::path> earlier_;
   StagedFolder staged_;
 };

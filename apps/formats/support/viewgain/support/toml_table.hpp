@@ -22,6 +22,9 @@ namespace viewgain {
 [[nodiscard]] std::string toml_float(double value);
 [[nodiscard]] std::string toml_string(const std::string& value);
 
+/// The key `format` of sensors and reach regions; grows when a reader of this one would err.
+inline constexpr int kTomlFormat = 1;
+
 /// One table of a TOML file; remembers which keys were asked for, so that the others can be
 /// refused. Must not outlive the table. Whatever is not as it should be is an Error(format) that
 /// names the file, the line of a key that is there, and the key.
@@ -38,6 +41,8 @@ class VIEWGAIN_EXPORT TableReader {
   double number(std::string_view key);
   [[nodiscard]] double number_of(const toml::node& node, std::string_view key) const;
   int whole_number(std::string_view key);
+  /// Refuses a newer one; without the key the file is of format 1.
+  void check_format();
   std::string text(std::string_view key);
   std::vector<double> numbers(std::string_view key, std::size_t count);
   [[nodiscard]] std::vector<double> numbers(std::string_view key, const toml::node& node,

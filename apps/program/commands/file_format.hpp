@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "program/cli/json.hpp"
+#include "viewgain/core/error.hpp"
+
+namespace viewgain::app {
+
+/// The key `format` of run.json and checkpoint.json; grows when a reader of this one would err.
+inline constexpr std::int64_t kRunFormat = 1;
+
+/// Throws Error(format), naming file and formats, for one that is newer, and JsonError for none.
+inline void check_format(const std::string& file, const Json& json) {
+  const auto format = json.at("format").get<std::int64_t>();
+  if (format <= kRunFormat) return;
+  throw Error(ErrorCode::format, file + ": is of format " + std::to_string(format) +
+                                     "; this program reads up to format " +
+                                     std::to_string(kRunFormat));
+}
+
+}  // namespace viewgain::app

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/commands/reconstruct/checkpoint.hpp"
+
+#include <utility>
+
+#include "program/cli/json_text.hpp"
+#include "program/cli/values.hpp"
+#include "program/commands/file_format.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/file_bytes.hpp"
+
+namespace viewgain::app {
+namespace {
+
+using Decision = DecisionMaking::Decision;
+
+constexpr std::pair<const char*, double Decision::*> kFigures[]{
+    {"gain", &Decision::gain},
+    {"gain_per_voxel", &Decision::gain_per_voxel},
+    {"area", &Decision::area},
+    {"best_area", &Decision::best_area},
+    {"worth", &Decision::worth}};
+
+}  // namespace
+
+Checkpoint::Checkpoint(RunFolder& folder, const Json& head, bool resume)
+    : folder_(folder), json_(with_utf8_text(head)) {
+  json_["decisions"] = Json::array();
+  if (resume) file_ = folder.last_checkpoint().string();
+  if (!file_.empty()) {
+    Json last;
+    try {
+      last = Json::parse(file_bytes(file_));
+      check_format(file_, last);
+      for (std::size_t i = 0; i < last.at("decisions").size(); ++i) {
+        (void)last["decisions"][i]["map_hash"].get<std::string>();
+        json_["decisions"].push_back(last["decisions"][i]);
+        (void)decision(i);
+      }
+    } catch (const JsonError& error) {
+      throw Error(ErrorCode::format, file_ + ": no checkpoint: " + error.what());
+    }
+    if (json_.dump() != last.dump()) {
+      refuse(file_ + ": is of a run with other settings, or of another program; without --resume " +
+             "this one begins anew");
+    }
+  }
+  folder_.write_checkpoint(json_.dump(1) + "\n");
+}
+
+std::optional<Decision> Checkpoint::decision(std::size_t index) const {
+  const Json& decisions = json_["decisions"];
+  if (index >= decisions.size()) return std::nullopt;
+  const Json& json = decisions[index];
+  Decision decision;
+  decision.candidate = json["candidate"].get<std::size_t>();
+  for (const auto& [key, figure] : kFigures) {
+    if (!json[key].is_null()) decision.*figure = json[key].get<double>();
+  }
+  return decision;
+}
+
+void Checkpoint::add_view(const ViewRecord& record, const std::string& map_hash) {
+  Json& decisions = json_["decisions"];
+  if (record.index < decisions.size()) {
+    if (decisions[record.index]["map_hash"].get<std::string>() == map_hash) return;
+    refuse(file_ + ": the map after view " + std::to_string(record.index) +
+           " was another: has a file changed? Without --resume the run begins anew");
+  }
+  if (!record.decision) return;
+  Json json{{"map_hash", map_hash}, {"candidate", record.decision->candidate}};
+  for (const auto& [key, figure] : kFigures) json[key] = (*record.decision).*figure;
+  decisions.push_back(std::move(json));
+  folder_.write_checkpoint(json_.dump(1) + "\n");
+}
+
+std::optional<Decision> ResumedDecision::decide(const Pose& T_world_camera,
+                                                std::span<const Candidate> candidates) {
+  const std::optional<Decision> known = known_.decision(view_++);
+  return known && !remembers_ ? known : other_.decide(T_world_camera, candidates);
+}
+
+}  // namespace viewgain::app

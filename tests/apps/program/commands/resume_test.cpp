@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Runs that were ended and go on.
+
+#include <sys/wait.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <thread>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+
+namespace viewgain {
+namespace {
+
+json without_times(json value) {
+  if (value.is_object()) value.erase("seconds");
+  for (json& part : value) part = without_times(std::move(part));
+  return value;
+}
+
+class Resume : public test::ProgramTest {
+ protected:
+  Resume() {
+    write_cube();
+    write_half_sensor();
+  }
+
+  static Strings run_of(const std::string& out, const Strings& more = {}) {
+    return test::joined({"reconstruct", "cube.off", "--sensor", "tof.toml", "--voxel", "0.0125",
+                         "--size", "0.2", "--max-views", "4", "--stop-idle", "0", "--stop-area",
+                         "0", "--pictures", "off", "--resume", "--out", out},
+                        more);
+  }
+
+  // All but times; hidden files too.
+  [[nodiscard]] std::map<std::string, std::string> result(const std::string& out) const {
+    std::map<std::string, std::string> files = contents(out);
+    files["run.json"] = without_times(json::parse(files["run.json"])).dump();
+    return files;
+  }
+
+  [[nodiscard]] fs::path left() const {
+    for (const std::string& name : list(".")) {
+      if (name.starts_with(".out.tmp-")) return dir / name;
+    }
+    return {};
+  }
+
+  // How many decisions the run has written down.
+  [[nodiscard]] std::size_t decisions() const {
+    const fs::path folder = left();
+    if (folder.empty() || !fs::exists(folder / "checkpoint.json")) return 0;
+    const std::string text = read(folder.filename().string() + "/checkpoint.json");
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = text.find("map_hash", at)) != std::string::npos; ++at) ++count;
+    return count;
+  }
+
+  // Ends a call by the signal after so many decisions, or files. Returns how it ended.
+  template <typename IsTime>
+  int ended_by(int signal, const Strings& call, IsTime&& is_time) const {
+    const pid_t child = start(call);
+    int status = 0;
+    while (!is_time()) {
+      if (::waitpid(child, &status, WNOHANG) != 0) return status;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_EQ(::kill(child, signal), 0);
+    EXPECT_EQ(::waitpid(child, &status, 0), child);
+    return status;
+  }
+};
+
+TEST_F(Resume, AKilledRunEndsWithTheSameBytes) {
+  std::size_t cases = 0;
+  for (const Strings& more :
+       {Strings{"--save-maps", "on"}, Strings{"--policy", "kriegel"},
+        Strings{"--policy", "frontier"}, Strings{"--plan", "3", "--take", "2"},
+        Strings{"--register", "on", "--noise", "on"}}) {
+    ASSERT_EQ(run(run_of("whole", more)).exit_code, 0) << more[1];
+    const auto whole = result("whole");
+    EXPECT_FALSE(whole.contains("checkpoint.json"));
+    for (const std::size_t after : {1U, 2U}) {
+      fs::remove_all(dir / "out");
+      const int status =
+          ended_by(SIGKILL, run_of("out", more), [&] { return decisions() >= after; });
+      ASSERT_TRUE(WIFSIGNALED(status)) << more[1] << ": " << status;
+      EXPECT_FALSE(fs::exists(dir / "out"));
+      EXPECT_GE(decisions(), after);
+      // Again, right at the start.
+      (void)ended_by(SIGKILL, run_of("out", more), [] { return true; });
+      EXPECT_GE(decisions(), after);
+      ASSERT_EQ(run(run_of("out", more)).exit_code, 0) << more[1];
+      EXPECT_TRUE(result("out") == whole) << more[1] << " after " << after;
+      EXPECT_TRUE(left().empty());
+      ++cases;
+    }
+    fs::remove_all(dir / "whole");
+  }
+  EXPECT_EQ(cases, 10U);
+}
+
+TEST_F(Resume, WhatWasDecidedIsNotDecidedAgain) {
+  const int status = ended_by(SIGKILL, run_of("out"), [&] { return decisions() >= 2; });
+  ASSERT_TRUE(WIFSIGNALED(status));
+  // Another choice in the first decision's place: the run goes by it.
+  const std::string name = left().filename().string() + "/checkpoint.json";
+  json checkpoint = json::parse(read(name));
+  checkpoint["decisions"] = json::array();
+  const json first = json::parse(read(name))["decisions"][0];
+  json changed = first;
+  changed["candidate"] = first["candidate"].get<int>() == 0 ? 1 : 0;
+  checkpoint["decisions"].push_back(changed);
+  write(name, checkpoint.dump());
+  ASSERT_EQ(run(run_of("out")).exit_code, 0);
+  ASSERT_EQ(run(run_of("whole")).exit_code, 0);
+  EXPECT_NE(read("out/views.txt"), read("whole/views.txt"));
+}
+
+TEST_F(Resume, AnInterruptedRunGoesOnFromItsFolder) {
+  ASSERT_EQ(run(run_of("whole")).exit_code, 0);
+  const auto whole = result("whole");
+  std::size_t cases = 0;
+  for (const int signal : {SIGTERM, SIGHUP, SIGINT}) {
+    const int status = ended_by(signal, run_of("out"), [&] { return decisions() >= 1; });
+    ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << signal;
+    EXPECT_EQ(json::parse(read("out/run.json"))["stop_reason"], "interrupted") << signal;
+    EXPECT_TRUE(fs::exists(dir / "out/checkpoint.json"));
+    ASSERT_EQ(run(run_of("out")).exit_code, 0);
+    EXPECT_TRUE(result("out") == whole) << signal;
+    fs::remove_all(dir / "out");
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3U);
+}
+
+TEST_F(Resume, OfFramesWhatWasDrawnIsKept) {
+  run_well({"simulate", "cube.off", "--orbit", "5,0.6,27", "--sensor", "tof.toml", "--size", "0.2",
+            "--recenter", "on", "--out", "frames"});
+  const auto of = [](const std::string& out) {
+    return Strings{"reconstruct", "frames",      "--voxel",
+                   "0.0125",      "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+                   "--resume",    "--out",       out};
+  };
+  ASSERT_EQ(run(of("whole")).exit_code, 0);
+  const auto drawn = [&] {
+    const fs::path folder = left();
+    return !folder.empty() && fs::exists(folder / "views/01.png");
+  };
+  const int status = ended_by(SIGKILL, of("out"), drawn);
+  ASSERT_TRUE(WIFSIGNALED(status)) << status;
+  const auto time = fs::last_write_time(left() / "views/01.png");
+  ASSERT_EQ(run(of("out")).exit_code, 0);
+  EXPECT_EQ(fs::last_write_time(dir / "out/views/01.png"), time);
+  EXPECT_TRUE(result("out") == result("whole"));
+  EXPECT_TRUE(left().empty());
+}
+
+TEST_F(Resume, AnothersCheckpointIsRefusedAndStays) {
+  const int status = ended_by(SIGKILL, run_of("out"), [&] { return decisions() >= 1; });
+  ASSERT_TRUE(WIFSIGNALED(status));
+  const std::string name = left().filename().string() + "/checkpoint.json";
+  const std::string good = read(name);
+  expect_refused(run_of("out", {"--seed", "2"}),
+                 "checkpoint.json: is of a run with other settings");
+  json newer = json::parse(good);
+  newer["format"] = 7;
+  json otherwise = json::parse(good);
+  otherwise["decisions"][0]["map_hash"] = "0";
+  json cut = json::parse(good);
+  cut["decisions"][0].erase("area");
+  std::size_t cases = 0;
+  for (const auto& [text, word] :
+       {std::pair{newer.dump(), "is of format 7; this program reads up to format 1"},
+        std::pair{cut.dump(), "checkpoint.json: no checkpoint: "},
+        std::pair{good.substr(0, good.size() / 2), "checkpoint.json: no checkpoint: "}}) {
+    write(name, text);
+    expect_refused(run_of("out"), word);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3U);
+  write(name, otherwise.dump());
+  const test::ProgramResult result = run(run_of("out"));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("the map after view 0 was another"), std::string::npos) << result.err;
+  // Without the flag it is cleared away.
+  Strings anew = run_of("out");
+  std::erase(anew, "--resume");
+  EXPECT_EQ(run(anew).exit_code, 0);
+  EXPECT_TRUE(left().empty());
+}
+
+// A link that somebody put into what was left leads no file out of it.
+TEST_F(Resume, LinksInWhatWasLeftAreNotFollowed) {
+  const int status = ended_by(SIGKILL, run_of("out"), [&] { return decisions() >= 1; });
+  ASSERT_TRUE(WIFSIGNALED(status));
+  write("mine.txt", "mine");
+  fs::create_directory(dir / "elsewhere");
+  fs::remove_all(left() / "views");
+  fs::create_symlink(dir / "mine.txt", left() / "map.vdb");
+  fs::create_directory_symlink(dir / "elsewhere", left() / "views");
+  EXPECT_EQ(run(run_of("out")).exit_code, 0);
+  EXPECT_EQ(read("mine.txt"), "mine");
+  EXPECT_TRUE(list("elsewhere").empty());
+  EXPECT_FALSE(fs::is_symlink(dir / "out/map.vdb"));
+}
+
+}  // namespace
+}  // namespace viewgain

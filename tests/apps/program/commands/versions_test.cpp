@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Files of earlier versions are read, those of later ones refused by name and number. What 0.1.0
+// wrote lies in tests/data/0.1.0, whose make.sh says how.
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "apps/program_runner.hpp"
+#include "program/cli/json.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/formats.h"
+#include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/planner.h"
+#include "viewgain/planner/view_planner.hpp"
+#include "viewgain/viewgain.h"
+
+namespace viewgain {
+namespace {
+
+class Versions : public test::ProgramTest {
+ protected:
+  Versions() {
+    for (const fs::directory_entry& entry : fs::directory_iterator(VIEWGAIN_DATA "/0.1.0")) {
+      fs::copy_file(entry.path(), dir / entry.path().filename());
+    }
+  }
+
+  // A file with another text in the place of one that it has.
+  void change(const std::string& name, const std::string& from, const std::string& to) const {
+    std::string bytes = read(name);
+    const std::size_t at = bytes.find(from);
+    ASSERT_NE(at, std::string::npos) << name << " has no " << from;
+    write(name, bytes.replace(at, from.size(), to));
+  }
+
+  [[nodiscard]] ViewPlanner planner_of(const char* name) const {
+    const Sensor sensor = read_sensor_toml(dir / "sensor.toml");
+    PlannerConfig config;
+    config.grid.voxel_size = 0.0375;
+    config.grid.workspace = {{0, 0, 0}, {0.3, 0.3, 0.3}};
+    config.grid.prior_sigma = default_prior_sigma(0.0375, sensor);
+    return ViewPlanner::load(dir / name, sensor, config);
+  }
+};
+
+TEST_F(Versions, TheFirstOnesFilesAreRead) {
+  const std::string made = read("made.txt"), hash = made.substr(made.find('\n') + 1, 16);
+  EXPECT_EQ(made.substr(0, made.find('\n')), "viewgain 0.1.0");
+
+  const MapOfSensor map = load_map_of_sensor(dir / "state.vdb");
+  EXPECT_EQ(map.grid.content_hash(), hash);
+  EXPECT_EQ(map.frames.size(), 2U);
+  ASSERT_TRUE(map.sensor);
+  EXPECT_EQ(map.sensor->name, "small");
+
+  const Sensor sensor = read_sensor_toml(dir / "sensor.toml");
+  EXPECT_EQ(sensor.camera.distortion[0], 0.01);
+  EXPECT_EQ(sensor.pose_sigma.rotation, 0.002);
+  EXPECT_EQ(sensor.range_calibration.table.size(), 2U);
+  EXPECT_EQ(sensor.out_of_range, Sensor::OutOfRange::carve);
+
+  const ReachRegion reach = read_reach_toml(dir / "reach.toml");
+  EXPECT_EQ(reach.boxes.size(), 1U);
+  EXPECT_EQ(reach.shells.size(), 1U);
+  EXPECT_EQ(reach.half_spaces.size(), 1U);
+  EXPECT_EQ(reach.poses.size(), 4U);
+
+  const ViewPlanner planner = planner_of("state.vdb");
+  EXPECT_EQ(planner.grid().content_hash(), hash);
+  EXPECT_EQ(count_of(planner.frames(), FrameVerdict::used), 2U);
+
+  std::size_t parts = 0;
+  for (const Strings& names : {Strings{"part0.csv", "part1.csv"}, Strings{"part.npy"}}) {
+    (void)run_well(test::joined({"merge", "--top", "1", "--out", "best.csv"}, names));
+    EXPECT_NE(read("best.csv").find("# map " + hash), std::string::npos);
+    ++parts;
+  }
+  EXPECT_EQ(parts, 2U);
+
+  const json run = json::parse(read("run.json")), checkpoint = json::parse(read("checkpoint.json"));
+  EXPECT_EQ(run["format"], 1);
+  EXPECT_EQ(checkpoint["format"], 1);
+  EXPECT_GE(checkpoint["decisions"].size(), 1U);
+}
+
+TEST_F(Versions, NewerOnesAreRefused) {
+  change("part0.csv", "# format 1", "# format 2");
+  change("part.npy", "# format 1", "# format 2");
+  change("sensor.toml", "\nformat = 1", "\nformat = 2");
+  change("reach.toml", "format = 1", "format = 2");
+  expect_refused(
+      {{{"merge", "part0.csv", "part1.csv", "--out", "b.csv"},
+        "part0.csv: line 1 of #: format 2; this library reads up to format 1"},
+       {{"merge", "part.npy", "--out", "b.csv"},
+        "part.npy: line 1 of #: format 2; this library reads up to format 1"},
+       {{"score", "state.vdb", "--sphere", "9,0.5", "--sensor", "sensor.toml"},
+        "sensor.toml: line 2: key \"format\" is 2; this library reads files up to format 1"},
+       {{"candidates", "state.vdb", "--generator", "sphere", "--reach", "reach.toml", "--out", "p"},
+        "reach.toml: line 1: key \"format\" is 2; this library reads files up to format 1"}});
+
+  change("sensor.toml", "\nformat = 2", "\nformat = 1");
+  std::map<std::string, std::string> notes;
+  const BeliefGrid grid = load_vdb(dir / "state.vdb", &notes);
+  std::string& planner = notes.at("planner");
+  planner.replace(planner.find("version 2"), 9, "version 3");
+  save_vdb(grid, dir / "newer.vdb", {.notes = notes});
+  try {
+    (void)planner_of("newer.vdb");
+    ADD_FAILURE() << "a newer planner's state was read";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("newer.vdb (note planner):1: a planner's state of "
+                        "version 3; this library reads version 2"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+// Names in a map of somebody else's lead nowhere.
+TEST_F(Versions, AStrangersMapWritesNothingElsewhere) {
+  Sensor sensor = read_sensor_toml(dir / "sensor.toml");
+  sensor.name = "../../evil/<script>";
+  std::map<std::string, std::string> notes;
+  const BeliefGrid grid = load_vdb(dir / "state.vdb", &notes);
+  const VdbWriteConfig config = noting_frames(
+      {"0123456789abcdef ../../evil.depth.png", "0123456789abcdee /tmp/evil.depth.png"},
+      noting_sensor(sensor, {.notes = notes}));
+  fs::create_directories(dir / "in");
+  fs::create_directories(dir / "out");
+  save_vdb(grid, dir / "in/map.vdb", config);
+  fs::rename(dir / "sensor.toml", dir / "in/sensor.toml");
+  fs::create_directories(dir / "in/frames");
+  write("in/frames/done", "");
+  const auto outside = [&] {
+    auto files = contents();
+    std::erase_if(files, [](const auto& entry) { return entry.first.starts_with("out/"); });
+    return files;
+  };
+  const auto before = outside();
+  std::size_t cases = 0;
+  for (const Strings& call :
+       {Strings{"score", "in/map.vdb", "--sphere", "9,0.5", "--sensor", "in/sensor.toml", "--out",
+                "out/s.csv", "--report", "out/s.html"},
+        Strings{"candidates", "in/map.vdb", "--generator", "sphere", "--sensor", "in/sensor.toml",
+                "--out", "out/c.txt"},
+        Strings{"render", "in/map.vdb", "--what", "map", "--out", "out/m.png"},
+        Strings{"convert", "in/map.vdb", "out/m.ot"},
+        Strings{"surface", "in/map.vdb", "--out", "out/s.ply"},
+        Strings{"info", "in/map.vdb", "--json"}}) {
+    const test::ProgramResult result = run(call);
+    EXPECT_EQ(result.exit_code, 0) << call[0] << ": " << result.err;
+    EXPECT_TRUE(outside() == before) << call[0];
+    ++cases;
+  }
+  fs::copy_file(dir / "in/map.vdb", dir / "out/state.vdb");
+  (void)run({"follow", "in/frames", "--sensor", "in/sensor.toml", "--voxel", "0.0375",
+             "--workspace", "0,0,0,0.3,0.3,0.3", "--out", "out"});
+  EXPECT_TRUE(outside() == before);
+  EXPECT_EQ(cases, 6U);
+  EXPECT_TRUE(fs::exists(dir / "out/s.csv") && fs::exists(dir / "out/m.ot"));
+}
+
+// Programs that were compiled with 0.1.0 hold these, on machines of 64 bits.
+#define VG_SIZE(type, size) static_assert(sizeof(type) == (size))
+VG_SIZE(vg_watch, 24);
+VG_SIZE(vg_scene_config, 112);
+VG_SIZE(vg_weight_region, 56);
+VG_SIZE(vg_evaluator_config, 88);
+VG_SIZE(vg_evaluator_info, 40);
+VG_SIZE(vg_view_gain, 72);
+VG_SIZE(vg_contribution, 40);
+VG_SIZE(vg_ray_outcomes, 40);
+VG_SIZE(vg_feasibility_config, 232);
+VG_SIZE(vg_sensor, 192);
+VG_SIZE(vg_grid_config, 200);
+VG_SIZE(vg_grid_info, 288);
+VG_SIZE(vg_integrator_config, 32);
+VG_SIZE(vg_integration_report, 64);
+VG_SIZE(vg_planner_config, 520);
+VG_SIZE(vg_planner_view, 96);
+VG_SIZE(vg_registration, 496);
+VG_SIZE(vg_ranked_view, 160);
+#undef VG_SIZE
+
+}  // namespace
+}  // namespace viewgain
