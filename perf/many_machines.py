@@ -132,7 +132,7 @@ def merge(binaries, folder, count=10_000_000, ending="npy", parts=100, top=1000)
         if flags:
             gains = np.concatenate(gains)
             order = np.argsort(-gains, kind="stable")[:top]
-            best = np.load(out)["index"] if ending == "npy" else np.loadtxt(out, delimiter=",", skiprows=9, usecols=0)
+            best = np.load(out)["index"] if ending == "npy" else np.loadtxt(out, delimiter=",", skiprows=10, usecols=0)
             said["best_are_those_of_a_sort"] = bool(np.array_equal(best, order))
         out.unlink()
     shutil.rmtree(folder / "parts")

@@ -87,7 +87,6 @@ fs::path RunFolder::last_checkpoint() const {
 
 void RunFolder::write_checkpoint(const std::string& text) {
   write_file_atomically(file(kCheckpoint), text);
-  staged_.keep();
 }
 
 void RunFolder::commit(bool goes_on) {

@@ -171,7 +171,11 @@ void StagedFolder::commit(const std::vector<fs::path>& earlier) {
     if (!code) fs::rename(staging_ / file, target_ / file, code);
   }
   if (code) fail(target_, "cannot be written: " + code.message());
-  sync_folder(target_);
+  fs::path synced;
+  for (const fs::path& file : written) {
+    const fs::path folder = (target_ / file).parent_path();
+    if (folder != synced) sync_folder(synced = folder);
+  }
   is_kept_ = false;
   for (const fs::path& file : earlier) {
     if (std::find(written.begin(), written.end(), file) != written.end()) continue;

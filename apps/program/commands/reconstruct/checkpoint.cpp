@@ -73,6 +73,7 @@ void Checkpoint::add_view(const ViewRecord& record, const std::string& map_hash)
   for (const auto& [key, figure] : kFigures) json[key] = (*record.decision).*figure;
   decisions.push_back(std::move(json));
   folder_.write_checkpoint(json_.dump(1) + "\n");
+  folder_.keep();
 }
 
 std::optional<Decision> ResumedDecision::decide(const Pose& T_world_camera,

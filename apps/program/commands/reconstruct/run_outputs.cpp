@@ -21,7 +21,8 @@ StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPa
                        const ShownStep& step, const ExecConfig& exec) {
   StageSeconds seconds;
   // One that the run has drawn before it was ended is there.
-  const std::filesystem::path file = folder.view(step.record.index, ".png");
+  std::filesystem::path file;
+  if (outputs.with_pictures()) file = folder.view(step.record.index, ".png");
   std::error_code ignored;
   if (!outputs.with_report() && std::filesystem::exists(file, ignored)) return seconds;
   Stopwatch watch;

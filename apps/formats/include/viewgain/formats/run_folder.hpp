@@ -43,8 +43,10 @@ class VIEWGAIN_EXPORT RunFolder {
   /// The checkpoint that was there before this run wrote one: what was gone on with has it, or the
   /// folder itself; empty if there is none.
   [[nodiscard]] std::filesystem::path last_checkpoint() const;
-  /// Replaces the checkpoint, and keeps what is there if the process ends. Throws Error(io).
+  /// Replaces the checkpoint. Throws Error(io).
   void write_checkpoint(const std::string& text);
+  /// From now on what is there stays for one that goes on if commit() does not come.
+  void keep() noexcept { staged_.keep(); }
 
   /// Puts the run in the place of an earlier one; its checkpoint stays only where it `goes_on`.
   /// Throws Error(io).
