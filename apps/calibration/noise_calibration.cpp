@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "calibration/pixel_scatter.hpp"
-#include "calibration/wall_frame.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/noise.hpp"
 #include "viewgain/support/text.hpp"

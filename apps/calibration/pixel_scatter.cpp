@@ -7,8 +7,6 @@
 #include <numbers>
 #include <optional>
 
-#include "calibration/wall_frame.hpp"
-
 namespace viewgain::detail {
 namespace {
 

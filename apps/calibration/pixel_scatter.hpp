@@ -3,12 +3,21 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
 #include "viewgain/core/camera.hpp"
 
 namespace viewgain::detail {
+
+/// The value in the middle, of an even count the mean of both; there is at least one.
+[[nodiscard]] inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
 
 /// What a pixel of a static scene read over time, along its ray.
 struct PixelScatter {

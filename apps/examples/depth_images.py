@@ -69,8 +69,7 @@ for _ in range(4):
     poses = sphere[checker.feasible(sphere, taken)]
     evaluator = evaluator.with_scene(scene)
     pose = poses[evaluator.race(poses, 1)[0]]
-axes = viewgain.plot.coverage(known, label="of the workspace known")
-axes.set_xticks(range(1, len(known) + 1))
-axes.set_ylabel("known [%]")
-axes.figure.savefig("known.png")
+plt.figure()
+plt.plot(range(1, 6), 100 * np.array(known), "o-"), plt.ylim(0, 100), plt.xlabel("views"), plt.ylabel("known [%]")
+plt.savefig("known.png")
 print(f"{100 * known[-1]:.0f} % of the workspace known")

@@ -11,7 +11,6 @@
 
 #include "program/cli/call_files.hpp"
 #include "program/cli/config_file.hpp"
-#include "program/cli/help_files.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/words.hpp"
 #include "program/commands/commands.hpp"
@@ -78,10 +77,6 @@ int run(int argc, char** argv) {
     const Command& first = commands.back();
     if (first.add_form) commands.push_back(first.add_form(*first.app));
   }
-  // For the build alone.
-  std::string help_folder;
-  App* help_files = program.add_subcommand("help-files", "man pages and completion")->group("");
-  help_files->add_option("FOLDER", help_folder, "folder to write")->required();
   program.footer(
       "Examples:\n"
       "  viewgain reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 3 "
@@ -92,7 +87,6 @@ int run(int argc, char** argv) {
   } catch (const UsageError& error) {
     return report(std::string(error.what()) + " (see --help)", kBadInput);
   }
-  if (help_files->parsed()) write_help_files(program, help_folder);
   for (const Command& command : commands) {
     if (!command.app->parsed()) continue;
     check_call(*command.app);

@@ -7,15 +7,13 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-namespace viewgain::app {
-class Json;
-}
 namespace viewgain {
 namespace fs = std::filesystem;
-using json = app::Json;
+using json = nlohmann::ordered_json;
 using Strings = std::vector<std::string>;
 }  // namespace viewgain
 

@@ -94,7 +94,6 @@ std::string Option::long_name() const { return option_->get_lnames().front(); }
 std::string Option::description() const { return option_->get_description(); }
 std::string Option::type_name() const { return option_->get_type_name(); }
 std::string Option::default_text() const { return option_->get_default_str(); }
-bool Option::is_required() const { return option_->get_required(); }
 bool Option::is_bare() const { return option_->get_items_expected_max() == 0; }
 bool Option::is_repeated() const { return option_->get_expected_max() > 1; }
 const std::vector<std::string>& Option::results() const { return option_->results(); }
@@ -218,8 +217,6 @@ std::size_t App::count(const std::string& name) const { return app_->count(name)
 
 std::string App::name() const { return first_form_->app_->get_name(); }
 std::string App::description() const { return app_->get_description(); }
-std::string App::group_name() const { return app_->get_group(); }
-std::string App::footer_text() const { return app_->get_footer(); }
 bool App::takes_one_option() const { return app_->get_require_option_max() == 1; }
 
 std::vector<const App*> App::subcommands() const {

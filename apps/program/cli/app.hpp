@@ -26,8 +26,8 @@ class UsageError : public Error {
   using Error::Error;
 };
 
-/// A flag or positional of a subcommand: what declares it, and what others (help, completion,
-/// --config) read of it. Lives as long as its App.
+/// A flag or positional of a subcommand: what declares it, and what others (help, --config) read of
+/// it. Lives as long as its App.
 class Option {
  public:
   explicit Option(CLI::Option& option) noexcept : option_(&option) {}
@@ -45,7 +45,7 @@ class Option {
   /// values in the help.
   Option* check(std::function<std::string(std::string&)> check, const std::string& shown);
 
-  /// It takes one of these names, which help and completion show; check_one_of() refuses others.
+  /// It takes one of these names, which help shows; check_one_of() refuses others.
   Option* one_of(const std::vector<std::string>& names, const char* what);
   /// Likewise several of them with commas.
   Option* several_of(const std::vector<std::string>& names, const char* what);
@@ -65,7 +65,6 @@ class Option {
   /// What it takes by one_of() or several_of(), else nothing.
   [[nodiscard]] std::vector<std::string> choices() const;
   [[nodiscard]] std::string default_text() const;
-  [[nodiscard]] bool is_required() const;
   /// Whether it stands alone, without a value.
   [[nodiscard]] bool is_bare() const;
   /// Whether it may be given more than once.
@@ -101,7 +100,7 @@ class App {
   Option* add_flag(const std::string& name, bool& value, const std::string& description);
   void set_version_flag(const std::string& name, const std::string& version);
 
-  /// The heading under which the program's help lists it; "": not at all.
+  /// The heading under which the program's help lists it.
   App* group(const std::string& name);
   App* footer(const std::string& text);
   /// How many of its options, or subcommands, are to be given.
@@ -118,8 +117,6 @@ class App {
 
   [[nodiscard]] std::string name() const;
   [[nodiscard]] std::string description() const;
-  [[nodiscard]] std::string group_name() const;
-  [[nodiscard]] std::string footer_text() const;
   [[nodiscard]] bool has_parent() const noexcept { return parent_ != nullptr; }
   /// Whether one of its options may be given at most.
   [[nodiscard]] bool takes_one_option() const;

@@ -47,20 +47,20 @@ struct FileOption {
   Kind kind;
 };
 constexpr auto kFileOptions =
-    std::to_array<FileOption>({{"--config", Kind::input},     {"MESH", Kind::input},
-                               {"MAP", Kind::input},          {"IN", Kind::input},
-                               {"--map", Kind::input},        {"--cloud", Kind::input},
-                               {"--poses", Kind::input},      {"--sensor", Kind::input},
-                               {"--reach", Kind::reach},      {"--hazard", Kind::input},
-                               {"--obstacle", Kind::input},   {"FRAMES_DIR", Kind::frames},
-                               {"OUT", Kind::output},         {"--picture", Kind::picture},
-                               {"--out", Kind::output},       {"--save-config", Kind::output},
-                               {"INPUT", Kind::run},          {"--report", Kind::page},
-                               {"SPEC", Kind::input},         {"--truth", Kind::input},
-                               {"--points", Kind::output},    {"SOURCE", Kind::folder},
-                               {"--mask", Kind::folder},      {"--confidence", Kind::folder},
-                               {"--distances", Kind::input},  {"PART", Kind::input},
-                               {"--amplitude", Kind::folder}, {"--costs", Kind::input}});
+    std::to_array<FileOption>({{"--config", Kind::input},   {"MESH", Kind::input},
+                               {"MAP", Kind::input},        {"IN", Kind::input},
+                               {"--map", Kind::input},      {"--cloud", Kind::input},
+                               {"--poses", Kind::input},    {"--sensor", Kind::input},
+                               {"--reach", Kind::reach},    {"--hazard", Kind::input},
+                               {"--obstacle", Kind::input}, {"FRAMES_DIR", Kind::frames},
+                               {"OUT", Kind::output},       {"--picture", Kind::picture},
+                               {"--out", Kind::output},     {"--save-config", Kind::output},
+                               {"INPUT", Kind::run},        {"--report", Kind::page},
+                               {"SPEC", Kind::input},       {"--truth", Kind::input},
+                               {"--points", Kind::output},  {"SOURCE", Kind::folder},
+                               {"--mask", Kind::folder},    {"--confidence", Kind::folder},
+                               {"PART", Kind::input},       {"--amplitude", Kind::folder},
+                               {"--costs", Kind::input}});
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 

@@ -62,7 +62,7 @@ class OptionRecord {
   static Json given(const Value& value) {
     return value;
   }
-  static Json given(const std::string& text) { return Json::or_null(text); }
+  static Json given(const std::string& text) { return or_null(text); }
   template <typename Value>
   void put(const char* key, const Value& value) {
     if (key != nullptr) json_[key] = resolved_.contains(key) ? resolved_[key] : given(value);

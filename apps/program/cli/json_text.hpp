@@ -46,6 +46,7 @@ namespace viewgain::app {
 /// With every text made UTF-8: a file name may be any bytes.
 [[nodiscard]] inline Json with_utf8_text(Json json) {
   if (json.is_string()) return utf8_text(json.get<std::string>());
+  if (!json.is_structured()) return json;
   for (Json& part : json) part = with_utf8_text(std::move(part));
   return json;
 }

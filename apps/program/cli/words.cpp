@@ -84,7 +84,7 @@ const App* subcommand_of(const App& program, const std::vector<std::string>& wor
   std::vector<std::string> names;
   for (const App* subcommand : program.subcommands()) {
     if (subcommand->name() == words[0]) return subcommand;
-    if (!subcommand->group_name().empty()) names.push_back(subcommand->name());
+    names.push_back(subcommand->name());
   }
   const std::string nearest = did_you_mean(words[0], names);
   app::refuse(words[0] + ": no such subcommand" +

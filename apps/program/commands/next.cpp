@@ -119,7 +119,7 @@ Command add_next(App& program) {
   App* app = program.add_subcommand(
       "next",
       "Where the camera should look next: the best views for a map, each with its gain and why it "
-      "was proposed. None is an answer, too: nothing is left to gain that the camera can reach.");
+      "was proposed. It names none where nothing that the camera can reach is left to gain.");
   app->add_option("MAP", options->source, kMapHelp)->required();
   app->add_option("--sensor", options->frames.folder.sensor, kMapSensorHelp);
   add_options(*app, *options);

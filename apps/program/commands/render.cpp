@@ -31,8 +31,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kNormalSigma = "sigma along the surface's normal";
-
 struct Options {
   CommonOptions common;
   std::string input;
@@ -40,7 +38,6 @@ struct Options {
   std::string out;
   int width = 1280;
   double azimuth = 30, elevation = 24;  // [deg]
-  std::optional<double> ellipsoids;
   PoseOptions poses;
   std::string sensor;
   std::uint64_t seed = 1;
@@ -49,16 +46,12 @@ struct Options {
 
 // What a kind of picture has no use for would be ignored in silence.
 void check(const Options& options, const App& app) {
-  const auto only_for = [&](const std::string& what, std::initializer_list<const char*> flags) {
-    if (options.what == what) return;
-    for (const char* flag : flags) {
-      if (app.count(flag) > 0) refuse(std::string(flag) + " goes with --what " + what);
+  for (const char* flag : {"--poses", "--sphere", "--dome", "--rings", "--shell", "--orbit",
+                           "--center", "--seed", "--sensor", "--gain"}) {
+    if (options.what != "gain" && app.count(flag) > 0) {
+      refuse(std::string(flag) + " goes with --what gain");
     }
-  };
-  only_for("sigma", {"--ellipsoids"});
-  only_for("gain", {"--poses", "--sphere", "--dome", "--rings", "--shell", "--orbit", "--center",
-                    "--seed", "--sensor", "--gain"});
-  if (options.ellipsoids) check_positive("--ellipsoids", *options.ellipsoids);
+  }
   check_finite("--azimuth", options.azimuth);
   check_finite("--elevation", options.elevation);
 }
@@ -111,17 +104,9 @@ RgbImage surface_image(const MapSurface& made, bool with_sigma, std::array<doubl
 
 Picture sigma_picture(const Options& options, const ExecConfig& exec) {
   const MapSurface made(map_of(options.input, exec), exec);
-  const Viewer viewer = viewer_of(options);
-  if (!options.ellipsoids) {
-    const auto range = usual_range(made.sigmas);
-    return {surface_image(made, true, range, viewer, exec), ColourRange{kNormalSigma, "m", range}};
-  }
-  SurfacePicture picture{made.surface};
-  picture.points = &made.points;
-  picture.ellipsoid_sigmas = *options.ellipsoids;
-  picture.sigma_range = usual_range(longest_sigmas(made.points));
-  return {draw(picture, viewer, exec),
-          ColourRange{"sigma along the longest axis", "m", picture.sigma_range}};
+  const auto range = usual_range(made.sigmas);
+  return {surface_image(made, true, range, viewer_of(options), exec),
+          ColourRange{"sigma along the surface's normal", "m", range}};
 }
 
 Picture gain_picture(const Options& options, const ExecConfig& exec) {
@@ -198,9 +183,6 @@ Command add_render(App& program) {
   app->add_option("--azimuth", o.azimuth, "of the viewer, from +x to +y [deg]")
       ->capture_default_str();
   app->add_option("--elevation", o.elevation, "of the viewer [deg]")->capture_default_str();
-  app->add_option("--ellipsoids", o.ellipsoids,
-                  "sigma: the points as ellipsoids of so many standard deviations instead of the "
-                  "surface");
   add_pose_options(*app, o.poses, false);
   add_seed_option(*app, o.seed, "of --shell");
   app->add_option("--sensor", o.sensor, std::string("gain: ").append(kMapSensorHelp));

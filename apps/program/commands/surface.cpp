@@ -145,8 +145,8 @@ void surface(const Options& options, const App& app) {
                        {"area", mesh_area(surface)},
                        {"median_sigma", median},
                        {"truth", figures ? quality_json(*figures, "coverage_seen") : Json()},
-                       {"out", Json::or_null(options.out)},
-                       {"points_out", Json::or_null(options.points)},
+                       {"out", or_null(options.out)},
+                       {"points_out", or_null(options.points)},
                        {"seconds", watch.seconds()}});
   }
   std::printf("%s points, %s vertices, %s triangles, %.4g m^2", with_commas(points.size()).c_str(),

@@ -183,7 +183,7 @@ body_size : sequence of float, (3,), optional
     Width, height, depth of the housing, flange frame [m].
 range_calibration : array_like, (n, 2), optional
     Rows of measured range and measured minus true range [m], measured ranges rising: the systematic
-    error, as the program's ``calibrate`` measures it. ``read_frames`` takes it away.
+    error. ``read_frames`` takes it away.
 pose_sigma : sequence of float, (2,), optional
     How far the poses that frames come with may be off, standard deviations about the camera's
     centre: of its position in each axis [m], of each component of the rotation vector [rad]. Maps

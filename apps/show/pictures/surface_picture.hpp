@@ -8,7 +8,6 @@
 #include "show/pictures/picture_parts.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/formats/png.hpp"
-#include "viewgain/grid/fused_points.hpp"
 #include "viewgain/mesh/surface.hpp"
 
 namespace viewgain::app {
@@ -19,10 +18,6 @@ struct SurfacePicture {
   /// One a vertex [m]: the surface from dark to bright by them; none: grey.
   std::vector<double> sigmas{};
   std::array<double, 2> sigma_range{};  ///< what is darkest and brightest [m]
-  /// Instead of the surface the points as ellipsoids of `ellipsoid_sigmas` standard deviations, at
-  /// most 5,000 of them (the paper's Fig. 3), coloured by their longest axis.
-  const std::vector<FusedPoint>* points = nullptr;
-  double ellipsoid_sigmas = 0;
 };
 
 /// The picture, which the surface fills. Throws Error(invalid_argument) for one without a triangle.
@@ -32,8 +27,5 @@ struct SurfacePicture {
 
 /// The 2nd and the 98th percentile, for colours. Zeros without a value.
 [[nodiscard]] std::array<double, 2> usual_range(std::vector<double> values);
-
-/// The standard deviation along the longest axis of each point's ellipsoid [m].
-[[nodiscard]] std::vector<double> longest_sigmas(const std::vector<FusedPoint>& points);
 
 }  // namespace viewgain::app

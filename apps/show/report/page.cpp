@@ -35,7 +35,7 @@ std::string report_page(const Json& data, std::string_view page) {
   }
   std::string text(page.substr(0, place));
   // A '<' is text in any JSON string, where it may be written as an escape: so no tag begins.
-  for (const char c : data.dump()) {
+  for (const char c : dumped(data)) {
     if (c == '<') {
       text += "\\u003c";
     } else {

@@ -159,8 +159,8 @@ RunPage::RunPage(std::string title, const Sensor& sensor, std::string criterion,
 
 void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
                        const CandidateGeneration& generation, const EstimatedViews& estimated,
-                       const GainEvaluator& evaluator, std::vector<VoxelContribution> contributions,
-                       const RgbImage& picture) {
+                       const GainEvaluator& evaluator,
+                       std::vector<VoxelContribution> contributions) {
   if (views_.empty()) {
     head_ = page_head("reconstruct", title_, evaluator, sensor_, criterion_);
   }
@@ -182,7 +182,6 @@ void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
     view["expected"] =
         expected_json(evaluator.scene().snapshot(), std::move(contributions), head_["gain_unit"]);
   }
-  view["picture"] = small_picture(picture);
   views_.push_back(std::move(view));
   indices_.push_back(record.index);
 }

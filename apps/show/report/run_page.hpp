@@ -11,7 +11,6 @@
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/formats/png.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
@@ -31,12 +30,10 @@ class RunPage {
 
   /// To be called once a view, in order. `estimated`: the boundaries of the surface then, none
   /// where no candidates were asked for. `evaluator` is of the model's scene and scores the
-  /// candidates; `contributions` are those of the chosen view, if there is one; `picture` is for
-  /// browsers that cannot draw.
+  /// candidates; `contributions` are those of the chosen view, if there is one.
   void add_view(const ViewRecord& record, const SurfaceModel& model,
                 const CandidateGeneration& generation, const EstimatedViews& estimated,
-                const GainEvaluator& evaluator, std::vector<VoxelContribution> contributions,
-                const RgbImage& picture);
+                const GainEvaluator& evaluator, std::vector<VoxelContribution> contributions);
 
   /// The page's data. `run` is what run.json holds; there must have been a view. Each view has the
   /// figures of run.json's view of its index. `object` may be null, too.

@@ -58,8 +58,7 @@ Json ScorePage::json() const {
                    {"candidates", to_json(candidates)},
                    {"columns", columns},
                    {"rows", rows},
-                   {"shown", contributions},
-                   {"picture", small_picture(picture)}};
+                   {"shown", contributions}};
   return page;
 }
 

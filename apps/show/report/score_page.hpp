@@ -10,7 +10,6 @@
 #include "program/cli/json.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/formats/png.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
@@ -28,7 +27,6 @@ struct ScorePage {
   Json columns, rows;
   std::vector<std::size_t> shown;  ///< poses whose rays and voxels the page has
   Json settings, summary;
-  RgbImage picture;  ///< of the best pose
 
   /// The page's data; README.md, "Data". Traces the poses of `shown`.
   [[nodiscard]] Json json() const;

@@ -40,20 +40,6 @@ Json column_of(const std::vector<double>& values, std::size_t rows) {
   return float_block(column, 1);
 }
 
-// The means of 2 x 2 pixels; an odd row or column at the end goes.
-RgbImage halved(const RgbImage& image) {
-  RgbImage half{image.width / 2, image.height / 2, {}};
-  const std::size_t row = 3 * static_cast<std::size_t>(image.width);
-  for (std::size_t v = 0; v < static_cast<std::size_t>(half.height); ++v) {
-    for (std::size_t u = 0; u < 3 * static_cast<std::size_t>(half.width); ++u) {
-      const std::uint8_t* const upper = &image.pixels[2 * v * row + u / 3 * 6 + u % 3];
-      const int sum = upper[0] + upper[3] + upper[row] + upper[row + 3];
-      half.pixels.push_back(static_cast<std::uint8_t>((sum + 2) / 4));
-    }
-  }
-  return half;
-}
-
 }  // namespace
 
 Json page_head(const std::string& kind, const std::string& title, const GainEvaluator& evaluator,
@@ -125,7 +111,5 @@ Json contributions_json(const GridSnapshot& snapshot, const std::vector<VoxelCon
           {"unit", unit},
           {"size", snapshot.voxel_size}};
 }
-
-std::string small_picture(const RgbImage& picture) { return base64(png_bytes(halved(picture))); }
 
 }  // namespace viewgain::app

@@ -10,7 +10,6 @@
 #include "program/cli/json.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/formats/png.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
@@ -42,8 +41,5 @@ struct ShownCandidates {
 [[nodiscard]] Json contributions_json(const GridSnapshot& snapshot,
                                       const std::vector<VoxelContribution>& voxels,
                                       const Json& unit);
-
-/// A PNG of a third of the picture's width and height, in base64: enough where there is no WebGL.
-[[nodiscard]] std::string small_picture(const RgbImage& picture);
 
 }  // namespace viewgain::app

@@ -4,6 +4,8 @@
 
 #include <cstdio>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "program/cli/values.hpp"
@@ -13,9 +15,22 @@ namespace viewgain::app {
 namespace {
 
 std::string readings_of(Sensor sensor) {
+  sensor.name.clear();
   sensor.body_size.reset();
   sensor.T_flange_camera.reset();
   return sensor_toml(sensor);
+}
+
+// Of their files the first line that differs: "fx = 585.0 there, fx = 525.0 here".
+std::string difference(const Sensor& there, const Sensor& here) {
+  std::istringstream of_there(readings_of(there)), of_here(readings_of(here));
+  std::string a, b;
+  do {
+    std::getline(of_there, a);
+    std::getline(of_here, b);
+  } while (a == b && of_there && of_here);
+  const auto shown = [](const std::string& line) { return line.substr(0, line.find("  #")); };
+  return shown(a) + " there, " + shown(b) + " here";
 }
 
 }  // namespace
@@ -24,8 +39,9 @@ bool is_same_sensor(const Sensor& a, const Sensor& b) { return readings_of(a) ==
 
 bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor) {
   if (!map.sensor || is_same_sensor(*map.sensor, sensor)) return false;
-  std::fprintf(stderr, "viewgain: warning: the readings in %s come from %s, not from this %s\n",
-               utf8_text(path).c_str(), map.sensor->name.c_str(), sensor.name.c_str());
+  std::fprintf(stderr, "viewgain: warning: the readings in %s come from %s, not from this %s: %s\n",
+               utf8_text(path).c_str(), map.sensor->name.c_str(), sensor.name.c_str(),
+               difference(*map.sensor, sensor).c_str());
   return true;
 }
 

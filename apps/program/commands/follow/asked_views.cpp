@@ -40,13 +40,13 @@ void AskedViews::recall(const fs::path& next_json, const std::set<std::string>& 
   if (!fs::exists(next_json, ignored)) return;
   try {
     const Json next = Json::parse(file_bytes(next_json));
-    for (const Json& name : next["left_out"]) left_out_.insert(name.get<std::string>());
+    for (const Json& name : next.at("left_out")) left_out_.insert(name.get<std::string>());
     // Else the map has grown since, or is another one.
-    if (next["asked"].get<bool>() && next["frames"].get<std::size_t>() == identities.size()) {
-      for (const Json& view : next["next"]) {
+    if (next.at("asked").get<bool>() && next.at("frames").get<std::size_t>() == identities.size()) {
+      for (const Json& view : next.at("next")) {
         Pose pose;
         for (std::size_t k = 0; k < pose.m.size(); ++k) {
-          pose.m[k] = view["T_world_camera"][k / 4][k % 4].get<double>();
+          pose.m[k] = view.at("T_world_camera").at(k / 4).at(k % 4).get<double>();
         }
         asked_.push_back(pose);
       }

@@ -40,13 +40,14 @@ StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPa
       contributions = step.evaluator.contributions(*parts.chosen);
     }
   }
-  const RgbImage picture = view_picture(parts, exec);
-  if (outputs.with_pictures()) write_png(file, picture);
-  seconds["pictures"] = watch.seconds();
+  if (outputs.with_pictures()) {
+    write_png(file, view_picture(parts, exec));
+    seconds["pictures"] = watch.seconds();
+  }
   if (!outputs.with_report()) return seconds;
   watch = {};
   page.add_view(step.record, step.model, step.generation, estimated, step.evaluator,
-                std::move(contributions), picture);
+                std::move(contributions));
   seconds["report"] = watch.seconds();
   return seconds;
 }

@@ -138,7 +138,7 @@ const Proposal& RunReport::last_proposal() const {
 Json RunReport::json(StopReason reason) const {
   const Entry& last = views_.back();
   Json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
-  json["gain_model"] = Json::or_null(ranked_by_);
+  json["gain_model"] = or_null(std::string(ranked_by_));
   put_figures(json, last.quality, last.record.progress);
   json["travelled"] = last.record.travelled;
   const Proposal& proposal = last_proposal();

@@ -223,14 +223,12 @@ void score(const Options& options) {
   });
   name_by_input(scores, candidates);
   warn_of_prior(evaluator, sensor);
-  RgbImage picture;
-  if (!options.picture.empty() || !options.report.empty()) {
+  if (!options.picture.empty()) {
     const std::optional<std::size_t> winner = scores.winner();
     const Pose& shown = winner ? source.at(*winner)
                                : candidates.poses[evaluator.race(candidates.poses).indices.at(0)];
-    picture = score_picture(evaluator, sensor, shown, exec);
+    write_png(options.picture, score_picture(evaluator, sensor, shown, exec));
   }
-  if (!options.picture.empty()) write_png(options.picture, picture);
   if (!options.out.empty()) {
     write_scores(options, config, table_of(scores, config.model), grid, sensor, source,
                  scene->isa());
@@ -238,8 +236,7 @@ void score(const Options& options) {
   const ScoreReport report{config.model, options.criterion, grid,   sensor,
                            source,       evaluator,         scores, seconds};
   if (!options.report.empty()) {
-    write_report(options.report,
-                 report.page(std::filesystem::path(options.map).filename(), std::move(picture)));
+    write_report(options.report, report.page(std::filesystem::path(options.map).filename()));
   }
   if (options.common.json) {
     report.print_json();

@@ -220,7 +220,7 @@ void ScoreReport::print_table() const {
   }
 }
 
-Json ScoreReport::page(const std::string& title, RgbImage picture) const {
+Json ScoreReport::page(const std::string& title) const {
   constexpr std::size_t kRows = 1000, kShown = 10;
   std::vector<ViewGain> ranked(source.poses.size());
   for (ViewGain& gain : ranked) gain.gain = std::numeric_limits<double>::quiet_NaN();
@@ -273,8 +273,7 @@ Json ScoreReport::page(const std::string& title, RgbImage picture) const {
                        std::move(rows),
                        std::move(shown),
                        {{"sensor", sensor_toml(sensor)}},
-                       summary(),
-                       std::move(picture)};
+                       summary()};
   return page.json();
 }
 

@@ -11,7 +11,6 @@
 
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/json.hpp"
-#include "viewgain/formats/png.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/columns/table.hpp"
@@ -65,8 +64,8 @@ struct ScoreReport {
   void print_json() const;
   /// For people.
   void print_table() const;
-  /// The data of report.html; `picture` is of the best pose.
-  [[nodiscard]] Json page(const std::string& title, RgbImage picture) const;
+  /// The data of report.html.
+  [[nodiscard]] Json page(const std::string& title) const;
 
  private:
   [[nodiscard]] Json summary() const;

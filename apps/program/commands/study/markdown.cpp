@@ -100,7 +100,7 @@ std::string counts(const Rows& rows, std::size_t goal) {
 std::string means(const Group& group) {
   std::string text =
       head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "AUC ↑", "in the end ↑",
-               "RMS [mm] ↓", "consistency", "way [m] ↓", "decisions", "s a view", "time [s] ↓"});
+               "RMS [mm] ↓", "consistency →1", "way [m] ↓", "decisions", "s a view", "time [s] ↓"});
   for (std::size_t policy = 0; policy < group.spec.policies.size(); ++policy) {
     const Rows rows = group.of(policy);
     std::vector<std::string> cells{group.spec.policies[policy].name};

@@ -151,8 +151,8 @@ Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows) {
     const StudyPolicy& policy = spec.policies[run.policy];
     Json json{{"object", spec.objects[run.object].name},
               {"policy", policy.policy},
-              {"gain", Json::or_null(policy.gain)},
-              {"semantics", Json::or_null(policy.semantics)},
+              {"gain", or_null(policy.gain)},
+              {"semantics", or_null(policy.semantics)},
               {"seed", run.seed},
               {"sensor", run.sensor},
               {"voxel", run.voxel},

@@ -43,11 +43,11 @@ struct ResultRow {
   [[nodiscard]] double counted_views_to(std::size_t goal) const;
 };
 
-/// From a run's run.json, all but the prediction; `max_views`: the study's. Throws JsonError where
-/// something is missing in it.
+/// From a run's run.json, all but the prediction; `max_views`: the study's. Throws Json::exception
+/// where something is missing in it.
 [[nodiscard]] ResultRow row_of(const StudyRun& run, const Json& json, std::size_t max_views);
 /// What a policy's scores foretell, from the run.json of the run on whose maps they are looked at.
-/// Throws JsonError where something is missing in it.
+/// Throws Json::exception where something is missing in it.
 [[nodiscard]] Json prediction_of(const std::string& policy, const Json& maps);
 
 /// A text as CSV has it: with a comma, a quote or a line's end in quotes (RFC 4180).

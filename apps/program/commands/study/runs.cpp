@@ -163,7 +163,7 @@ bool StudyFolder::has(const StudyRun& run) const {
 
 Json StudyFolder::read(const StudyRun& run) const {
   const fs::path path = file(run, "run.json");
-  Json json = Json::parse_or_null(file_bytes(path));
+  Json json = parse_or_null(file_bytes(path));
   if (!json.is_object() || !json.contains("configuration") ||
       json["configuration"] != run.configuration) {
     throw Error(ErrorCode::format,

@@ -271,6 +271,8 @@ StudySpec read_study_spec(const fs::path& path) {
   spec.max_views = static_cast<std::size_t>(
       whole_number(reader, reader.require("max_views"), "max_views", 1, kMostViews));
   spec.flags = flags_of(reader);
+  // Coverage that is finer than the voxels says more of these than of the views.
+  spec.tolerance = std::max(spec.tolerance, *std::max_element(voxels.begin(), voxels.end()));
   if (reader.find("tolerance") != nullptr) {
     spec.tolerance = reader.number("tolerance");
     if (!(spec.tolerance > 0)) reader.fail("tolerance", "must be a positive number [m]");
@@ -321,7 +323,7 @@ StudySpec read_study_spec(const fs::path& path) {
                   {"prediction_views", spec.prediction.views},
                   {"prediction_candidates", spec.prediction.candidates},
                   {"prediction_policies", names_of(spec, scored_policies(spec, run))}};
-              run.hash = hash_of(run.configuration.dump());
+              run.hash = hash_of(dumped(run.configuration));
               spec.runs.push_back(std::move(run));
             }
           }

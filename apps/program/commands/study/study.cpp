@@ -74,7 +74,8 @@ void print_progress(const StudySpec& spec, const StudyProgress& progress, double
 
 // All runs' prediction.csv in one, each row with what the run was whose score it has.
 std::string predictions_csv(const StudySpec& spec, const StudyFolder& folder) {
-  std::string csv = std::string(kRunColumns) + "," + kPredictionColumns + "\n";
+  std::string csv(kRunColumns);
+  csv.append(",").append(kPredictionColumns).append("\n");
   for (const StudyRun& run : spec.runs) {
     const std::string head = run_columns(spec, run);
     const std::string& policy = spec.policies[run.policy].name;
@@ -103,7 +104,7 @@ auto taken_from(const StudyFolder& folder, const StudyRun& run, Take&& take) {
   const Json json = folder.read(run);
   try {
     return take(json);
-  } catch (const JsonError& error) {
+  } catch (const Json::exception& error) {
     throw Error(ErrorCode::format, folder.file(run, "run.json").string() + ": " + error.what() +
                                        "; a run whose folder is removed is made again");
   }
@@ -118,7 +119,6 @@ ResultRow row_in(const StudyFolder& folder, const StudySpec& spec, const StudyRu
   return row;
 }
 
-// Coverage that is finer than the voxels says more of these than of the views.
 void warn_of_tolerance(const StudySpec& spec) {
   double voxel = 0;
   for (const StudyRun& run : spec.runs) voxel = std::max(voxel, run.voxel);

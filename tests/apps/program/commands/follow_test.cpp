@@ -70,7 +70,7 @@ class Reader {
         for (double number = 0; words >> number;) ++numbers;
       }
       if (numbers % 8 != 0 || !poses.ends_with('\n')) fault = "next.txt: " + poses;
-      const json read = json::parse_or_null(text);
+      const json read = app::parse_or_null(text);
       if (read.is_null() || !read.contains("next")) fault = "next.json: " + text;
     }
   }
@@ -148,7 +148,7 @@ class Follow : public test::ProgramTest {
   // Until next.json says so many frames.
   [[nodiscard]] bool wait_for(std::size_t frames) const {
     for (int tries = 0; tries < 2000; ++tries) {
-      const json next = json::parse_or_null(read("plan/next.json"));
+      const json next = app::parse_or_null(read("plan/next.json"));
       if (!next.is_null() && next["frames"] == frames) return true;
       std::this_thread::sleep_for(5ms);
     }

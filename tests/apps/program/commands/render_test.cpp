@@ -49,7 +49,6 @@ TEST_F(Render, EachKindIsAPictureOfTheSizeThatWasAsked) {
       {"run", "--what", "map"},
       {"run/map.vdb", "--what", "surface"},
       {"run", "--what", "sigma"},
-      {"run", "--what", "sigma", "--ellipsoids", "2"},
       {"run", "--what", "gain", "--sphere", "50,0.6"},
       {"run", "--what", "surface", "--azimuth", "120", "--elevation", "-10"}};
   std::vector<RgbImage> pictures;
@@ -63,17 +62,14 @@ TEST_F(Render, EachKindIsAPictureOfTheSizeThatWasAsked) {
       EXPECT_NE(pictures[i].pixels, pictures.back().pixels) << i << ", " << call[2];
     }
   }
-  EXPECT_EQ(pictures.size(), 6U);
+  EXPECT_EQ(pictures.size(), 5U);
 }
 
 TEST_F(Render, SaysWhatItCannotDraw) {
   make_run("run", {"--pictures", "off"});
-  const test::Refusals cases{
-      {{"run", "--what", "gain"}, "--sphere"},
-      {{"run", "--what", "map", "--ellipsoids", "2"}, "--ellipsoids goes with --what sigma"},
-      {{"run", "--what", "sigma", "--ellipsoids", "0"}, "--ellipsoids"},
-      {{"no-such-run", "--what", "map"}, "no-such-run"},
-      {{"cube.off", "--what", "map"}, "cube.off"}};
+  const test::Refusals cases{{{"run", "--what", "gain"}, "--sphere"},
+                             {{"no-such-run", "--what", "map"}, "no-such-run"},
+                             {{"cube.off", "--what", "map"}, "cube.off"}};
   expect_refused_with({"render", "--out", "picture.png"}, cases);
   expect_refused({"render", "run", "--what", "map", "--out", "map.jpg"}, ".png");
 }
@@ -104,7 +100,8 @@ TEST_F(Render, MapsRememberTheirSensor) {
   const test::ProgramResult two =
       run({"integrate", "frames", "--map", "run/map.vdb", "--out", "two.vdb"});
   EXPECT_EQ(two.exit_code, 0);
-  EXPECT_NE(two.err.find("not from this d435"), std::string::npos) << two.err;
+  EXPECT_NE(two.err.find("not from this d435: "), std::string::npos) << two.err;
+  EXPECT_NE(two.err.find(" there, "), std::string::npos) << two.err;
   EXPECT_TRUE(json::parse(run_well({"info", "two.vdb", "--json"})).at("sensor").is_null());
 
   // It goes through convert, not into a tree.
@@ -230,7 +227,6 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
       }
       EXPECT_EQ(all, next.at("candidates").get<std::size_t>() + dropped);
     }
-    EXPECT_FALSE(view.at("picture").get<std::string>().empty());
     if (view.at("chosen").is_null()) continue;
     EXPECT_GT(view.at("bundle").at("kind").at("rows"), 0);
     EXPECT_GT(view.at("expected").at("value").at("rows"), 0);

@@ -43,10 +43,10 @@ export class OpenReport {
   errors = [];
   requests = [];
 
-  static async open(browser, file, { scheme = "light" } = {}) {
+  static async open(browser, file, { scheme = "light", viewport = { width: 1280, height: 720 } } = {}) {
     const report = new OpenReport();
     const context = await browser.newContext({
-      viewport: { width: 1280, height: 720 }, colorScheme: scheme, offline: true,
+      viewport, colorScheme: scheme, offline: true,
     });
     const page = await context.newPage();
     const url = pathToFileURL(file).href;

@@ -39,6 +39,7 @@ export async function checkHostileNames(browser, page, data) {
     const report = await OpenReport.open(browser, file);
     const words = hostile.replace(/_/g, " ");
     check((await report.page.locator("#title").textContent()) === hostile, "the title shows as it is");
+    await report.goTo(0);
     for (const tab of await report.page.locator("[role=tab]").all()) {
       await tab.click();
       await report.settled();
@@ -57,25 +58,14 @@ export async function checkHostileNames(browser, page, data) {
   }
 }
 
-export async function checkPictures(file, data) {
+export async function checkWithoutWebgl(file) {
   const browser = await launch(false);
   const report = await OpenReport.open(browser, file);
   const { page } = report;
   check((await page.locator("#stage canvas").count()) === 0, "without WebGL there is no empty box");
-  const image = page.locator("#picture");
-  await image.waitFor({ state: "visible", timeout: 5000 }).catch(() => check(false, "a picture shows"));
-  const width = () => image.evaluate(async (img) => {
-    await img.decode();
-    return img.naturalWidth;
-  });
-  check((await width()) > 0, "without WebGL the picture loads");
-  const first = await image.getAttribute("src");
-  await page.keyboard.press("ArrowRight");
-  check((await report.shown()) === 1, "without WebGL the steps go on");
-  if (data.kind === "reconstruct") {
-    check((await image.getAttribute("src")) !== first, "without WebGL each view has its picture");
-  }
-  check((await width()) > 0, "without WebGL the next picture loads");
+  const step = await report.shown();
+  await page.keyboard.press(step > 0 ? "ArrowLeft" : "ArrowRight");
+  check((await report.shown()) === Math.abs(step - 1), "without WebGL the steps go on");
   check((await page.locator("#panel circle").count()) > 0, "without WebGL there are plots");
   check((await page.locator(".note").textContent()).includes("no WebGL"), "the page says that WebGL is missing");
   check(report.requests.length === 0, "without WebGL there is no request");

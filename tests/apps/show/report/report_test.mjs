@@ -10,9 +10,10 @@ import { join, resolve } from "node:path";
 import { launch, OpenReport } from "./browser.mjs";
 import { check, summary } from "./checks.mjs";
 import { checkKeyboard, checkMouseAndTouch } from "./input_checks.mjs";
-import { checkHostileNames, checkPictures } from "./other_pages.mjs";
+import { checkHostileNames, checkWithoutWebgl } from "./other_pages.mjs";
 import { checkCandidates, checkPlots, checkRows } from "./panel_checks.mjs";
 import { filledShare, meanShade } from "./png.mjs";
+import { checkShownNumbers, checkSmallWindow, checkTwoRuns } from "./shown_checks.mjs";
 import { checkColourings, checkLayers, checkSteps } from "./viewer_checks.mjs";
 
 const [file, kind, folder] = process.argv.slice(2);
@@ -66,6 +67,10 @@ async function checkScheme(browser, scheme) {
   check(filledShare(first) > 0.02, `the first picture is not blank (${scheme})`);
   await keepPicture(report, scheme);
   await checkLayout(report);
+  if (kind === "reconstruct") {
+    await checkShownNumbers(report, data);
+    await checkTwoRuns(report, data);
+  }
   await checkSteps(report, data);
   await checkLayers(report);
   await checkColourings(report);
@@ -78,6 +83,7 @@ async function checkScheme(browser, scheme) {
   check(report.errors.length === 0, `no error on the console: ${report.errors.join("; ")}`);
   check(report.requests.length === 0, `no request: ${report.requests.join(", ")}`);
   await report.close();
+  await checkSmallWindow(browser, path, scheme);
   return meanShade(first);
 }
 
@@ -87,5 +93,5 @@ const dark = await checkScheme(browser, "dark");
 check(light > 150 && dark < 90, `light is light (${light}) and dark is dark (${dark})`);
 await checkHostileNames(browser, page, data);
 await browser.close();
-await checkPictures(path, data);
+await checkWithoutWebgl(path);
 process.exitCode = summary() ? 0 : 1;

@@ -41,22 +41,23 @@ function ramp(points) {
   };
 }
 
-// The lightness runs one way along each, so that the ramps also read in grey.
+// Three families, none of which means two things: poses are green; voxels and rays orange where unknown and
+// blue where occupied; boundaries violet. How far off a surface may be, or is, is red. The lightness runs one
+// way along each ramp, so that they also read in grey.
 export const ramps = {
-  gain: ramp([[0.3, 0.11, 315], [0.45, 0.11, 265], [0.6, 0.1, 210], [0.76, 0.14, 155], [0.91, 0.17, 108]]),
-  sigma: ramp([[0.34, 0.15, 285], [0.47, 0.2, 318], [0.6, 0.19, 365], [0.73, 0.16, 410], [0.88, 0.16, 458]]),
-  error: ramp([[0.95, 0.03, 95], [0.83, 0.1, 70], [0.67, 0.18, 38], [0.5, 0.18, 12], [0.34, 0.12, -20]]),
-  expected: ramp([[0.42, 0.07, 215], [0.6, 0.11, 190], [0.76, 0.14, 168], [0.93, 0.12, 150]]),
+  gain: ramp([[0.86, 0.05, 140], [0.75, 0.13, 145], [0.6, 0.14, 150], [0.42, 0.1, 155]]),
+  sigma: ramp([[0.95, 0.02, 20], [0.8, 0.1, 20], [0.62, 0.19, 22], [0.45, 0.17, 25], [0.28, 0.1, 25]]),
+  error: ramp([[0.95, 0.02, 20], [0.8, 0.1, 20], [0.62, 0.19, 22], [0.45, 0.17, 25], [0.28, 0.1, 25]]),
   unknown: ramp([[0.93, 0.05, 80], [0.78, 0.15, 62], [0.62, 0.17, 45]]),
   occupied: ramp([[0.92, 0.03, 245], [0.7, 0.12, 250], [0.48, 0.16, 262]]),
 };
 
-export const classColours = { left: "#e5484d", right: "#2fa86a", top: "#4487f2", bottom: "#efb920" };
+export const classColours = { left: "#5b2a9d", right: "#c77ff0", top: "#8e3fc9", bottom: "#d6409f" };
 export const hitColours = { unknown: "#f08a24", occupied: "#3d7fe0", nothing: "#8a94a3" };
-export const chosenColour = "#14b87a";
-export const selectedColour = "#e056c1";
+export const chosenColour = "#0c8a4f";
+export const selectedColour = "#8fe388";
 export const patchColour = "#b08ad9";
-export const truthColour = "#6fae9e";
+export const truthColour = "#a39a83";
 
 export const stageColours = [
   "#4e79a7", "#e8963e", "#5ba3a0", "#d1605e", "#8f78b5", "#6aa557", "#c99a2e", "#b0768c", "#8d99a8",

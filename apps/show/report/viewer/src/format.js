@@ -22,6 +22,8 @@ export const percent = (share) => (Number.isFinite(share) ? `${(100 * share).toF
 export function unitOf(unit) {
   if (unit === "m^2") return { name: "cm²", factor: 1e4 };
   if (unit === "m") return { name: "mm", factor: 1e3 };
+  if (unit === "%") return { name: "%", factor: 100 };
+  if (unit === "m as it is") return { name: "m", factor: 1 };
   return { name: unit ?? "", factor: 1 };
 }
 
@@ -30,7 +32,42 @@ export const withUnit = (value, unit) => {
   return Number.isFinite(value) ? `${short(value * factor)} ${name}`.trim() : none;
 };
 
+const meanings = {
+  coverage: "surface covered", coverage_visible: "visible surface covered", coverage_2_5mm: "covered to 2.5 mm",
+  rms_error: "RMS error of the surface", p95_error: "95 % of the surface's errors are under",
+  rms_error_points: "RMS error of the points", p95_error_points: "95 % of the points' errors are under",
+  consistency: "consistency: mean error² / predicted variance, 1 is honest", consistency_median: "its median",
+  consistency_above_9: "its share above 9", entropy_removed: "entropy removed", travelled: "way of the camera",
+  surface_area: "area of the surface", unknown_voxels: "voxels still unknown", gain_model: "gain",
+  stop_reason: "why the run ended", final_candidates: "candidates at the end", voxel: "voxel size",
+  size: "longest side of the object", max_views: "views at most", tolerance: "covered where the surface is nearer than",
+  prior_sigma: "σ of an unknown voxel", stop_gain: "ends under a gain of", stop_area: "ends under a share of new surface of",
+  readings: "readings", readings_inside: "readings in the workspace", seconds: "time",
+};
+
 /** Keys and reasons of the program as words. */
-export const words = (key) => String(key).replace(/_/g, " ");
+export const words = (key) => meanings[key] ?? String(key).replace(/_/g, " ");
+
+/** The unit of a figure or setting by its key; undefined: none, or not known. */
+export function unitOfKey(key, report) {
+  if (/^(rms|p95)_error|^(voxel|size|tolerance|prior_sigma|distance|region_depth|object_size|workspace)$/.test(key)) return "m";
+  if (/^travelled$|^background$/.test(key)) return "m as it is";
+  if (/^coverage|^consistency_above_9$/.test(key)) return "%";
+  if (/_area$/.test(key)) return key === "stop_area" ? undefined : "m^2";
+  if (key === "entropy_removed") return report.entropy_unit;
+  if (/_gain$/.test(key)) return report.gain_unit;
+  return key.startsWith("seconds.") ? "s" : undefined;
+}
+
+const stops = {
+  gain: "the best view left promises too little", area: "the best view left promises too little new surface",
+  cost: "no view is worth its way", no_candidates: "no candidate is left", unreachable: "no candidate can be reached",
+  idle: "three views in a row brought nothing", promises: "views bring far less than they promised",
+  max_views: "all allowed views are taken", coverage: "the coverage asked for is reached",
+  no_frames: "all frames are in", interrupted: "it was interrupted",
+};
+
+/** Why a run ended. */
+export const stopWords = (reason) => stops[reason] ?? words(reason);
 
 export const count = (n, one, many) => `${n.toLocaleString("en")} ${n === 1 ? one : many}`;

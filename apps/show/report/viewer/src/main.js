@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of a report: reads the data in it and builds what shows them.
 import { Report } from "./data/report.js";
-import { byId } from "./dom.js";
+import { byId, el } from "./dom.js";
 import { layersOf, LayerStack } from "./layers/stack.js";
 import { outlookOf } from "./scene/outlook.js";
 import { Stage } from "./scene/stage.js";
 import { State } from "./state.js";
 import { buildCameraTools } from "./ui/camera_tools.js";
 import { buildCandidateTable } from "./ui/candidate_table.js";
-import { showPictures } from "./ui/fallback.js";
 import { buildFigures, showHeadline } from "./ui/figures.js";
 import { bindKeys } from "./ui/keys.js";
 import { buildLayersPanel, toggleLayer } from "./ui/layers_panel.js";
-import { showLegend } from "./ui/legend.js";
+import { showLegend, showScale } from "./ui/legend.js";
 import { buildRankingTable } from "./ui/ranking_table.js";
 import { buildPlots } from "./ui/run_plots.js";
 import { buildTabs } from "./ui/tabs.js";
@@ -31,9 +30,10 @@ function trouble(text) {
 const mostKept = ({ steps }) =>
   Math.max(...steps.map(({ candidates }) => candidates?.reason.filter((r) => r === -1).length ?? 0));
 
+/** The last view of a run, the best of scored poses, unless the address says otherwise. */
 function startStep(report) {
-  const asked = Number(/^#step=(\d+)$/.exec(location.hash)?.[1] ?? 0);
-  return Math.min(asked, report.steps.length - 1);
+  const last = report.steps.length - 1;
+  return Math.min(Number(/^#step=(\d+)$/.exec(location.hash)?.[1] ?? (report.isRun ? last : 0)), last);
 }
 
 /** Null where the browser has no WebGL. */
@@ -43,6 +43,12 @@ function stageOn(outlook) {
   } catch {
     return null;
   }
+}
+
+function withoutStage(state) {
+  for (const id of ["layers", "camera-tools", "legend", "scale"]) byId(id).hidden = true;
+  byId("stage").append(el("p", { class: "note" }, "This browser has no WebGL: plots and tables without the 3-D viewer."));
+  state.follow(["step"], ({ step }) => (byId("viewer").dataset.shown = String(step)));
 }
 
 /** The 3-D viewer follows the state; returns the keys that it adds. */
@@ -58,6 +64,7 @@ function buildViewer(state, report, stage, layers) {
   const makeRoom = () => stage.setAside(panel.open && stage.canvas.clientWidth > 600 ? panel.offsetWidth : 0);
   panel.addEventListener("toggle", makeRoom);
   makeRoom();
+  stage.onDraw = () => showScale(byId("scale"), stage.pixelsPerMetre());
   stage.home();
   const camera = buildCameraTools(state, report, stage);
   let colours = null;
@@ -96,9 +103,8 @@ function buildViewer(state, report, stage, layers) {
 async function build(report) {
   byId("title").textContent = report.title;
   document.title = `${report.title} – viewgain`;
-  byId("kind").textContent = report.kind;
+  byId("kind").textContent = report.byWhat;
   byId("version").textContent = `viewgain ${report.version}`;
-  showHeadline(report);
 
   const layers = layersOf(report);
   const state = new State({
@@ -109,16 +115,18 @@ async function build(report) {
     sigmas: 3,
     best: report.isRun && mostKept(report) > 400 ? 200 : Infinity,
     tab: "plots",
+    other: null,
     theme: "light",
   });
   const toggleTheme = followTheme(state);
+  showHeadline(state, report);
   const timeline = buildTimeline(state, report);
   const plots = buildPlots(state, report, timeline.go);
   const tabs = report.isRun
     ? [["plots", "Plots", plots], ["candidates", "Candidates", buildCandidateTable(state, report)],
-      ["views", "Views", buildViewTable(state, report, timeline.go)], ["run", "Run", buildFigures(report)]]
+      ["views", "Views", buildViewTable(state, report, timeline.go)], ["run", "Run", buildFigures(state, report)]]
     : [["plots", "Plot", plots], ["ranking", "Ranking", buildRankingTable(state, report, timeline.go)],
-      ["run", "Run", buildFigures(report)]];
+      ["run", "Run", buildFigures(state, report)]];
   buildTabs(state, tabs.map(([id, name, content]) => ({ id, name, content })));
   // A candidate belongs to its step.
   state.follow(["step"], () => state.set({ candidate: null }));
@@ -126,7 +134,7 @@ async function build(report) {
   const outlook = await outlookOf(report);
   const stage = stageOn(outlook);
   const viewerKeys = stage ? buildViewer(state, report, stage, layers) : [];
-  if (!stage) showPictures(state, report);
+  if (!stage) withoutStage(state);
   bindKeys([
     { keys: ["ArrowLeft", "ArrowRight"], shown: "← →", does: "step before, after",
       act: (key) => timeline.go(state.values.step + (key === "ArrowLeft" ? -1 : 1)) },

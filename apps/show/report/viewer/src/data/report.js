@@ -3,21 +3,30 @@
 // The report's data as steps: the views of a run, or the ranks of scored poses.
 import { PartCache, quantile } from "./parts.js";
 
+/** The run of another report's page, or of a run.json: its name and its figures by views. */
+export function otherRun(name, text) {
+  const page = /<script type="application\/json" id="data">([^]*?)<\/script>/.exec(text);
+  const data = JSON.parse(page ? page[1] : text);
+  const figures = data.per_view ?? data.views?.map((view) => view.figures);
+  if (!Array.isArray(figures) || figures.length === 0) throw new Error("it holds no run");
+  const { policy, gain, mesh } = data.settings ?? {};
+  return { name: `${data.title ?? mesh?.split("/").pop() ?? name}, ${policy === "gain" ? `gain ${gain}` : `policy ${policy}`}`, figures };
+}
+
 /** What is shown at once: of a run a view, of scored poses the map and one pose. */
 function stepsOf(data) {
   if (data.kind === "reconstruct") return data.views;
-  const { map, candidates, rows, shown, picture } = data.score;
+  const { map, candidates, rows, shown } = data.score;
   const shownOf = new Map(shown.map((entry) => [entry.candidate, entry]));
   const steps = rows.map((row) => ({
     map,
     candidates,
-    picture,
     chosen: row[0],
     bundle: shownOf.get(row[0])?.bundle ?? null,
     contributions: shownOf.get(row[0])?.contributions ?? null,
     row,
   }));
-  const nothing = { map, candidates, picture, chosen: null, bundle: null, contributions: null, row: null };
+  const nothing = { map, candidates, chosen: null, bundle: null, contributions: null, row: null };
   return steps.length > 0 ? steps : [nothing];
 }
 
@@ -37,6 +46,13 @@ export class Report {
 
   get isRun() {
     return this.kind === "reconstruct";
+  }
+
+  /** What ranks the poses, for people. */
+  get byWhat() {
+    const { policy } = this.settings ?? {};
+    const gain = `gain ${this.gain_model} [${this.gain_unit}]`;
+    return !policy || policy === "gain" ? gain : `policy ${policy}; ${gain}`;
   }
 
   part(raw) {

@@ -54,14 +54,14 @@ export const expected = {
   id: "expected",
   label: "Expected surface",
   on: false,
-  swatch: ramps.expected.css(0.7),
+  swatch: ramps.unknown.css(0.7),
   has: (step) => step.expected && step.expected.centers.rows > 0,
   async build({ step, report }) {
     const { centers, value, unit, size } = await report.part(step.expected);
     const { name, factor } = unitOf(unit);
     const high = quantile(value, 0.98) || 1;
-    const write = (i, target) => ramps.expected.write(value[i] / high, target, 0);
-    const legend = { title: `expected [${name}]`, ramp: ramps.expected, low: 0, high: high * factor, open: true };
+    const write = (i, target) => ramps.unknown.write(value[i] / high, target, 0);
+    const legend = { title: `expected [${name}]`, ramp: ramps.unknown, low: 0, high: high * factor, open: true };
     return { object: cubes(centers, size, write), legend };
   },
 };

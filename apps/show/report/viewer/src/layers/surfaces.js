@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 // Layers of a run's surface: surface so far, boundaries, patches, points, truth; the view just taken; the box.
+import { Box3, Group } from "three";
 import { classColours, patchColour, ramps, truthColour } from "../colours.js";
 import { ellipsoids, greatestSigmas } from "../scene/ellipsoids.js";
 import { frustumLines, matrixOf } from "../scene/frusta.js";
-import { boundaryLines, workspaceLines } from "../scene/lines.js";
+import { axesAt, boundaryLines, workspaceLines } from "../scene/lines.js";
 import { coloursOf, meshOf } from "../scene/meshes.js";
 
 const titles = { sigma: "surface σ [mm]", error: "error [mm]" };
@@ -98,14 +99,20 @@ export const truth = {
 
 export const workspace = {
   id: "workspace",
-  label: "Workspace",
+  label: "Workspace and axes",
   on: true,
   swatch: "var(--ground)",
   ofAllSteps: () => true,
   has: () => true,
-  async build({ report, theme }) {
-    const object = workspaceLines(report.workspace, theme.ground);
-    object.applyMatrix4(matrixOf(report.T_world_grid));
+  async build({ report, stage, theme }) {
+    const lines = workspaceLines(report.workspace, theme.ground);
+    lines.applyMatrix4(matrixOf(report.T_world_grid));
+    const { min, max } = new Box3().setFromObject(lines);
+    // The corner of the floor that is seen before the object.
+    const { x, y } = stage.homeDirection;
+    const corner = [x > 0 ? max.x : min.x, y > 0 ? max.y : min.y, min.z];
+    const object = new Group();
+    object.add(lines, axesAt(corner, 0.2 * stage.radius, theme.ink));
     return { object };
   },
 };

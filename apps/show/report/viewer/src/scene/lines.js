@@ -3,7 +3,7 @@
 // Lines: boundary runs, rays, and the box of the workspace.
 import {
   BufferAttribute, BufferGeometry, CanvasTexture, Color, Group, LineBasicMaterial, LineSegments, Points,
-  PointsMaterial,
+  PointsMaterial, Sprite, SpriteMaterial,
 } from "three";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
@@ -112,4 +112,30 @@ export function workspaceLines([x0, y0, z0, x1, y1, z1], colour) {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(new Float32Array(positions), 3));
   return new LineSegments(geometry, new LineBasicMaterial({ color: colour }));
+}
+
+function letter(text, colour, size) {
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = 64;
+  const pen = canvas.getContext("2d");
+  Object.assign(pen, { font: "bold 52px sans-serif", textAlign: "center", textBaseline: "middle", fillStyle: colour });
+  pen.fillText(text, 32, 32);
+  const sprite = new Sprite(new SpriteMaterial({ map: new CanvasTexture(canvas) }));
+  sprite.scale.setScalar(size);
+  return sprite;
+}
+
+/** The world's axes, from a corner, with their names. */
+export function axesAt(corner, length, colour) {
+  const group = new Group();
+  const ends = [0, 1, 2].map((axis) => corner.map((value, i) => value + (i === axis ? length : 0)));
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(ends.flatMap((end) => [...corner, ...end])), 3));
+  group.add(new LineSegments(geometry, new LineBasicMaterial({ color: colour })));
+  ends.forEach((end, axis) => {
+    const name = letter("xyz"[axis], colour, 0.4 * length);
+    name.position.set(...end.map((value, i) => value + (i === axis ? 0.2 * length : 0)));
+    group.add(name);
+  });
+  return group;
 }

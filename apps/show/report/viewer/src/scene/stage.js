@@ -98,6 +98,13 @@ export class Stage {
   drawNow() {
     this.controls.update();
     this.renderer.render(this.scene, this.camera);
+    this.onDraw?.();
+  }
+
+  /** On the screen, at the point that is looked at. */
+  pixelsPerMetre() {
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    return this.#size.y / (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360));
   }
 
   #setFieldOfView(degrees) {

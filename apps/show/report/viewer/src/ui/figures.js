@@ -2,52 +2,83 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the run was asked and what came out, as names and values.
 import { byId, el } from "../dom.js";
-import { none, percent, short, withUnit, words } from "../format.js";
+import { none, percent, short, stopWords, unitOf, unitOfKey, withUnit, words } from "../format.js";
 
-/** Nested objects as rows with dotted names; lists on one line. */
-function rowsOf(object, prefix = "") {
+/** Nested objects as rows, their names one after the other; lists on one line. */
+function rowsOf(report, object, prefix = "") {
   return Object.entries(object ?? {}).flatMap(([key, value]) => {
-    const name = prefix + key;
-    if (Array.isArray(value)) return [[name, value.map(textOf).join(", ")]];
-    if (value !== null && typeof value === "object") return rowsOf(value, `${name}.`);
-    return [[name, textOf(value)]];
+    const unit = unitOfKey(prefix + key, report);
+    const name = prefix.split(".").slice(0, -1).concat(key).map(words).join(", ");
+    if (key === "stop_reason") return [[name, stopWords(value)]];
+    if (Array.isArray(value)) {
+      return [[name, value.map((part) => textOf(part, unit, false)).join(", ") + (unit ? ` ${unitOf(unit).name}` : "")]];
+    }
+    if (value !== null && typeof value === "object") return rowsOf(report, value, `${prefix}${key}.`);
+    return [[name, textOf(value, unit)]];
   });
 }
 
-function textOf(value) {
+function textOf(value, unit, named = true) {
   if (value === null || value === undefined) return none;
   if (typeof value === "number") {
-    const large = Number.isInteger(value) || Math.abs(value) >= 1000;
-    return large ? value.toLocaleString("en", { maximumFractionDigits: 1 }) : String(Number(value.toPrecision(5)));
+    const { name, factor } = unitOf(unit);
+    const shown = value * factor;
+    const large = Number.isInteger(shown) || Math.abs(shown) >= 1000;
+    const digits = large ? shown.toLocaleString("en", { maximumFractionDigits: 1 }) : String(Number(shown.toPrecision(4)));
+    return named && name ? `${digits} ${name}` : digits;
   }
   if (typeof value === "boolean") return value ? "yes" : "no";
   return typeof value === "string" ? value : JSON.stringify(value);
 }
 
-function list(title, object) {
-  const rows = rowsOf(object);
+function list(report, title, object) {
+  const rows = rowsOf(report, object);
   if (rows.length === 0) return null;
   const cells = rows.map(([name, value]) =>
-    el("tr", {}, el("th", { scope: "row" }, words(name)), el("td", {}, value)));
+    el("tr", {}, el("th", { scope: "row" }, name), el("td", {}, value)));
   return el("details", { class: "figures", open: true }, el("summary", {}, title),
     el("table", {}, el("tbody", {}, ...cells)));
 }
 
-export function buildFigures(report) {
-  return el("div", {}, list("Figures", report.summary), list("Settings", report.settings));
+/** Figures of the view shown, where it has them, and those of the whole. */
+export function buildFigures(state, report) {
+  const host = el("div", {});
+  state.follow(["step"], ({ step }) => {
+    const entries = Object.entries(report.summary ?? {});
+    const now = report.isRun ? report.steps[step].figures : {};
+    const isOfView = ([key]) => key in now;
+    const ofView = entries.filter(isOfView).map(([key]) => [key, now[key]]);
+    const lists = [
+      list(report, `After view ${step}`, Object.fromEntries(ofView)),
+      list(report, report.isRun ? "Of the whole run" : "Figures", Object.fromEntries(entries.filter((e) => !isOfView(e)))),
+      list(report, "Settings", report.settings)];
+    host.replaceChildren(...lists.filter(Boolean));
+  });
+  return host;
 }
 
-/** The few figures that say how it went. */
-export function showHeadline(report) {
+function runHeadline(report, step, other) {
   const s = report.summary ?? {};
+  const f = report.steps[step].figures;
+  const beside = other?.figures[step];
+  const entries = [["visible surface covered", percent(f.coverage_visible), percent(beside?.coverage_visible)],
+    ["RMS error", withUnit(f.rms_error, "m"), withUnit(beside?.rms_error, "m")],
+    ["way", withUnit(f.travelled, "m as it is"), withUnit(beside?.travelled, "m as it is")]];
+  if (Number.isFinite(s.frames)) entries.unshift(["frames in the map", short(s.frames), none]);
+  if (step === report.steps.length - 1 && s.stop_reason) entries.push([`ended: ${stopWords(s.stop_reason)}`, "", none]);
+  return entries;
+}
+
+/** The few figures that say how it went: of a run those of the view shown. */
+export function showHeadline(state, report) {
   const gain = report.isRun ? -1 : report.score.columns.indexOf("gain");
   const best = report.isRun ? null : report.score.rows[0];
-  const entries = report.isRun
-    ? [["views", short(report.steps.length)], ["of the visible covered", percent(s.coverage_visible)],
-      ["RMS error", withUnit(s.rms_error, "m")], ["ended the run", s.stop_reason ? words(s.stop_reason) : none]]
-    : [["poses ranked", short(report.score.rows.length)],
-      ["best gain", best && gain >= 0 ? withUnit(best[gain], report.gain_unit) : none],
-      ["poses/s", short(s.poses_per_second)]];
-  const known = entries.filter(([, value]) => value !== none);
-  byId("headline").append(...known.map(([name, value]) => el("div", {}, el("dd", {}, value), el("dt", {}, name))));
+  state.follow(["step", "other"], ({ step, other }) => {
+    const entries = report.isRun ? runHeadline(report, step, other)
+      : [["poses ranked", short(report.score.rows.length), none],
+        ["best gain", best && gain >= 0 ? withUnit(best[gain], report.gain_unit) : none, none],
+        ["poses/s", short(report.summary?.poses_per_second), none]];
+    byId("headline").replaceChildren(...entries.filter(([, value]) => value !== none).map(([name, value, beside]) =>
+      el("div", {}, el("dd", {}, value), beside === none ? null : el("dd", { class: "other" }, beside), el("dt", {}, name))));
+  });
 }

@@ -102,5 +102,5 @@ export function buildLayersPanel(state, report, layers) {
   if (report.isRun) panel.append(presetButtons(state, layers, colourings(report)));
   panel.append(...layers.map((layer, index) => layerRow(state, report, layer, index)));
   panel.append(...choices(state, report, layers));
-  panel.open = matchMedia("(min-width: 760px)").matches;
+  panel.open = matchMedia("(min-width: 901px)").matches;
 }

@@ -33,3 +33,13 @@ export function showLegend(host, legends) {
   host.replaceChildren(...entries);
   host.hidden = entries.length === 0;
 }
+
+/** A bar of a round length, at the middle of what is looked at. */
+export function showScale(host, pixelsPerMetre) {
+  const power = 10 ** Math.floor(Math.log10(120 / pixelsPerMetre));
+  const metres = [5, 2, 1].map((n) => n * power).find((length) => length * pixelsPerMetre <= 120) ?? power;
+  const bar = el("i", {});
+  bar.style.width = `${metres * pixelsPerMetre}px`;
+  const text = metres >= 1 ? `${short(metres)} m` : metres >= 0.01 ? `${short(100 * metres)} cm` : `${short(1000 * metres)} mm`;
+  host.replaceChildren(text, bar);
+}

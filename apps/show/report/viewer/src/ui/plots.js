@@ -5,7 +5,7 @@ import { el, svg } from "../dom.js";
 import { short } from "../format.js";
 
 function frame(wide) {
-  const size = { width: wide ? 438 : 212, height: 134, left: 34, right: 6, top: 7, bottom: 17 };
+  const size = { width: wide ? 438 : 212, height: 144, left: 34, right: 6, top: 7, bottom: 27 };
   const inner = {
     width: size.width - size.left - size.right,
     height: size.height - size.top - size.bottom,
@@ -35,7 +35,7 @@ function tickText(tick, top) {
 
 const finite = (values) => values.filter(Number.isFinite);
 
-function axes(group, size, ticks, y, places, first) {
+function axes(group, size, ticks, y, places, first, name) {
   for (const tick of ticks) {
     group.append(
       svg("line", { class: "grid", x1: size.left, x2: size.width - size.right, y1: y(tick), y2: y(tick) }),
@@ -44,8 +44,10 @@ function axes(group, size, ticks, y, places, first) {
   const every = spacing(places.length / 6);
   places.forEach((x, i) => {
     if (i > 0 && (i + first) % every !== 0) return;
-    group.append(svg("text", { x, y: size.height - 5, "text-anchor": "middle" }, String(i + first)));
+    group.append(svg("text", { x, y: size.height - 15, "text-anchor": "middle" }, String(i + first)));
   });
+  const middle = (size.left + size.width - size.right) / 2;
+  group.append(svg("text", { x: middle, y: size.height - 4, "text-anchor": "middle" }, name));
 }
 
 function line(group, series, places, y) {
@@ -60,7 +62,7 @@ function line(group, series, places, y) {
   });
   const radius = places.length > 60 ? 0.9 : places.length > 25 ? 1.8 : 2.4;
   const dots = series.values.map((value, i) => Number.isFinite(value)
-    ? svg("circle", { "data-step": i, cx: places[i], cy: y(value), r: radius, fill: series.colour,
+    ? svg("circle", { [series.other ? "data-other" : "data-step"]: i, cx: places[i], cy: y(value), r: radius, fill: series.colour,
       class: places.length > 60 ? "small" : null }) : null);
   const stroke = { d: path, stroke: series.colour, fill: "none", class: "line" };
   if (series.dashed) stroke["stroke-dasharray"] = "3 2.5";
@@ -81,27 +83,27 @@ function bars(group, series, places, y, width) {
 }
 
 /**
- * @param plot title, unit, series (name, values, colour, dashed), stacked, top (of the axis), firstName
- * (the number of the first step)
+ * @param plot title, unit, series (name, values, colour, dashed, other: of another run), stacked, top (of the
+ * axis), firstName (the number of the first step), stepName
  */
 export function buildPlot(state, plot, go) {
   const { series, stacked, unit } = plot;
   const { size, inner } = frame(plot.wide);
-  const steps = series[0].values.length;
-  const totals = series[0].values.map((_, i) =>
+  const steps = Math.max(...series.map(({ values }) => values.length));
+  const totals = Array.from({ length: steps }, (_, i) =>
     finite(series.map(({ values }) => values[i])).reduce((sum, v) => (stacked ? sum + v : Math.max(sum, v)), 0));
   const high = plot.top ?? Math.max(...totals, 0);
   const ticks = ticksUpTo(high > 0 ? high : 1);
   const top = ticks[ticks.length - 1];
   const y = (value) => size.top + inner.height * (1 - value / top);
   const pad = stacked ? inner.width / (2 * steps) : 5;
-  const places = series[0].values.map((_, i) =>
+  const places = totals.map((_, i) =>
     size.left + pad + (steps > 1 ? (i / (steps - 1)) * (inner.width - 2 * pad) : inner.width / 2 - pad));
 
   const marker = svg("line", { class: "marker", y1: size.top, y2: size.top + inner.height });
   const drawing = svg("svg", { viewBox: `0 0 ${size.width} ${size.height}`, role: "img",
     "aria-label": `${plot.title} of ${steps} steps, up to ${short(Math.max(...totals))} ${unit}` });
-  axes(drawing, size, ticks, y, places, plot.firstName);
+  axes(drawing, size, ticks, y, places, plot.firstName, plot.stepName);
   drawing.append(marker);
   if (stacked) bars(drawing, series, places, y, Math.max(1, Math.min(14, (0.72 * inner.width) / steps)));
   else series.forEach((one) => line(drawing, one, places, y));

@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which plots a report has.
 import { stageColours } from "../colours.js";
+import { otherRun } from "../data/report.js";
 import { el } from "../dom.js";
 import { unitOf, words } from "../format.js";
 import { buildPlot } from "./plots.js";
 
-const blue = "var(--plot-1)";
-const orange = "var(--plot-2)";
+const main = "var(--plot-1)";
+const second = "var(--plot-2)";
 
-const figuresOf = (report, key, factor = 1) =>
-  report.steps.map(({ figures }) => (Number.isFinite(figures[key]) ? factor * figures[key] : NaN));
+const valuesOf = (figures, key, factor = 1) =>
+  figures.map((f) => (Number.isFinite(f[key]) ? factor * f[key] : NaN));
 
 // More stages than colours share the last one.
 function stageSeries(report) {
@@ -33,20 +34,20 @@ function stageSeries(report) {
   }));
 }
 
-function runPlots(report) {
-  const area = unitOf("m^2");
-  const length = unitOf("m");
+function runPlots(report, other) {
+  const figures = report.steps.map((step) => step.figures);
+  // Series: name, key; the first of a plot is drawn of the other run, too.
+  const plot = (id, title, { name, factor }, [first, ...more]) => ({ id, title, unit: name, series: [
+    { name: first[0], colour: main, values: valuesOf(figures, first[1], factor) },
+    ...more.map(([text, key]) => ({ name: text, colour: second, dashed: true, values: valuesOf(figures, key, factor) })),
+    ...(other ? [{ name: other.name, colour: "var(--plot-other)", other: true,
+      values: valuesOf(other.figures, first[1], factor) }] : []),
+  ] });
   return [
-    { id: "coverage", title: "Coverage", unit: "%", top: 100,
-      series: [{ name: "coverage", colour: blue, values: figuresOf(report, "coverage_visible", 100) }] },
-    { id: "error", title: "Error", unit: length.name, series: [
-      { name: "RMS", colour: blue, values: figuresOf(report, "rms_error", length.factor) },
-      { name: "95 %", colour: orange, dashed: true, values: figuresOf(report, "p95_error", length.factor) }] },
-    { id: "area", title: "New surface", unit: area.name, series: [
-      { name: "realised", colour: blue, values: figuresOf(report, "realised_area", area.factor) },
-      { name: "predicted", colour: orange, dashed: true, values: figuresOf(report, "predicted_area", area.factor) }] },
-    { id: "entropy", title: "Entropy removed", unit: report.entropy_unit,
-      series: [{ name: "entropy", colour: blue, values: figuresOf(report, "entropy_removed") }] },
+    { ...plot("coverage", "Coverage", unitOf("%"), [["this run", "coverage_visible"]]), top: 100 },
+    plot("error", "Error", unitOf("m"), [["RMS", "rms_error"], ["95 %", "p95_error"]]),
+    plot("area", "New surface", unitOf("m^2"), [["realised", "realised_area"], ["predicted", "predicted_area"]]),
+    plot("entropy", "Entropy removed", unitOf(report.entropy_unit), [["this run", "entropy_removed"]]),
     { id: "seconds", title: "Time by stage", unit: "s", stacked: true, wide: true, series: stageSeries(report) },
   ];
 }
@@ -56,12 +57,33 @@ function scorePlots(report) {
   const { name, factor } = unitOf(report.gain_unit);
   const values = report.score.rows.map((row) => (column >= 0 && row[column] !== null ? factor * row[column] : NaN));
   return [{ id: "gain", title: "Gain by rank", unit: name, wide: true,
-    series: [{ name: "gain", colour: blue, values }] }];
+    series: [{ name: "gain", colour: main, values }] }];
+}
+
+/** Chooses another run, whose curves the plots show over this one's. */
+function comparison(state) {
+  const name = el("b", { id: "other" });
+  const open = async () => {
+    try {
+      const [file] = input.files;
+      state.set({ other: file ? otherRun(file.name, await file.text()) : null });
+      name.textContent = state.values.other?.name ?? "";
+    } catch (error) {
+      name.textContent = `not shown: ${error.message}`;
+    }
+  };
+  const input = el("input", { type: "file", id: "compare", accept: ".html,.json", onchange: open });
+  const title = "The report.html or run.json of another run";
+  return el("label", { class: "compare", title }, "Beside", input, name);
 }
 
 export function buildPlots(state, report, go) {
-  const plots = report.isRun ? runPlots(report) : scorePlots(report);
-  const firstName = report.isRun ? 0 : 1;
-  const shown = plots.filter(({ series }) => series.some(({ values }) => values.some(Number.isFinite)));
-  return el("div", { class: "plots" }, ...shown.map((plot) => buildPlot(state, { ...plot, firstName }, go)));
+  const host = el("div", { class: "plots" });
+  const axis = report.isRun ? { firstName: 0, stepName: "view" } : { firstName: 1, stepName: "rank" };
+  state.follow(["other"], ({ other }) => {
+    const plots = report.isRun ? runPlots(report, other) : scorePlots(report);
+    const shown = plots.filter(({ series }) => series.some(({ values }) => values.some(Number.isFinite)));
+    host.replaceChildren(...shown.map((plot) => buildPlot(state, { ...plot, ...axis }, go)));
+  });
+  return el("div", {}, report.isRun ? comparison(state) : null, host);
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The slider over the steps, and what happened in the one shown.
 import { byId, el } from "../dom.js";
-import { count, none, percent, withUnit, words } from "../format.js";
+import { count, none, percent, stopWords, withUnit, words } from "../format.js";
 
 const playEvery = 1100;
 
@@ -27,7 +27,7 @@ function runStory(report, index) {
     parts.push(` Next: the chosen one of ${count(kept, "candidate", "candidates")}`);
     parts.push(reasons.length > kept ? `, ${count(reasons.length - kept, "was", "were")} dropped.` : ".");
   } else if (index === report.steps.length - 1 && report.summary?.stop_reason) {
-    parts.push(` The run stopped: ${words(report.summary.stop_reason)}.`);
+    parts.push(` The run ended: ${stopWords(report.summary.stop_reason)}.`);
   }
   return parts.join("");
 }

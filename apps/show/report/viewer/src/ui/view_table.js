@@ -25,8 +25,8 @@ const columns = [
     cell: ({ f }) => (f.class ? classCell(f.class) : words(f.generator ?? none)) },
   number("Cover %", "Coverage of the visible surface [%]", scaled("coverage_visible", 100), (v) => fixed(v, 1)),
   number("RMS mm", "RMS error of the surface [mm]", scaled("rms_error", 1e3), (v) => fixed(v, 2)),
-  number("New", "Area of new surface that the view showed [cm²]", scaled("realised_area", 1e4), short),
-  number("Pred.", "Area of new surface that was predicted [cm²]", scaled("predicted_area", 1e4), short),
+  number("New cm²", "Area of new surface that the view showed [cm²]", scaled("realised_area", 1e4), short),
+  number("Pred. cm²", "Area of new surface that was predicted [cm²]", scaled("predicted_area", 1e4), short),
   number("Cand.", "Candidates it was chosen from", (f) => f.candidates, short),
   number("s", "Time [s]", secondsOf, (v) => fixed(v, 1)),
 ];
