@@ -219,10 +219,6 @@ RgbImage read_rgb_png(const std::filesystem::path& path) {
   return read_image<RgbImage>(path, kWanted);
 }
 
-std::string png_bytes(const RgbImage& image) {
-  return encoded(image.width, image.height, PNG_COLOR_TYPE_RGB, image.pixels, 3);
-}
-
 void write_png(const std::filesystem::path& path, const GrayImage& image) {
   write_image(path, image.width, image.height, PNG_COLOR_TYPE_GRAY, image.pixels, 1);
 }

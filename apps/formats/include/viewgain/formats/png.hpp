@@ -55,9 +55,6 @@ struct VIEWGAIN_EXPORT Gray8Image {
 /// read and Error(format), naming it, if it does not begin as a PNG does.
 [[nodiscard]] VIEWGAIN_EXPORT std::array<int, 2> png_size(const std::filesystem::path& path);
 
-/// What write_png writes. Throws Error(invalid_argument) as it does.
-[[nodiscard]] VIEWGAIN_EXPORT std::string png_bytes(const RgbImage& image);
-
 /// Atomic: a temporary file is renamed. Throws Error(io), and Error(invalid_argument) if the values
 /// are not as many as the pixels take.
 VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const GrayImage& image);
