@@ -125,6 +125,7 @@ class Kills:
             self.compare(name, "out", expected)
             if list(self.work.glob(".out.tmp-*")):
                 self.failures.append(f"{name}: leaves a hidden folder")
+        print(f"{name}: {count} kills", flush=True)
 
     def of_follow(self, frames, count):
         """Frames come one by one, as a robot takes them: each when the one before is counted."""
