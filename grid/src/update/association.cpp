@@ -46,6 +46,7 @@ std::uint32_t VoxelSupport::Reader::at(Index3 voxel) {
   const std::uint64_t block = support_.lattice_->key(voxel);
   if (block != block_) {
     block_ = block;
+    scale_ = scale_of(*support_.map_, block);
     counts_ = nullptr;
     beliefs_ = nullptr;
     const std::vector<std::uint64_t>& blocks = support_.blocks_;
@@ -60,7 +61,7 @@ std::uint32_t VoxelSupport::Reader::at(Index3 voxel) {
       }
     }
   }
-  const unsigned offset = block_offset(voxel);
+  const unsigned offset = cell_offset(block_offset(voxel), scale_);
   if (counts_ != nullptr) return counts_[offset];
   if (beliefs_ == nullptr || !test_bit(occupied_, offset)) return 0;
   const Belief* belief = beliefs_->find(offset);
@@ -84,6 +85,7 @@ void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places
       const double range = (pixels.point(i) - pixels.origin()).norm() / voxel_size;
       const double reach = std::min(kTaperSigmas * sigma, kFarthest);
       double best = kMargin * before.at(*lattice.voxel_at(p));
+      if (sigma < kNoisySigma * before.cell()) continue;
       const auto look = [&](double t, VoxelSupport::Reader& reader) {
         const std::optional<Index3> voxel = lattice.voxel_at(p + t * direction);
         if (!voxel) return;

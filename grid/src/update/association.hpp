@@ -33,11 +33,15 @@ class VoxelSupport {
   class Reader {
    public:
     explicit Reader(const VoxelSupport& support) : support_(support) {}
+    /// Of the voxel's cell.
     [[nodiscard]] std::uint32_t at(Index3 voxel);
+    /// An edge of the cell that was looked at last [voxels].
+    [[nodiscard]] int cell() const { return 1 << scale_; }
 
    private:
     const VoxelSupport& support_;
     std::uint64_t block_ = ~std::uint64_t{0};
+    int scale_ = 0;                          ///< of the block
     const std::uint32_t* counts_ = nullptr;  ///< of the block, where the frame hits it
     const BeliefBlock* beliefs_ = nullptr;   ///< else its beliefs, if it has any,
     LeafMask occupied_{};                    ///< of its occupied voxels
