@@ -57,8 +57,8 @@ class VoxelSupport {
 
 /// Gives each noisy reading, which noise may have carried out of its voxel, to the voxel with the
 /// largest n · (1 - (t / reach)²): n its support, t the distance from the reading's place, one of
-/// `places` [voxels], along the ray, sought at half voxels' steps, reach 3 sigma_ax, at most 8
-/// voxels. It stays in its place's voxel unless another has more than twice its value; of equal
+/// `places` [voxels], along the ray, sought at half cells' steps, reach 3 sigma_ax, at most 8
+/// cells. It stays in its place's voxel unless another has more than twice its value; of equal
 /// ones the nearer counts, then the one nearer to the camera. Else the readings of one wall would
 /// fill all voxels within their noise. `by_pixel` holds the voxel of each place.
 void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places,
