@@ -219,6 +219,7 @@ int run(int argc, char** argv) {
   hall_app->add_option("--voxel", hall.voxel, "voxel size [m]")
       ->check(CLI::Range(0.005, 1.0))
       ->capture_default_str();
+  hall_app->add_option("--coarsest", hall.coarsest, "greatest scale of a leaf, 0 to 3");
   hall_app->add_option("--frames", hall.frames, "on the way through the hall")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

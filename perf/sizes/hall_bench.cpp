@@ -67,7 +67,7 @@ int run_hall(const HallOptions& options) {
   reset_peak_memory();
   const std::uint64_t before = resident_bytes();
   BeliefGrid grid({.voxel_size = options.voxel, .workspace = kHallWorkspace}, sensor);
-  FrameIntegrator integrator(sensor, {}, exec);
+  FrameIntegrator integrator(sensor, {.coarsest = options.coarsest}, exec);
   const auto integrate = [&](int i, const Pose& T_world_camera) {
     const DepthFrame frame = camera.acquire(T_world_camera, static_cast<std::uint64_t>(i));
     return seconds_of([&] { integrator.integrate(grid, frame, T_world_camera); });
@@ -104,6 +104,7 @@ int run_hall(const HallOptions& options) {
 
   nlohmann::ordered_json json{
       {"voxel", options.voxel},
+      {"coarsest", options.coarsest},
       {"voxels", known.unknown + known.free + known.occupied},
       {"frames", options.frames},
       {"free", known.free},

@@ -17,6 +17,7 @@ inline const Box kHallWorkspace{{-10, -10, 0}, {10, 10, 3}};
 struct HallOptions {
   int num_threads = 0;  ///< 0: all hardware threads
   double voxel = 0.01;  ///< [m]
+  int coarsest = 0;     ///< IntegrationConfig::coarsest
   int frames = 1000;
   int poses = 200;
   bool json = false;

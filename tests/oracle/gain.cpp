@@ -117,7 +117,10 @@ ViewGain gain_of_hits(const BeliefGrid& grid, const Sensor& sensor, const GainCo
     Eigen::Matrix3d held = Eigen::Matrix3d::Zero();
     if (occupied) {
       const std::optional<Belief> belief = grid.belief(index);
-      if (belief) held = belief->information_matrix().matrix();
+      if (belief) {
+        // A cell of scale s is 4^s voxels of surface.
+        held = belief->information_matrix().matrix() / std::pow(4.0, grid.scale(index));
+      }
     }
     const Eigen::Matrix3d before = prior_of(grid, config) + held;
     const double gain =

@@ -182,7 +182,9 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
     const auto& [x, y, z] = cell;
     const auto belief = grid.belief({x, y, z});
     Eigen::Matrix3d before = prior;
-    if (belief) before += belief->information_matrix().matrix();
+    if (belief) {
+      before += belief->information_matrix().matrix() / std::pow(4.0, grid.scale({x, y, z}));
+    }
     value.refinement_saturated +=
         weight_of(config, V, {x, y, z}) *
         (entropy_with_floor(before, floor) - entropy_with_floor(before + added, floor));
@@ -211,12 +213,17 @@ double distance_to_evidence(const BeliefGrid& grid, int shift, Index3 voxel, int
       if (grid.state(v) == VoxelState::occupied) visit(v, belief);
     });
   };
-  for_each_occupied(
-      [&](Index3 v, const Belief& belief) { hits[cell_of(v, pooling)] += belief.hits; });
+  for_each_occupied([&](Index3 v, const Belief& belief) {
+    hits[cell_of(v, std::max(pooling, grid.scale(v)))] += belief.hits;
+  });
   double nearest = std::numeric_limits<double>::infinity();
   for_each_occupied([&](Index3 v, const Belief&) {
-    if (hits[cell_of(v, pooling)] < 3) return;
-    nearest = std::min(nearest, (centre(v) - centre(voxel)).norm() * grid.voxel_size());
+    if (hits[cell_of(v, std::max(pooling, grid.scale(v)))] < 3) return;
+    const int edge = 1 << grid.scale(v);  // of the belief's cell
+    for (int i = 0; i < edge * edge * edge; ++i) {
+      const Index3 at{v.x + i / (edge * edge), v.y + i / edge % edge, v.z + i % edge};
+      nearest = std::min(nearest, (centre(at) - centre(voxel)).norm() * grid.voxel_size());
+    }
   });
   return nearest;
 }

@@ -117,6 +117,25 @@ BeliefGrid odd_and_far(const Pose& T_world_grid, Random& random) {
                 uniform(random, 0.002, 0.3), random);
 }
 
+/// Salt and pepper with room in between, part of it in cells of up to 8 voxels an edge.
+BeliefGrid with_mixed_scales(Random& random) {
+  const Index3 dims = odd_dims(random);
+  const Index3 min{uniform_int(random, -40, 0), uniform_int(random, -40, 0),
+                   uniform_int(random, -40, 0)};
+  BeliefGrid grid = salted(layout(uniform(random, 0.01, 0.05), min, dims), dims,
+                           uniform(random, 0.001, 0.02), random);
+  const Box all = grid.workspace();
+  for (int i = 0; i < 6; ++i) {
+    Box part = all;
+    for (std::size_t a = 0; a < 3; ++a) {
+      part.min[a] = uniform(random, all.min[a], all.max[a]);
+      part.max[a] = part.min[a] + uniform(random, 0, all.max[a] - part.min[a]);
+    }
+    grid.resample(part, uniform_int(random, 0, 3));
+  }
+  return grid;
+}
+
 Eigen::Vector3d random_point(const Box& box, double margin, Random& random) {
   Eigen::Vector3d p;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -186,6 +205,8 @@ RandomMap random_map(MapFamily family, Random& random) {
       return with_tiles_128(random);
     case MapFamily::odd_and_far:
       return whole(odd_and_far({}, random));
+    case MapFamily::mixed_scales:
+      return whole(with_mixed_scales(random));
     case MapFamily::rotated:
       break;
   }
@@ -269,9 +290,9 @@ Pose axis_pose(const Eigen::Vector3d& origin, int axis, bool positive) {
 }
 
 std::string family_name(const testing::TestParamInfo<MapFamily>& info) {
-  constexpr std::array<const char*, 7> kNames{
+  constexpr std::array<const char*, 8> kNames{
       "SaltAndPepper01", "SaltAndPepper1", "SaltAndPepper30", "Tiles8",
-      "Tiles128",        "OddAndFar",      "Rotated"};
+      "Tiles128",        "OddAndFar",      "Rotated",         "MixedScales"};
   return kNames.at(static_cast<std::size_t>(info.param));
 }
 

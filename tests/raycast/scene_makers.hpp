@@ -47,6 +47,7 @@ enum class MapFamily {
   tiles_128,           ///< whole blocks of 128³ unknown behind a carved corner
   odd_and_far,         ///< no multiple of 8, far off the origin
   rotated,             ///< the same with a random T_world_grid
+  mixed_scales,        ///< salt and pepper, leaves resampled to and fro
 };
 
 inline constexpr std::array kMapFamilies{MapFamily::salt_and_pepper_01,
@@ -55,7 +56,8 @@ inline constexpr std::array kMapFamilies{MapFamily::salt_and_pepper_01,
                                          MapFamily::tiles_8,
                                          MapFamily::tiles_128,
                                          MapFamily::odd_and_far,
-                                         MapFamily::rotated};
+                                         MapFamily::rotated,
+                                         MapFamily::mixed_scales};
 
 /// For tests with a family as parameter.
 [[nodiscard]] std::string family_name(const testing::TestParamInfo<MapFamily>& info);

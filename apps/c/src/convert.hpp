@@ -70,6 +70,16 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
+/// Takes `coarsest` and `fine` over; throws Error(invalid_argument) for null instead of boxes.
+template <typename Config>
+void set_scales(const Config& given, IntegrationConfig& settings) {
+  settings.coarsest = given.coarsest;
+  require_array(given.fine, given.fine_count, "fine");
+  for (const double* b = given.fine; settings.fine.size() < given.fine_count; b += 6) {
+    settings.fine.push_back({{b[0], b[1], b[2]}, {b[3], b[4], b[5]}});
+  }
+}
+
 /// Throws Error(invalid_argument) for a number that is no VG_TRACER_.
 [[nodiscard]] inline ExecConfig exec_of(std::int32_t num_threads, std::int32_t tracer) {
   if (tracer < VG_TRACER_AUTOMATIC || tracer > VG_TRACER_SWEEP) {

@@ -201,6 +201,28 @@ vg_status vg_grid_update_box(vg_grid* grid, const int32_t first[3], const int32_
   });
 }
 
+vg_status vg_grid_scale(const vg_grid* grid, const int32_t* voxels, size_t count, uint8_t* scales) {
+  return guarded([&] {
+    require("grid", grid);
+    require_array(voxels, count, "voxels");
+    require_array(scales, count, "scales");
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int32_t* at = voxels + 3 * i;
+      scales[i] = static_cast<std::uint8_t>(grid->grid.scale({at[0], at[1], at[2]}));
+    }
+  });
+}
+
+vg_status vg_grid_resample(vg_grid* grid, const double min[3], const double max[3], int32_t scale,
+                           uint64_t* changed) {
+  return guarded([&] {
+    require("grid min max", grid, min, max);
+    const std::uint64_t count =
+        grid->grid.resample({{min[0], min[1], min[2]}, {max[0], max[1], max[2]}}, scale);
+    if (changed != nullptr) *changed = count;
+  });
+}
+
 vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds, size_t capacity,
                            size_t* found) {
   return guarded([&] {
@@ -247,9 +269,10 @@ vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_conf
       reject("occupancy is " + std::to_string(chosen.occupancy) +
              "; it must be 0 or 1 (VG_OCCUPANCY_)");
     }
-    const IntegrationConfig settings{static_cast<IntegrationConfig::Carve>(chosen.carve),
-                                     static_cast<IntegrationConfig::Occupancy>(chosen.occupancy),
-                                     given(chosen.support_plane)};
+    IntegrationConfig settings{static_cast<IntegrationConfig::Carve>(chosen.carve),
+                               static_cast<IntegrationConfig::Occupancy>(chosen.occupancy),
+                               given(chosen.support_plane)};
+    set_scales(chosen, settings);
     return vg_integrator{FrameIntegrator(camera, settings, {.num_threads = chosen.num_threads}),
                          HazardCalibration(camera, settings.support_plane), camera.camera};
   });

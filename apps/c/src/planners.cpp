@@ -86,6 +86,7 @@ PlannerConfig settings_of(const vg_planner_config& config) {
                    {}};
   if (config.prior_sigma != 0) settings.grid.prior_sigma = config.prior_sigma;
   settings.surroundings = surroundings_of(config);
+  set_scales(config, settings.integration);
   settings.jump_edges.reset();
   if (config.jump_edge_angle != 0) {
     settings.jump_edges.emplace();

@@ -345,6 +345,7 @@ Command add_integrate(App& program) {
       ->one_of({"probabilistic", "literal"}, "rule");
   app->add_option("--jump-edge-filter", options->jump_edge_filter, kJumpEdgeHelp)
       ->capture_default_str();
+  add_scale_options(*app, options->scales);
   app->add_option("--support-plane", options->support_plane,
                   "height z of the table [m]: its readings carve but do not hit; default: none");
   app->add_option("--prior-sigma", options->prior_sigma,

@@ -8,6 +8,7 @@
 #pragma GCC visibility pop
 
 #include <cstddef>
+#include <map>
 #include <mutex>
 #include <string>
 
@@ -22,6 +23,8 @@ namespace viewgain::detail {
 // 2^24. Where a voxel has more hits, `hits` is rounded and `hits_rest`, a grid that is there only
 // then, says what is to be added.
 inline constexpr std::int32_t kVdbLayoutVersion = 2;
+// Of maps that have a leaf whose scale is not 0 (vdb_scales.hpp).
+inline constexpr std::int32_t kVdbScaledVersion = 3;
 
 /// The grid of rates in a file of save_hazard_vdb().
 inline constexpr const char* kHazardGridName = "hazard";
@@ -52,6 +55,18 @@ inline void initialize_openvdb() {
     m(3, axis) = origin[axis];
   }
   return openvdb::math::Transform::createLinearTransform(m);
+}
+
+/// What save_vdb() was given as notes.
+[[nodiscard]] inline std::map<std::string, std::string> notes_of(const openvdb::MetaMap& metadata) {
+  std::map<std::string, std::string> notes;
+  for (auto entry = metadata.beginMeta(); entry != metadata.endMeta(); ++entry) {
+    const std::string& name = entry->first;
+    const auto text = metadata.getMetadata<openvdb::StringMetadata>(name);
+    if (name.starts_with(kNotePrefix) && text)
+      notes[name.substr(kNotePrefix.size())] = text->value();
+  }
+  return notes;
 }
 
 /// The hazard counters of a file; value(name) reads an Int64Metadata. Throws as it does, and

@@ -20,6 +20,7 @@
 #include "vdb_contents.hpp"
 #include "vdb_layout.hpp"
 #include "vdb_rates.hpp"
+#include "vdb_scales.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/belief_block.hpp"
@@ -48,10 +49,15 @@ class Loader {
   [[nodiscard]] BeliefGrid load(std::map<std::string, std::string>* notes) {
     const VdbContents contents(path_, pool_);
     try {
-      check_version(contents.metadata);
+      const std::int32_t version = version_of(contents.metadata);
       auto storage = make_storage(contents.metadata);
       load_states(contents, *storage);
       load_beliefs(contents, *storage);
+      if (version == kVdbScaledVersion) {
+        const std::string fault =
+            take_scales(tree<FloatGrid>(contents, *storage, kScaleGridName), *storage);
+        if (!fault.empty()) fail("grid '" + std::string(kScaleGridName) + "': " + fault);
+      }
       if (notes != nullptr) *notes = notes_of(contents.metadata);
       return GridAccess::wrap(std::move(storage));
     } catch (const openvdb::Exception& error) {
@@ -80,26 +86,14 @@ class Loader {
     return *std::move(result);
   }
 
-  [[nodiscard]] std::map<std::string, std::string> notes_of(
-      const openvdb::MetaMap& metadata) const {
-    std::map<std::string, std::string> notes;
-    for (auto entry = metadata.beginMeta(); entry != metadata.endMeta(); ++entry) {
-      const std::string& name = entry->first;
-      const auto text = metadata.getMetadata<openvdb::StringMetadata>(name);
-      if (name.starts_with(kNotePrefix) && text) {
-        notes[name.substr(kNotePrefix.size())] = text->value();
-      }
-    }
-    return notes;
-  }
-
   /// Of the layout (vdb_layout.hpp).
-  void check_version(const openvdb::MetaMap& metadata) const {
+  [[nodiscard]] std::int32_t version_of(const openvdb::MetaMap& metadata) const {
     const auto found = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
-    if (found != kVdbLayoutVersion) {
+    if (found != kVdbLayoutVersion && found != kVdbScaledVersion) {
       fail("has viewgain_version " + std::to_string(found) + ", this program reads " +
-           std::to_string(kVdbLayoutVersion));
+           std::to_string(kVdbLayoutVersion) + " and " + std::to_string(kVdbScaledVersion));
     }
+    return found;
   }
 
   [[nodiscard]] std::unique_ptr<GridStorage> make_storage(const openvdb::MetaMap& metadata) const {

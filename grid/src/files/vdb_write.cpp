@@ -17,6 +17,7 @@
 #include "map/code_mask.hpp"
 #include "pose_text.hpp"
 #include "vdb_layout.hpp"
+#include "vdb_scales.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/atomic_file.hpp"
@@ -62,7 +63,9 @@ class MemoryArchive : public openvdb::io::Archive {
 openvdb::MetaMap make_metadata(const GridStorage& s) {
   const BlockLattice& l = s.lattice;
   openvdb::MetaMap metadata;
-  metadata.insertMeta("viewgain_version", openvdb::Int32Metadata(kVdbLayoutVersion));
+  metadata.insertMeta(
+      "viewgain_version",
+      openvdb::Int32Metadata(s.scales.empty() ? kVdbLayoutVersion : kVdbScaledVersion));
   metadata.insertMeta("voxel_size", openvdb::DoubleMetadata(s.voxel_size));
   metadata.insertMeta("prior_sigma", openvdb::DoubleMetadata(s.prior_sigma));
   metadata.insertMeta("workspace_min", openvdb::Vec3IMetadata({l.min.x, l.min.y, l.min.z}));
@@ -155,9 +158,11 @@ void put_covariances(const GridStorage& s, GridSet& set) {
   auto& covariance = set.add<Vec3SGrid>("covariance_diagonal");
   auto& off_covariance = set.add<Vec3SGrid>("covariance_offdiagonal");
   auto& position = set.add<Vec3SGrid>("position");
-  const double floor = s.voxel_size * s.voxel_size / 12.0;  // the resolution's share
   for (const auto& [key, block_pointer] : s.beliefs) {
     const Index3 origin = s.lattice.origin(key);
+    const int scale = s.scale(key);
+    // The resolution's share.
+    const double floor = s.voxel_size * s.voxel_size / 12.0 * std::ldexp(1.0, 2 * scale);
     for_each_bit(block_pointer->mask, [&](unsigned at) {
       const Belief& belief = *block_pointer->find(at);
       const SymmetricMatrix3 sigma = belief.information_matrix().inverse();
@@ -165,7 +170,7 @@ void put_covariances(const GridStorage& s, GridSet& set) {
       const auto& eta = belief.information_vector;
       const Eigen::Vector3d shift = sigma * Eigen::Vector3d(eta[0], eta[1], eta[2]);
       const Index3 v = offset_voxel(origin, at);
-      const Eigen::Vector3d p = voxel_center(v, s.voxel_size) + shift;
+      const Eigen::Vector3d p = voxel_center(v, s.voxel_size, scale) + shift;
       const auto narrow = [](double x, double y, double z) {
         return Vec3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
       };
@@ -230,6 +235,12 @@ void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
     GridSet set(make_transform(s));
     put_states(s, set);
     put_beliefs(s, set, config.with_covariance);
+    if (!s.scales.empty()) {
+      auto& scales = set.add<FloatGrid>(kScaleGridName);
+      for (const auto& [key, scale] : s.scales) {
+        scales.sparseFill(block_box(s, s.lattice.origin(key)), static_cast<float>(scale), true);
+      }
+    }
     openvdb::MetaMap metadata = make_metadata(s);
     for (const auto& [name, text] : config.notes) {
       metadata.insertMeta(kNotePrefix + name, openvdb::StringMetadata(text));

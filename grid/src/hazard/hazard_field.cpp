@@ -36,20 +36,22 @@ std::vector<Index3> evidence_in(const GridSnapshot& snapshot, int shift) {
   std::array<std::uint64_t, 512> hits{};  // by the offset of a cube's lowest voxel
   for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
     if (!leaf.beliefs) continue;
-    const unsigned inside = ~((1U << shift) - 1U) & 7U;
-    const unsigned cube_of = inside << 6U | inside << 3U | inside;
+    const int scale = leaf.beliefs->scale;
+    const int cube = std::max(shift, scale);
     occupied.clear();
     std::size_t rank = 0;
     for_each_bit(leaf.beliefs->mask, [&](unsigned offset) {
       const Belief& belief = leaf.beliefs->beliefs[rank++];
       if (!test_bit(leaf.occupied, offset)) return;
-      hits[offset & cube_of] += belief.hits;
+      hits[cell_offset(offset, cube)] += belief.hits;
       occupied.push_back(offset);
     });
     for (const unsigned offset : occupied) {
-      if (hits[offset & cube_of] >= kLeastHits) voxels.push_back(offset_voxel(leaf.origin, offset));
+      if (hits[cell_offset(offset, cube)] < kLeastHits) continue;
+      for_each_in_cell(offset, scale,
+                       [&](unsigned at) { voxels.push_back(offset_voxel(leaf.origin, at)); });
     }
-    for (const unsigned offset : occupied) hits[offset & cube_of] = 0;
+    for (const unsigned offset : occupied) hits[cell_offset(offset, cube)] = 0;
   }
   return voxels;
 }

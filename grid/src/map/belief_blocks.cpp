@@ -25,6 +25,7 @@ std::vector<BeliefBlockAt> belief_blocks(const BeliefGrid& grid) {
 std::shared_ptr<BeliefBlock> detail::reshaped(const BeliefBlock* block, const LeafMask& mask) {
   auto result = std::make_shared<BeliefBlock>();
   result->mask = mask;
+  if (block != nullptr) result->scale = block->scale;
   result->beliefs.reserve(count_bits(mask));
   for_each_bit(mask, [&](unsigned offset) {
     const Belief* old = block != nullptr ? block->find(offset) : nullptr;

@@ -9,6 +9,7 @@
 #include "viewgain/grid/belief.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/support/belief_block.hpp"
+#include "viewgain/support/block_lattice.hpp"
 
 namespace viewgain::detail {
 
@@ -17,6 +18,19 @@ using BeliefMap = std::unordered_map<std::uint64_t, std::shared_ptr<const Belief
 
 /// The grid's own.
 [[nodiscard]] const BeliefMap& beliefs_of(const BeliefGrid& grid);
+/// Of the block with this key.
+[[nodiscard]] int scale_of(const BeliefGrid& grid, std::uint64_t key);
+[[nodiscard]] bool has_scales(const BeliefGrid& grid);  ///< that are not 0
+/// Does the block hold something by cells, a leaf or beliefs?
+[[nodiscard]] bool is_held(const BeliefGrid& grid, std::uint64_t key);
+/// Gives a block the largest scale up to this one that fits, with what it holds.
+void set_scale(BeliefGrid& grid, std::uint64_t key, int scale);
+
+inline constexpr int kMaxScale = 3;  // a cell is at most a leaf
+
+/// The largest scale up to `scale` with which no cell of the block lies across the workspace's
+/// face.
+[[nodiscard]] int fitting_scale(const BlockLattice& lattice, Index3 origin, int scale);
 
 /// Which voxels of the block are occupied. `origin` is a multiple of 8. Reads only the grid.
 [[nodiscard]] LeafMask occupied_in(const BeliefGrid& grid, Index3 origin);

@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "belief_blocks.hpp"
-#include "belief_check.hpp"
 #include "code_mask.hpp"
 #include "grid_layout.hpp"
 #include "grid_storage.hpp"
+#include "leaf_scales.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/grid_blocks.hpp"
@@ -44,55 +44,6 @@ std::uint64_t tree_bytes(const CodeTree& tree) {
     }
   }
   return bytes;
-}
-
-void check_value(const GridStorage& s, const BeliefGrid::VoxelValue& value) {
-  const auto fail = [](const std::string& what) { throw Error(ErrorCode::invalid_argument, what); };
-  const Index3& v = value.voxel;
-  if (!s.lattice.contains(v)) {
-    fail("voxel (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) +
-         ") lies outside the workspace");
-  }
-  if (std::isnan(value.log_odds)) fail("log-odds is NaN");
-  if (!value.belief) return;
-  const std::string fault = fault_of_belief(*value.belief, s.voxel_size);
-  if (!fault.empty()) fail("belief " + fault);
-}
-
-/// A value and the key of its block.
-using KeyedValue = std::pair<std::uint64_t, const BeliefGrid::VoxelValue*>;
-
-/// Sets voxels of one block; of those given twice the last counts.
-void set_in_block(GridStorage& s, std::span<const KeyedValue> values) {
-  const std::uint64_t key = values.front().first;
-  s.mark_changed(key);
-  const BeliefBlock* block = s.find_beliefs(key);
-  LeafMask mask = block != nullptr ? block->mask : LeafMask{};
-  for (const auto& [_, value] : values) {
-    const std::uint8_t code = log_odds_code(value->log_odds);
-    if (is_non_free(code)) {
-      s.tree.setValueOn(to_coord(value->voxel), code);
-    } else {
-      s.tree.setValueOff(to_coord(value->voxel), code);
-    }
-    const unsigned offset = block_offset(value->voxel);
-    const std::uint64_t bit = std::uint64_t{1} << (offset & 63U);
-    std::uint64_t& word = mask[offset >> 6U];
-    word = value->belief ? word | bit : word & ~bit;
-  }
-  if (mask == LeafMask{}) {
-    s.beliefs.erase(key);
-    return;
-  }
-  auto changed = reshaped(block, mask);
-  for (const auto& [_, value] : values) {
-    const unsigned offset = block_offset(value->voxel);
-    // A later value of the same voxel may have none.
-    if (value->belief && test_bit(mask, offset)) {
-      changed->beliefs[changed->rank(offset)] = *value->belief;
-    }
-  }
-  s.beliefs[key] = std::move(changed);
 }
 
 }  // namespace
@@ -173,6 +124,9 @@ std::uint64_t detail::GridStorage::bytes() const {
     bytes += sizeof(void*) + sizeof(std::pair<std::uint64_t, std::shared_ptr<BeliefBlock>>) +
              kSharedCounts + sizeof(BeliefBlock) + block->beliefs.capacity() * sizeof(Belief);
   }
+  constexpr std::size_t kScaleNode = sizeof(void*) + sizeof(std::pair<std::uint64_t, std::uint8_t>);
+  bytes += scales.size() * kScaleNode;
+  if (!scales.empty()) bytes += scales.bucket_count() * sizeof(void*);
   return bytes + beliefs.bucket_count() * sizeof(void*);
 }
 
@@ -242,36 +196,17 @@ std::optional<Belief> BeliefGrid::belief(Index3 voxel) const {
   return found != nullptr ? std::optional<Belief>(*found) : std::nullopt;
 }
 
-void BeliefGrid::set(Index3 voxel, float log_odds, const std::optional<Belief>& belief) {
-  const BeliefGrid::VoxelValue value{voxel, log_odds, belief};
-  check_value(*storage_, value);
-  const KeyedValue keyed(storage_->lattice.key(voxel), &value);
-  set_in_block(*storage_, std::span(&keyed, 1));
-  ++storage_->time;
-}
-
-void BeliefGrid::set(std::span<const BeliefGrid::VoxelValue> voxels) {
-  GridStorage& s = *storage_;
-  for (const BeliefGrid::VoxelValue& value : voxels) check_value(s, value);
-
-  // Block by block, so that its beliefs are copied once.
-  std::vector<KeyedValue> by_block;
-  by_block.reserve(voxels.size());
-  for (const BeliefGrid::VoxelValue& value : voxels)
-    by_block.emplace_back(s.lattice.key(value.voxel), &value);
-  std::stable_sort(by_block.begin(), by_block.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (auto first = by_block.begin(), last = first; first != by_block.end(); first = last) {
-    last = std::find_if(first, by_block.end(),
-                        [&](const auto& value) { return value.first != first->first; });
-    set_in_block(s, std::span(first, last));
-  }
-  ++s.time;
-}
-
 std::uint64_t BeliefGrid::forget(const Box& region) {
   GridStorage& s = *storage_;
-  const VoxelBox range = voxels_in(*this, region);
+  VoxelBox range = voxels_in(*this, region);
+  int coarsest = 0;
+  for (const auto& [key, scale] : s.scales) coarsest = std::max<int>(coarsest, scale);
+  if (coarsest > 0 && range.volume() > 0) {
+    const std::int32_t low = (1 << coarsest) - 1;
+    range = s.lattice.intersection(
+        {{range.min.x & ~low, range.min.y & ~low, range.min.z & ~low},
+         {(range.max.x + low) & ~low, (range.max.y + low) & ~low, (range.max.z + low) & ~low}});
+  }
   const auto part_of = [&](Index3 origin, int size) {
     return range.intersection(VoxelBox::from_dims(origin, {size, size, size}));
   };
@@ -327,6 +262,7 @@ std::uint64_t BeliefGrid::forget(const Box& region) {
     if (left != block.mask) entry->second = reshaped(&block, left);
     ++entry;
   }
+  drop_idle_scales(s);
   ++s.time;
   return forgotten;
 }
@@ -342,7 +278,9 @@ void BeliefGrid::for_each_occupied(
     if (leaf.occupied == LeafMask{}) continue;
     const std::uint8_t* codes =
         storage_->tree.probeConstLeaf(to_coord(leaf.origin))->buffer().data();
+    const int scale = storage_->scale(storage_->lattice.key(leaf.origin));
     for_each_bit(leaf.occupied, [&](unsigned offset) {
+      if (cell_offset(offset, scale) != offset) return;
       const Belief* belief = leaf.beliefs != nullptr ? leaf.beliefs->find(offset) : nullptr;
       visit({offset_voxel(leaf.origin, offset), code_log_odds(codes[offset]),
              belief != nullptr ? std::optional(*belief) : std::nullopt});

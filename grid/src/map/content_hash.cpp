@@ -62,6 +62,12 @@ class ContentHash {
     sum_ += hash_origin(origin, hash.value());
   }
 
+  void add_scale(Index3 origin, std::uint8_t scale) {
+    Hash64 hash;
+    hash.add(scale);
+    sum_ += hash_origin(origin, hash.value());
+  }
+
   [[nodiscard]] std::uint64_t sum() const { return sum_; }
 
  private:
@@ -129,6 +135,7 @@ std::string BeliefGrid::content_hash() const {
   ContentHash contents(s.lattice);
   contents.add_tree(s.tree);
   for (const auto& [key, block] : s.beliefs) contents.add_beliefs(s.lattice.origin(key), *block);
+  for (const auto& [key, scale] : s.scales) contents.add_scale(s.lattice.origin(key), scale);
 
   Hash64 hash;
   const auto add_double = [&hash](double value) { hash.add(std::bit_cast<std::uint64_t>(value)); };

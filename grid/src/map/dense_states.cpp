@@ -10,6 +10,7 @@
 
 #include "belief_blocks.hpp"
 #include "grid_storage.hpp"
+#include "leaf_scales.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/grid_blocks.hpp"
 #include "viewgain/support/log_odds_code.hpp"
@@ -126,6 +127,12 @@ std::uint64_t BeliefGrid::update_box(const VoxelBox& box, std::span<const std::u
         });
         if (other == LeafMask{}) continue;
         const std::uint64_t key = s.lattice.key(origin);
+        if (s.scale(key) != 0) {  // once more, by voxels
+          set_scale(s, key, 0);
+          changed -= count_bits(other);
+          z -= kBlockSize;
+          continue;
+        }
         s.mark_changed(key);
         s.put_block(origin, codes.data());
         const auto beliefs = s.beliefs.find(key);

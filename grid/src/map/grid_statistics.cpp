@@ -41,9 +41,10 @@ BeliefGrid::Statistics statistics_of(const BeliefGrid& grid, const VoxelBox& ran
         if (occupied_count == 0) return;
         const BeliefBlock* block = find_beliefs(grid, part_of(origin, kBlockSize).min);
         if (block == nullptr) return;
+        const double share = surface_share(block->scale);
         for_each_bit(intersection(occupied, block->mask), [&](unsigned offset) {
-          result.entropy_removed +=
-              entropy_reduction(prior, block->find(offset)->information_matrix(), criterion);
+          const SymmetricMatrix3 information = block->find(offset)->information_matrix() * share;
+          result.entropy_removed += entropy_reduction(prior, information, criterion) / share;
         });
       },
       [&](Index3 origin, std::int32_t size, std::uint8_t code) {
@@ -67,15 +68,15 @@ BeliefGrid::Statistics BeliefGrid::statistics(const Box& region, Criterion crite
 double BeliefGrid::mean_sigma(const Box& region) const {
   const VoxelBox range = voxels_in(*this, region);
   const double floor = voxel_size() * voxel_size() / 12.0;
-  double sum = 0;
-  std::uint64_t believed = 0;
+  double sum = 0, believed = 0;
   for_each_occupied([&](const VoxelValue& at) {
     if (!at.belief || !range.contains(at.voxel)) return;
-    sum += std::sqrt(at.belief->information_matrix().inverse().trace() / 3.0 + floor);
-    ++believed;
+    const double voxels = 1 / surface_share(scale(at.voxel));
+    sum += voxels *
+           std::sqrt(at.belief->information_matrix().inverse().trace() / 3.0 + floor * voxels);
+    believed += voxels;
   });
-  return believed > 0 ? sum / static_cast<double>(believed)
-                      : std::numeric_limits<double>::quiet_NaN();
+  return believed > 0 ? sum / believed : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace viewgain

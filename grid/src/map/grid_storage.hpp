@@ -70,6 +70,22 @@ struct GridStorage {
 
   BeliefMap beliefs;
 
+  /// Of the blocks, by key, whose scale is not 0. In the tree all voxels of a cell have its code; a
+  /// cell's belief is that of its lowest voxel.
+  std::unordered_map<std::uint64_t, std::uint8_t> scales;
+  [[nodiscard]] int scale(std::uint64_t key) const {
+    if (scales.empty()) return 0;
+    const auto found = scales.find(key);
+    return found == scales.end() ? 0 : found->second;
+  }
+  void put_scale(std::uint64_t key, int scale) {
+    if (scale > 0) {
+      scales[key] = static_cast<std::uint8_t>(scale);
+    } else {
+      scales.erase(key);
+    }
+  }
+
   /// When what a snapshot tells has changed: a time, and that of each region's last change (by key
   /// >> 6).
   std::uint64_t time = 1;

@@ -48,10 +48,12 @@ BeliefBricks::BeliefBricks(const GridSnapshot& snapshot, const std::vector<Belie
 }
 
 void BeliefBricks::add_beliefs(const BeliefBlockAt& block, double voxel_size) {
+  const int scale = block.beliefs->scale;
+  if (scale > shift_) return;
   Brick& brick = bricks_[brick_at(block.origin)];
   const int edge = 1 << shift_;
   const auto from_middle = [&](std::int32_t v) {
-    return ((v & (edge - 1)) + 0.5 * (1 - edge)) * voxel_size;
+    return ((v & (edge - 1)) + 0.5 * ((1 << scale) - edge)) * voxel_size;
   };
   block.for_each([&](Index3 voxel, const Belief& belief) {
     if (belief.hits == 0) return;

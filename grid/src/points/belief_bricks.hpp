@@ -30,7 +30,8 @@ struct PlacedBelief {
 
 /// The beliefs and states of a map, laid out for looking at a voxel's neighbours: by bricks of 8³
 /// voxels, or of 8³ cubes of 2^shift voxels an edge whose beliefs are added up. A cube is occupied
-/// if one of its voxels is, else free if one of its voxels is. Called voxels all the same.
+/// if one of its voxels is, else free if one of its voxels is. Called voxels all the same. Beliefs
+/// of larger cells than these cubes are left out.
 class BeliefBricks {
  public:
   static constexpr std::int32_t kNone = -1;

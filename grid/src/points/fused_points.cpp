@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -143,15 +144,14 @@ Eigen::Vector3d mean_way(const std::vector<Pose>& views, const Eigen::Vector3d& 
   return weights > 0 ? Eigen::Vector3d(sum / weights) : sum;
 }
 
-}  // namespace
-
-std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsConfig& config,
-                                     const ExecConfig& exec) {
-  check(config);
-  const GridSnapshot snapshot = grid.snapshot();
+/// Those of the leaves of one scale; beliefs of finer ones around take part in their columns.
+std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& snapshot,
+                                  const std::vector<BeliefBlockAt>& blocks, int scale,
+                                  const FusedPointsConfig& config, const ExecConfig& exec) {
   const bool pooled = !config.per_voxel;
-  const Pooling pooling = pooled ? pooling_of(snapshot) : Pooling{0, grid.voxel_size()};
-  const BeliefBricks bricks(snapshot, belief_blocks(grid), pooling.shift);
+  const Pooling pooling =
+      pooled ? pooling_of(snapshot, scale) : Pooling{scale, std::ldexp(grid.voxel_size(), scale)};
+  const BeliefBricks bricks(snapshot, blocks, pooling.shift);
   const double V = std::ldexp(grid.voxel_size(), pooling.shift);
   const double unit = pooling.length / V;
   const Lengths lengths{std::min(config.normal_radius * unit, kMaxReach),
@@ -160,6 +160,14 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
   const double column_area = std::numbers::pi * std::pow(lengths.column_radius * V, 2);  // [m²]
   const Pose& T_world_grid = grid.T_world_grid();
   std::vector<std::pair<std::size_t, unsigned>> occupied = bricks.occupied_with_belief();
+  std::erase_if(occupied, [&](const auto& at) {
+    const Index3 v = offset_voxel(bricks.origin(at.first), at.second);
+    const auto inside = [&](std::int32_t cube, std::int32_t low) {  // a cube at the rim is cut off
+      return std::max(cube << pooling.shift, low);
+    };
+    const Index3& low = snapshot.min_index;
+    return grid.scale({inside(v.x, low.x), inside(v.y, low.y), inside(v.z, low.z)}) != scale;
+  });
   if (config.where) {
     std::erase_if(occupied, [&](const auto& at) {
       const Index3 voxel = offset_voxel(bricks.origin(at.first), at.second);
@@ -247,6 +255,24 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
                       SymmetricMatrix3::from(covariance),
                       {n.x(), n.y(), n.z()},
                       seed.hits});
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsConfig& config,
+                                     const ExecConfig& exec) {
+  check(config);
+  const GridSnapshot snapshot = grid.snapshot();
+  const std::vector<BeliefBlockAt> blocks = belief_blocks(grid);
+  std::array<bool, 4> is_there{};
+  for (const BeliefBlockAt& block : blocks) is_there[block.beliefs->scale] = true;
+  std::vector<FusedPoint> points;
+  for (int scale = 0; scale < 4; ++scale) {
+    if (!is_there[static_cast<std::size_t>(scale)]) continue;
+    const std::vector<FusedPoint> part = points_of(grid, snapshot, blocks, scale, config, exec);
+    points.insert(points.end(), part.begin(), part.end());
   }
   return points;
 }

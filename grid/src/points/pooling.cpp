@@ -16,10 +16,10 @@ namespace {
 constexpr int kMostShift = 3;  // cubes stay within a leaf
 
 // Median sigma of a reading across its ray [m]; 0 if nothing was read.
-double footprint_in(const GridSnapshot& snapshot) {
+double footprint_in(const GridSnapshot& snapshot, std::optional<int> scale) {
   std::vector<float> variances;
   for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
-    if (!leaf.beliefs) continue;
+    if (!leaf.beliefs || leaf.beliefs->scale != scale.value_or(leaf.beliefs->scale)) continue;
     std::size_t rank = 0;
     for_each_bit(leaf.beliefs->mask, [&](unsigned offset) {
       const Belief& belief = leaf.beliefs->beliefs[rank++];
@@ -36,9 +36,9 @@ double footprint_in(const GridSnapshot& snapshot) {
 
 }  // namespace
 
-Pooling pooling_of(const GridSnapshot& snapshot) {
-  const double footprint = footprint_in(snapshot);
-  Pooling pooling{0, snapshot.voxel_size};
+Pooling pooling_of(const GridSnapshot& snapshot, std::optional<int> scale) {
+  const double footprint = footprint_in(snapshot, scale);
+  Pooling pooling{scale.value_or(0), std::ldexp(snapshot.voxel_size, scale.value_or(0))};
   while (pooling.shift < kMostShift && pooling.length * std::numbers::sqrt2 < footprint) {
     ++pooling.shift;
     pooling.length *= 2;

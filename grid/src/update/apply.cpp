@@ -10,6 +10,7 @@
 
 #include "belief_merge.hpp"
 #include "map/grid_storage.hpp"
+#include "map/leaf_scales.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 struct RegionResult {
   std::vector<std::unique_ptr<CodeLeaf>> leaves;
   std::vector<std::pair<Index3, std::uint8_t>> tiles;
+  std::vector<std::pair<std::uint64_t, int>> scales;  // by key, of blocks that have got another
   ApplyCounts counts;
   bool changed = false;  // in what a snapshot tells
 };
@@ -48,6 +50,7 @@ struct BlockPlace {
   bool whole = true;  // is all of it in the workspace?
   CodeLeaf* leaf = nullptr;
   std::uint8_t tile_code = kUnknownCode;
+  int scale = 0;
 };
 
 /// Works off regions, on many threads at once: writes leaves and belief blocks of its own region
@@ -56,11 +59,13 @@ template <Evidence E>
 class RegionUpdate {
  public:
   RegionUpdate(GridStorage& storage, const PlacedFrame& frame, const E& evidence,
-               const FrameHits& hits, const BlockKernels& kernels, bool literal)
+               const FrameHits& hits, const ScalePlan& plan, const BlockKernels& kernels,
+               bool literal)
       : s_(storage),
         frame_(frame),
         evidence_(evidence),
         hits_(hits),
+        plan_(plan),
         kernels_(kernels),
         literal_(literal) {}
 
@@ -99,12 +104,19 @@ class RegionUpdate {
           may_be_tile(place.tile_code)) {
         cross_tile(place, result);
       } else {
+        if (!plan_.is_idle()) place.scale = scale_of(key, place, hit_block != nullptr);
         update_block(key, place, block_class, hit_block, result);
       }
     }
   }
 
  private:
+  // A block that is not hit has one if it holds something; FrameHits has given the others theirs.
+  [[nodiscard]] int scale_of(std::uint64_t key, const BlockPlace& place, bool is_hit) const {
+    const bool is_held = is_hit || place.leaf != nullptr || s_.beliefs.contains(key);
+    return is_held ? s_.scale(key) : plan_.of_new(place.origin);
+  }
+
   void cross_tile(const BlockPlace& place, RegionResult& result) const {
     const std::uint8_t code = updated_code(place.tile_code, kMissDelta, literal_);
     if (code != place.tile_code) result.tiles.emplace_back(place.origin, code);
@@ -117,7 +129,7 @@ class RegionUpdate {
     alignas(64) std::array<std::int8_t, kBlockVoxels> deltas;
     bool any = block_class == CubeClass::crossed;
     if (block_class == CubeClass::mixed) {
-      any = evidence_.deltas(key, place.origin, deltas.data());
+      any = evidence_.deltas(key, place.origin, place.scale, deltas.data());
     } else {
       deltas.fill(any ? kMissDelta : kNoDelta);
     }
@@ -126,22 +138,26 @@ class RegionUpdate {
       result.changed = true;
       put_hits(place, *hit_block, deltas.data(), result);
     }
-    put_codes(place, deltas.data(), result);
+    put_codes(key, place, deltas.data(), result);
   }
 
   void put_hits(const BlockPlace& place, const HitBlock& hit_block, std::int8_t* deltas,
                 RegionResult& result) const {
     LeafMask mask{};
     for (const Hit& hit : hits_.of(hit_block)) {
-      deltas[hit.offset] = kHitDelta;  // beats a crossing
       set_bit(mask, hit.offset);
     }
     result.counts.hit += count_bits(mask);
-    *hit_block.beliefs = with_hits(hit_block.beliefs->get(), hits_.of(hit_block), frame_.readings,
-                                   frame_.T_grid_readings, place.origin, s_.voxel_size);
+    for_each_bit(mask, [&](unsigned lowest) {  // beats a crossing
+      for_each_in_cell(lowest, place.scale, [&](unsigned offset) { deltas[offset] = kHitDelta; });
+    });
+    *hit_block.beliefs =
+        with_hits(hit_block.beliefs->get(), hits_.of(hit_block), frame_.readings,
+                  frame_.T_grid_readings, place.origin, s_.voxel_size, place.scale);
   }
 
-  void put_codes(const BlockPlace& place, const std::int8_t* deltas, RegionResult& result) const {
+  void put_codes(std::uint64_t key, const BlockPlace& place, const std::int8_t* deltas,
+                 RegionResult& result) const {
     alignas(64) std::array<std::uint8_t, kBlockVoxels> fresh;
     CodeLeaf* const leaf = place.leaf;
     std::uint8_t* codes = leaf != nullptr ? leaf->buffer().data() : fresh.data();
@@ -165,11 +181,15 @@ class RegionUpdate {
       if (leaf != nullptr || codes[0] != place.tile_code) {
         result.tiles.emplace_back(place.origin, codes[0]);
       }
+      if (leaf != nullptr && place.scale > 0 && !s_.beliefs.contains(key)) {
+        result.scales.emplace_back(key, 0);
+      }
       return;
     }
     if (leaf != nullptr) return;
     // At the rim of the workspace perhaps only because of voxels outside.
     result.changed = result.changed || is_non_free(place.tile_code);
+    if (place.scale != s_.scale(key)) result.scales.emplace_back(key, place.scale);
     result.leaves.push_back(std::make_unique<CodeLeaf>(to_coord(place.origin), kUnknownCode, true));
     CodeLeaf& made = *result.leaves.back();
     std::copy(fresh.begin(), fresh.end(), made.buffer().data());
@@ -180,6 +200,7 @@ class RegionUpdate {
   const PlacedFrame& frame_;
   const E& evidence_;
   const FrameHits& hits_;
+  const ScalePlan& plan_;
   const BlockKernels& kernels_;
   const bool literal_;
 };
@@ -238,6 +259,12 @@ void FrameApply::Impl::put_results(GridStorage& s) {
     result.tiles.clear();
   }
   for (std::size_t i = 0; i < regions.size(); ++i) {
+    for (const auto& [key, scale] : results[i].scales) {
+      s.put_scale(key, scale);
+    }
+    results[i].scales.clear();
+  }
+  for (std::size_t i = 0; i < regions.size(); ++i) {
     if (i + 1 < regions.size() && regions[i] >> 6U == regions[i + 1] >> 6U) continue;
     const openvdb::Coord origin = to_coord(s.lattice.origin(regions[i] << 6U));
     const auto* node = s.tree.probeConstNode<CodeNode>(origin);
@@ -261,6 +288,7 @@ void FrameApply::Impl::recover(GridStorage& s, FrameHits& hits) {
     drop_beliefs_of_unknown(s, s.lattice.origin(block.key), *found->second);
     if (found->second->beliefs.empty()) s.beliefs.erase(found);
   }
+  drop_idle_scales(s);
 }
 
 FrameApply::FrameApply(const BlockKernels& kernels, bool literal)
@@ -269,11 +297,11 @@ FrameApply::~FrameApply() = default;
 
 template <Evidence E>
 ApplyCounts FrameApply::run(BeliefGrid& grid, const PlacedFrame& frame, const E& evidence,
-                            FrameHits& hits, ThreadPool& pool) {
+                            FrameHits& hits, const ScalePlan& plan, ThreadPool& pool) {
   Impl& m = *impl_;
   GridStorage& s = GridAccess::storage(grid);
   list_regions(s.lattice, evidence, hits, m.regions);
-  const RegionUpdate<E> update(s, frame, evidence, hits, m.kernels, m.literal);
+  const RegionUpdate<E> update(s, frame, evidence, hits, plan, m.kernels, m.literal);
   const auto empty = std::make_shared<const BeliefBlock>();
   try {
     // Entries are made here, alone; the map's values do not move when it grows.
@@ -308,8 +336,8 @@ ApplyCounts FrameApply::run(BeliefGrid& grid, const PlacedFrame& frame, const E&
 }
 
 template ApplyCounts FrameApply::run(BeliefGrid&, const PlacedFrame&, const ConeEvidence&,
-                                     FrameHits&, ThreadPool&);
+                                     FrameHits&, const ScalePlan&, ThreadPool&);
 template ApplyCounts FrameApply::run(BeliefGrid&, const PlacedFrame&, const LineEvidence&,
-                                     FrameHits&, ThreadPool&);
+                                     FrameHits&, const ScalePlan&, ThreadPool&);
 
 }  // namespace viewgain::detail

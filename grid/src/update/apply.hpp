@@ -11,6 +11,7 @@
 #include "frame_hits.hpp"
 #include "line_evidence.hpp"
 #include "readings.hpp"
+#include "scale_plan.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
@@ -35,7 +36,7 @@ class FrameApply {
   /// LineEvidence.
   template <Evidence E>
   ApplyCounts run(BeliefGrid& grid, const PlacedFrame& frame, const E& evidence, FrameHits& hits,
-                  ThreadPool& pool);
+                  const ScalePlan& plan, ThreadPool& pool);
 
  private:
   struct Impl;

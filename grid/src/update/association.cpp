@@ -10,9 +10,9 @@ namespace viewgain::detail {
 namespace {
 
 constexpr std::size_t kPixelChunk = 1024, kBlockChunk = 16;
-constexpr double kStep = 0.5;    // along the ray [voxels]
+constexpr double kStep = 0.5;    // along the ray [cells]
 constexpr double kMargin = 2.0;  // by which another voxel must be better
-constexpr double kFarthest = 8;  // that is looked at; bounds the cost [voxels]
+constexpr double kFarthest = 8;  // that is looked at; bounds the cost [cells]
 
 }  // namespace
 
@@ -46,6 +46,7 @@ std::uint32_t VoxelSupport::Reader::at(Index3 voxel) {
   const std::uint64_t block = support_.lattice_->key(voxel);
   if (block != block_) {
     block_ = block;
+    scale_ = scale_of(*support_.map_, block);
     counts_ = nullptr;
     beliefs_ = nullptr;
     const std::vector<std::uint64_t>& blocks = support_.blocks_;
@@ -60,7 +61,7 @@ std::uint32_t VoxelSupport::Reader::at(Index3 voxel) {
       }
     }
   }
-  const unsigned offset = block_offset(voxel);
+  const unsigned offset = cell_offset(block_offset(voxel), scale_);
   if (counts_ != nullptr) return counts_[offset];
   if (beliefs_ == nullptr || !test_bit(occupied_, offset)) return 0;
   const Belief* belief = beliefs_->find(offset);
@@ -82,8 +83,10 @@ void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places
       const Eigen::Vector3d& p = places[i];
       const Eigen::Vector3d direction = R_grid_readings * pixels.direction(i);
       const double range = (pixels.point(i) - pixels.origin()).norm() / voxel_size;
-      const double reach = std::min(kTaperSigmas * sigma, kFarthest);
       double best = kMargin * before.at(*lattice.voxel_at(p));
+      const double cell = before.cell();
+      if (sigma < kNoisySigma * cell) continue;
+      const double reach = std::min(kTaperSigmas * sigma, kFarthest * cell);
       const auto look = [&](double t, VoxelSupport::Reader& reader) {
         const std::optional<Index3> voxel = lattice.voxel_at(p + t * direction);
         if (!voxel) return;
@@ -93,9 +96,10 @@ void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places
         hit.block = lattice.key(*voxel);
         hit.offset = block_offset(*voxel);
       };
-      for (int step = 1; step * kStep < reach; ++step) {
-        if (step * kStep < range) look(-step * kStep, before);
-        look(step * kStep, behind);
+      for (int step = 1; step * kStep * cell < reach; ++step) {
+        const double t = step * kStep * cell;
+        if (t < range) look(-t, before);
+        look(t, behind);
       }
     }
   });

@@ -33,11 +33,15 @@ class VoxelSupport {
   class Reader {
    public:
     explicit Reader(const VoxelSupport& support) : support_(support) {}
+    /// Of the voxel's cell.
     [[nodiscard]] std::uint32_t at(Index3 voxel);
+    /// An edge of the cell that was looked at last [voxels].
+    [[nodiscard]] int cell() const { return 1 << scale_; }
 
    private:
     const VoxelSupport& support_;
     std::uint64_t block_ = ~std::uint64_t{0};
+    int scale_ = 0;                          ///< of the block
     const std::uint32_t* counts_ = nullptr;  ///< of the block, where the frame hits it
     const BeliefBlock* beliefs_ = nullptr;   ///< else its beliefs, if it has any,
     LeafMask occupied_{};                    ///< of its occupied voxels
@@ -53,8 +57,8 @@ class VoxelSupport {
 
 /// Gives each noisy reading, which noise may have carried out of its voxel, to the voxel with the
 /// largest n · (1 - (t / reach)²): n its support, t the distance from the reading's place, one of
-/// `places` [voxels], along the ray, sought at half voxels' steps, reach 3 sigma_ax, at most 8
-/// voxels. It stays in its place's voxel unless another has more than twice its value; of equal
+/// `places` [voxels], along the ray, sought at half cells' steps, reach 3 sigma_ax, at most 8
+/// cells. It stays in its place's voxel unless another has more than twice its value; of equal
 /// ones the nearer counts, then the one nearer to the camera. Else the readings of one wall would
 /// fill all voxels within their noise. `by_pixel` holds the voxel of each place.
 void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places,

@@ -20,16 +20,17 @@ void add(float& sum, double term) {
 
 std::shared_ptr<const BeliefBlock> with_hits(const BeliefBlock* block, std::span<const Hit> hits,
                                              const Readings& pixels, const Pose& T_grid_readings,
-                                             Index3 origin, double voxel_size) {
+                                             Index3 origin, double voxel_size, int scale) {
   LeafMask mask = block != nullptr ? block->mask : LeafMask{};
   for (const Hit& hit : hits) set_bit(mask, hit.offset);
   auto result = reshaped(block, mask);
+  result->scale = static_cast<std::uint8_t>(scale);
 
   const Eigen::Matrix3d R_grid_readings = T_grid_readings.rotation();
   for (const Hit& hit : hits) {
     const Index3 voxel = offset_voxel(origin, hit.offset);
     const Eigen::Vector3d offset =
-        T_grid_readings * pixels.point(hit.pixel) - voxel_center(voxel, voxel_size);
+        T_grid_readings * pixels.point(hit.pixel) - voxel_center(voxel, voxel_size, scale);
     const SymmetricMatrix3 information = measurement_information(
         R_grid_readings * pixels.direction(hit.pixel), pixels.sigmas(hit.pixel));
     const Eigen::Vector3d vector = information * offset;

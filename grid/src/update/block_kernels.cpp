@@ -54,7 +54,7 @@ HWY_INLINE hn::Vec<decltype(di)> small_integer(VF value) {
 
 template <bool kDistorted>
 bool project(const ConeCamera& camera, const double* HWY_RESTRICT reach_taper, double voxel_size,
-             Index3 origin, std::int8_t* HWY_RESTRICT deltas) {
+             Index3 origin, int edge, std::int8_t* HWY_RESTRICT deltas) {
   const auto& T = camera.T_camera_grid;
   const VF zero = hn::Zero(df), half = hn::Set(df, 0.5), eight = hn::Set(df, 8.0);
   const VF none = hn::Set(df, kNoDelta);
@@ -65,14 +65,14 @@ bool project(const ConeCamera& camera, const double* HWY_RESTRICT reach_taper, d
   const auto step = static_cast<int>(hn::Lanes(df));
   bool any = false;
 
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < edge; ++i) {
     const double gx = (origin.x + i + 0.5) * voxel_size;
-    for (int j = 0; j < 8; ++j) {
+    for (int j = 0; j < edge; ++j) {
       const double gy = (origin.y + j + 0.5) * voxel_size;
       const VF row_x = hn::Set(df, T[0] * gx + T[1] * gy);
       const VF row_y = hn::Set(df, T[4] * gx + T[5] * gy);
       const VF row_z = hn::Set(df, T[8] * gx + T[9] * gy);
-      for (int k = 0; k < 8; k += step) {
+      for (int k = 0; k < edge; k += step) {
         std::int8_t* out = deltas + (i * 64 + j * 8 + k);
         const VF gz = hn::Mul(hn::Add(hn::Iota(df, origin.z + k), half), V);
         const VF px = hn::Add(hn::Add(row_x, hn::Mul(hn::Set(df, T[2]), gz)), hn::Set(df, T[3]));
@@ -117,9 +117,9 @@ bool project(const ConeCamera& camera, const double* HWY_RESTRICT reach_taper, d
 }
 
 bool project_any(const ConeCamera& camera, const double* reach_taper, double voxel_size,
-                 Index3 origin, std::int8_t* deltas) {
-  return camera.distorted ? project<true>(camera, reach_taper, voxel_size, origin, deltas)
-                          : project<false>(camera, reach_taper, voxel_size, origin, deltas);
+                 Index3 origin, int edge, std::int8_t* deltas) {
+  return camera.distorted ? project<true>(camera, reach_taper, voxel_size, origin, edge, deltas)
+                          : project<false>(camera, reach_taper, voxel_size, origin, edge, deltas);
 }
 
 void update(const std::int8_t* HWY_RESTRICT deltas, bool literal, std::uint8_t* HWY_RESTRICT codes,

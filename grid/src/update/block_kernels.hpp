@@ -37,12 +37,13 @@ struct BlockUpdate {
 /// Loops over the 512 voxels of a block in leaf order (z fastest), one set of functions for each
 /// instruction set. All give the same bits: + - × / sqrt, no fused multiply-add.
 struct BlockKernels {
-  /// Projects the voxel centres into the image. reach_taper holds two numbers a pixel: the range
+  /// Projects the voxel centres into the image, of the first `edge` along each axis; what stands in
+  /// `deltas` for the others holds no meaning. reach_taper holds two numbers a pixel: the range
   /// [m] that a centre must be nearer than to be crossed, and the length [m] before it over which a
   /// crossing loses its weight. deltas: 0..-8 steps, kNoDelta where nothing is said. False: nothing
   /// anywhere.
   bool (*project)(const ConeCamera& camera, const double* reach_taper, double voxel_size,
-                  Index3 origin, std::int8_t* deltas);
+                  Index3 origin, int edge, std::int8_t* deltas);
   /// Applies deltas to codes (log_odds_code.hpp).
   void (*update)(const std::int8_t* deltas, bool literal, std::uint8_t* codes, BlockUpdate& result);
 };

@@ -64,8 +64,7 @@ struct CloudIntegrator::Impl {
 
 CloudIntegrator::CloudIntegrator(const Sensor& sensor, const IntegrationConfig& config,
                                  const ExecConfig& exec)
-    : impl_(std::make_unique<Impl>(
-          Impl{config, MapUpdate(config.occupancy, exec), CloudPoints(sensor)})) {
+    : impl_(std::make_unique<Impl>(Impl{config, MapUpdate(config, exec), CloudPoints(sensor)})) {
   check_plane(config.support_plane);
 }
 CloudIntegrator::~CloudIntegrator() = default;

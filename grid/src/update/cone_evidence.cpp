@@ -23,4 +23,18 @@ std::vector<std::uint64_t> ConeEvidence::regions(const BlockLattice& lattice) co
   return regions;
 }
 
+// A cell's centre stands for it: the block's cells are voxels of a coarser lattice.
+bool ConeEvidence::deltas(std::uint64_t /*key*/, Index3 origin, int scale,
+                          std::int8_t* deltas) const {
+  const bool any = kernels_.project(
+      *camera_, readings_->reach_taper().data(), voxel_size_ * (1 << scale),
+      {origin.x >> scale, origin.y >> scale, origin.z >> scale}, kBlockSize >> scale, deltas);
+  // Spread downwards in place: a cell's entry lies before those of its voxels.
+  const auto s = static_cast<unsigned>(scale);
+  for (unsigned i = kBlockVoxels; scale > 0 && i-- > 0;) {
+    deltas[i] = deltas[(i >> 6U) >> s << 6U | (i >> 3U & 7U) >> s << 3U | (i & 7U) >> s];
+  }
+  return any;
+}
+
 }  // namespace viewgain::detail

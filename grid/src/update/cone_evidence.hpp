@@ -28,9 +28,8 @@ class ConeEvidence {
   [[nodiscard]] CubeClass classify(Index3 origin, int size) const {
     return cull_->classify(origin, size);
   }
-  [[nodiscard]] bool deltas(std::uint64_t /*key*/, Index3 origin, std::int8_t* deltas) const {
-    return kernels_.project(*camera_, readings_->reach_taper().data(), voxel_size_, origin, deltas);
-  }
+  [[nodiscard]] bool deltas(std::uint64_t /*key*/, Index3 origin, int scale,
+                            std::int8_t* deltas) const;
 
  private:
   const BlockKernels& kernels_;

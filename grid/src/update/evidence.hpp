@@ -21,14 +21,15 @@ enum class CubeClass : std::uint8_t {
 /// the two ways of carving. They offer:
 /// - regions(): the regions in which a voxel may be crossed, in rising order;
 /// - classify(): of the cube [origin, origin + size) as a whole;
-/// - deltas(): of the 512 voxels of the block with this key and origin, in steps of the log-odds,
-///   kNoDelta where nothing is said; false if nothing is said anywhere.
+/// - deltas(): of the 512 voxels of the block with this key, origin and scale, in steps of the
+///   log-odds, kNoDelta where nothing is said, the same in all of a cell; false if nothing is said
+///   anywhere.
 template <typename T>
 concept Evidence = requires(const T& evidence, const BlockLattice& lattice, std::uint64_t key,
-                            Index3 origin, int size, std::int8_t* deltas) {
+                            Index3 origin, int size, int scale, std::int8_t* deltas) {
   { evidence.regions(lattice) } -> std::same_as<std::vector<std::uint64_t>>;
   { evidence.classify(origin, size) } -> std::same_as<CubeClass>;
-  { evidence.deltas(key, origin, deltas) } -> std::same_as<bool>;
+  { evidence.deltas(key, origin, scale, deltas) } -> std::same_as<bool>;
 };
 
 }  // namespace viewgain::detail

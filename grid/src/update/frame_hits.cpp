@@ -79,6 +79,17 @@ void FrameHits::associate(const PlacedFrame& frame, const BlockLattice& lattice,
   sort();
 }
 
+void FrameHits::use_cells(const ScalePlan& plan, BeliefGrid& map) {
+  if (plan.is_idle()) return;
+  for (const HitBlock& block : blocks_) {
+    plan.set(map, block.key);
+    const int scale = scale_of(map, block.key);
+    for (std::uint32_t i = block.begin; i < block.end; ++i) {
+      hits_[i].offset = cell_offset(hits_[i].offset, scale);
+    }
+  }
+}
+
 void FrameHits::sort() {
   hits_.clear();
   for (const Hit& hit : by_pixel_) {

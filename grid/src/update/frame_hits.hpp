@@ -9,6 +9,7 @@
 #include "association.hpp"
 #include "hit.hpp"
 #include "readings.hpp"
+#include "scale_plan.hpp"
 #include "viewgain/support/block_lattice.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
@@ -24,6 +25,10 @@ class FrameHits {
   /// After find(): noisy readings count for the best supported voxel along their ray (associate()).
   void associate(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
                  const BeliefGrid& map, ThreadPool& pool);
+
+  /// Gives the blocks that are hit the scales of the plan, and the hits to their cells. Blocks of
+  /// the map become finer by it.
+  void use_cells(const ScalePlan& plan, BeliefGrid& map);
 
   [[nodiscard]] std::size_t size() const { return hits_.size(); }
   [[nodiscard]] std::span<const Hit> of(const HitBlock& block) const {

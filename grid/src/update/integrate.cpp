@@ -31,8 +31,7 @@ struct FrameIntegrator::Impl {
 
 FrameIntegrator::FrameIntegrator(const Sensor& sensor, const IntegrationConfig& config,
                                  const ExecConfig& exec)
-    : impl_(std::make_unique<Impl>(
-          Impl{config, MapUpdate(config.occupancy, exec), FramePixels(sensor)})) {
+    : impl_(std::make_unique<Impl>(Impl{config, MapUpdate(config, exec), FramePixels(sensor)})) {
   check_plane(config.support_plane);
 }
 FrameIntegrator::~FrameIntegrator() = default;

@@ -45,7 +45,8 @@ std::vector<std::uint64_t> LineEvidence::regions(const BlockLattice& /*lattice*/
   return regions;
 }
 
-bool LineEvidence::deltas(std::uint64_t key, Index3 /*origin*/, std::int8_t* deltas) const {
+bool LineEvidence::deltas(std::uint64_t key, Index3 /*origin*/, int scale,
+                          std::int8_t* deltas) const {
   LineMarks::Block strongest{};
   bool any = false;
   for (const LineMarks& marks : marks_) {
@@ -55,7 +56,12 @@ bool LineEvidence::deltas(std::uint64_t key, Index3 /*origin*/, std::int8_t* del
     for (std::size_t i = 0; i < kBlockVoxels; ++i)
       strongest[i] = std::max(strongest[i], (*block)[i]);
   }
-  for (std::size_t i = 0; i < kBlockVoxels; ++i) {
+  for (unsigned i = 0; any && scale > 0 && i < kBlockVoxels; ++i) {
+    std::uint8_t& of_cell = strongest[cell_offset(i, scale)];
+    of_cell = std::max(of_cell, strongest[i]);
+  }
+  for (unsigned i = 0; i < kBlockVoxels; ++i) {
+    strongest[i] = strongest[cell_offset(i, scale)];
     deltas[i] = strongest[i] == 0 ? kNoDelta : static_cast<std::int8_t>(1 - strongest[i]);
   }
   return any;

@@ -23,7 +23,7 @@ class LineEvidence {
   [[nodiscard]] static CubeClass classify(Index3 /*origin*/, int /*size*/) {
     return CubeClass::mixed;
   }
-  [[nodiscard]] bool deltas(std::uint64_t key, Index3 origin, std::int8_t* deltas) const;
+  [[nodiscard]] bool deltas(std::uint64_t key, Index3 origin, int scale, std::int8_t* deltas) const;
 
  private:
   std::vector<LineMarks> marks_;  ///< one per thread

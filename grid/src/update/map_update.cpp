@@ -6,17 +6,20 @@
 #include "cone_evidence.hpp"
 #include "frame_hits.hpp"
 #include "line_evidence.hpp"
+#include "scale_plan.hpp"
 
 namespace viewgain::detail {
 
 struct MapUpdate::Impl {
-  Impl(IntegrationConfig::Occupancy occupancy, const ExecConfig& exec, const BlockKernels& kernels)
-      : literal(occupancy == IntegrationConfig::Occupancy::literal),
+  Impl(const IntegrationConfig& config, const ExecConfig& exec, const BlockKernels& kernels)
+      : literal(config.occupancy == IntegrationConfig::Occupancy::literal),
+        plan(config),
         pool(exec.num_threads),
         cones(kernels),
         apply(kernels, literal) {}
 
   bool literal;
+  ScalePlan plan;
   ThreadPool pool;
   ConeEvidence cones;
   LineEvidence lines;
@@ -24,8 +27,8 @@ struct MapUpdate::Impl {
   FrameApply apply;
 };
 
-MapUpdate::MapUpdate(IntegrationConfig::Occupancy occupancy, const ExecConfig& exec)
-    : impl_(std::make_unique<Impl>(occupancy, exec, block_kernels(select_isa()))) {}
+MapUpdate::MapUpdate(const IntegrationConfig& config, const ExecConfig& exec)
+    : impl_(std::make_unique<Impl>(config, exec, block_kernels(select_isa()))) {}
 MapUpdate::~MapUpdate() = default;
 MapUpdate::MapUpdate(MapUpdate&&) noexcept = default;
 MapUpdate& MapUpdate::operator=(MapUpdate&&) noexcept = default;
@@ -38,14 +41,19 @@ IntegrationReport MapUpdate::run(BeliefGrid& grid, const PlacedFrame& frame,
   const BlockLattice lattice(grid.min_index(), grid.dims());
   const double voxel_size = grid.voxel_size();
   m.hits.find(frame, lattice, voxel_size, !m.literal, m.pool);
-  if (!m.literal) m.hits.associate(frame, lattice, voxel_size, grid, m.pool);
+  m.plan.look(frame, grid);
+  m.hits.use_cells(m.plan, grid);
+  if (!m.literal) {
+    m.hits.associate(frame, lattice, voxel_size, grid, m.pool);
+    m.hits.use_cells(m.plan, grid);
+  }
   ApplyCounts counts;
   if (camera != nullptr) {
     m.cones.gather(frame.readings, *camera, voxel_size);
-    counts = m.apply.run(grid, frame, m.cones, m.hits, m.pool);
+    counts = m.apply.run(grid, frame, m.cones, m.hits, m.plan, m.pool);
   } else {
     m.lines.gather(frame, lattice, voxel_size, m.pool);
-    counts = m.apply.run(grid, frame, m.lines, m.hits, m.pool);
+    counts = m.apply.run(grid, frame, m.lines, m.hits, m.plan, m.pool);
   }
 
   IntegrationReport report;

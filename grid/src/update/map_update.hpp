@@ -15,7 +15,8 @@ namespace viewgain::detail {
 /// apply (grid/README.md).
 class MapUpdate {
  public:
-  MapUpdate(IntegrationConfig::Occupancy occupancy, const ExecConfig& exec);
+  /// Throws as FrameIntegrator's constructor for scales that it refuses.
+  MapUpdate(const IntegrationConfig& config, const ExecConfig& exec);
   ~MapUpdate();
   MapUpdate(MapUpdate&&) noexcept;
   MapUpdate& operator=(MapUpdate&&) noexcept;

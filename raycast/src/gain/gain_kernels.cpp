@@ -130,6 +130,7 @@ void look_up(const GridSnapshot::Leaf* const* leaves, const std::uint32_t* offse
   constexpr std::size_t kAhead = 32;
   static constexpr Belief kNothing{};
   const Belief* found[kAhead];
+  double shares[kAhead];
   constexpr hn::CappedTag<double, 4> d;
   constexpr hn::Rebind<float, decltype(d)> half;
   for (std::size_t begin = 0; begin < count; begin += kAhead) {
@@ -138,6 +139,7 @@ void look_up(const GridSnapshot::Leaf* const* leaves, const std::uint32_t* offse
       const BeliefBlock* block = leaves[begin + i]->beliefs.get();
       const Belief* belief = block != nullptr ? block->find(offsets[begin + i]) : nullptr;
       found[i] = belief != nullptr ? belief : &kNothing;
+      shares[i] = belief != nullptr ? surface_share(block->scale) : 1.0;
       __builtin_prefetch(found[i]);
     }
     for (std::size_t i = 0; i < n; ++i) {
@@ -145,10 +147,11 @@ void look_up(const GridSnapshot::Leaf* const* leaves, const std::uint32_t* offse
       double* a = known_a[begin + i].value;
       double* b = known_b[begin + i].value;
       for (std::size_t k = 0; k < 4; k += hn::MaxLanes(d)) {
-        hn::Store(hn::PromoteTo(d, hn::LoadU(half, information + k)), d, a + k);
+        const auto wide = hn::PromoteTo(d, hn::LoadU(half, information + k));
+        hn::Store(hn::Mul(wide, hn::Set(d, shares[i])), d, a + k);
       }
-      b[0] = static_cast<double>(information[4]);
-      b[1] = static_cast<double>(information[5]);
+      b[0] = static_cast<double>(information[4]) * shares[i];
+      b[1] = static_cast<double>(information[5]) * shares[i];
       b[2] = b[3] = 0;
     }
   }

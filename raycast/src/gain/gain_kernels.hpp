@@ -84,7 +84,8 @@ struct GainKernels {
   /// of its voxel, and what stood there is forgotten; else it is all ones.
   void (*accumulate)(const HitBatch& batch, const std::uint32_t* places, const std::uint64_t* keep,
                      VoxelSum* sums);
-  /// Λ_v of occupied voxels: voxel i is the one at offsets[i] of leaves[i]; zero without a belief.
+  /// Λ_v of occupied voxels: voxel i is the one at offsets[i] of leaves[i]; its share of
+  /// its cell's (surface_share()); zero without a belief.
   void (*look_up)(const GridSnapshot::Leaf* const* leaves, const std::uint32_t* offsets,
                   std::size_t count, MatrixHalf* known_a, MatrixHalf* known_b);
   /// What the members gain and what stays. Multiplies the ratios whose logarithms, halved, are

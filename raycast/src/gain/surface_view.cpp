@@ -277,7 +277,7 @@ double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& informa
   const GridSnapshot::Leaf* leaf = scene_.snapshot.find_leaf(voxel);
   if (leaf != nullptr && leaf->beliefs) {
     if (const Belief* belief = leaf->beliefs->find(block_offset(voxel)))
-      before += belief->information_matrix();
+      before += belief->information_matrix() * surface_share(leaf->beliefs->scale);
   }
   const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
   const double weight =

@@ -99,6 +99,8 @@ static void of_grids(const char* folder) {
   CHECK_REFUSED(vg_grid_set(map, dims, NULL, 1), "log_odds is null");
   CHECK_REFUSED(vg_grid_set(map, vast, &log_odds, 1), "workspace");
   CHECK_REFUSED(vg_grid_forget(map, point, NULL, NULL), "max is null");
+  CHECK_REFUSED(vg_grid_scale(map, dims, 1, NULL), "scales is null");
+  CHECK_REFUSED(vg_grid_resample(map, point, point, 4, NULL), "scale 4");
   CHECK_REFUSED(vg_grid_update_box(map, dims, dims, NULL, NULL), "labels is null");
   CHECK_REFUSED(vg_grid_update_box(map, vast, dims, states, NULL), "workspace");
   CHECK_REFUSED(vg_grid_occupied(map, NULL, NULL, 1, &found), "voxels is null");

@@ -53,6 +53,7 @@ static void sensors_and_grids(const char* folder) {
   const double nowhere[3] = {-INFINITY, -INFINITY, -INFINITY};
   const double everywhere[3] = {INFINITY, INFINITY, INFINITY};
   uint64_t forgotten = 0;
+  uint8_t scales[2];
   size_t found = 0;
 
   vg_sensor_init(&sensor, sizeof sensor);
@@ -91,6 +92,12 @@ static void sensors_and_grids(const char* folder) {
   CHECK(states[15 * MAP_EDGE + 4] == 1);
   CHECK_OK(vg_grid_occupied(copy, voxels[0], log_odds, 2, &found));
   CHECK(voxels[0][2] == 4 && voxels[1][2] == 4 && log_odds[1] > 0.8F);
+  CHECK_OK(vg_grid_scale(copy, voxels[0], 2, scales));
+  CHECK(scales[0] == 0 && scales[1] == 0);
+  CHECK_OK(vg_grid_resample(copy, nowhere, everywhere, 1, &forgotten));
+  CHECK_OK(vg_grid_scale(copy, voxels[0], 2, scales));
+  CHECK(forgotten > 0 && scales[0] <= 1);
+  CHECK_OK(vg_grid_resample(copy, nowhere, everywhere, 0, NULL));
   CHECK_OK(vg_grid_forget(copy, nowhere, everywhere, &forgotten));
   CHECK_OK(vg_grid_get_info(copy, &info));
   CHECK(forgotten > 50 && info.unknown == MAP_VOXELS && info.occupied == 0);

@@ -265,6 +265,33 @@ def test_a_region_is_forgotten(sensor):
         grid.forget([0, 0, 0])
 
 
+def test_leaves_have_scales(sensor):
+    box = [[-0.32, -0.32, -0.32], [0.32, 0.32, 0.32]]
+    depth = np.full((sensor.height, sensor.width), 0.5)
+    pose = np.eye(4)
+    pose[2, 3] = -0.5
+    hits = []
+    for coarsest, fine in [(0, ()), (3, ()), (3, [box])]:
+        grid = viewgain.BeliefGrid(voxel_size=0.001, workspace=box, sensor=sensor)
+        integrator = viewgain.FrameIntegrator(sensor, coarsest=coarsest, fine=fine)
+        report = integrator.integrate(grid, depth, pose)
+        voxels = grid.occupied()["voxel"]
+        scales = grid.scale(voxels)
+        assert scales.dtype == np.uint8 and scales.shape == voxels.shape[:1]
+        assert np.count_nonzero(scales) > 100 if coarsest and not fine else np.all(scales == 0)
+        hits.append(np.sum(grid.beliefs()["hits"]))
+        assert hits[-1] == report.readings_inside > 1000
+    assert len(set(hits)) == 1
+    assert grid.resample(np.array(box) * np.inf, 2) > 0 and np.all(grid.scale(grid.occupied()["voxel"]) == 2)
+    assert np.sum(grid.beliefs()["hits"]) == hits[0]
+    with pytest.raises(ValueError, match="scale 4"):
+        grid.resample(box, 4)
+    with pytest.raises(ValueError, match="coarsest scale 5"):
+        viewgain.CloudIntegrator(sensor, coarsest=5)
+    with pytest.raises(ValueError, match="fine"):
+        viewgain.FrameIntegrator(sensor, fine=[[0, 1]])
+
+
 def test_obstacles_block(grid, sensor, poses):
     plain = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor, pixel_stride=4)
     wall = np.array([[[0.3, -1, -1], [0.4, 1, 1]]])

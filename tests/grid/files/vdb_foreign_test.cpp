@@ -139,6 +139,37 @@ TEST_F(ForeignVdb, HitsBeyondWhatAFloatHoldsAreKept) {
   });
 }
 
+TEST_F(ForeignVdb, ScalesMustBeThoseOfStatesAndBeliefs) {
+  using openvdb::FloatGrid;
+  BeliefGrid grid = small_map();
+  grid.resample({{0, 0, 0}, {0.8, 0.4, 0.4}}, 2);  // of leaves that end at voxels 8 and 16
+  save_vdb(grid, path());
+  ASSERT_EQ(grid.scale({3, 3, 3}), 2);
+  const std::string hash = grid.content_hash();
+  EXPECT_EQ(load_vdb(rewritten([](Contents&) {})).content_hash(), hash);
+  EXPECT_EQ(load_vdb(rewritten([](Contents& c) {
+              c.grid<FloatGrid>("scale").tree().voxelizeActiveTiles();
+              c.grid<FloatGrid>("scale").tree().fill({{8, 8, 8}, {19, 11, 11}}, 0, false);
+            })).content_hash(),
+            hash);
+  const auto refused = [&](const std::function<void(openvdb::FloatTree&)>& change) {
+    expect_refused("grid 'scale': the leaf of voxel",
+                   [&](Contents& c) { change(c.grid<FloatGrid>("scale").tree()); });
+  };
+  for (const float value : {0.0F, -1.0F, 1.5F, 3.0F, 4.0F, std::nanf("")}) {
+    refused([&](auto& tree) { tree.fill({{0, 0, 0}, {7, 7, 7}}, value); });
+  }
+  refused([](auto& tree) { tree.setValueOff({3, 3, 3}); });
+  refused([](auto& tree) { tree.setValueOn({3, 3, 3}, 1.0F); });
+  refused([](auto& tree) { tree.fill({{16, 0, 0}, {19, 7, 7}}, 3.0F); });  // does not fit
+  refused([](auto& tree) { tree.fill({{16, 0, 0}, {19, 7, 7}}, 1.0F); });  // nor do its beliefs
+  expect_refused("no grid 'scale'", [](Contents& c) { c.remove("scale"); });
+  expect_refused("grid 'scale': the leaf of voxel [0, 0, 0]", [](Contents& c) {
+    c.grid<FloatGrid>("log_odds").tree().setValueOn({1, 1, 1}, 0.5F);
+    c.grid<FloatGrid>("state").tree().setValueOn({1, 1, 1}, 2.0F);
+  });
+}
+
 TEST_F(ForeignVdb, MissingPartsAndWrongTypesAreNamed) {
   for (const char* name : {"viewgain_version", "voxel_size", "prior_sigma", "workspace_min",
                            "workspace_max", "T_world_grid", "views"}) {
@@ -169,7 +200,7 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
     });
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const std::int32_t version : {0, 1, 3}) {
+  for (const std::int32_t version : {0, 1, 4}) {
     metadata("has viewgain_version " + std::to_string(version) + ", this program reads 2",
              "viewgain_version", openvdb::Int32Metadata(version));
   }

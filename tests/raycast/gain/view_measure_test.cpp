@@ -349,7 +349,7 @@ TEST(RayOutcomes, AreThoseOfTheOraclesRays) {
       ++cases;
     }
   }
-  EXPECT_EQ(cases, 28);
+  EXPECT_EQ(cases, 32);
   EXPECT_LE(off, rays / 1000) << "of " << rays;
   for (const std::uint32_t count : {seen.too_near, seen.unknown, seen.known_surface, seen.obstacle,
                                     seen.out_of_range, seen.out_of_map}) {

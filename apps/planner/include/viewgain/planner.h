@@ -69,6 +69,9 @@ typedef struct vg_planner_config {
   uint64_t take;
   double stop_gain, stop_area; /* NaN: the defaults of the gain; 0: never */
   int32_t tracer;              /* VG_TRACER_AUTOMATIC; never changes a result */
+  int32_t coarsest;            /* scales, as in vg_integrator_config: 0 */
+  const double* fine;          /* boxes in which scales stay 0 */
+  size_t fine_count;           /* how many boxes */
 } vg_planner_config;
 /* The defaults. */
 VG_API void vg_planner_config_init(vg_planner_config* config, size_t struct_size);

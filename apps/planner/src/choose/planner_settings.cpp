@@ -9,6 +9,7 @@ namespace viewgain::detail {
 MapModelConfig map_config(const PlannerConfig& config) {
   MapModelConfig map;
   map.grid = config.grid;
+  map.integration = config.integration;
   map.jump_edges = config.jump_edges;
   map.surroundings = config.surroundings;
   map.hazard = config.hazard;

@@ -16,6 +16,7 @@
 
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/gain_names.hpp"
+#include "program/cli/flags/map_scales.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
@@ -49,6 +50,7 @@ struct Options {
   double voxel = 0;
   std::string workspace;
   std::string jump_edge_filter = "5";
+  ScaleOptions scales;
   std::string gain = default_gain();
   std::optional<double> object_size;
   std::string hazard;
@@ -74,6 +76,7 @@ PlannerConfig planner_config(const Options& options) {
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
   config.surroundings = {obstacles_of(options.obstacles), options.support_plane};
   config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
+  options.scales.set(config.integration);
   config.gain.model = parse_gain_model(options.gain);
   if (config.gain.model == GainModel::paper && (options.object_size || !options.hazard.empty())) {
     refuse("--object-size and --hazard go with --gain surface or combined");
@@ -350,6 +353,7 @@ Command add_follow(App& program) {
   app->add_option("--sensor", o.frames.sensor, kSensorHelp + "; default: FRAMES_DIR/sensor.toml");
   add_frame_folder_options(*app, o.frames);
   app->add_option("--jump-edge-filter", o.jump_edge_filter, kJumpEdgeHelp)->capture_default_str();
+  add_scale_options(*app, o.scales);
   app->add_option("--gain", o.gain,
                   "that views are ranked by: paper, surface or combined, as in score")
       ->capture_default_str()

@@ -22,6 +22,7 @@ MapModelConfig config_of(const FrameFolder& folder, const FrameMapOptions& optio
   MapModelConfig config;
   config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
   config.surroundings = {obstacles_of(proposal.obstacles), proposal.support_plane};
+  options.scales.set(config.integration);
   config.refine = options.refine;
   config.grid.voxel_size = options.voxel;
   config.grid.workspace = options.workspace.empty()
@@ -69,6 +70,7 @@ void add_frame_map_options(App& app, FrameMapOptions& options) {
                  "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what the frames see");
   app.add_option("--jump-edge-filter", options.jump_edge_filter, kJumpEdgeHelp)
       ->capture_default_str();
+  add_scale_options(app, options.scales);
   add_frame_folder_options(app, options.folder);
 }
 

@@ -10,6 +10,7 @@
 
 #include "program/cli/app.hpp"
 #include "program/cli/flags/frame_folder.hpp"
+#include "program/cli/flags/map_scales.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
 #include "viewgain/core/exec_config.hpp"
@@ -23,13 +24,15 @@ struct FrameMapOptions {
   double voxel = 0;
   std::string workspace;
   std::string jump_edge_filter = "5";
+  ScaleOptions scales;
   bool refine = true;
 };
 
 /// Is this a folder, and so no map and no mesh?
 [[nodiscard]] bool is_frame_folder(const std::filesystem::path& path);
 
-/// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter and those of a folder.
+/// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter, --coarsest, --fine and those of
+/// a folder.
 void add_frame_map_options(App& app, FrameMapOptions& options);
 
 /// The workspace for what the frames see, but for the pixels that --jump-edge-filter takes; reads

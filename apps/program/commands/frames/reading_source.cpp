@@ -25,6 +25,7 @@ IntegrationConfig config_of(const IntegrateOptions& options) {
   config.carve =
       options.carve == "cones" ? IntegrationConfig::Carve::cones : IntegrationConfig::Carve::lines;
   config.occupancy = options.occupancy_rule();
+  options.scales.set(config);
   return config;
 }
 
@@ -109,15 +110,19 @@ Sensor sensor_of(const IntegrateOptions& options) {
   return load_sensor(options.frames.sensor);
 }
 
+IntegrationConfig cloud_config(const IntegrateOptions& options) {
+  IntegrationConfig config = config_of(options);
+  config.support_plane = options.support_plane;
+  return config;
+}
+
 class CloudSource : public ReadingSource {
  public:
   explicit CloudSource(const IntegrateOptions& options)
       : files_(options.clouds),
         sensor_(sensor_of(options)),
         support_plane_(options.support_plane),
-        integrator_(sensor_,
-                    {.occupancy = options.occupancy_rule(), .support_plane = options.support_plane},
-                    {options.common.threads}) {
+        integrator_(sensor_, cloud_config(options), {options.common.threads}) {
     if (options.poses.empty()) {
       if (options.origin == "viewpoint") return;
       const std::vector<double> at = parse_numbers("--origin", options.origin, 3, 3);

@@ -12,6 +12,7 @@
 
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/frame_folder.hpp"
+#include "program/cli/flags/map_scales.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
@@ -34,6 +35,7 @@ struct IntegrateOptions {
   std::string carve = "cones";
   std::string occupancy = "probabilistic";
   std::string jump_edge_filter = "5";
+  ScaleOptions scales;
   std::optional<double> support_plane;
   std::vector<std::string> obstacles;
   std::string calibrate_hazard = "on";

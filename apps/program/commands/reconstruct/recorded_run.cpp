@@ -162,7 +162,9 @@ class Recording {
     write_surfaces(moment.model, folder.file("surface.ply"), folder.file("points.ply"));
     write_tum(folder.file("views.txt"), moment.model.grid().views());
     write_tum(folder.file("next.txt"), poses_of(next_));
-    Json run = run_head(settings());
+    Json how = settings();
+    how.update(options_.frames.scales.settings());
+    Json run = run_head(how);
     run.update(views_->json(moment.model, next_));
     write_file_atomically(folder.file("run.json"), json_text(run));
     if (options_.outputs.with_report()) {

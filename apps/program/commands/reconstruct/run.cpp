@@ -78,6 +78,7 @@ SurfaceModelConfig model_config(const ReconstructOptions& options, const Stage& 
   config.surroundings = {obstacles_of(options.obstacles), options.sensing.support_plane};
   config.criterion = parse_criterion(options.criterion);
   config.refine = options.refine == "on";
+  options.scales.set(config.integration);
   config.hazard = hazard_source(options.hazard, options.object_size, BeliefGrid(config.grid));
   return model;
 }
@@ -230,6 +231,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.planning = planning_config(options, setup.policy);
   setup.settings = settings_json(options, resolved_settings(options, setup));
   if (!options.obstacles.empty()) setup.settings["obstacles"] = options.obstacles;
+  setup.settings.update(options.scales.settings());
   if (const PlanAhead& ahead = setup.policy.ahead; ahead.is_on()) {
     setup.settings.update(Json{{"plan", ahead.plan}, {"take", ahead.take}});
   }

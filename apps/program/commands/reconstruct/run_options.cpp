@@ -166,6 +166,7 @@ void add_options(App& app, ReconstructOptions& o) {
   o.sensing.noise = "on";
   const OptionDeclaration declaration(app);
   describe(o, declaration);
+  add_scale_options(app, o.scales);
   add_output_options(app, o.outputs);
   add_trace_option(app, o.common);
   add_common_options(app, o.common);

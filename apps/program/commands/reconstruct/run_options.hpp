@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "program/cli/flags/common_options.hpp"
+#include "program/cli/flags/map_scales.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/json.hpp"
@@ -69,6 +70,7 @@ struct ReconstructOptions {
   RegistrationOptions registration;
   std::size_t frames_per_view = 1;
   std::string jump_edge_filter = "5";
+  ScaleOptions scales;
   std::string refine = "on";
   RunOutputs outputs;
 };

@@ -78,6 +78,18 @@ py::array_t<double> center(const SharedGrid& grid, const py::object& voxels) {
   return centers;
 }
 
+py::array_t<std::uint8_t> scale(const SharedGrid& grid, const py::object& voxels) {
+  const Doubles array = items(voxels, "voxels", {3});
+  const std::vector<Index3> indices = indices_of(array);
+  py::array_t<std::uint8_t> scales(leading_shape(array, 1));
+  std::uint8_t* const out = scales.mutable_data();
+  grid.read([&](const BeliefGrid& g) {
+    std::transform(indices.begin(), indices.end(), out,
+                   [&](Index3 v) { return static_cast<std::uint8_t>(g.scale(v)); });
+  });
+  return scales;
+}
+
 void set(SharedGrid& grid, const py::object& voxels, const py::object& log_odds) {
   const Doubles array = items(voxels, "voxels", {3});
   const std::vector<Index3> indices = indices_of(array);
@@ -175,8 +187,46 @@ Returns
 -------
 int
     How many of the voxels were known.)")
+      .def("scale", &scale, py::arg("voxels"),
+           R"(How large the cells are as which voxels are known. Cost: linear in the voxels.
+
+Parameters
+----------
+voxels : array_like, (..., 3), whole numbers
+    On the lattice.
+
+Returns
+-------
+ndarray, (...), uint8
+    s, 0 to 3: a cell of 2**s voxels an edge has one state and one belief; 0 outside the workspace.)")
+      .def(
+          "resample",
+          [](SharedGrid& grid, const py::object& region, int to) {
+            const Box bounds = box(region, "region");
+            std::uint64_t count = 0;
+            grid.write([&](BeliefGrid& g) { count = g.resample(bounds, to); });
+            return count;
+          },
+          py::arg("region"), py::arg("scale"),
+          R"(Gives leaves of 8**3 voxels cells of another size; hits and information of larger cells are sums.
+
+What goes to smaller cells goes to the one that holds the mean of the readings; what else was occupied
+with it becomes unknown. Cost: grows with the map's blocks of voxels.
+
+Parameters
+----------
+region : array_like, (2, 3)
+    Lowest and highest corner of a box in the grid's frame [m]; bounds may be infinite. All leaves that it
+    touches.
+scale : int
+    0 to 3: of 2**scale voxels an edge.
+
+Returns
+-------
+int
+    How many leaves have changed.)")
       .def("occupied", &occupied,
-           R"(The occupied voxels; equal maps give the same order.
+           R"(The occupied voxels, of a larger cell the lowest; equal maps give the same order.
 
 Returns
 -------

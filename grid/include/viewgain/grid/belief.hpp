@@ -17,11 +17,13 @@
 
 namespace viewgain {
 
-/// What readings have said about one voxel, in single precision as in the map files, grid frame.
+/// What readings have said about one voxel, or a cell of them, in single precision as in the map
+/// files, grid frame.
 struct VIEWGAIN_EXPORT Belief {
-  std::array<float, 6> information{};         ///< Λ_v: xx yy zz xy xz yz [m⁻²]
-  std::array<float, 3> information_vector{};  ///< η_v = Σ Λ_r (p_r - voxel centre) [m⁻¹]
-  std::uint32_t hits = 0;                     ///< readings that ended here
+  std::array<float, 6> information{};  ///< Λ_v: xx yy zz xy xz yz [m⁻²]
+  /// η_v = Σ Λ_r (p_r - centre of the voxel, or of its cell) [m⁻¹]
+  std::array<float, 3> information_vector{};
+  std::uint32_t hits = 0;  ///< readings that ended here
 
   /// Λ_v in double precision [m⁻²].
   [[nodiscard]] SymmetricMatrix3 information_matrix() const {
@@ -42,6 +44,17 @@ struct VIEWGAIN_EXPORT Belief {
 [[nodiscard]] inline unsigned block_offset(Index3 voxel) {
   return static_cast<unsigned>((voxel.x & 7) << 6 | (voxel.y & 7) << 3 | (voxel.z & 7));
 }
+
+/// The offset of the lowest voxel of the cell that holds the voxel at `offset`: a leaf of scale s,
+/// 0 to 3, has one belief for each cell of 2^s voxels an edge, kept at that voxel.
+[[nodiscard]] inline unsigned cell_offset(unsigned offset, int scale) {
+  const unsigned kept = 7U << static_cast<unsigned>(scale) & 7U;
+  return offset & (kept << 6U | kept << 3U | kept);
+}
+
+/// What each voxel has of its cell's information, as far as the cell is a piece of surface, of
+/// 4^scale voxels.
+[[nodiscard]] inline double surface_share(int scale) { return 1.0 / (1 << 2 * scale); }
 
 /// One bit per voxel of an 8³ leaf: word x, bit y << 3 | z (OpenVDB's order).
 using LeafMask = std::array<std::uint64_t, 8>;

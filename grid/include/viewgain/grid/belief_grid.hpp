@@ -47,6 +47,10 @@ struct VIEWGAIN_EXPORT GridConfig {
 /// 0.05 within [-2, 3.5]: occupied above 0, else free. A voxel that was ever hit has a Belief,
 /// which it keeps when it turns free.
 ///
+/// Each 8³ leaf of the lattice has a scale s, 0 to 3: its voxels are known by cells of 2^s voxels
+/// an edge. A cell has one state, one log-odds and one belief. What reads or sets a voxel reads or
+/// sets its cell. A new map has scale 0 everywhere.
+///
 /// Thread safety: const members may run from many threads at once; nothing may run beside a
 /// non-const member. Snapshots are independent of the grid once taken. Members that refuse a value
 /// say so; the others take any. Members that look at one voxel cost constant time.
@@ -54,7 +58,7 @@ class VIEWGAIN_EXPORT BeliefGrid {
  public:
   /// A known voxel: what set() makes of one, and what for_each_occupied() shows.
   struct VoxelValue {
-    Index3 voxel;                    ///< of the workspace
+    Index3 voxel;                    ///< of the workspace; of a cell that is shown, its lowest
     float log_odds = 0;              ///< set() rounds it to the nearest step of 0.05 and clamps it
     std::optional<Belief> belief{};  ///< none: it has none, and after set() none any more
   };
@@ -66,7 +70,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
     std::uint64_t occupied = 0;  ///< voxels known to be occupied
     std::uint64_t bytes = 0;     ///< memory of the whole map: tree, beliefs, book-keeping
     double entropy_removed =
-        0;  ///< sum over occupied of H(Λ_0) - H(Λ_0 + Λ_v) [nat, or m² for trace]
+        0;  ///< sum over occupied of H(Λ_0) - H(Λ_0 + Λ_v) [nat, or m² for trace]; a cell of scale
+            ///< s counts as 4^s voxels that share its Λ
     std::uint64_t hits = 0;  ///< readings that ended there, whatever the voxels are now
   };
 
@@ -112,6 +117,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
   [[nodiscard]] std::optional<float> log_odds(Index3 voxel) const;
   /// Nothing for a voxel that was never hit.
   [[nodiscard]] std::optional<Belief> belief(Index3 voxel) const;
+  /// Of the leaf that holds the voxel; 0 outside the workspace.
+  [[nodiscard]] int scale(Index3 voxel) const;
 
   /// Fills the dense array of states, [x][y][z] with z fastest; size must be voxel_count(), else
   /// throws Error(invalid_argument). Cost: a pass over the array.
@@ -128,23 +135,35 @@ class VIEWGAIN_EXPORT BeliefGrid {
   void set(std::span<const VoxelValue> voxels);
 
   /// Makes the voxels of the workspace unknown again whose centres lie in a region of the grid's
-  /// frame [m]; bounds may be infinite. They have no log-odds and no belief afterwards; views and
+  /// frame [m]; bounds may be infinite. In a map with larger cells the region is grown to the
+  /// largest there are. They have no log-odds and no belief afterwards; views and
   /// hazard counters stay as they are. For what has moved, and for maps that follow a robot.
   /// Returns how many of the voxels were known. Costs a pass over the map's blocks. Throws
   /// Error(invalid_argument) for a bound that is not a number.
   std::uint64_t forget(const Box& region);
 
   /// Makes the voxels of a box of the lattice what a dense array says, [x][y][z] with z fastest, as
-  /// from_states() has it: for a planner with a map of its own, which grows. Where a voxel's state
+  /// from_states() has it: for a planner with a map of its own, which grows. Leaves in which
+  /// something changes go to scale 0 first (resample()). Where a voxel's state
   /// is that already nothing changes; elsewhere it has the log-odds that from_states() gives, and
   /// no belief. What VoxelScene::update() does anew is what has changed. Returns how many voxels
   /// have. Throws Error(invalid_argument) for a box that is not inside the workspace, another size
   /// or another state; nothing has changed then. Costs a pass over the array.
   std::uint64_t update_box(const VoxelBox& box, std::span<const std::uint8_t> states);
 
-  /// Visits the occupied voxels: by leaves in the order of snapshot().leaves, in a leaf [x][y][z]
-  /// with z fastest. Equal maps give the same order. The visit must not change the grid. Costs a
-  /// snapshot.
+  /// Gives the leaves that a region of the grid's frame [m] touches another scale; bounds may be
+  /// infinite. Leaves that are uniform and without beliefs have none, and those that the workspace
+  /// cuts off within a cell take the largest that fits. Upwards a cell's hits and Λ are sums, η is
+  /// moved to its centre; it is occupied if a voxel is, else unknown if one is and none was hit.
+  /// Downwards all goes to the voxel, or smaller cell, that holds the mean Λ⁻¹η; what else was
+  /// occupied with it becomes unknown. Returns how many leaves have changed. Costs a pass over the
+  /// map's blocks. Throws Error(invalid_argument) for a bound that is not a number or a scale that
+  /// is not 0 to 3.
+  std::uint64_t resample(const Box& region, int scale);
+
+  /// Visits the occupied voxels, of cells one each: by leaves in the order of snapshot().leaves, in
+  /// a leaf [x][y][z] with z fastest. Equal maps give the same order. The visit must not change the
+  /// grid. Costs a snapshot.
   void for_each_occupied(const std::function<void(const VoxelValue&)>& visit) const;
 
   /// Visits all beliefs, those of free voxels too, by blocks in a fixed order, in a block [x][y][z]
@@ -165,16 +184,18 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// How much is known, and how well; the entropy removed is by this criterion. Costs a pass over
   /// the map's blocks. Deterministic.
   [[nodiscard]] Statistics statistics(Criterion criterion = Criterion::log_diagonal) const;
-  /// The same of the voxels whose centres lie in a region of the grid's frame [m], half-open;
-  /// bounds may be infinite. Throws Error(invalid_argument) if one is NaN.
+  /// The same of the voxels whose centres lie in a region of the grid's frame [m], half-open; of
+  /// larger cells the lowest voxel decides over the belief. Bounds may be infinite. Throws
+  /// Error(invalid_argument) if one is NaN.
   [[nodiscard]] Statistics statistics(const Box& region,
                                       Criterion criterion = Criterion::log_diagonal) const;
-  /// Mean of √(tr(Λ_v⁻¹ + voxel²/12 I) / 3) over the region's occupied voxels with a belief [m];
-  /// NaN without. Throws as statistics(). Costs a pass over the occupied voxels.
+  /// Mean of √(tr(Λ_v⁻¹ + cell²/12 I) / 3) over the region's occupied voxels with a belief [m];
+  /// NaN without. A cell of scale s counts 4^s times, by its area. Throws as statistics(). Costs a
+  /// pass over the occupied voxels.
   [[nodiscard]] double mean_sigma(const Box& region) const;
 
   /// 16 hexadecimal digits over states, log-odds, beliefs, layout, prior, views and, if there are
-  /// any, hazard counters. The same for
+  /// any, hazard counters and scales. The same for
   /// equal maps however they came about (thread count, save and load, tree topology).
   [[nodiscard]] std::string content_hash() const;
 

@@ -62,11 +62,13 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
 /// in its column, those of voxels that have turned free included (leaving them out would bias the
 /// mean away from the camera), and survives if no point with more readings is within min_distance.
 /// Its covariance is that of this mean, in which every reading counts once; a point of per_voxel
-/// has Λ_v⁻¹. Both with F, and with what all readings share. Points are in the order of the voxels,
-/// or cubes, that they start at. A belief whose fused position is more than 24 voxels away from its
-/// voxel makes no point. Deterministic for any number of threads. Costs about 1 µs a voxel that was
-/// ever hit, where config.where says so, and a tenth elsewhere. Throws Error(invalid_argument)
-/// naming a setting that is negative, not finite or too large.
+/// has Λ_v⁻¹. Both with F, and with what all readings share. Leaves of one scale come after those
+/// of finer ones: each scale is pooled by itself, and columns of finer leaves do not reach into
+/// coarser ones. Else points are in the order of the voxels, or cubes, that they start at. A belief
+/// whose fused position is more than 24 voxels away from its voxel makes no point. Deterministic
+/// for any number of threads. Costs about 1 µs a voxel that was ever hit, where config.where says
+/// so, and a tenth elsewhere. Throws Error(invalid_argument) naming a setting that is negative, not
+/// finite or too large.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<FusedPoint> fused_points(
     const BeliefGrid& grid, const FusedPointsConfig& config = {}, const ExecConfig& exec = {});
 

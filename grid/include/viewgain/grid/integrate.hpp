@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "viewgain/core/box.hpp"
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
@@ -36,6 +38,11 @@ struct VIEWGAIN_EXPORT IntegrationConfig {
   /// or less than 3 σ above it (is_of_plane()), are of the table: they carve as far
   /// as they reach but do not hit.
   std::optional<double> support_plane{};
+  /// The greatest scale of a leaf, 0 to 3. Above 0 leaves get the scale whose cells are about as
+  /// large as a pixel's footprint and sigma_ax at their range, and a nearer look makes them finer
+  /// (thresholds of 1.5, 3 and 6 voxels: Funk et al. 2021, supereight2).
+  int coarsest = 0;
+  std::vector<Box> fine{};  ///< leaves that touch one of them keep scale 0; grid's frame [m]
 };
 
 /// Counts of one integrated frame.
@@ -70,7 +77,8 @@ struct VIEWGAIN_EXPORT IntegrationReport {
 class VIEWGAIN_EXPORT FrameIntegrator {
  public:
   /// Undoes the lens distortion once and chooses the instruction set (select_isa()). Throws
-  /// Error(invalid_argument) if the sensor is not valid or the support plane is not finite.
+  /// Error(invalid_argument) if the sensor is not valid, the support plane is not finite, the
+  /// coarsest scale is not 0 to 3, or a fine box is inside out or not a number.
   explicit FrameIntegrator(const Sensor& sensor, const IntegrationConfig& config = {},
                            const ExecConfig& exec = {});
   ~FrameIntegrator();

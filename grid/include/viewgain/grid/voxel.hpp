@@ -64,9 +64,10 @@ struct VIEWGAIN_EXPORT VoxelBox {
   bool operator==(const VoxelBox&) const = default;
 };
 
-/// Centre of a voxel in the grid's frame [m], voxel_size [m] being its edge. Checks nothing.
-[[nodiscard]] inline Eigen::Vector3d voxel_center(Index3 voxel, double voxel_size) {
-  return (Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5) * voxel_size;
+/// Centre of a voxel in the grid's frame [m], voxel_size [m] being its edge; with a scale that of a
+/// cell of 2^scale voxels an edge, whose lowest voxel it is. Checks nothing.
+[[nodiscard]] inline Eigen::Vector3d voxel_center(Index3 voxel, double voxel_size, int scale = 0) {
+  return (Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5 * (1 << scale)) * voxel_size;
 }
 
 }  // namespace viewgain

@@ -16,9 +16,22 @@ namespace viewgain {
 
 class BeliefGrid;
 
-/// The beliefs of one leaf: those of the voxels in `mask`, in order of their offsets.
+/// Calls f(offset) for the voxels of the cell whose lowest voxel has this offset.
+template <typename F>
+void for_each_in_cell(unsigned lowest, int scale, F&& f) {
+  const unsigned edge = 1U << static_cast<unsigned>(scale);
+  for (unsigned x = 0; x < edge; ++x) {
+    for (unsigned y = 0; y < edge; ++y) {
+      for (unsigned z = 0; z < edge; ++z) f(lowest + (x << 6U | y << 3U | z));
+    }
+  }
+}
+
+/// The beliefs of one leaf: those of the voxels in `mask`, or of the cells whose lowest voxels they
+/// are, in order of their offsets.
 struct BeliefBlock {
   LeafMask mask{};              ///< which voxels have one
+  std::uint8_t scale = 0;       ///< of the leaf
   std::vector<Belief> beliefs;  ///< of those, in offset order
 
   /// Position in `beliefs` of the voxel with this offset (x << 6 | y << 3 | z); the bit must be
@@ -29,8 +42,9 @@ struct BeliefBlock {
     const std::uint64_t low = (std::uint64_t{1} << (offset & 63U)) - 1U;
     return static_cast<std::size_t>(below + std::popcount(mask[offset >> 6U] & low));
   }
-  /// The voxel's belief; null without one.
+  /// The belief of the voxel, or of its cell; null without one.
   [[nodiscard]] const Belief* find(unsigned offset) const {
+    offset = cell_offset(offset, scale);
     return test_bit(mask, offset) ? &beliefs[rank(offset)] : nullptr;
   }
 };

@@ -17,6 +17,7 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/png.hpp"
+#include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
@@ -142,6 +143,27 @@ TEST_F(Sensing, AScaleErrorIsInTheFramesAndWhatIsDeclaredOfItInThePoints) {
   }
 }
 
+TEST_F(Sensing, CoarseLeavesKeepAllReadings) {
+  simulate("frames");
+  const auto scales_of = [&](const Strings& more) {
+    const json report = json::parse(
+        run_well(test::joined({"integrate", "frames", "--voxel", "0.0025", "--workspace",
+                               "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "map.vdb", "--json"},
+                              more)));
+    const BeliefGrid map = load_vdb(dir / "map.vdb");
+    std::uint64_t hits = 0, coarse = 0;
+    map.for_each_belief([&](Index3 v, const Belief& belief) {
+      hits += belief.hits;
+      coarse += map.scale(v) > 0 ? 1U : 0U;
+    });
+    EXPECT_EQ(hits, report.at("readings_inside").get<std::uint64_t>());
+    return coarse;
+  };
+  EXPECT_EQ(scales_of({}), 0U);
+  EXPECT_GT(scales_of({"--coarsest", "2"}), 100U);
+  EXPECT_EQ(scales_of({"--coarsest", "2", "--fine", "-1,-1,-1,1,1,1"}), 0U);
+}
+
 TEST_F(Sensing, BadFlagsAndImagesAreRefused) {
   simulate("frames");
   write("frames/frame-000001.amplitude.png", "no image");
@@ -160,6 +182,9 @@ TEST_F(Sensing, BadFlagsAndImagesAreRefused) {
   refused({"--jump-edge-filter", "0.5"}, "1..10 degrees");
   refused({"--jump-edge-filter", "11"}, "1..10 degrees");
   refused({"--jump-edge-filter", "on"}, "--jump-edge-filter");
+  refused({"--coarsest", "4"}, "--coarsest");
+  refused({"--fine", "0,0,0,1,1,1"}, "--fine goes with --coarsest");
+  refused({"--coarsest", "1", "--fine", "0,0,0,0,1,1"}, "--fine");
   refused({"--support-plane", "nan", "--workspace", "-1,-1,-1,1,1,1"}, "support plane");
   refused({"--support-plane", "inf"}, "support plane");
 }

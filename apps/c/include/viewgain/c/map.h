@@ -162,7 +162,20 @@ VG_API vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double
 VG_API vg_status vg_grid_update_box(vg_grid* grid, const int32_t first[3], const int32_t dims[3],
                                     const uint8_t* labels, uint64_t* changed);
 
-/* The occupied voxels, 3 indices each, on the lattice; equal maps give the same order. Fills at
+/* How large the cells are as which voxels (3 indices each, on the lattice) are known: s, 0 to 3, of
+   2^s voxels an edge; 0 outside the workspace. */
+VG_API vg_status vg_grid_scale(const vg_grid* grid, const int32_t* voxels, size_t count,
+                               uint8_t* scales);
+
+/* Gives the leaves of 8^3 voxels that a box of the grid's frame [m] touches cells of another size;
+   bounds may be infinite. Hits and information of larger cells are sums; what goes to smaller ones
+   goes to the one that holds the mean of the readings, and what else was occupied with it becomes
+   unknown. *changed, or null: how many leaves have. VG_INVALID_ARGUMENT: a bound that is not a
+   number, a scale that is not 0 to 3. */
+VG_API vg_status vg_grid_resample(vg_grid* grid, const double min[3], const double max[3],
+                                  int32_t scale, uint64_t* changed);
+
+/* The occupied voxels, of a larger cell the lowest, 3 indices each, on the lattice; equal maps give the same order. Fills at
    most `capacity` of them and says in *found how many there are. log_odds or null: not wanted. */
 VG_API vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds,
                                   size_t capacity, size_t* found);
@@ -186,7 +199,11 @@ typedef struct vg_integrator_config {
   int32_t carve;        /* VG_CARVE_CONES */
   int32_t occupancy;    /* VG_OCCUPANCY_PROBABILISTIC */
   int32_t num_threads;  /* 0: all; 1: the caller alone; never changes the map */
+  int32_t coarsest;     /* greatest scale of a leaf, 0 to 3, where a pixel covers as much */
   double support_plane; /* height of the table, world z [m]; NaN (the default): none */
+  const double* fine;   /* boxes in which scales stay 0: lowest and highest corners, grid's frame
+                           [m]; null (the default): none */
+  size_t fine_count;    /* of the boxes, 6 numbers each */
 } vg_integrator_config;
 /* The defaults. */
 VG_API void vg_integrator_config_init(vg_integrator_config* config, size_t struct_size);

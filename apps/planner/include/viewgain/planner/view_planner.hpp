@@ -38,6 +38,8 @@ struct VIEWGAIN_EXPORT PlannerConfig {
   /// A workspace that begins at the table has no voxels under it that stay unknown, which the
   /// paper's gain would count.
   GridConfig grid{};
+  /// How frames change the map; support_plane is ignored: surroundings has it.
+  IntegrationConfig integration{};
   Surroundings surroundings{};  ///< the table, known obstacles
   std::optional<JumpEdgeFilter::Config> jump_edges =
       JumpEdgeFilter::Config{};  ///< nothing: frames are taken as is

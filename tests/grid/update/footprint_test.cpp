@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Frames into leaves whose scale goes by the pixels' footprint.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "core/expect_error.hpp"
+#include "grid/analytic_frames.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/grid/integrate.hpp"
+#include "viewgain/grid/integrate_cloud.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+using Occupancy = IntegrationConfig::Occupancy;
+using Carve = IntegrationConfig::Carve;
+
+template <typename F>
+void for_each_voxel(const BeliefGrid& grid, F&& f) {
+  const VoxelBox box = VoxelBox::from_dims(grid.min_index(), grid.dims());
+  for (int x = box.min.x; x < box.max.x; ++x) {
+    for (int y = box.min.y; y < box.max.y; ++y) {
+      for (int z = box.min.z; z < box.max.z; ++z) f(Index3{x, y, z});
+    }
+  }
+}
+
+Sensor sharp_sensor(int width, int height) {
+  Sensor sensor = small_sensor(width, height);
+  sensor.noise = ConstantNoise{.sigma_axial = 1e-4, .sigma_lateral = 1e-4};
+  return sensor;
+}
+
+// Where all leaves have one scale the map is that of the larger voxels, bit for bit.
+TEST(Footprint, LeavesOfOneScaleAreTheMapOfLargerVoxels) {
+  const Sensor sensor = sharp_sensor(10, 8);  // 7 voxels and more a pixel
+  int maps = 0;
+  std::uint64_t cells = 0, beliefs = 0;
+  std::size_t points = 0;
+  for (const Carve carve : {Carve::cones, Carve::lines}) {
+    for (const Occupancy occupancy : {Occupancy::probabilistic, Occupancy::literal}) {
+      for (int scale = 0; scale <= 3; ++scale) {
+        BeliefGrid fine(object_grid(128)), large(object_grid(128 >> scale));
+        FrameIntegrator into_fine(sensor, {carve, occupancy, {}, scale});
+        FrameIntegrator into_large(sensor, {carve, occupancy});
+        for (int i = 0; i < 8; ++i) {
+          const Pose pose = ring_view(i);
+          const DepthFrame frame = see_spheres(sensor, pose, three_spheres_in_a_room());
+          const auto a = into_fine.integrate(fine, frame, pose);
+          const auto b = into_large.integrate(large, frame, pose);
+          ASSERT_EQ(a.voxels_hit, b.voxels_hit);
+          ASSERT_EQ(a.readings_inside, b.readings_inside);
+        }
+        std::uint64_t wrong = 0;
+        for_each_voxel(large, [&](Index3 v) {
+          const Index3 low{v.x << scale, v.y << scale, v.z << scale};
+          ++cells;
+          wrong += fine.log_odds(low) != large.log_odds(v) ? 1U : 0U;
+        });
+        // A ray along the faces between voxels may be walked otherwise.
+        EXPECT_LE(wrong, carve == Carve::cones ? 0U : 2U) << scale;
+        std::uint64_t seen = 0;
+        large.for_each_belief([&](Index3 v, const Belief& belief) {
+          ASSERT_EQ(fine.belief({v.x << scale, v.y << scale, v.z << scale}), belief);
+          ++seen;
+        });
+        fine.for_each_belief([&](Index3 v, const Belief&) {
+          ASSERT_EQ(fine.scale(v), scale);
+          --seen;
+        });
+        EXPECT_EQ(seen, 0U);
+        EXPECT_EQ(fine.mean_sigma(fine.workspace()), large.mean_sigma(large.workspace()));
+        for (const bool per_voxel : {false, true}) {
+          auto own = fused_points(fine, {.per_voxel = per_voxel});
+          auto other = fused_points(large, {.per_voxel = per_voxel});
+          ASSERT_EQ(own.size(), other.size());
+          // Leaves of other sizes come in another order.
+          const auto order = [](const FusedPoint& a, const FusedPoint& b) {
+            return a.position < b.position;
+          };
+          std::sort(own.begin(), own.end(), order);
+          std::sort(other.begin(), other.end(), order);
+          for (std::size_t i = 0; i < own.size(); ++i) {
+            ASSERT_EQ(own[i].position, other[i].position);
+            ASSERT_EQ(own[i].covariance, other[i].covariance);
+            ASSERT_EQ(own[i].toward_free, other[i].toward_free);
+          }
+          points += own.size();
+        }
+        beliefs += large.statistics().hits;
+        ++maps;
+      }
+    }
+  }
+  EXPECT_EQ(maps, 16);
+  EXPECT_GT(cells, 5'000'000U);
+  EXPECT_GT(points, 200U);
+  EXPECT_GT(beliefs, 1000U);
+}
+
+/// Frames of a sphere of 10 cm from far off, then from near.
+struct Approach {
+  Approach() {
+    config.coarsest = 3;
+    for (const double distance : {2.4, 1.9, 1.2, 0.35, 0.3}) {
+      for (int i = 0; i < 3; ++i) {
+        poses.push_back(
+            look_at(ring_view(i).translation() * distance / 0.6, Eigen::Vector3d::Zero()));
+        frames.push_back(see_spheres(sensor, poses.back(), {ball}));
+      }
+    }
+  }
+  Sensor sensor = sharp_sensor(120, 90);
+  Sphere ball{{0, 0, 0}, 0.1};
+  IntegrationConfig config;
+  std::vector<Pose> poses;
+  std::vector<DepthFrame> frames;
+};
+
+TEST(Footprint, ANearerLookRefinesAndLosesNoReading) {
+  const Approach approach;
+  BeliefGrid grid(GridConfig{0.004, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
+  FrameIntegrator integrator(approach.sensor, approach.config);
+  std::uint64_t readings = 0;
+  std::map<std::tuple<int, int, int>, int> scales;
+  std::array<int, 4> first{}, last{};
+  int finer = 0;
+  for (std::size_t i = 0; i < approach.frames.size(); ++i) {
+    readings += integrator.integrate(grid, approach.frames[i], approach.poses[i]).readings_inside;
+    ASSERT_EQ(grid.statistics().hits, readings);
+    last = {};
+    grid.for_each_belief([&](Index3 v, const Belief&) {
+      const int scale = grid.scale(v);
+      const auto [held, is_new] = scales.try_emplace({v.x >> 3, v.y >> 3, v.z >> 3}, scale);
+      ASSERT_LE(scale, held->second);
+      finer += scale < held->second ? 1 : 0;
+      held->second = scale;
+      ++last[static_cast<std::size_t>(scale)];
+    });
+    if (i == 0) first = last;
+  }
+  EXPECT_EQ(first[0] + first[1], 0);  // 2.3 m / 122 px are 4.7 voxels
+  EXPECT_GT(first[2] + first[3], 20);
+  EXPECT_GT(last[0], 500);
+  EXPECT_GT(finer, 50);
+  // No halo where it was refined: what is occupied lies at the sphere, but for half a cell.
+  std::uint64_t occupied = 0;
+  grid.for_each_occupied([&](const BeliefGrid::VoxelValue& at) {
+    const int scale = grid.scale(at.voxel);
+    const double off = voxel_center(at.voxel, 0.004, scale).norm() - approach.ball.radius;
+    EXPECT_LT(std::abs(off), 0.004 * (1 << scale)) << scale;
+    ++occupied;
+  });
+  EXPECT_GT(occupied, 500U);
+}
+
+TEST(Footprint, FineBoxesStayFineAndThreadsDoNotMatter) {
+  Approach approach;
+  approach.config.fine = {{{0, -1, -1}, {0.02, 1, 1}}};
+  std::string hash;
+  for (const int threads : {1, 2, 5}) {
+    BeliefGrid grid(GridConfig{0.004, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
+    FrameIntegrator integrator(approach.sensor, approach.config, {.num_threads = threads});
+    for (std::size_t i = 0; i < 6; ++i) {
+      (void)integrator.integrate(grid, approach.frames[i], approach.poses[i]);
+    }
+    std::array<int, 2> inside{}, outside{};
+    grid.for_each_belief([&](Index3 v, const Belief&) {
+      const bool touches = v.x >> 3 == 0;
+      ++(touches ? inside : outside)[grid.scale(v) > 0 ? 1 : 0];
+    });
+    EXPECT_GT(inside[0], 20);
+    EXPECT_EQ(inside[1], 0);
+    EXPECT_GT(outside[1], 20);
+    if (hash.empty()) hash = grid.content_hash();
+    EXPECT_EQ(grid.content_hash(), hash);
+  }
+}
+
+TEST(Footprint, ScalesDoNotGoToAndFroAtAThreshold) {
+  // A wall of one leaf's width; its nearest point is at the range t, the footprint t / f.
+  Sensor sensor = sharp_sensor(64, 48);
+  sensor.camera.fx = sensor.camera.fy = 64;
+  sensor.camera.cx = 31.5, sensor.camera.cy = 23.5;
+  const double V = 0.01;
+  FrameIntegrator integrator(sensor, {.coarsest = 3});
+  const auto look = [&](BeliefGrid& grid, double voxels_a_pixel) {
+    const double t = voxels_a_pixel * V * 64;
+    DepthFrame frame{64, 48, std::vector<float>(64 * 48, static_cast<float>(t + 0.045))};
+    (void)integrator.integrate(grid, frame, Pose(Eigen::Matrix3d::Identity(), {0.04, 0.04, -t}));
+    return grid.scale({4, 4, 4});
+  };
+  const auto map = [&] {
+    return BeliefGrid(GridConfig{V, {{0, 0, 0}, {0.08, 0.08, 0.08}}, {}, 0.01});
+  };
+  int looks = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double threshold = 1.5 * (1 << k);
+    BeliefGrid below = map(), above = map();
+    EXPECT_EQ(look(below, threshold * 0.99), k);
+    EXPECT_EQ(look(below, threshold * 1.5), k);  // never coarser by itself
+    EXPECT_EQ(look(above, threshold * 1.01), k + 1);
+    EXPECT_EQ(look(above, threshold * 0.82), k + 1);
+    EXPECT_EQ(look(above, threshold * 0.78), k);
+    looks += 5;
+  }
+  EXPECT_EQ(looks, 15);
+}
+
+TEST(Footprint, CloudsHaveScalesToo) {
+  const Sensor sensor = sharp_sensor(16, 12);
+  BeliefGrid grid(object_grid(128));
+  CloudIntegrator integrator(sensor, {.coarsest = 2});
+  std::vector<std::array<double, 3>> points;
+  for (int i = 0; i < 400; ++i)
+    points.push_back({-0.1 + 0.01 * (i % 20), -0.1 + 0.01 * (i / 20), 0});
+  const auto report =
+      integrator.integrate(grid, points, Pose(Eigen::Matrix3d::Identity(), {0, 0, -0.6}));
+  EXPECT_EQ(report.readings_inside, 400U);
+  EXPECT_EQ(grid.statistics().hits, 400U);
+  EXPECT_EQ(grid.scale(*grid.index_of({0, 0, 0})), 2);
+}
+
+TEST(Footprint, WrongSettingsAreRefused) {
+  const Sensor sensor = small_sensor(16, 12);
+  for (const int coarsest : {-1, 4}) {
+    expect_error(ErrorCode::invalid_argument, "coarsest scale " + std::to_string(coarsest),
+                 [&] { FrameIntegrator(sensor, {.coarsest = coarsest}); });
+  }
+  for (const double end : {0.0, -1.0, std::nan("")}) {
+    expect_error(ErrorCode::invalid_argument, "fine box", [&] {
+      FrameIntegrator(sensor, {.fine = {{{0, 0, 0}, {1, end, 1}}}});
+    });
+  }
+}
+
+}  // namespace
+}  // namespace viewgain
