@@ -63,7 +63,9 @@ stop_gain : float, optional
 stop_area : float, optional
     By gain "surface" and "combined": end when no candidate promises this share of the surface so
     far as new surface, on the mean of three rankings; 0: never. Default: 0.004.
-coarsest, fine
+coarsest : int
+    As in ``FrameIntegrator``.
+fine : array_like, (n, 2, 3)
     As in ``FrameIntegrator``.
 state : path-like, optional
     A file of ``save`` to go on from, its map laid out as here; what ``load`` gives.

@@ -34,11 +34,12 @@ Checkpoint::Checkpoint(RunFolder& folder, const Json& head, bool resume)
       last = Json::parse(file_bytes(file_));
       check_format(file_, last);
       for (std::size_t i = 0; i < last.at("decisions").size(); ++i) {
-        (void)last["decisions"][i]["map_hash"].get<std::string>();
-        json_["decisions"].push_back(last["decisions"][i]);
+        const Json& decided = last.at("decisions").at(i);
+        (void)decided.at("map_hash").get<std::string>();
+        json_["decisions"].push_back(decided);
         (void)decision(i);
       }
-    } catch (const JsonError& error) {
+    } catch (const Json::exception& error) {
       throw Error(ErrorCode::format, file_ + ": no checkpoint: " + error.what());
     }
     if (json_.dump() != last.dump()) {
@@ -50,13 +51,13 @@ Checkpoint::Checkpoint(RunFolder& folder, const Json& head, bool resume)
 }
 
 std::optional<Decision> Checkpoint::decision(std::size_t index) const {
-  const Json& decisions = json_["decisions"];
+  const Json& decisions = json_.at("decisions");
   if (index >= decisions.size()) return std::nullopt;
-  const Json& json = decisions[index];
+  const Json& json = decisions.at(index);
   Decision decision;
-  decision.candidate = json["candidate"].get<std::size_t>();
+  decision.candidate = json.at("candidate").get<std::size_t>();
   for (const auto& [key, figure] : kFigures) {
-    if (!json[key].is_null()) decision.*figure = json[key].get<double>();
+    if (!json.at(key).is_null()) decision.*figure = json.at(key).get<double>();
   }
   return decision;
 }

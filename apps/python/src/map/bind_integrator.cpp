@@ -35,7 +35,7 @@ support_plane : float, optional
 coarsest : int
     Where a pixel covers that much, cells of up to 2**coarsest voxels an edge are known as one, 0 to 3;
     a nearer look makes them finer.
-fine : iterable of array_like, (2, 3)
+fine : array_like, (n, 2, 3)
     Boxes in the grid's frame [m] in which voxels stay single.
 num_threads : int
     0: all hardware threads. Never changes the map.)";
