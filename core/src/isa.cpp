@@ -50,7 +50,7 @@ Isa select_isa() { return select_isa(supported_isas()); }
 Isa select_isa(std::span<const Isa> isas) {
   if (isas.empty()) throw Error(ErrorCode::backend, "viewgain needs a CPU with SSE4.2");
   const char* wish = std::getenv("VIEWGAIN_ISA");
-  if (wish == nullptr || *wish == '\0') return isas.front();
+  if (wish == nullptr || *wish == '\0' || isa_name(isas.front()) == wish) return isas.front();
   for (const Isa isa : {Isa::avx512, Isa::avx2, Isa::sse4}) {
     if (isa_name(isa) == wish) return std::min(isa, isas.front());
   }

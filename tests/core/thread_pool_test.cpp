@@ -338,6 +338,12 @@ TEST(Isa, AWishTheCpuLacksGivesTheBestItHas) {
     const test::ScopedIsa unset(std::nullopt);
     EXPECT_EQ(select_isa(cpu), cpu.front());
   }
+  // Elsewhere there is one set, whose name is taken, too.
+  const std::vector<Isa> other{Isa::baseline};
+  for (const Isa wish : {Isa::avx2, Isa::baseline}) {
+    const test::ScopedIsa environment(std::string(isa_name(wish)));
+    EXPECT_EQ(select_isa(other), Isa::baseline);
+  }
   test::expect_error(ErrorCode::backend, "SSE4.2", [] { (void)select_isa(std::vector<Isa>{}); });
 }
 

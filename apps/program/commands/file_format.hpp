@@ -13,7 +13,8 @@ namespace viewgain::app {
 /// The key `format` of run.json and checkpoint.json; grows when a reader of this one would err.
 inline constexpr std::int64_t kRunFormat = 1;
 
-/// Throws Error(format), naming file and formats, for one that is newer, and Json::exception for none.
+/// Throws Error(format), naming file and formats, for one that is newer, and Json::exception for
+/// none.
 inline void check_format(const std::string& file, const Json& json) {
   const auto format = json.at("format").get<std::int64_t>();
   if (format <= kRunFormat) return;

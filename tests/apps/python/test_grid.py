@@ -267,7 +267,7 @@ def test_a_region_is_forgotten(sensor):
 
 def test_leaves_have_scales(sensor):
     box = [[-0.32, -0.32, -0.32], [0.32, 0.32, 0.32]]
-    depth = np.full((sensor.height, sensor.width), 0.5)
+    depth = np.full((sensor.camera.height, sensor.camera.width), 0.5)
     pose = np.eye(4)
     pose[2, 3] = -0.5
     hits = []

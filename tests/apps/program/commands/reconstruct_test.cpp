@@ -177,9 +177,9 @@ TEST_F(Reconstruct, RanksByAGainOfTheLiterature) {
 }
 
 TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
-  // Plans are settings where there are any.
-  (void)reconstruct("cube.off",
-                    {"--max-views", "1", "--pictures", "off", "--size", "0.2", "--plan", "2"});
+  // Plans and scales are settings where there are any.
+  (void)reconstruct("cube.off", {"--max-views", "1", "--pictures", "off", "--size", "0.2", "--plan",
+                                 "2", "--coarsest", "1", "--fine", "0,0,0,1,1,1"});
   const json run_file = json::parse(read("run/run.json"));
   const std::map<std::string, std::string> other_keys{{"generator", "generators"},
                                                       {"count", "sphere_poses"}};

@@ -19,6 +19,7 @@ namespace viewgain {
 namespace {
 
 json without_times(json value) {
+  if (!value.is_structured()) return value;
   if (value.is_object()) value.erase("seconds");
   for (json& part : value) part = without_times(std::move(part));
   return value;

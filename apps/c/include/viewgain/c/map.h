@@ -175,8 +175,9 @@ VG_API vg_status vg_grid_scale(const vg_grid* grid, const int32_t* voxels, size_
 VG_API vg_status vg_grid_resample(vg_grid* grid, const double min[3], const double max[3],
                                   int32_t scale, uint64_t* changed);
 
-/* The occupied voxels, of a larger cell the lowest, 3 indices each, on the lattice; equal maps give the same order. Fills at
-   most `capacity` of them and says in *found how many there are. log_odds or null: not wanted. */
+/* The occupied voxels, of a larger cell the lowest, 3 indices each, on the lattice; equal maps give
+   the same order. Fills at most `capacity` of them and says in *found how many there are. log_odds
+   or null: not wanted. */
 VG_API vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds,
                                   size_t capacity, size_t* found);
 
