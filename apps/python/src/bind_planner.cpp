@@ -103,7 +103,7 @@ std::unique_ptr<Planner> make(
     bool jump_edges, bool check_feasibility, std::size_t max_views, std::size_t idle_views,
     std::size_t broken_promises, std::size_t plan, std::size_t take,
     std::optional<double> stop_gain, std::optional<double> stop_area, int coarsest,
-    const py::iterable& fine, const py::object& state, const std::string& tracer, int num_threads) {
+    const py::object& fine, const py::object& state, const std::string& tracer, int num_threads) {
   Sensor sensor = *of;
   PlannerConfig config;
   config.grid.voxel_size = voxel_size;
@@ -113,9 +113,7 @@ std::unique_ptr<Planner> make(
   config.surroundings = {obstacles_of(boxes, meshes), support_plane};
   if (!jump_edges) config.jump_edges.reset();
   config.integration.coarsest = coarsest;
-  for (const py::handle one : fine) {
-    config.integration.fine.push_back(box(one, "fine"));
-  }
+  config.integration.fine = optional_boxes(fine, "fine");
   config.hazard.object_size = object_size;
   config.gain.model = parse_gain_model(gain);
   config.gain.criterion = parse_criterion(criterion);
@@ -275,7 +273,7 @@ void bind_planner(py::module_& module) {
            py::arg("broken_promises") = defaults.broken_promises,
            py::arg("plan") = defaults.ahead.plan, py::arg("take") = defaults.ahead.take,
            py::arg("stop_gain") = py::none(), py::arg("stop_area") = py::none(),
-           py::arg("coarsest") = 0, py::arg("fine") = py::tuple(), py::arg("state") = py::none(),
+           py::arg("coarsest") = 0, py::arg("fine") = py::none(), py::arg("state") = py::none(),
            py::arg("tracer") = "automatic", py::arg("num_threads") = 0)
       .def_static(
           "load",

@@ -65,7 +65,7 @@ stop_area : float, optional
     far as new surface, on the mean of three rankings; 0: never. Default: 0.004.
 coarsest : int
     As in ``FrameIntegrator``.
-fine : array_like, (n, 2, 3)
+fine : array_like, (n, 2, 3), optional
     As in ``FrameIntegrator``.
 state : path-like, optional
     A file of ``save`` to go on from, its map laid out as here; what ``load`` gives.

@@ -271,7 +271,7 @@ def test_leaves_have_scales(sensor):
     pose = np.eye(4)
     pose[2, 3] = -0.5
     hits = []
-    for coarsest, fine in [(0, ()), (3, ()), (3, [box])]:
+    for coarsest, fine in [(0, None), (3, None), (3, [box])]:
         grid = viewgain.BeliefGrid(voxel_size=0.001, workspace=box, sensor=sensor)
         integrator = viewgain.FrameIntegrator(sensor, coarsest=coarsest, fine=fine)
         report = integrator.integrate(grid, depth, pose)

@@ -162,9 +162,7 @@ class Recording {
     write_surfaces(moment.model, folder.file("surface.ply"), folder.file("points.ply"));
     write_tum(folder.file("views.txt"), moment.model.grid().views());
     write_tum(folder.file("next.txt"), poses_of(next_));
-    Json how = settings();
-    how.update(options_.frames.scales.settings());
-    Json run = run_head(how);
+    Json run = run_head(settings());
     run.update(views_->json(moment.model, next_));
     write_file_atomically(folder.file("run.json"), json_text(run));
     if (options_.outputs.with_report()) {
@@ -199,7 +197,7 @@ class Recording {
     const FrameSequence& frames = map_->folder().frames();
     const BeliefGrid& grid = map_->model().grid();
     const FrameFolderOptions& folder = options_.frames.folder;
-    return {
+    Json json{
         {"frames", map_->folder().name()},
         {"sensor", sensor_toml(sensor())},
         {"depth_scale", frames.depth_scale},
@@ -222,6 +220,8 @@ class Recording {
         {"top", options_.top},
         {"plan", proposal_.plan.plan},
         {"take", proposal_.plan.ahead().take}};
+    json.update(options_.frames.scales.settings());
+    return json;
   }
 
   const Options& options_;

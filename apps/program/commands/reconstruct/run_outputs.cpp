@@ -61,7 +61,7 @@ Json run_head(const Json& settings) {
 void commit(RunFolder& folder, const Json& run, const App& app) {
   write_file_atomically(folder.file("config.toml"),
                         config_text(app, {"out", "resume", "json", "quiet", "threads"}));
-  folder.commit(run["stop_reason"] == Json("interrupted"));
+  folder.commit(run.at("stop_reason") == Json("interrupted"));
 }
 
 void print_left(const RunOutputs& outputs, const char* files) {

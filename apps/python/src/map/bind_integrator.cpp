@@ -35,7 +35,7 @@ support_plane : float, optional
 coarsest : int
     Where a pixel covers that much, cells of up to 2**coarsest voxels an edge are known as one, 0 to 3;
     a nearer look makes them finer.
-fine : array_like, (n, 2, 3)
+fine : array_like, (n, 2, 3), optional
     Boxes in the grid's frame [m] in which voxels stay single.
 num_threads : int
     0: all hardware threads. Never changes the map.)";
@@ -66,13 +66,6 @@ IntegrationConfig::Occupancy parse_occupancy(const std::string& name) {
   if (name == "probabilistic") return IntegrationConfig::Occupancy::probabilistic;
   if (name == "literal") return IntegrationConfig::Occupancy::literal;
   throw py::value_error("occupancy is \"" + name + "\"; valid are probabilistic literal");
-}
-
-void set_scales(IntegrationConfig& config, int coarsest, const py::iterable& fine) {
-  config.coarsest = coarsest;
-  for (const py::handle one : fine) {
-    config.fine.push_back(box(one, "fine"));
-  }
 }
 
 py::object to_python(const IntegrationReport& r) {
@@ -183,16 +176,17 @@ T_world_sensor : array_like, (4, 4)
   auto type = bound_class<Clouds>(module, "CloudIntegrator", doc.c_str());
   refuse_pickling(type);
   type.def(py::init([](const Given<Sensor>& sensor, const std::string& occupancy,
-                       std::optional<double> support_plane, int coarsest, const py::iterable& fine,
+                       std::optional<double> support_plane, int coarsest, const py::object& fine,
                        int num_threads) {
              IntegrationConfig config{.occupancy = parse_occupancy(occupancy),
                                       .support_plane = support_plane};
-             set_scales(config, coarsest, fine);
+             config.coarsest = coarsest;
+             config.fine = optional_boxes(fine, "fine");
              return std::make_unique<Clouds>(*sensor, config, num_threads);
            }),
            py::arg("sensor"), py::kw_only(), py::arg("occupancy") = "probabilistic",
            py::arg("support_plane") = py::none(), py::arg("coarsest") = 0,
-           py::arg("fine") = py::tuple(), py::arg("num_threads") = 0)
+           py::arg("fine") = py::none(), py::arg("num_threads") = 0)
       .def("integrate", &integrate_cloud, py::arg("grid"), py::arg("points"),
            py::arg("T_world_sensor"), integrate_doc.c_str())
       .def("__repr__",
@@ -305,14 +299,15 @@ amplitude : array_like, (height, width), floating point, optional
   refuse_pickling(type);
   type.def(py::init([](const Given<Sensor>& sensor, const std::string& carve,
                        const std::string& occupancy, std::optional<double> support_plane,
-                       int coarsest, const py::iterable& fine, int num_threads) {
+                       int coarsest, const py::object& fine, int num_threads) {
              IntegrationConfig config = config_of(carve, occupancy, support_plane);
-             set_scales(config, coarsest, fine);
+             config.coarsest = coarsest;
+             config.fine = optional_boxes(fine, "fine");
              return std::make_unique<Integrator>(*sensor, config, num_threads);
            }),
            py::arg("sensor"), py::kw_only(), py::arg("carve") = "cones",
            py::arg("occupancy") = "probabilistic", py::arg("support_plane") = py::none(),
-           py::arg("coarsest") = 0, py::arg("fine") = py::tuple(), py::arg("num_threads") = 0)
+           py::arg("coarsest") = 0, py::arg("fine") = py::none(), py::arg("num_threads") = 0)
       .def("integrate", &integrate, py::arg("grid"), py::arg("depth"), py::arg("T_world_camera"),
            py::kw_only(), py::arg("pose_sigma") = std::array<double, 2>{0, 0},
            py::arg("amplitude") = py::none(), integrate_doc.c_str())

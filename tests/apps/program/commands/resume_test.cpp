@@ -157,6 +157,9 @@ TEST_F(Resume, OfFramesWhatWasDrawnIsKept) {
   const int status = ended_by(SIGKILL, of("out"), drawn);
   ASSERT_TRUE(WIFSIGNALED(status)) << status;
   const auto time = fs::last_write_time(left() / "views/01.png");
+  const test::ProgramResult other = run(test::joined(of("out"), {"--coarsest", "1"}));
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.err.find("is of a run with other settings"), std::string::npos) << other.err;
   ASSERT_EQ(run(of("out")).exit_code, 0);
   EXPECT_EQ(fs::last_write_time(dir / "out/views/01.png"), time);
   EXPECT_TRUE(result("out") == result("whole"));
