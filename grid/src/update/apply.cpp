@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -88,7 +89,7 @@ class RegionUpdate {
       place.whole = s_.lattice.covers(place.origin, kBlockSize);
       if (!place.whole && !s_.lattice.overlaps(place.origin, kBlockSize)) continue;
       CubeClass block_class = region_class;
-      if (region_class == CubeClass::mixed) {
+      if (region_class == CubeClass::mixed || region_class == CubeClass::cut) {
         block_class = evidence_.classify(place.origin, kBlockSize);
       }
       if (block_class == CubeClass::untouched && hit_block == nullptr) continue;
@@ -104,7 +105,14 @@ class RegionUpdate {
           may_be_tile(place.tile_code)) {
         cross_tile(place, result);
       } else {
-        if (!plan_.is_idle()) place.scale = scale_of(key, place, hit_block != nullptr);
+        if (!plan_.is_idle()) {
+          place.scale = scale_of(key, place, hit_block != nullptr);
+          // Far off the rim of what an image shows is not worth a leaf.
+          if (block_class == CubeClass::cut && hit_block == nullptr && place.leaf == nullptr &&
+              place.scale > 0) {
+            continue;
+          }
+        }
         update_block(key, place, block_class, hit_block, result);
       }
     }
@@ -128,7 +136,7 @@ class RegionUpdate {
                     const HitBlock* hit_block, RegionResult& result) const {
     alignas(64) std::array<std::int8_t, kBlockVoxels> deltas;
     bool any = block_class == CubeClass::crossed;
-    if (block_class == CubeClass::mixed) {
+    if (block_class == CubeClass::mixed || block_class == CubeClass::cut) {
       any = evidence_.deltas(key, place.origin, place.scale, deltas.data());
     } else {
       deltas.fill(any ? kMissDelta : kNoDelta);
@@ -156,6 +164,18 @@ class RegionUpdate {
                   frame_.T_grid_readings, place.origin, s_.voxel_size, place.scale);
   }
 
+  // The code of a block that needs no leaf: all are equal, or, in a map of many scales, all were
+  // crossed as if once in full, of which the least sure one stands for all.
+  [[nodiscard]] std::optional<std::uint8_t> tile_of(const BlockPlace& place,
+                                                    const std::uint8_t* codes,
+                                                    const BlockUpdate& update) const {
+    if (update.uniform) return may_be_tile(codes[0]) ? std::optional(codes[0]) : std::nullopt;
+    if (plan_.is_idle() || !place.whole || update.non_free != LeafMask{}) return std::nullopt;
+    const std::uint8_t least_sure = *std::max_element(codes, codes + kBlockVoxels);
+    if (least_sure > kZeroCode + kMissDelta) return std::nullopt;
+    return least_sure;
+  }
+
   void put_codes(std::uint64_t key, const BlockPlace& place, const std::int8_t* deltas,
                  RegionResult& result) const {
     alignas(64) std::array<std::uint8_t, kBlockVoxels> fresh;
@@ -177,9 +197,9 @@ class RegionUpdate {
 
     // At once, so that codes and mask agree whatever allocation fails below.
     if (leaf != nullptr) put_mask(update.non_free, *leaf);
-    if (update.uniform && may_be_tile(codes[0])) {
-      if (leaf != nullptr || codes[0] != place.tile_code) {
-        result.tiles.emplace_back(place.origin, codes[0]);
+    if (const auto code = tile_of(place, codes, update)) {
+      if (leaf != nullptr || *code != place.tile_code) {
+        result.tiles.emplace_back(place.origin, *code);
       }
       if (leaf != nullptr && place.scale > 0 && !s_.beliefs.contains(key)) {
         result.scales.emplace_back(key, 0);

@@ -42,24 +42,29 @@ void VoxelSupport::gather(const BeliefGrid& map, const BlockLattice& lattice,
   });
 }
 
-std::uint32_t VoxelSupport::Reader::at(Index3 voxel) {
+void VoxelSupport::Reader::enter(Index3 voxel) {
   const std::uint64_t block = support_.lattice_->key(voxel);
-  if (block != block_) {
+  scale_ = scale_of(*support_.map_, block);
+  counts_ = nullptr;
+  beliefs_ = nullptr;
+  const std::vector<std::uint64_t>& blocks = support_.blocks_;
+  const auto found = std::lower_bound(blocks.begin(), blocks.end(), block);
+  if (found != blocks.end() && *found == block) {
+    counts_ = support_.counts_[static_cast<std::size_t>(found - blocks.begin())].data();
+    return;
+  }
+  const BeliefMap& beliefs = beliefs_of(*support_.map_);
+  if (const auto of_map = beliefs.find(block); of_map != beliefs.end()) {
+    beliefs_ = of_map->second.get();
+    occupied_ = occupied_in(*support_.map_, support_.lattice_->origin(block));
+  }
+}
+
+std::uint32_t VoxelSupport::Reader::at(Index3 voxel) {
+  const Index3 block{voxel.x >> 3, voxel.y >> 3, voxel.z >> 3};
+  if (!(block == block_)) {
     block_ = block;
-    scale_ = scale_of(*support_.map_, block);
-    counts_ = nullptr;
-    beliefs_ = nullptr;
-    const std::vector<std::uint64_t>& blocks = support_.blocks_;
-    const auto found = std::lower_bound(blocks.begin(), blocks.end(), block);
-    if (found != blocks.end() && *found == block) {
-      counts_ = support_.counts_[static_cast<std::size_t>(found - blocks.begin())].data();
-    } else {
-      const BeliefMap& beliefs = beliefs_of(*support_.map_);
-      if (const auto of_map = beliefs.find(block); of_map != beliefs.end()) {
-        beliefs_ = of_map->second.get();
-        occupied_ = occupied_in(*support_.map_, support_.lattice_->origin(block));
-      }
-    }
+    enter(voxel);
   }
   const unsigned offset = cell_offset(block_offset(voxel), scale_);
   if (counts_ != nullptr) return counts_[offset];
@@ -81,15 +86,19 @@ void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places
       const double sigma = pixels.sigmas(i).axial / voxel_size;
       if (sigma < kNoisySigma) continue;
       const Eigen::Vector3d& p = places[i];
+      const Index3 own = *lattice.voxel_at(p);
       const Eigen::Vector3d direction = R_grid_readings * pixels.direction(i);
       const double range = (pixels.point(i) - pixels.origin()).norm() / voxel_size;
-      double best = kMargin * before.at(*lattice.voxel_at(p));
+      double best = kMargin * before.at(own);
       const double cell = before.cell();
       if (sigma < kNoisySigma * cell) continue;
       const double reach = std::min(kTaperSigmas * sigma, kFarthest * cell);
-      const auto look = [&](double t, VoxelSupport::Reader& reader) {
+      // A voxel is worth most where its side's first look falls into it.
+      Index3 last_before = own, last_behind = own;
+      const auto look = [&](double t, VoxelSupport::Reader& reader, Index3& last) {
         const std::optional<Index3> voxel = lattice.voxel_at(p + t * direction);
-        if (!voxel) return;
+        if (!voxel || *voxel == last) return;
+        last = *voxel;
         const double value = reader.at(*voxel) * (1 - t / reach * (t / reach));
         if (value <= best) return;
         best = value;
@@ -98,8 +107,8 @@ void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places
       };
       for (int step = 1; step * kStep * cell < reach; ++step) {
         const double t = step * kStep * cell;
-        if (t < range) look(-t, before);
-        look(t, behind);
+        if (t < range) look(-t, before, last_before);
+        look(t, behind, last_behind);
       }
     }
   });

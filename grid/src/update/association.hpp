@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -40,7 +41,10 @@ class VoxelSupport {
 
    private:
     const VoxelSupport& support_;
-    std::uint64_t block_ = ~std::uint64_t{0};
+    void enter(Index3 voxel);
+
+    /// Voxels of the block by their least, divided by 8; none yet.
+    Index3 block_{std::numeric_limits<std::int32_t>::max(), 0, 0};
     int scale_ = 0;                          ///< of the block
     const std::uint32_t* counts_ = nullptr;  ///< of the block, where the frame hits it
     const BeliefBlock* beliefs_ = nullptr;   ///< else its beliefs, if it has any,

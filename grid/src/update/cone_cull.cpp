@@ -170,7 +170,9 @@ CubeClass ConeCull::classify(Index3 origin, int size) const {
   }
   const double margin = kRangeMargin * (distance + size * voxel_size_);
   if (nearest - margin > bounds.reach) return CubeClass::untouched;
-  if (inside && std::sqrt(farthest2) + margin < bounds.clear) return CubeClass::crossed;
+  if (std::sqrt(farthest2) + margin < bounds.clear) {
+    return inside ? CubeClass::crossed : CubeClass::cut;
+  }
   return CubeClass::mixed;
 }
 

@@ -14,7 +14,8 @@ namespace viewgain::detail {
 enum class CubeClass : std::uint8_t {
   untouched,  ///< no centre is crossed
   crossed,    ///< every centre is crossed at full weight
-  mixed,      ///< each must be looked at
+  cut,    ///< those that the image shows are crossed at full weight; its edge cuts the others off
+  mixed,  ///< each must be looked at
 };
 
 /// What a frame says about the voxels in front of its readings. ConeEvidence and LineEvidence are

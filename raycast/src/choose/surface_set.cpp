@@ -44,15 +44,18 @@ SurfaceSet::Look SurfaceSet::look(const Pose& T_world_camera, Workspace& workspa
   look.seen.hits = 0;
   look.seen.status = ViewGain::Status::ok;
   struct Seen {
-    Index3 least;
     double rate, area;
   };
-  std::unordered_map<std::uint64_t, std::size_t> places;
-  std::vector<Seen> cells;
+  std::vector<Seen> seen;  // by place
   const int shift = surface_.cell_shift();
+  const auto least = [shift](Index3 cell) {
+    return Index3{cell.x << shift, cell.y << shift, cell.z << shift};
+  };
+  VoxelPlaces& cells = workspace.cells;
+  cells.begin();
   workspace.occupied.begin();
   driver_.tracer().prepare(*frame, workspace.sweep);
-  surface_.for_each_share(
+  surface_.for_each_share<SurfaceView::SharesOf::runs>(
       *frame, workspace, [&](std::size_t, const RayTile&, const SurfaceShare& share) {
         if (share.is_occupied) {
           ++look.seen.hits;
@@ -61,18 +64,17 @@ SurfaceSet::Look SurfaceSet::look(const Pose& T_world_camera, Workspace& workspa
         }
         if (!(share.area > 0)) return;
         const Index3& v = share.voxel;
-        const Index3 least{v.x >> shift << shift, v.y >> shift << shift, v.z >> shift << shift};
-        const auto [found, is_new] = places.try_emplace(key_of(least), cells.size());
-        if (is_new) cells.push_back({least, share.rate, 0});
-        cells[found->second].area += share.area;
+        bool is_new = false;
+        const std::uint32_t place = cells.of({v.x >> shift, v.y >> shift, v.z >> shift}, is_new);
+        if (is_new) seen.push_back({share.rate, 0});
+        seen[place].area += share.area;
       });
-  for (const Seen& cell : cells) {
-    const double worth = worth_of(cell.least, cell.rate);
-    if (worth > 0) {
-      look.cells.push_back({key_of(cell.least), worth, std::min(1.0, cell.area / worth)});
-    }
+  look.cells.reserve(cells.count());
+  for (std::uint32_t i = 0; i < cells.count(); ++i) {
+    const Index3 at = least(cells.voxel(i));
+    const double worth = worth_of(at, seen[i].rate);
+    if (worth > 0) look.cells.push_back({key_of(at), worth, std::min(1.0, seen[i].area / worth)});
   }
-  look.cells.shrink_to_fit();
   if (refines()) {
     const OccupiedSums& occupied = workspace.occupied;
     look.seen.occupied_voxels = occupied.count();

@@ -58,10 +58,11 @@ struct Workspace {
   std::vector<ViewMeasure::Hit> view_hits;  ///< for a gain of the user's own
   std::vector<RunMeasure::Run> view_runs;
   SampleScratch sample;
-  OccupiedSums occupied;  ///< these five for the surface gain
+  OccupiedSums occupied;  ///< these seven for the surface gain
+  VoxelPlaces cells;      ///< of hazard, that a view of a set reaches
   RefiningHits refining;
   std::vector<SampledEnd> sampled_ends;
-  std::vector<VoxelVisit> visits;
+  std::vector<VoxelVisit> mixed_visits, visits;
   std::vector<SurfaceShare> shares;
   std::unique_ptr<ViewScratch> scratch;        ///< of a gain that walks rays itself
   std::optional<GainAccumulator> accumulator;  ///< made when first needed

@@ -8,31 +8,19 @@
 #include "gain_kernels.hpp"
 #include "viewgain/core/covariance.hpp"
 #include "viewgain/grid/voxel.hpp"
+#include "voxel_places.hpp"
 
 namespace viewgain::detail {
 
-/// Σ T Λ_r of the occupied voxels in which a view's rays end, each at a *place*, in the order in
-/// which they are first met. Serves view after view; allocates when a view meets more voxels than
-/// any before.
+/// Σ T Λ_r of the occupied voxels in which a view's rays end, each at a *place*.
 class OccupiedSums {
  public:
-  void begin() {
-    count_ = 0;
-    if (++generation_ == 0) {  // after 2^32 views old stamps would look new
-      for (Slot& slot : slots_) slot.generation = 0;
-      generation_ = 1;
-    }
-  }
+  void begin() { places_.begin(); }
   /// The voxel's place; of a new one, whose sum is not set yet, too.
   std::uint32_t place_of(Index3 voxel, bool& is_new) {
-    if (2 * count_ >= slots_.size()) grow();
-    Slot& slot = slot_of(voxel);
-    is_new = slot.generation != generation_;
-    if (is_new) {
-      slot = {voxel, generation_, count_};
-      voxels_[count_++] = voxel;
-    }
-    return slot.place;
+    const std::uint32_t place = places_.of(voxel, is_new);
+    if (sums_.size() < places_.capacity()) sums_.resize(places_.capacity());
+    return place;
   }
   /// Adds to the voxel's sum; returns its place.
   std::uint32_t add(Index3 voxel, const SymmetricMatrix3& m) {
@@ -44,8 +32,8 @@ class OccupiedSums {
     return place;
   }
 
-  [[nodiscard]] std::uint32_t count() const { return count_; }
-  [[nodiscard]] Index3 voxel(std::uint32_t place) const { return voxels_[place]; }
+  [[nodiscard]] std::uint32_t count() const { return places_.count(); }
+  [[nodiscard]] Index3 voxel(std::uint32_t place) const { return places_.voxel(place); }
   [[nodiscard]] SymmetricMatrix3 information(std::uint32_t place) const {
     return matrix_of(sums_[place]);
   }
@@ -53,40 +41,8 @@ class OccupiedSums {
   [[nodiscard]] VoxelSum* sums() { return sums_.data(); }
 
  private:
-  struct Slot {
-    Index3 voxel;
-    std::uint32_t generation = 0;  // void unless it is the view's
-    std::uint32_t place = 0;
-  };
-
-  // Fibonacci hashing, linear probing; the table is at most half full.
-  [[nodiscard]] Slot& slot_of(Index3 v) {
-    const std::uint64_t key = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(v.x)) << 42U) ^
-                              (static_cast<std::uint64_t>(static_cast<std::uint32_t>(v.y)) << 21U) ^
-                              static_cast<std::uint32_t>(v.z);
-    std::size_t at = static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> shift_);
-    while (slots_[at].generation == generation_ && !(slots_[at].voxel == v)) {
-      at = (at + 1) & (slots_.size() - 1);
-    }
-    return slots_[at];
-  }
-  void grow() {
-    slots_.assign(slots_.empty() ? 1024 : 2 * slots_.size(), Slot{});
-    shift_ = 64U;
-    for (std::size_t size = slots_.size(); size > 1; size /= 2) --shift_;
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      slot_of(voxels_[i]) = {voxels_[i], generation_, i};
-    }
-    voxels_.resize(slots_.size());
-    sums_.resize(slots_.size());
-  }
-
-  std::uint32_t count_ = 0;
-  std::vector<Index3> voxels_;
+  VoxelPlaces places_;
   std::vector<VoxelSum> sums_;
-  std::vector<Slot> slots_;
-  unsigned shift_ = 64;
-  std::uint32_t generation_ = 0;
 };
 
 /// Rays that end in occupied voxels, on their way into the sums.

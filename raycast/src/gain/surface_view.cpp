@@ -3,10 +3,12 @@
 #include "surface_view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "task_weight.hpp"
 #include "trace/scene_tracing.hpp"
@@ -290,15 +292,20 @@ void SurfaceView::find_visits(const PoseFrame& frame, std::size_t number, const 
                               Workspace& workspace) const {
   WalkTask task;
   set_up(tracer_.table(), number, frame, rays, task);
-  workspace.visits.clear();
-  walk_.visits(bricks_, walk_limits(scene_, frame), task, workspace.visits);
-  // A packet's rays take turns; each ray's visits are in order.
-  std::stable_sort(workspace.visits.begin(), workspace.visits.end(),
-                   [](const VoxelVisit& a, const VoxelVisit& b) { return a.lane < b.lane; });
+  std::vector<VoxelVisit>& mixed = workspace.mixed_visits;
+  mixed.clear();
+  walk_.visits(bricks_, walk_limits(scene_, frame), task, mixed);
+  // A packet's rays take turns; each ray's visits are in order, and stay so.
+  std::array<std::size_t, kTileRays> place{};
+  for (const VoxelVisit& visit : mixed) ++place[visit.lane];
+  std::size_t sum = 0;
+  for (std::size_t& p : place) sum += std::exchange(p, sum);
+  workspace.visits.resize(mixed.size());
+  for (const VoxelVisit& visit : mixed) workspace.visits[place[visit.lane]++] = visit;
 }
 
 void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
-                              Workspace& workspace) const {
+                              Workspace& workspace, SharesOf of) const {
   find_visits(frame, number, rays, workspace);
   const double V = scene_.snapshot.voxel_size;
   const int shift = bricks_.rate_shift;
@@ -352,20 +359,34 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
     const double across = std::min(
         static_cast<double>(tracer_.table().solid_angle[number * kTileRays + first->lane]) * t * t,
         static_cast<double>(cap_));
-    for (auto visit = first; visit != last; ++visit) {
-      const Index3 voxel = voxel_at(visit->x, visit->y, visit->z);
-      const double part =
-          P * (static_cast<double>(visit->end) - static_cast<double>(visit->begin)) / (end - begin);
-      const double weight = weights.empty() ? 1.0 : task_weight(weights, voxel, V);
-      const bool is_new = !std::signbit(visit->rate);
+    const double rate = std::abs(static_cast<double>(first->rate));
+    const auto put = [&](Index3 voxel, float from, double part, double weight, bool is_new) {
       workspace.shares.push_back({lane,
-                                  visit->begin,
+                                  from,
                                   voxel,
                                   false,
                                   part,
                                   is_new ? part * across * weight * V * V : 0.0,
                                   {},
-                                  std::abs(static_cast<double>(first->rate))});
+                                  rate});
+    };
+    const auto weight_of = [&](Index3 voxel) {
+      return weights.empty() ? 1.0 : task_weight(weights, voxel, V);
+    };
+    double weight_of_run = weights.empty() ? 1.0 : 0.0;
+    for (auto visit = first; visit != last; ++visit) {
+      const double of_run =
+          (static_cast<double>(visit->end) - static_cast<double>(visit->begin)) / (end - begin);
+      const Index3 voxel = voxel_at(visit->x, visit->y, visit->z);
+      if (of == SharesOf::voxels) {
+        put(voxel, visit->begin, P * of_run, weight_of(voxel), !std::signbit(visit->rate));
+      } else if (!weights.empty()) {
+        weight_of_run += of_run * weight_of(voxel);
+      }
+    }
+    if (of == SharesOf::runs) {
+      put(voxel_at(first->x, first->y, first->z), first->begin, P, weight_of_run,
+          !std::signbit(first->rate));
     }
     passed -= P;
   }

@@ -31,13 +31,16 @@ class SurfaceView {
   void sample(const PoseFrame& frame, Workspace& workspace, double rays_each,
               SampleTally& tally) const;
 
-  /// Calls visit(tile number, rays, SurfaceShare) for all rays, voxel by voxel; a run's
-  /// share is split by length. `workspace`'s sweep is prepared for the view.
-  template <typename Visit>
+  /// A run is a ray's way through the unknown voxels of one hazard cell.
+  enum class SharesOf : std::uint8_t { voxels, runs };
+  /// Calls visit(tile number, rays, SurfaceShare) for all rays: run by run, each at its first
+  /// voxel, or voxel by voxel, a run's share split by length. `workspace`'s sweep is prepared for
+  /// the view.
+  template <SharesOf kOf = SharesOf::voxels, typename Visit>
   void for_each_share(const PoseFrame& frame, Workspace& workspace, Visit&& visit) const {
     trace_rays(frame, workspace, [&](std::size_t number, const RayTile& rays) {
       workspace.shares.clear();
-      if (rays.hit != 0) find_shares(frame, number, rays, workspace);
+      if (rays.hit != 0) find_shares(frame, number, rays, workspace, kOf);
       for (const SurfaceShare& share : workspace.shares) visit(number, rays, share);
     });
   }
@@ -83,7 +86,7 @@ class SurfaceView {
   void find_visits(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                    Workspace& workspace) const;
   void find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
-                   Workspace& workspace) const;
+                   Workspace& workspace, SharesOf of) const;
   [[nodiscard]] double area_of(const RayTile& rays, WalkedTile& tile) const;
   /// Does the ray come to an occupied voxel, in table coordinates, from behind?
   [[nodiscard]] bool is_behind(const RayTile& rays, int lane, Index3 at) const;

@@ -40,7 +40,8 @@ struct VIEWGAIN_EXPORT IntegrationConfig {
   std::optional<double> support_plane{};
   /// The greatest scale of a leaf, 0 to 3. Above 0 leaves get the scale whose cells are about as
   /// large as a pixel's footprint and sigma_ax at their range, and a nearer look makes them finer
-  /// (thresholds of 1.5, 3 and 6 voxels: Funk et al. 2021, supereight2).
+  /// (thresholds of 1.5, 3 and 6 voxels: Funk et al. 2021, supereight2). Free space is then kept by
+  /// blocks of 8³ voxels, as free as their least sure voxel.
   int coarsest = 0;
   std::vector<Box> fine{};  ///< leaves that touch one of them keep scale 0; grid's frame [m]
 };
