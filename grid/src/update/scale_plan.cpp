@@ -20,11 +20,15 @@ constexpr std::array<double, kMaxScale> kThresholds{1.5, 3, 6};
 }  // namespace
 
 ScalePlan::ScalePlan(const IntegrationConfig& config)
-    : coarsest_(config.coarsest), fine_(config.fine) {
+    : coarsest_(config.coarsest), finest_(config.finest), fine_(config.fine) {
   const auto fail = [](const std::string& what) { throw Error(ErrorCode::invalid_argument, what); };
   if (coarsest_ < 0 || coarsest_ > kMaxScale) {
     fail("coarsest scale " + std::to_string(coarsest_) + " is not 0 to " +
          std::to_string(kMaxScale));
+  }
+  if (finest_ < 0 || finest_ > coarsest_) {
+    fail("finest scale " + std::to_string(finest_) + " is not 0 to the coarsest, " +
+         std::to_string(coarsest_));
   }
   for (const Box& box : fine_) {
     for (std::size_t a = 0; a < 3; ++a) {
@@ -59,7 +63,7 @@ int ScalePlan::wanted(Index3 origin, double margin) const {
   const double t = (eye_ - eye_.cwiseMax(low).cwiseMin(high)).norm();
   const double footprint = t / std::sqrt(sensor.camera.fx * sensor.camera.fy);
   const double size = margin * std::max(footprint, sensor.noise_sigmas(t).axial) / V;
-  int scale = 0;
+  int scale = finest_;
   while (scale < coarsest_ && size >= kThresholds[static_cast<std::size_t>(scale)]) ++scale;
   return fitting_scale(*lattice_, origin, scale);
 }

@@ -14,7 +14,8 @@
 namespace viewgain::detail {
 
 /// Which scale a frame wants for a block: that whose cells are nearest in size to the larger of a
-/// pixel's footprint and sigma_ax, at the range of the block's nearest point.
+/// pixel's footprint and sigma_ax, at the range of the block's nearest point, and not below the
+/// finest; 0 in the fine boxes.
 class ScalePlan {
  public:
   /// Throws as FrameIntegrator's constructor.
@@ -38,7 +39,7 @@ class ScalePlan {
  private:
   [[nodiscard]] int wanted(Index3 origin, double margin) const;
 
-  int coarsest_;
+  int coarsest_, finest_;
   std::vector<Box> fine_;
   const PlacedFrame* frame_ = nullptr;
   const BeliefGrid* map_ = nullptr;

@@ -194,6 +194,26 @@ TEST(Footprint, FineBoxesStayFineAndThreadsDoNotMatter) {
   }
 }
 
+// A room roughly, what stands in it precisely, from however near.
+TEST(Footprint, LeavesAreNoFinerThanAskedOutsideTheBoxes) {
+  Approach approach;
+  approach.config.fine = {{{0, -1, -1}, {0.02, 1, 1}}};
+  approach.config.finest = 2;
+  BeliefGrid grid(GridConfig{0.004, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
+  FrameIntegrator integrator(approach.sensor, approach.config);
+  for (std::size_t i = 0; i < approach.frames.size(); ++i) {
+    (void)integrator.integrate(grid, approach.frames[i], approach.poses[i]);
+  }
+  std::array<int, 4> inside{}, outside{};
+  grid.for_each_belief([&](Index3 v, const Belief&) {
+    ++(v.x >> 3 == 0 ? inside : outside)[static_cast<std::size_t>(grid.scale(v))];
+  });
+  EXPECT_GT(inside[0], 100);
+  EXPECT_EQ(inside[1] + inside[2] + inside[3], 0);
+  EXPECT_EQ(outside[0] + outside[1], 0);
+  EXPECT_GT(outside[2], 20);
+}
+
 TEST(Footprint, ScalesDoNotGoToAndFroAtAThreshold) {
   // A wall of one leaf's width; its nearest point is at the range t, the footprint t / f.
   Sensor sensor = sharp_sensor(64, 48);
@@ -243,6 +263,10 @@ TEST(Footprint, WrongSettingsAreRefused) {
   for (const int coarsest : {-1, 4}) {
     expect_error(ErrorCode::invalid_argument, "coarsest scale " + std::to_string(coarsest),
                  [&] { FrameIntegrator(sensor, {.coarsest = coarsest}); });
+  }
+  for (const int finest : {-1, 2}) {
+    expect_error(ErrorCode::invalid_argument, "finest scale " + std::to_string(finest),
+                 [&] { FrameIntegrator(sensor, {.coarsest = 1, .finest = finest}); });
   }
   for (const double end : {0.0, -1.0, std::nan("")}) {
     expect_error(ErrorCode::invalid_argument, "fine box", [&] {

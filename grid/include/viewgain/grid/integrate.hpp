@@ -44,6 +44,7 @@ struct VIEWGAIN_EXPORT IntegrationConfig {
   /// blocks of 8³ voxels, as free as their least sure voxel.
   int coarsest = 0;
   std::vector<Box> fine{};  ///< leaves that touch one of them keep scale 0; grid's frame [m]
+  int finest = 0;           ///< the least scale of all other leaves, at most `coarsest`
 };
 
 /// Counts of one integrated frame.
@@ -79,7 +80,8 @@ class VIEWGAIN_EXPORT FrameIntegrator {
  public:
   /// Undoes the lens distortion once and chooses the instruction set (select_isa()). Throws
   /// Error(invalid_argument) if the sensor is not valid, the support plane is not finite, the
-  /// coarsest scale is not 0 to 3, or a fine box is inside out or not a number.
+  /// coarsest scale is not 0 to 3, the finest not 0 to the coarsest, or a fine box is inside out or
+  /// not a number.
   explicit FrameIntegrator(const Sensor& sensor, const IntegrationConfig& config = {},
                            const ExecConfig& exec = {});
   ~FrameIntegrator();
