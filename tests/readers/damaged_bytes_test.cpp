@@ -34,9 +34,9 @@
 #include "viewgain/formats/recordings.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
-#include "viewgain/support/columns/mapped_poses.hpp"
-#include "viewgain/support/columns/npy_header.hpp"
-#include "viewgain/support/columns/parts.hpp"
+#include "viewgain/support/columns/npy_poses.hpp"
+#include "viewgain/support/columns/table.hpp"
+#include "viewgain/support/pose_numbers.hpp"
 
 namespace viewgain {
 namespace {
@@ -150,31 +150,6 @@ std::string octomap_of_boxes() {
   return octomap_bytes(grid);
 }
 
-Table small_table() {
-  Table table{{{"index", ColumnType::row},
-               {"gain", ColumnType::real},
-               {"hits", ColumnType::count},
-               {"status", ColumnType::status}}};
-  for (std::int64_t row = 0; row < 5; ++row) {
-    table.add(row);
-    table.add(1.5 * static_cast<double>(row));
-    table.add(static_cast<std::uint32_t>(7 * row));
-    table.add(std::uint8_t{0});
-  }
-  return table;
-}
-
-void write_part(const fs::path& path) {
-  PartHead head{"0.1.0", "map", "sensor", "{}", "avx2", 5, "hash", {0, 5}, 5};
-  write_table(path, small_table(), head);
-}
-
-void read_part(const fs::path& path) {
-  PartReader reader(path);
-  while (reader.next() != nullptr) {
-  }
-}
-
 // One file, its bytes and what reads it.
 Reader file_reader(const std::string& name, const std::string& bytes,
                    std::function<void(const fs::path&)> read) {
@@ -185,16 +160,13 @@ Reader file_reader(const std::string& name, const std::string& bytes,
 }
 
 std::vector<Reader> pose_readers() {
-  const auto cloud_of_poses = [](const TemporaryFolder& folder) {
-    std::vector<Column> columns;
-    for (const char* name : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
-      columns.push_back({name, ColumnType::real});
+  const auto write_columns = [](const TemporaryFolder& folder) {
+    Table table{};
+    for (const char* name : kPoseColumns) table.columns.push_back({name, ColumnType::real});
+    for (const Pose& pose : three_poses()) {
+      for (const double x : numbers_of_pose(pose)) table.add(x);
     }
-    std::string bytes = npy_header(columns, 3);
-    for (int row = 0; row < 3; ++row) {
-      for (const double x : {0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0}) append(bytes, x);
-    }
-    folder.file("poses.npy", bytes);
+    write_table(folder.path() / "poses.npy", table);
   };
   return {
       {"poses.txt",
@@ -203,12 +175,8 @@ std::vector<Reader> pose_readers() {
        [](const fs::path& folder) { (void)read_tum(folder / "poses.txt"); }},
       file_reader("pose.txt", matrix_text(three_poses()[0]),
                   [](const fs::path& path) { (void)read_pose_matrix(path); }),
-      {"poses.npy", cloud_of_poses, {"poses.npy"}, [](const fs::path& folder) {
-         const MappedPoses poses(folder / "poses.npy");
-         for (std::size_t row = 0; row < std::min<std::size_t>(poses.size(), 100); ++row) {
-           bool mended = false;
-           (void)poses.at(row, mended);
-         }
+      {"poses.npy", write_columns, {"poses.npy"}, [](const fs::path& folder) {
+         (void)read_npy_poses(folder / "poses.npy");
        }}};
 }
 
@@ -322,21 +290,10 @@ std::vector<Reader> cloud_and_map_readers() {
           file_reader("map.ot", octomap_of_boxes(), map)};
 }
 
-std::vector<Reader> part_readers() {
-  std::vector<Reader> readers;
-  for (const std::string name : {"part.csv", "part.npy"}) {
-    readers.push_back({name,
-                       [=](const TemporaryFolder& f) { write_part(f.path() / name); },
-                       {name},
-                       [=](const fs::path& folder) { read_part(folder / name); }});
-  }
-  return readers;
-}
-
 std::vector<Reader> all_readers() {
   std::vector<Reader> all;
   for (const auto& some : {pose_readers(), settings_readers(), image_readers(), frame_readers(),
-                           cloud_and_map_readers(), part_readers()}) {
+                           cloud_and_map_readers()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;
@@ -479,7 +436,7 @@ TEST(DamagedJson, IsReadOrRefused) {
   EXPECT_EQ(app::dumped(app::Json("\xE9")), "\"\uFFFD\"");
 }
 
-TEST(DamagedBytes, EveryReaderIsHere) { EXPECT_EQ(all_readers().size(), 21U); }
+TEST(DamagedBytes, EveryReaderIsHere) { EXPECT_EQ(all_readers().size(), 19U); }
 
 }  // namespace
 }  // namespace viewgain

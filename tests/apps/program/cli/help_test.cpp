@@ -23,9 +23,9 @@ namespace viewgain {
 namespace {
 
 // In an order in which the examples of their help find what they name.
-const Strings kSubcommands{"simulate", "import",     "calibrate",   "integrate", "next", "follow",
-                           "score",    "candidates", "reconstruct", "render",    "info", "convert",
-                           "sensors",  "study",      "surface",     "merge"};
+const Strings kSubcommands{"simulate", "import",  "calibrate",  "integrate",   "next",
+                           "follow",   "score",   "candidates", "reconstruct", "render",
+                           "info",     "convert", "sensors",    "study",       "surface"};
 
 Strings words_of(const std::string& text) {
   std::istringstream in(text);
@@ -139,10 +139,6 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
   write("scene/intrinsic/intrinsic_depth.txt", "4 0 2 0\n0 4 1 0\n0 0 1 0\n0 0 0 1\n");
   write_static_frames();
   write("frames/done", "");
-  write("part.csv",
-        "# format 1\n# viewgain 1\n# map 1\n# sensor a 1\n# settings {}\n# isa avx2\n# poses 1 "
-        "1\n# rows "
-        "0:1\n# scored 1\nindex,gain\n0,1\n");
   for (const std::string& subcommand : kSubcommands) {
     const std::vector<Strings> calls = examples({subcommand});
     ASSERT_EQ(calls.size(), subcommand == "reconstruct" || subcommand == "next" ? 2U : 1U)
