@@ -96,11 +96,10 @@ void write_images(const TemporaryFolder& folder, const std::string& below,
   }
 }
 
-void load_recording(const fs::path& folder, RecordingFormat format) {
-  RecordingConfig config;
-  if (format == RecordingFormat::tum) config.camera = PinholeCamera{8, 6, 9, 9, 3.5, 2.5, {}};
-  const Recording recording = open_recording(folder, format, config);
-  for (std::size_t i = 0; i < recording.frames.size(); ++i) (void)load_depth(recording, i);
+void load_recording(const fs::path& folder) {
+  ImportConfig config;
+  config.camera = {8, 6, 9, 9, 3.5, 2.5, {}};
+  (void)import_recording(folder, folder.string() + "/frames", config);
 }
 
 std::string binary_ply(const std::string& order) {
@@ -223,51 +222,20 @@ std::vector<Reader> frame_readers() {
     write_tum(folder.path() / "groundtruth.txt", std::vector(2, three_poses()[0]),
               std::vector<double>{1.0, 2.0});
   };
-  const auto write_bop = [](const TemporaryFolder& folder) {
-    write_images(folder, "depth", {"000000.png"});
-    folder.file("scene_camera.json",
-                R"({"0": {"cam_K": [9, 0, 3.5, 0, 9, 2.5, 0, 0, 1], "depth_scale": 0.1,
-"cam_R_w2c": [1, 0, 0, 0, 1, 0, 0, 0, 1], "cam_t_w2c": [0, 0, 500.0]}})");
-  };
-  const auto write_scannet = [](const TemporaryFolder& folder) {
-    write_images(folder, "depth", {"0.png"});
-    fs::create_directories(folder.path() / "pose");
-    fs::create_directories(folder.path() / "intrinsic");
-    folder.file("pose/0.txt", matrix_text(three_poses()[0]));
-    folder.file("intrinsic/intrinsic_depth.txt", "9 0 3.5 0\n0 9 2.5 0\n0 0 1 0\n0 0 0 1\n");
-  };
-  const auto write_icl = [](const TemporaryFolder& folder) {
-    write_images(folder, "depth", {"0.png", "1.png"});
-    write_tum(folder.path() / "traj0.gt.freiburg", std::vector(2, three_poses()[0]),
-              std::vector<double>{0, 1});
-  };
-  const auto recorded = [](RecordingFormat format) {
-    return [format](const fs::path& folder) { load_recording(folder, format); };
-  };
-  return {
-      {"frames",
-       write_frames,
-       {"frames/frame-000001.depth.png", "frames/poses.txt", "frames/sensor.toml"},
-       [](const fs::path& folder) {
-         const FrameSequence frames = open_frames(folder / "frames");
-         for (std::size_t i = 0; i < frames.images.size(); ++i) {
-           const FrameFault fault = read_frame(frames, i).fault;
-           if (fault.verdict != FrameVerdict::used) throw Error(ErrorCode::format, fault.what);
-         }
-       }},
-      {"tum",
-       write_tum_recording,
-       {"depth.txt", "groundtruth.txt", "depth/2.png"},
-       recorded(RecordingFormat::tum)},
-      {"bop", write_bop, {"scene_camera.json", "depth/000000.png"}, recorded(RecordingFormat::bop)},
-      {"scannet",
-       write_scannet,
-       {"pose/0.txt", "intrinsic/intrinsic_depth.txt"},
-       recorded(RecordingFormat::scannet)},
-      {"icl",
-       write_icl,
-       {"traj0.gt.freiburg", "depth/1.png"},
-       recorded(RecordingFormat::icl_nuim)}};
+  return {{"frames",
+           write_frames,
+           {"frames/frame-000001.depth.png", "frames/poses.txt", "frames/sensor.toml"},
+           [](const fs::path& folder) {
+             const FrameSequence frames = open_frames(folder / "frames");
+             for (std::size_t i = 0; i < frames.images.size(); ++i) {
+               const FrameFault fault = read_frame(frames, i).fault;
+               if (fault.verdict != FrameVerdict::used) throw Error(ErrorCode::format, fault.what);
+             }
+           }},
+          {"tum",
+           write_tum_recording,
+           {"depth.txt", "groundtruth.txt"},
+           load_recording}};
 }
 
 std::vector<Reader> cloud_and_map_readers() {
@@ -436,7 +404,7 @@ TEST(DamagedJson, IsReadOrRefused) {
   EXPECT_EQ(app::dumped(app::Json("\xE9")), "\"\uFFFD\"");
 }
 
-TEST(DamagedBytes, EveryReaderIsHere) { EXPECT_EQ(all_readers().size(), 19U); }
+TEST(DamagedBytes, EveryReaderIsHere) { EXPECT_EQ(all_readers().size(), 16U); }
 
 }  // namespace
 }  // namespace viewgain
