@@ -20,7 +20,7 @@ packages=(
 npm --version >/dev/null 2>&1 || packages+=(nodejs npm)
 tests=(
   pkg-config python3 pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
-  libgtest-dev liboctomap-dev libompl-dev libopenvdb-tools file locales parallel
+  libgtest-dev liboctomap-dev libopenvdb-tools file locales
 )
 perf=(libbenchmark-dev python3-scipy)
 browser=(chromium-headless-shell)

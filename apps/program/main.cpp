@@ -72,7 +72,7 @@ int run(int argc, char** argv) {
   std::vector<Command> commands;
   for (const auto add : {add_reconstruct, add_simulate, add_import, add_calibrate, add_integrate,
                          add_score, add_candidates, add_next, add_info, add_surface, add_convert,
-                         add_render, add_sensors, add_study, add_follow, add_merge}) {
+                         add_render, add_sensors, add_study, add_follow}) {
     commands.push_back(add(program));
     const Command& first = commands.back();
     if (first.add_form) commands.push_back(first.add_form(*first.app));

@@ -34,9 +34,9 @@
 #include "viewgain/formats/recordings.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
-#include "viewgain/support/columns/mapped_poses.hpp"
-#include "viewgain/support/columns/npy_header.hpp"
-#include "viewgain/support/columns/parts.hpp"
+#include "viewgain/support/columns/npy_poses.hpp"
+#include "viewgain/support/columns/table.hpp"
+#include "viewgain/support/pose_numbers.hpp"
 
 namespace viewgain {
 namespace {
@@ -96,11 +96,10 @@ void write_images(const TemporaryFolder& folder, const std::string& below,
   }
 }
 
-void load_recording(const fs::path& folder, RecordingFormat format) {
-  RecordingConfig config;
-  if (format == RecordingFormat::tum) config.camera = PinholeCamera{8, 6, 9, 9, 3.5, 2.5, {}};
-  const Recording recording = open_recording(folder, format, config);
-  for (std::size_t i = 0; i < recording.frames.size(); ++i) (void)load_depth(recording, i);
+void load_recording(const fs::path& folder) {
+  ImportConfig config;
+  config.camera = {8, 6, 9, 9, 3.5, 2.5, {}};
+  (void)import_recording(folder, folder.string() + "/frames", config);
 }
 
 std::string binary_ply(const std::string& order) {
@@ -150,31 +149,6 @@ std::string octomap_of_boxes() {
   return octomap_bytes(grid);
 }
 
-Table small_table() {
-  Table table{{{"index", ColumnType::row},
-               {"gain", ColumnType::real},
-               {"hits", ColumnType::count},
-               {"status", ColumnType::status}}};
-  for (std::int64_t row = 0; row < 5; ++row) {
-    table.add(row);
-    table.add(1.5 * static_cast<double>(row));
-    table.add(static_cast<std::uint32_t>(7 * row));
-    table.add(std::uint8_t{0});
-  }
-  return table;
-}
-
-void write_part(const fs::path& path) {
-  PartHead head{"0.1.0", "map", "sensor", "{}", "avx2", 5, "hash", {0, 5}, 5};
-  write_table(path, small_table(), head);
-}
-
-void read_part(const fs::path& path) {
-  PartReader reader(path);
-  while (reader.next() != nullptr) {
-  }
-}
-
 // One file, its bytes and what reads it.
 Reader file_reader(const std::string& name, const std::string& bytes,
                    std::function<void(const fs::path&)> read) {
@@ -185,16 +159,13 @@ Reader file_reader(const std::string& name, const std::string& bytes,
 }
 
 std::vector<Reader> pose_readers() {
-  const auto cloud_of_poses = [](const TemporaryFolder& folder) {
-    std::vector<Column> columns;
-    for (const char* name : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
-      columns.push_back({name, ColumnType::real});
+  const auto write_columns = [](const TemporaryFolder& folder) {
+    Table table{};
+    for (const char* name : kPoseColumns) table.columns.push_back({name, ColumnType::real});
+    for (const Pose& pose : three_poses()) {
+      for (const double x : numbers_of_pose(pose)) table.add(x);
     }
-    std::string bytes = npy_header(columns, 3);
-    for (int row = 0; row < 3; ++row) {
-      for (const double x : {0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0}) append(bytes, x);
-    }
-    folder.file("poses.npy", bytes);
+    write_table(folder.path() / "poses.npy", table);
   };
   return {
       {"poses.txt",
@@ -203,12 +174,8 @@ std::vector<Reader> pose_readers() {
        [](const fs::path& folder) { (void)read_tum(folder / "poses.txt"); }},
       file_reader("pose.txt", matrix_text(three_poses()[0]),
                   [](const fs::path& path) { (void)read_pose_matrix(path); }),
-      {"poses.npy", cloud_of_poses, {"poses.npy"}, [](const fs::path& folder) {
-         const MappedPoses poses(folder / "poses.npy");
-         for (std::size_t row = 0; row < std::min<std::size_t>(poses.size(), 100); ++row) {
-           bool mended = false;
-           (void)poses.at(row, mended);
-         }
+      {"poses.npy", write_columns, {"poses.npy"}, [](const fs::path& folder) {
+         (void)read_npy_poses(folder / "poses.npy");
        }}};
 }
 
@@ -229,15 +196,12 @@ std::vector<Reader> settings_readers() {
 std::vector<Reader> image_readers() {
   const auto write_both = [](const TemporaryFolder& folder) {
     write_images(folder, ".", {"gray.png"});
-    write_png(folder.path() / "rgb.png",
-              RgbImage{5, 4, std::vector<std::uint8_t>(60, std::uint8_t{77})});
     write_png(folder.path() / "gray8.png",
               Gray8Image{8, 6, std::vector<std::uint8_t>(48, std::uint8_t{255})});
   };
-  return {{"png", write_both, {"gray.png", "rgb.png", "gray8.png"}, [](const fs::path& folder) {
+  return {{"png", write_both, {"gray.png", "gray8.png"}, [](const fs::path& folder) {
              (void)png_size(folder / "gray.png");
              (void)read_gray_png(folder / "gray.png", 8, 6);
-             (void)read_rgb_png(folder / "rgb.png");
              (void)read_gray8_png(folder / "gray8.png", 8, 6);
            }}};
 }
@@ -255,51 +219,20 @@ std::vector<Reader> frame_readers() {
     write_tum(folder.path() / "groundtruth.txt", std::vector(2, three_poses()[0]),
               std::vector<double>{1.0, 2.0});
   };
-  const auto write_bop = [](const TemporaryFolder& folder) {
-    write_images(folder, "depth", {"000000.png"});
-    folder.file("scene_camera.json",
-                R"({"0": {"cam_K": [9, 0, 3.5, 0, 9, 2.5, 0, 0, 1], "depth_scale": 0.1,
-"cam_R_w2c": [1, 0, 0, 0, 1, 0, 0, 0, 1], "cam_t_w2c": [0, 0, 500.0]}})");
-  };
-  const auto write_scannet = [](const TemporaryFolder& folder) {
-    write_images(folder, "depth", {"0.png"});
-    fs::create_directories(folder.path() / "pose");
-    fs::create_directories(folder.path() / "intrinsic");
-    folder.file("pose/0.txt", matrix_text(three_poses()[0]));
-    folder.file("intrinsic/intrinsic_depth.txt", "9 0 3.5 0\n0 9 2.5 0\n0 0 1 0\n0 0 0 1\n");
-  };
-  const auto write_icl = [](const TemporaryFolder& folder) {
-    write_images(folder, "depth", {"0.png", "1.png"});
-    write_tum(folder.path() / "traj0.gt.freiburg", std::vector(2, three_poses()[0]),
-              std::vector<double>{0, 1});
-  };
-  const auto recorded = [](RecordingFormat format) {
-    return [format](const fs::path& folder) { load_recording(folder, format); };
-  };
-  return {
-      {"frames",
-       write_frames,
-       {"frames/frame-000001.depth.png", "frames/poses.txt", "frames/sensor.toml"},
-       [](const fs::path& folder) {
-         const FrameSequence frames = open_frames(folder / "frames");
-         for (std::size_t i = 0; i < frames.images.size(); ++i) {
-           const FrameFault fault = read_frame(frames, i).fault;
-           if (fault.verdict != FrameVerdict::used) throw Error(ErrorCode::format, fault.what);
-         }
-       }},
-      {"tum",
-       write_tum_recording,
-       {"depth.txt", "groundtruth.txt", "depth/2.png"},
-       recorded(RecordingFormat::tum)},
-      {"bop", write_bop, {"scene_camera.json", "depth/000000.png"}, recorded(RecordingFormat::bop)},
-      {"scannet",
-       write_scannet,
-       {"pose/0.txt", "intrinsic/intrinsic_depth.txt"},
-       recorded(RecordingFormat::scannet)},
-      {"icl",
-       write_icl,
-       {"traj0.gt.freiburg", "depth/1.png"},
-       recorded(RecordingFormat::icl_nuim)}};
+  return {{"frames",
+           write_frames,
+           {"frames/frame-000001.depth.png", "frames/poses.txt", "frames/sensor.toml"},
+           [](const fs::path& folder) {
+             const FrameSequence frames = open_frames(folder / "frames");
+             for (std::size_t i = 0; i < frames.images.size(); ++i) {
+               const FrameFault fault = read_frame(frames, i).fault;
+               if (fault.verdict != FrameVerdict::used) throw Error(ErrorCode::format, fault.what);
+             }
+           }},
+          {"tum",
+           write_tum_recording,
+           {"depth.txt", "groundtruth.txt"},
+           load_recording}};
 }
 
 std::vector<Reader> cloud_and_map_readers() {
@@ -322,21 +255,10 @@ std::vector<Reader> cloud_and_map_readers() {
           file_reader("map.ot", octomap_of_boxes(), map)};
 }
 
-std::vector<Reader> part_readers() {
-  std::vector<Reader> readers;
-  for (const std::string name : {"part.csv", "part.npy"}) {
-    readers.push_back({name,
-                       [=](const TemporaryFolder& f) { write_part(f.path() / name); },
-                       {name},
-                       [=](const fs::path& folder) { read_part(folder / name); }});
-  }
-  return readers;
-}
-
 std::vector<Reader> all_readers() {
   std::vector<Reader> all;
   for (const auto& some : {pose_readers(), settings_readers(), image_readers(), frame_readers(),
-                           cloud_and_map_readers(), part_readers()}) {
+                           cloud_and_map_readers()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;
@@ -479,7 +401,7 @@ TEST(DamagedJson, IsReadOrRefused) {
   EXPECT_EQ(app::dumped(app::Json("\xE9")), "\"\uFFFD\"");
 }
 
-TEST(DamagedBytes, EveryReaderIsHere) { EXPECT_EQ(all_readers().size(), 21U); }
+TEST(DamagedBytes, EveryReaderIsHere) { EXPECT_EQ(all_readers().size(), 16U); }
 
 }  // namespace
 }  // namespace viewgain

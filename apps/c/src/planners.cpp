@@ -21,7 +21,7 @@ using namespace viewgain;
 using namespace viewgain::c_api;
 
 static_assert(VG_FRAME_VERDICTS == kFrameVerdictNames.size());
-static_assert(VG_FRAME_DEPTH_SCALE == static_cast<int>(FrameVerdict::depth_scale));
+static_assert(VG_FRAME_NO_MASK == static_cast<int>(FrameVerdict::no_mask));
 static_assert(VG_INFEASIBLE_MISSED == static_cast<int>(Infeasibility::too_near) + 1);
 
 struct vg_planner {

@@ -59,7 +59,6 @@ constexpr auto kFileOptions =
                                {"SPEC", Kind::input},       {"--truth", Kind::input},
                                {"--points", Kind::output},  {"SOURCE", Kind::folder},
                                {"--mask", Kind::folder},    {"--confidence", Kind::folder},
-                               {"PART", Kind::input},       {"--amplitude", Kind::folder},
                                {"--costs", Kind::input}});
 
 bool is_output(Kind kind) { return kind >= Kind::output; }

@@ -29,7 +29,6 @@ struct Stopped {
 [[nodiscard]] Command add_import(App& program);
 [[nodiscard]] Command add_integrate(App& program);
 [[nodiscard]] Command add_score(App& program);
-[[nodiscard]] Command add_merge(App& program);
 [[nodiscard]] Command add_reconstruct(App& program);
 [[nodiscard]] Command add_reconstruct_frames(App& reconstruct);  // its form
 [[nodiscard]] Command add_candidates(App& program);

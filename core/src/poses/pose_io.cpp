@@ -3,6 +3,7 @@
 #include "viewgain/core/pose_io.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -12,6 +13,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/pose_numbers.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
@@ -26,6 +28,37 @@ constexpr std::uint64_t kMaxFileSize = std::uint64_t{1} << 30U;  // [bytes]
 
 }  // namespace
 
+std::array<double, kPoseColumns.size()> numbers_of_pose(const Pose& pose) {
+  const Eigen::Quaterniond q = Eigen::Quaterniond(pose.rotation()).normalized();
+  const Eigen::Vector3d t = pose.translation();
+  return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+}
+
+Pose pose_of_numbers(std::span<const double> numbers, bool& mended,
+                     const std::function<void(const std::string&)>& fail) {
+  if (numbers.size() == kPoseColumns.size()) {
+    Eigen::Quaterniond q(numbers[6], numbers[3], numbers[4], numbers[5]);
+    const double norm = q.norm();
+    if (!(std::abs(norm - 1.0) <= kMendable)) {
+      fail("the quaternion's norm is " + short_text(norm) + ", not 1");
+    }
+    mended = std::abs(norm - 1.0) > kUnnoticed;
+    q.normalize();
+    return {q.toRotationMatrix(), Eigen::Vector3d(numbers[0], numbers[1], numbers[2])};
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (std::abs(numbers[12 + i] - (i == 3 ? 1.0 : 0.0)) > kLastRow) {
+      fail("the matrix's last row is not 0 0 0 1");
+    }
+  }
+  Pose pose;
+  std::copy_n(numbers.begin(), pose.m.size(), pose.m.begin());
+  const double error = orthonormality_error(pose);
+  if (!(error <= kMendable)) fail("the matrix is not a rigid transform");
+  mended = error > kUnnoticed;
+  return mended ? orthonormalized(pose) : pose;
+}
+
 Pose tum_line_pose(const LineReader& line, bool* orthonormalized) {
   std::array<double, 8> values{};
   const std::size_t count = line.words().size();
@@ -37,14 +70,11 @@ Pose tum_line_pose(const LineReader& line, bool* orthonormalized) {
     line.fail("expected 8 numbers (timestamp tx ty tz qx qy qz qw), found " +
               std::to_string(count));
   }
-  Eigen::Quaterniond q(values[7], values[4], values[5], values[6]);
-  const double norm = q.norm();
-  if (!(std::abs(norm - 1.0) <= kMendable)) {
-    line.fail("the quaternion's norm is " + short_text(norm) + ", not 1");
-  }
-  if (orthonormalized != nullptr) *orthonormalized = std::abs(norm - 1.0) > kUnnoticed;
-  q.normalize();
-  return {q.toRotationMatrix(), Eigen::Vector3d(values[1], values[2], values[3])};
+  bool mended = false;
+  const Pose pose = pose_of_numbers(std::span(values).subspan(1), mended,
+                                    [&](const std::string& what) { line.fail(what); });
+  if (orthonormalized != nullptr) *orthonormalized = mended;
+  return pose;
 }
 
 PoseList read_tum(const fs::path& path) {
@@ -87,12 +117,8 @@ void write_tum(const fs::path& path, std::span<const Pose> poses,
       throw Error(ErrorCode::invalid_argument,
                   path.string() + ": timestamp " + std::to_string(i) + " is not finite");
     }
-    const Eigen::Quaterniond q = Eigen::Quaterniond(poses[i].rotation()).normalized();
-    const Eigen::Vector3d t = poses[i].translation();
     text += exact_text(timestamps[i]);
-    for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
-      text += ' ' + exact_text(value);
-    }
+    for (const double value : numbers_of_pose(poses[i])) text += ' ' + exact_text(value);
     text += '\n';
   }
   write_file_atomically(path, text);
@@ -113,21 +139,12 @@ Pose read_pose_matrix(const fs::path& path, bool* orthonormalized) {
     throw Error(ErrorCode::format, path.string() + ": expected 16 numbers (a 4x4 matrix), found " +
                                        std::to_string(count));
   }
-  constexpr std::array<double, 4> kExpected{0, 0, 0, 1};
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (std::abs(values[12 + i] - kExpected[i]) > kLastRow) {
-      throw Error(ErrorCode::format, path.string() + ": the matrix's last row is not 0 0 0 1");
-    }
-  }
-  Pose pose;
-  for (std::size_t i = 0; i < 12; ++i) pose.m[i] = values[i];
-  const double error = orthonormality_error(pose);
-  if (!(error <= kMendable)) {
-    throw Error(ErrorCode::format, path.string() + ": the matrix is not a rigid transform");
-  }
-  const bool mend = error > kUnnoticed;
-  if (orthonormalized != nullptr) *orthonormalized = mend;
-  return mend ? viewgain::orthonormalized(pose) : pose;
+  bool mended = false;
+  const Pose pose = pose_of_numbers(values, mended, [&](const std::string& what) {
+    throw Error(ErrorCode::format, path.string() + ": " + what);
+  });
+  if (orthonormalized != nullptr) *orthonormalized = mended;
+  return pose;
 }
 
 }  // namespace viewgain

@@ -10,8 +10,6 @@
 
 #include "mesh_builder.hpp"
 #include "mesh_formats.hpp"
-#include "viewgain/core/error.hpp"
-#include "viewgain/support/scalar_type.hpp"
 #include "word_reader.hpp"
 
 namespace viewgain::detail {
@@ -26,12 +24,8 @@ class OffReader {
 
   TriangleMesh read() {
     read_keyword();
-    if (is_binary_) {
-      read_binary();
-    } else {
-      read_counts();
-      read_text();
-    }
+    read_counts();
+    read_rows();
     return std::move(mesh_).finish();
   }
 
@@ -65,7 +59,7 @@ class OffReader {
     if (!word.empty()) {
       glued_ = lines_.number_of(word);
     } else if (words_.more_here() && words_.peek() == "BINARY") {
-      is_binary_ = true;
+      lines_.fail("binary OFF is not read; text is");
     }
   }
 
@@ -98,7 +92,7 @@ class OffReader {
     return count == wanted;
   }
 
-  void read_text() {
+  void read_rows() {
     const bool has_rows = has_lines(vertices_ + faces_);
     for (double i = 0; i < vertices_; ++i) {
       std::array<double, 3> p{};
@@ -136,45 +130,11 @@ class OffReader {
     }
   }
 
-  // Geomview's: big-endian, each face ends with the number of its colour's components and those.
-  void read_binary() {
-    std::string_view rest = lines_.rest();
-    const auto next = [&](ScalarType::Kind kind) {
-      constexpr std::size_t kSize = 4;
-      if (rest.size() < kSize) lines_.fail("the file ends too early");
-      const double value = decode(rest.data(), {kind, kSize}, true);
-      rest.remove_prefix(kSize);
-      return value;
-    };
-    const auto integer = [&] { return next(ScalarType::Kind::signed_integer); };
-    const auto count_of = [&](const char* what) {
-      const double count = integer();
-      if (count < 0) lines_.fail(std::string("the count of ") + what + " is negative");
-      return count;
-    };
-    vertices_ = count_of("vertices");
-    faces_ = count_of("faces");
-    (void)integer();
-    for (double i = 0; i < vertices_; ++i) {
-      std::array<double, 3> p{};
-      for (double& x : p) x = next(ScalarType::Kind::floating);
-      mesh_.add_vertex(p, 0);
-      for (std::size_t k = 3; k < vertex_numbers_; ++k) (void)integer();
-    }
-    for (double i = 0; i < faces_; ++i) {
-      for (double k = count_of("a face's corners"); k > 0; --k) mesh_.add_corner(integer(), 0);
-      mesh_.end_face(0);
-      for (double k = count_of("a colour's components"); k > 0; --k) (void)integer();
-    }
-    if (!rest.empty()) lines_.fail("the file goes on behind its last face");
-  }
-
   LineReader lines_;
   WordReader words_;
   MeshBuilder mesh_;
   std::size_t vertex_numbers_ = 3;
   std::optional<double> glued_;
-  bool is_binary_ = false;
   double vertices_ = 0, faces_ = 0;
 };
 

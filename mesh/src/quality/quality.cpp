@@ -6,127 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <string>
-#include <utility>
+#include <unsupported/Eigen/BVH>
+#include <vector>
 
-#include "viewgain/core/box.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/mix64.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/thread_pool.hpp"
-
-namespace viewgain::detail {
-
-// A balanced tree of the bounding boxes of items, for nearest-item queries. Thread safety: const
-// members may run from many threads.
-class BoxTree {
- public:
-  explicit BoxTree(std::span<const Box> boxes);
-
-  struct Nearest {
-    std::uint32_t item = 0;
-    double squared_distance = std::numeric_limits<double>::infinity();  ///< infinite: no items
-  };
-
-  /// The item with the least item_distance(item), the squared distance of p to it, which must not
-  /// be under that to its box.
-  template <typename ItemDistance>
-  [[nodiscard]] Nearest nearest(const std::array<double, 3>& p,
-                                const ItemDistance& item_distance) const {
-    struct Pending {
-      std::uint32_t node;
-      double squared_distance;
-    };
-    std::array<Pending, 64> stack;  // the tree is balanced: its depth is under 32
-    std::size_t size = 0;
-    Nearest best;
-    if (!nodes_.empty()) stack[size++] = {0, squared_distance(nodes_[0].box, p)};
-    while (size > 0) {
-      const Pending top = stack[--size];
-      if (top.squared_distance >= best.squared_distance) continue;
-      const Node& node = nodes_[top.node];
-      if (node.right == 0) {
-        for (std::uint32_t i = node.begin; i < node.end; ++i) {
-          const double d2 = item_distance(order_[i]);
-          if (d2 < best.squared_distance) best = {order_[i], d2};
-        }
-        continue;
-      }
-      Pending near{top.node + 1, squared_distance(nodes_[top.node + 1].box, p)};
-      Pending far{node.right, squared_distance(nodes_[node.right].box, p)};
-      if (far.squared_distance < near.squared_distance) std::swap(near, far);
-      stack[size++] = far;
-      stack[size++] = near;
-    }
-    return best;
-  }
-
- private:
-  struct Node {
-    Box box;
-    std::uint32_t begin = 0, end = 0;  // items, into order_
-    std::uint32_t right = 0;           // second child; the first follows the node; 0: a leaf
-  };
-  [[nodiscard]] static double squared_distance(const Box& box, const std::array<double, 3>& p) {
-    double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double outside = std::max({box.min[k] - p[k], 0.0, p[k] - box.max[k]});
-      sum += outside * outside;
-    }
-    return sum;
-  }
-  std::uint32_t build(std::span<const Box> boxes, std::uint32_t begin, std::uint32_t end);
-
-  std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
-};
-
-namespace {
-
-constexpr std::uint32_t kLeafSize = 4;
-
-Box grown(const Box& a, const Box& b) {
-  Box result;
-  for (std::size_t k = 0; k < 3; ++k) {
-    result.min[k] = std::min(a.min[k], b.min[k]);
-    result.max[k] = std::max(a.max[k], b.max[k]);
-  }
-  return result;
-}
-
-}  // namespace
-
-BoxTree::BoxTree(std::span<const Box> boxes) : order_(boxes.size()) {
-  std::iota(order_.begin(), order_.end(), 0U);
-  if (!boxes.empty()) build(boxes, 0, static_cast<std::uint32_t>(boxes.size()));
-}
-
-std::uint32_t BoxTree::build(std::span<const Box> boxes, std::uint32_t begin, std::uint32_t end) {
-  Box box = boxes[order_[begin]];
-  for (std::uint32_t i = begin + 1; i < end; ++i) box = grown(box, boxes[order_[i]]);
-  const auto index = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.push_back({box, begin, end, 0});
-  if (end - begin <= kLeafSize) return index;
-
-  std::size_t axis = 0;
-  for (std::size_t k = 1; k < 3; ++k) {
-    if (box.max[k] - box.min[k] > box.max[axis] - box.min[axis]) axis = k;
-  }
-  const auto key = [&](std::uint32_t item) {
-    return std::pair(boxes[item].min[axis] + boxes[item].max[axis], item);
-  };
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-  build(boxes, begin, middle);
-  const std::uint32_t right = build(boxes, middle, end);
-  nodes_[index].right = right;
-  return index;
-}
-
-}  // namespace viewgain::detail
 
 namespace viewgain {
 namespace {
@@ -202,13 +92,55 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   return triangles;
 }
 
-std::vector<Box> boxes_of(const std::vector<Triangle>& triangles) {
-  std::vector<Box> boxes(triangles.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Triangle& t = triangles[i];
-    Vector3d::Map(boxes[i].min.data()) = t.a.cwiseMin(t.b).cwiseMin(t.c);
-    Vector3d::Map(boxes[i].max.data()) = t.a.cwiseMax(t.b).cwiseMax(t.c);
+// Finds the nearest of some items by their boxes. Thread safety: const members may run from many
+// threads.
+class NearestItem {
+ public:
+  explicit NearestItem(const std::vector<Eigen::AlignedBox3d>& boxes) {
+    std::vector<std::uint32_t> items(boxes.size());
+    std::iota(items.begin(), items.end(), 0U);
+    tree_.init(items.begin(), items.end(), boxes.begin(), boxes.end());
   }
+
+  struct Nearest {
+    std::uint32_t item = 0;
+    double squared_distance = std::numeric_limits<double>::infinity();
+  };
+  // The item with the least item_distance(item), the squared distance of p to it; there must be
+  // one.
+  template <typename ItemDistance>
+  [[nodiscard]] Nearest of(const Vector3d& p, const ItemDistance& item_distance) const {
+    Minimizer<ItemDistance> minimizer{p, item_distance, {}};
+    (void)Eigen::BVMinimize(tree_, minimizer);
+    return minimizer.best;
+  }
+
+ private:
+  // What BVMinimize asks.
+  template <typename ItemDistance>
+  struct Minimizer {
+    using Scalar = double;
+    const Vector3d& p;
+    const ItemDistance& item_distance;
+    Nearest best;
+
+    [[nodiscard]] double minimumOnVolume(const Eigen::AlignedBox3d& box) const {
+      return box.squaredExteriorDistance(p);
+    }
+    double minimumOnObject(std::uint32_t item) {
+      const double d2 = item_distance(item);
+      if (d2 < best.squared_distance) best = {item, d2};
+      return d2;
+    }
+  };
+
+  Eigen::KdBVH<double, 3, std::uint32_t> tree_;
+};
+
+std::vector<Eigen::AlignedBox3d> boxes_of(const std::vector<Triangle>& triangles) {
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const Triangle& t : triangles)
+    boxes.emplace_back(Eigen::AlignedBox3d(t.a).extend(t.b).extend(t.c));
   return boxes;
 }
 
@@ -254,7 +186,7 @@ double quantile(std::vector<double>& values, double q) {
 
 struct GroundTruth::Impl {
   std::vector<Triangle> triangles;
-  detail::BoxTree tree;
+  NearestItem tree;
   std::vector<SurfaceSample> samples;
   mutable ThreadPool pool;
 
@@ -276,7 +208,7 @@ struct GroundTruth::Impl {
     pool.for_each_chunk(points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Vector3d p = vector_of(points[i]);
-        const auto nearest = tree.nearest(points[i], [&](std::uint32_t t) {
+        const auto nearest = tree.of(p, [&](std::uint32_t t) {
           return (nearest_on_triangle(p, triangles[t]) - p).squaredNorm();
         });
         const Triangle& t = triangles[nearest.item];
@@ -298,16 +230,16 @@ const std::vector<SurfaceSample>& GroundTruth::samples() const noexcept { return
 
 std::vector<double> GroundTruth::distances_to(std::span<const std::array<double, 3>> points) const {
   check_finite(points);
-  std::vector<Box> boxes(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) boxes[i] = {points[i], points[i]};
-  const detail::BoxTree tree(boxes);
-  std::vector<double> distances(impl_->samples.size());
+  std::vector<double> distances(impl_->samples.size(), std::numeric_limits<double>::infinity());
+  if (points.empty()) return distances;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const auto& point : points) boxes.emplace_back(vector_of(point));
+  const NearestItem tree(boxes);
   impl_->pool.for_each_chunk(distances.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d& s = impl_->samples[i].position;
-      const auto nearest = tree.nearest({s.x(), s.y(), s.z()}, [&](std::uint32_t j) {
-        return (vector_of(points[j]) - s).squaredNorm();
-      });
+      const auto nearest =
+          tree.of(s, [&](std::uint32_t j) { return (vector_of(points[j]) - s).squaredNorm(); });
       distances[i] = std::sqrt(nearest.squared_distance);
     }
   });

@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -29,19 +28,8 @@ PointGrid::PointGrid(std::span<const Point3> points, double cell_size)
   for (std::size_t i = 0; i < keyed.size(); ++i) {
     order_[i] = keyed[i].second;
     sorted_[i] = points[keyed[i].second];
-  }
-
-  const std::size_t size = std::bit_ceil(2 * points.size() + 2);
-  shift_ = 64U - static_cast<unsigned>(std::countr_zero(size));
-  slots_.resize(size);
-  for (std::size_t begin = 0; begin < keyed.size();) {
-    std::size_t end = begin + 1;
-    while (end < keyed.size() && keyed[end].first == keyed[begin].first) ++end;
-    std::size_t s = home(keyed[begin].first);
-    while (slots_[s].begin != slots_[s].end) s = (s + 1) & (size - 1);
-    slots_[s] = {keyed[begin].first, static_cast<std::uint32_t>(begin),
-                 static_cast<std::uint32_t>(end)};
-    begin = end;
+    const auto place = static_cast<std::uint32_t>(i);
+    cells_.try_emplace(keyed[i].first, Range{place, place}).first->second.end = place + 1;
   }
 }
 

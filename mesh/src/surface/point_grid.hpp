@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace viewgain::detail {
@@ -36,8 +37,9 @@ class PointGrid {
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          const Slot& slot = find(key_of(x, y, z));
-          for (std::uint32_t i = slot.begin; i < slot.end; ++i) {
+          const auto cell = cells_.find(key_of(x, y, z));
+          if (cell == cells_.end()) continue;
+          for (std::uint32_t i = cell->second.begin; i < cell->second.end; ++i) {
             const double d2 = squared_distance(sorted_[i], p);
             if (d2 <= radius * radius) visit(order_[i], d2);
           }
@@ -52,10 +54,6 @@ class PointGrid {
  private:
   static constexpr double kMost = 0x1p62;  // cells along an axis, either way
 
-  struct Slot {
-    std::uint64_t key = 0;
-    std::uint32_t begin = 0, end = 0;  // into order_; equal: a free slot
-  };
   [[nodiscard]] std::int64_t cell_of(double x) const {
     // What lies beyond the numbers of cells shares the last cell.
     return static_cast<std::int64_t>(std::clamp(std::floor(x * inverse_cell_size_), -kMost, kMost));
@@ -65,21 +63,14 @@ class PointGrid {
     return (static_cast<std::uint64_t>(x) & kMask) << 42U |
            (static_cast<std::uint64_t>(y) & kMask) << 21U | (static_cast<std::uint64_t>(z) & kMask);
   }
-  [[nodiscard]] std::size_t home(std::uint64_t key) const {
-    return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> shift_);
-  }
-  [[nodiscard]] const Slot& find(std::uint64_t key) const {
-    std::size_t s = home(key);
-    while (slots_[s].begin != slots_[s].end && slots_[s].key != key)
-      s = (s + 1) & (slots_.size() - 1);
-    return slots_[s];
-  }
 
   double inverse_cell_size_;
   std::vector<std::uint32_t> order_;
   std::vector<Point3> sorted_;  // the points in that order: a cell's lie side by side
-  std::vector<Slot> slots_;     // open addressing, a power of two, at most half full
-  unsigned shift_ = 0;
+  struct Range {
+    std::uint32_t begin = 0, end = 0;  // into order_
+  };
+  std::unordered_map<std::uint64_t, Range> cells_;
 };
 
 }  // namespace viewgain::detail

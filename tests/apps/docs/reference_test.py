@@ -21,8 +21,6 @@ CALLS = {
     "score --set": "score map.vdb --sphere 20,0.6 --set 2",
     "score --approximate": "score map.vdb --sphere 20,0.6 --approximate 0.2",
     "score --gain": "score map.vdb --sphere 20,0.6 --gain unknown_count",
-    "score --shard": "score map.vdb --sphere 20,0.6 --shard 0/1 --out part.csv",
-    "merge": "merge part.csv --out merged.csv",
     "reconstruct": "reconstruct meshes/camel.off --size 0.35 --sensor sr4000 --voxel 0.01 --max-views 2 --out run",
     "reconstruct FRAMES_DIR": "reconstruct frames --voxel 0.01 --pictures off --out model",
     "next": "next run/map.vdb --top 2",

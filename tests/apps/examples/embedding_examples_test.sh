@@ -21,34 +21,27 @@ grep -qE '^pose [0-9]+: [1-9][0-9.]* unknown voxels per m2$' "$work/own.txt" || 
 refuses 'missing.vdb' "$bin/own_gain" "$work/missing.vdb"
 refuses 'usage' "$bin/own_gain"
 
-# A camera 0.7 m above the map that looks down, as 12 and as 16 numbers; one that is no pose.
+# A camera 0.7 m above the map that looks down; one that is no pose; one that looks away.
 cat >"$work/poses.txt" <<'POSES'
-# T_world_camera
 1 0 0 0  0 -1 0 0  0 0 -1 0.7
 
-1 0 0 0  0 -1 0 0  0 0 -1 0.7  0 0 0 1
-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, nan
-  1 0 0 0 0 1 0 0 0 0 1 0.7
+1 0 0 0 0 -1 0 0 0 0 -1 nan
+1 0 0 0 0 1 0 0 0 0 1 0.7
 POSES
 "$bin/score_stdin" "$map" <"$work/poses.txt" | tee "$work/gains.txt"
 mapfile -t gain <"$work/gains.txt"
-[ "${#gain[@]}" = 4 ] || fail "score_stdin: ${#gain[@]} lines"
+[ "${#gain[@]}" = 3 ] || fail "score_stdin: ${#gain[@]} lines"
 [[ "${gain[0]}" =~ ^[1-9] ]] || fail "score_stdin: the first gain is ${gain[0]}"
-[ "${gain[0]}" = "${gain[1]}" ] || fail "score_stdin: 12 and 16 numbers differ"
-[ "${gain[2]}" = nan ] || fail "score_stdin: a pose with nan gains ${gain[2]}"
-[ "${gain[3]}" = 0 ] || fail "score_stdin: a camera that looks away gains ${gain[3]}"
+[ "${gain[1]}" = nan ] || fail "score_stdin: a pose with nan gains ${gain[1]}"
+[ "${gain[2]}" = 0 ] || fail "score_stdin: a camera that looks away gains ${gain[2]}"
 "$bin/score_stdin" "$map" kinect_v1 <"$work/poses.txt" >"$work/kinect.txt"
 ! cmp -s "$work/gains.txt" "$work/kinect.txt" || fail "score_stdin: the sensor does not matter"
 [ -z "$("$bin/score_stdin" "$map" </dev/null)" ] || fail "score_stdin: gains without poses"
 
-printf '1 0 0 0 0 1 0 0 0 0 1 0\n\n1 2 3\n' >"$work/short.txt"
-refuses 'line 3 is not 12 or 16 numbers: 1 2 3' "$bin/score_stdin" "$map" <"$work/short.txt"
-echo '1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 7' >"$work/long.txt"
-refuses 'line 1 is not' "$bin/score_stdin" "$map" <"$work/long.txt"
-echo '1 0 0 zero 0 1 0 0 0 0 1 0' >"$work/word.txt"
-refuses 'line 1 is not' "$bin/score_stdin" "$map" <"$work/word.txt"
-head -c 5000 /dev/zero | tr '\0' ' ' >"$work/wide.txt"
-refuses 'line 1 is longer' "$bin/score_stdin" "$map" <"$work/wide.txt"
+for wrong in '1 2 3' '1 0 0 zero 0 1 0 0 0 0 1 0'; do
+  echo "$wrong" >"$work/wrong.txt"
+  refuses '12 numbers' "$bin/score_stdin" "$map" <"$work/wrong.txt"
+done
 refuses 'missing.vdb' "$bin/score_stdin" "$work/missing.vdb" </dev/null
 refuses 'sr4001' "$bin/score_stdin" "$map" sr4001 </dev/null
 refuses 'usage' "$bin/score_stdin" </dev/null

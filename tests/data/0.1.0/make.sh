@@ -76,16 +76,13 @@ space=0,0,0,0.3,0.3,0.3  # a corner of the cube, one leaf of the map
 touch frames/done
 "$program" follow frames --voxel 0.0375 --workspace "$space" --top 2 --out plan --quiet >log
 "$program" candidates plan/state.vdb --generator sphere --count 4 --sensor sensor.toml --out reach.poses.txt >log
-for part in 0/2:part0.csv 1/2:part1.csv 0/1:part.npy; do
-  "$program" score plan/state.vdb --sphere 6,0.6 --sensor sensor.toml --shard "${part%:*}" --out "${part#*:}" >log
-done
 flags=(reconstruct cube.off --sensor sensor.toml --size 0.2 --voxel 0.02 --max-views 3 --stop-idle 0 --pictures off --resume)
 "$program" "${flags[@]}" --out run >log 2>&1
 "$program" "${flags[@]}" --out ended >log 2>&1 &
 until grep -qs candidate .ended.tmp-*/checkpoint.json; do :; done
 kill -9 $!
 
-cp sensor.toml reach.toml reach.poses.txt part* "$here"
+cp sensor.toml reach.toml reach.poses.txt "$here"
 cp plan/state.vdb "$here"
 cp run/run.json .ended.tmp-*/checkpoint.json "$here"
 {

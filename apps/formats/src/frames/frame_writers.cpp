@@ -149,8 +149,7 @@ RecordedFramesWriter::RecordedFramesWriter(const fs::path& dir)
     : earlier_(imported_files(dir)), staged_(dir) {}
 
 void RecordedFramesWriter::write_frame(std::uint64_t number, const GrayImage& depth,
-                                       const Pose& T_world_camera,
-                                       const std::optional<GrayImage>& amplitude) {
+                                       const Pose& T_world_camera) {
   const std::string image = frame_name(number, kDepthSuffix);
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorCode::invalid_argument, image + ": " + what);
@@ -158,9 +157,6 @@ void RecordedFramesWriter::write_frame(std::uint64_t number, const GrayImage& de
   if (files_.contains(image)) refuse("is written already");
   if (!files_.empty() && (depth.width != width_ || depth.height != height_)) {
     refuse("is of another size than those before");
-  }
-  if (amplitude && (amplitude->width != depth.width || amplitude->height != depth.height)) {
-    refuse("the amplitudes are of another size");
   }
   if (!rigid_pose(T_world_camera)) refuse("the pose is no rigid transform");
   const auto& m = T_world_camera.m;
@@ -172,11 +168,6 @@ void RecordedFramesWriter::write_frame(std::uint64_t number, const GrayImage& de
   write_png(staged_.path() / image, depth);
   write_file_atomically(staged_.path() / pose, text + "0 0 0 1\n");
   width_ = depth.width, height_ = depth.height;
-  if (amplitude) {
-    const std::string name = frame_name(number, kAmplitudeSuffix);
-    write_png(staged_.path() / name, *amplitude);
-    files_.insert(name);
-  }
   files_.insert(image);
   files_.insert(pose);
 }

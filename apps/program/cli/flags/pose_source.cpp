@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <charconv>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -13,8 +12,8 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/support/columns/mapped_poses.hpp"
-#include "viewgain/support/columns/parts.hpp"
+#include "viewgain/support/columns/npy_poses.hpp"
+#include "viewgain/support/columns/table.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -61,21 +60,6 @@ std::vector<Pose> shell(const std::string& text, const Eigen::Vector3d& center,
                          [&] { return shell_poses(count, n[1], n[2], seed, center); });
 }
 
-PoseSource mapped_poses(const std::string& file, const Shard& shard) {
-  const MappedPoses mapped(file);
-  PoseSource source;
-  source.total = mapped.size();
-  source.rows = shard.of(mapped.size());
-  source.hash = mapped.hash();
-  source.poses.reserve(source.rows.end - source.rows.begin);
-  for (std::size_t row = source.rows.begin; row < source.rows.end; ++row) {
-    bool mended = false;
-    source.poses.push_back(mapped.at(row, mended));
-    source.orthonormalized += mended ? 1 : 0;
-  }
-  return source;
-}
-
 std::vector<Pose> set_of_poses(const PoseOptions& options, std::uint64_t seed) {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   if (!options.center.empty()) center = parse_point("--center", options.center);
@@ -91,8 +75,8 @@ std::vector<Pose> set_of_poses(const PoseOptions& options, std::uint64_t seed) {
 
 }  // namespace
 
-void add_pose_options(App& app, PoseOptions& options, bool needed) {
-  auto* poses = app.add_option_group("poses", needed ? "exactly one of" : "at most one of");
+void add_pose_options(App& app, PoseOptions& options) {
+  auto* poses = app.add_option_group("poses", "exactly one of");
   poses->add_option(
       "--poses", options.file,
       "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]; or .npy: rows with "
@@ -109,7 +93,7 @@ void add_pose_options(App& app, PoseOptions& options, bool needed) {
   poses->add_option("--orbit", options.orbit,
                     "N,RADIUS,ELEVATION_DEG[,START_DEG,STEP_DEG]: N views on a circle of latitude "
                     "[m, degrees]; START 0, STEP 360/N");
-  poses->require_option(needed ? 1 : 0, 1);
+  poses->require_option(1, 1);
   app.add_option("--center", options.center,
                  "x,y,z that the sets of poses look at, world [m]; default: the origin");
 }
@@ -119,21 +103,6 @@ void add_cost_options(App& app, CostOptions& options, const std::string& of) {
                  "file of one number for each of " + of +
                      ", which is subtracted from its gain, in the gain's unit");
   app.add_option("--cost-per-metre", options.per_metre, kCostPerMetreHelp)->capture_default_str();
-}
-
-Shard parse_shard(const std::string& text) {
-  Shard shard;
-  if (text.empty()) return shard;
-  const char* const end = text.data() + text.size();
-  const auto index = std::from_chars(text.data(), end, shard.index);
-  const bool is_slash = index.ec == std::errc() && index.ptr != end && *index.ptr == '/';
-  const auto count = std::from_chars(is_slash ? index.ptr + 1 : end, end, shard.count);
-  if (count.ec != std::errc() || count.ptr != end) refuse("--shard", text, "must be i/n, i from 0");
-  constexpr std::uint64_t kMost = 10'000'000;
-  if (shard.index >= shard.count || shard.count > kMost) {
-    refuse("--shard", text, "i must be below n, from 0, and n at most 10,000,000");
-  }
-  return shard;
 }
 
 std::vector<double> read_costs(const std::string& file, std::size_t poses) {
@@ -151,29 +120,13 @@ std::vector<double> read_costs(const std::string& file, std::size_t poses) {
          " poses");
 }
 
-PoseSource make_poses(const PoseOptions& options, std::uint64_t seed, const Shard& shard) {
-  if (!options.file.empty() && !options.center.empty()) {
+PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {
+  if (options.file.empty()) return {set_of_poses(options, seed)};
+  if (!options.center.empty()) {
     refuse("--center", options.center, "goes with sets of poses, not with --poses");
   }
-  if (is_npy(options.file)) return mapped_poses(options.file, shard);
-  PoseSource source;
-  source.poses = options.file.empty() ? set_of_poses(options, seed) : std::vector<Pose>();
-  if (!options.file.empty()) {
-    PoseList list = read_tum(options.file);
-    source.poses = std::move(list.poses);
-    source.orthonormalized = list.orthonormalized;
-  }
-  source.total = source.poses.size();
-  source.rows = shard.of(source.total);
-  source.hash = hash_of_poses(source.total, Pose().m.size(), [&](std::size_t row, std::size_t i) {
-    return source.poses[row].m[i];
-  });
-  if (shard.count > 1) {
-    const auto begin = source.poses.begin();
-    source.poses = std::vector<Pose>(begin + static_cast<std::ptrdiff_t>(source.rows.begin),
-                                     begin + static_cast<std::ptrdiff_t>(source.rows.end));
-  }
-  return source;
+  PoseList list = is_npy(options.file) ? read_npy_poses(options.file) : read_tum(options.file);
+  return {std::move(list.poses), list.orthonormalized};
 }
 
 }  // namespace viewgain::app

@@ -19,7 +19,6 @@
 #include "program/commands/commands.hpp"
 #include "program/commands/score/score_classic.hpp"
 #include "program/commands/score/score_options.hpp"
-#include "program/commands/score/score_part.hpp"
 #include "program/commands/score/score_report.hpp"
 #include "program/commands/score/score_views.hpp"
 #include "show/pictures/map_picture.hpp"
@@ -95,8 +94,8 @@ FeasiblePoses candidates_of(const Options& options, const PoseSource& source, co
   return feasible_poses(FeasibilityChecker(scene, config, exec), source.poses, grid.views());
 }
 
-void check_left(const FeasiblePoses& candidates, const Options& options) {
-  if (!candidates.poses.empty() || !options.shard.empty()) return;  // a part may be empty
+void check_left(const FeasiblePoses& candidates) {
+  if (!candidates.poses.empty()) return;
   refuse("no pose is left to score; dropped: " + counts_text(candidates.dropped));
 }
 
@@ -104,11 +103,7 @@ void check_left(const FeasiblePoses& candidates, const Options& options) {
 std::vector<double> costs_of(const Options& options, const PoseSource& source,
                              const BeliefGrid& grid) {
   std::vector<double> costs;
-  if (!options.costs.file.empty()) {
-    const std::vector<double> all = read_costs(options.costs.file, source.total);
-    costs = {all.begin() + static_cast<std::ptrdiff_t>(source.rows.begin),
-             all.begin() + static_cast<std::ptrdiff_t>(source.rows.end)};
-  }
+  if (!options.costs.file.empty()) costs = read_costs(options.costs.file, source.poses.size());
   std::optional<Eigen::Vector3d> here;
   if (!grid.views().empty()) here = grid.views().back().translation();
   return view_costs(source.poses, {.costs = costs, .cost_per_metre = options.costs.per_metre},
@@ -129,9 +124,6 @@ double timed(const Options& options, const Work& work) {
 }
 
 // Numbers of the candidates become rows of the poses that were given.
-void name_by_input(FeasiblePoses& candidates, const PoseSource& source) {
-  for (std::size_t& number : candidates.numbers) number += source.rows.begin;
-}
 void name_by_input(Scores& scores, const FeasiblePoses& candidates) {
   const auto name = [&](std::vector<std::size_t>& indices) {
     for (std::size_t& i : indices) i = candidates.numbers[i];
@@ -157,8 +149,7 @@ void warn_of_prior(const GainEvaluator& evaluator, const Sensor& sensor) {
 void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gains) {
   const ClassicConfig config = classic_config(options, std::move(gains));
   const ExecConfig exec = exec_of(options.common);
-  const Shard shard = shard_of(options);
-  const PoseSource source = make_poses(options.poses, options.seed, shard);
+  const PoseSource source = make_poses(options.poses, options.seed);
   const SensedMap map = load_sensed_map(options.map, options.sensor, exec);
   const auto& [grid, sensor] = map;
   const auto scene =
@@ -168,8 +159,7 @@ void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gai
   const ClassicGainEvaluator evaluator(ClassicMap::build(scene, grid, acquisition, exec), sensor,
                                        config, exec);
   FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
-  check_left(candidates, options);
-  name_by_input(candidates, source);
+  check_left(candidates);
 
   ClassicScores scores{grid, sensor, source, evaluator, candidates.numbers, candidates.dropped};
   scores.gains.resize(candidates.poses.size() * evaluator.config().gains.size());
@@ -178,11 +168,7 @@ void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gai
     evaluator.evaluate(candidates.poses, scores.gains, scores.statuses, control);
   });
   if (!options.out.empty()) {
-    const GainConfig said{.pixel_stride = config.pixel_stride,
-                          .min_range = config.min_range,
-                          .max_range = config.max_range};
-    write_scores(options, said, scores.table(), grid, sensor, source,
-                 evaluator.map().scene().isa());
+    write_table(options.out, with_poses(scores.table(), source));
   }
   if (options.common.json) {
     scores.print_json(options.top);
@@ -199,8 +185,7 @@ void score(const Options& options) {
   if (!options.report.empty()) check_report_page("--report");
   const ExecConfig exec = exec_of(options.common);
   const GainConfig config = gain_config(options);
-  const Shard shard = shard_of(options);
-  PoseSource source = make_poses(options.poses, options.seed, shard);
+  PoseSource source = make_poses(options.poses, options.seed);
   const SensedMap map = load_sensed_map(options.map, options.sensor, exec);
   const BeliefGrid& grid = map.grid;
   const Sensor& sensor = map.sensor;
@@ -210,12 +195,11 @@ void score(const Options& options) {
       grid, {obstacles_of(options.obstacles), options.support_plane}, exec, hazard);
   const GainEvaluator evaluator(scene, sensor, config, exec);
   FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
-  check_left(candidates, options);
+  check_left(candidates);
   std::vector<double> costs;  // of the candidates
   for (const std::size_t i : candidates.numbers) {
     if (!source.costs.empty()) costs.push_back(source.costs[i]);
   }
-  name_by_input(candidates, source);
 
   Scores scores;
   const double seconds = timed(options, [&](const BatchControl& control) {
@@ -225,13 +209,12 @@ void score(const Options& options) {
   warn_of_prior(evaluator, sensor);
   if (!options.picture.empty()) {
     const std::optional<std::size_t> winner = scores.winner();
-    const Pose& shown = winner ? source.at(*winner)
+    const Pose& shown = winner ? source.poses.at(*winner)
                                : candidates.poses[evaluator.race(candidates.poses).indices.at(0)];
     write_png(options.picture, score_picture(evaluator, sensor, shown, exec));
   }
   if (!options.out.empty()) {
-    write_scores(options, config, table_of(scores, config.model), grid, sensor, source,
-                 scene->isa());
+    write_table(options.out, with_poses(table_of(scores, config.model), source));
   }
   const ScoreReport report{config.model, options.criterion, grid,   sensor,
                            source,       evaluator,         scores, seconds};
@@ -323,9 +306,6 @@ Command add_score(App& program) {
   app->add_option("--deadline", options->deadline,
                   "SECONDS: --race ends with the best that it can say by then; default: none");
   add_seed_option(*app, options->seed, "of --shell, --race (the paper's gain) and --approximate");
-  app->add_option("--shard", options->shard,
-                  "i/n: the i-th of n shards of the poses, i from 0, rows that follow one another; "
-                  "needs --out; see merge");
   app->add_option("--out", options->out,
                   "CSV file, or .npy with the same columns, of all poses that were not dropped, in "
                   "input order; with a selection, "
@@ -334,7 +314,7 @@ Command add_score(App& program) {
   app->add_option(
       "--picture", options->picture,
       "PNG file: the map, the best view's frustum and the voxels where its rays end; surface "
-      "and combined: may end, the stronger in colour the likelier");
+      "and combined: may end, the larger the likelier");
   app->add_option("--report", options->report,
                   "HTML file: map, candidates by gain, ranking and what the best ones see, to look "
                   "at in a browser");

@@ -109,7 +109,7 @@ void ClassicScores::print_json(std::size_t top) const {
       view[name_of(asked[g])] = gains[i * asked.size() + g];  // a NaN becomes null
     }
     view["status"] = view_status_name(statuses[i]);
-    view["T_world_camera"] = to_json(source.at(numbers[i]));
+    view["T_world_camera"] = to_json(source.poses.at(numbers[i]));
     best_views.push_back(std::move(view));
   }
   const auto poses = static_cast<double>(numbers.size());
@@ -158,7 +158,7 @@ void ClassicScores::print_table(std::size_t top) const {
       std::printf(" %*.6g", static_cast<int>(std::max<std::size_t>(12, heads[g].size())),
                   gains[i * asked.size() + g]);
     }
-    const Eigen::Vector3d eye = source.at(numbers[i]).translation();
+    const Eigen::Vector3d eye = source.poses.at(numbers[i]).translation();
     std::printf("  %8.3f %8.3f %8.3f %s\n", eye.x(), eye.y(), eye.z(),
                 std::string(view_status_name(statuses[i])).c_str());
   }

@@ -37,7 +37,6 @@ struct ScoreOptions {
   std::optional<double> approximate;  // share of the rays
   std::optional<std::size_t> set;     // how many
   std::uint64_t seed = 1;
-  std::string shard;  // part of the poses
   std::string out;
   std::string picture;
   std::string report;

@@ -5,13 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <string_view>
 
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/json_text.hpp"
 #include "program/cli/values.hpp"
 #include "show/report/score_page.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
-#include "viewgain/support/columns/score_job.hpp"
+#include "viewgain/support/pose_numbers.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -26,7 +27,16 @@ Json occupied_voxels(const ViewGain& view, GainModel model) {
 
 Table table_of(const ScoredViews& views, GainModel model) {
   const bool has_area = model != GainModel::paper;
-  Table table{gain_columns(model)};
+  Table table{{{"index", ColumnType::row}}};
+  for (const char* name : {"gain", "exploration", "refinement", "posterior_entropy"}) {
+    table.columns.push_back({name, ColumnType::real});
+  }
+  for (const char* name : {"rays", "hits", "unknown_voxels", "occupied_voxels"}) {
+    table.columns.push_back({name, ColumnType::count});
+  }
+  table.columns.push_back({"status", ColumnType::status});
+  if (has_area) table.columns.push_back({"area", ColumnType::real});
+  if (has_area) table.columns.push_back({"refinement_saturated", ColumnType::real});
   table.bytes.reserve(views.gains.size() * row_bytes(table.columns));
   for (std::size_t i = 0; i < views.gains.size(); ++i) {
     const ViewGain& r = views.gains[i];
@@ -74,7 +84,7 @@ Json entries(const ScoredViews& views, const PoseSource& poses, GainModel model)
                     {"unknown_voxels", unknown_voxels(r, model)},
                     {"occupied_voxels", occupied_voxels(r, model)},
                     {"status", view_status_name(r.status)},
-                    {"T_world_camera", to_json(poses.at(views.indices[rank]))}});
+                    {"T_world_camera", to_json(poses.poses.at(views.indices[rank]))}});
   }
   return list;
 }
@@ -86,7 +96,7 @@ Json entries(const Estimates& estimates, const PoseSource& poses) {
                     {"gain", estimates.gains[i].gain},
                     {"worth", poses.worth(estimates.indices[i], estimates.gains[i].gain)},
                     {"standard_error", estimates.gains[i].standard_error},
-                    {"T_world_camera", to_json(poses.at(estimates.indices[i]))}});
+                    {"T_world_camera", to_json(poses.poses.at(estimates.indices[i]))}});
   }
   return list;
 }
@@ -106,7 +116,7 @@ void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel mod
   for (std::size_t rank = 0; rank < views.indices.size(); ++rank) {
     const std::size_t i = views.indices[rank];
     const ViewGain& r = views.gains[rank];
-    const Eigen::Vector3d eye = poses.at(i).translation();
+    const Eigen::Vector3d eye = poses.poses.at(i).translation();
     std::printf("%4zu %8zu %12.6g", rank + 1, i, r.gain);
     if (has_costs) std::printf(" %12.6g", poses.worth(i, r.gain));
     if (by_paper) std::printf(" %12.6g %12.6g", r.exploration, r.refinement);
@@ -149,6 +159,24 @@ std::optional<std::size_t> Scores::winner() const {
 
 Table table_of(const Scores& scores, GainModel model) {
   return scores.estimates ? table_of(*scores.estimates) : table_of(scores.scored, model);
+}
+
+Table with_poses(const Table& table, const PoseSource& source) {
+  const bool has_costs = !source.costs.empty();
+  Table whole{table.columns};
+  for (const char* name : kPoseColumns) whole.columns.push_back({name, ColumnType::real});
+  if (has_costs) whole.columns.insert(whole.columns.begin() + 1, {"worth", ColumnType::real});
+  const std::size_t bytes = row_bytes(table.columns), index_bytes = sizeof(std::int64_t);
+  whole.bytes.reserve(table.size() * row_bytes(whole.columns));
+  for (std::size_t at = 0; at < table.bytes.size(); at += bytes) {
+    const std::string_view row = std::string_view(table.bytes).substr(at, bytes);
+    const auto index = static_cast<std::size_t>(value_at<std::int64_t>(row.data()));
+    whole.bytes.append(row.substr(0, index_bytes));
+    if (has_costs) whole.add(source.worth(index, value_at<double>(row.data() + index_bytes)));
+    whole.bytes.append(row.substr(index_bytes));
+    for (const double number : numbers_of_pose(source.poses.at(index))) whole.add(number);
+  }
+  return whole;
 }
 
 Json ScoreReport::summary() const {

@@ -49,6 +49,10 @@ struct Scores {
 /// The rows of the file of `score --out`; apps/docs/reference/json.md names the columns.
 [[nodiscard]] Table table_of(const Scores& scores, GainModel model);
 
+/// Rows that begin with index and gain, each with its pose behind it and, where poses have costs,
+/// its worth before its gain, so that this ranks.
+[[nodiscard]] Table with_poses(const Table& table, const PoseSource& source);
+
 /// What was asked and what came out, for the two ways of printing.
 struct ScoreReport {
   GainModel model;

@@ -24,15 +24,13 @@ enum class FrameVerdict : std::uint8_t {
   contradicts,       ///< registered, it contradicts the map or the other frames
   changed,           ///< its number was taken with other contents
   no_mask,           ///< the mask that it needs never came
-  intrinsics,        ///< of a recording: another camera than the first frame's
-  depth_scale,       ///< of a recording: another scale than the first frame's
 };
 
 /// Names of the verdicts, in their order.
-inline constexpr std::array<std::string_view, 13> kFrameVerdictNames{
-    "used",       "carved",           "lost_pose",  "no_pose",     "unreadable",
-    "wrong_size", "nothing_in_range", "outside",    "contradicts", "changed",
-    "no_mask",    "intrinsics",       "depth_scale"};
+inline constexpr std::array<std::string_view, 11> kFrameVerdictNames{
+    "used",        "carved",     "lost_pose",        "no_pose",
+    "unreadable",  "wrong_size", "nothing_in_range", "outside",
+    "contradicts", "changed",    "no_mask"};
 
 /// Its name. Throws std::out_of_range for a number that is none of them.
 [[nodiscard]] constexpr std::string_view frame_verdict_name(FrameVerdict verdict) {

@@ -10,15 +10,15 @@
 
 namespace viewgain {
 
-/// Reads OFF, OBJ, STL or PLY (text and binary), chosen by the file name's ending, in the file's
-/// own unit and axes. Polygons are split into triangles that fill them, concave ones too; vertices
-/// that no face uses and faces of fewer than three corners are left out; which side of a face is
-/// outside is not changed. Colours, normals and lines are not looked at. Throws Error(io) if the
-/// file cannot be read and Error(format), naming the file and, in text, the line, if it cannot be
-/// parsed, has no faces, a coordinate that is not finite, an index out of range, a polygon that
-/// crosses itself, or more or fewer rows than it says; Error(capacity) as file_bytes(). Thread
-/// safe. Costs O(file), and for polygons that are no fan the squares of their corners, of which
-/// they may have 10,000.
+/// Reads OFF, OBJ, STL or PLY (the last two in text and binary), chosen by the file name's ending,
+/// in the file's own unit and axes. Polygons are split into triangles that fill them, concave ones
+/// too; vertices that no face uses and faces of fewer than three corners are left out; which side
+/// of a face is outside is not changed. Colours, normals and lines are not looked at. Throws
+/// Error(io) if the file cannot be read and Error(format), naming the file and, in text, the line,
+/// if it cannot be parsed, has no faces, a coordinate that is not finite, an index out of range, a
+/// polygon that crosses itself, or more or fewer rows than it says; Error(capacity) as
+/// file_bytes(). Thread safe. Costs O(file), and for polygons that are no fan the squares of their
+/// corners, of which they may have 10,000.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// Which axis of the mesh file points up.

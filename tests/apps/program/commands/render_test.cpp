@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <png.h>
+
 #include <set>
 #include <string>
 #include <vector>
@@ -39,7 +41,15 @@ class Render : public test::ProgramTest {
     call.insert(call.begin(), "render");
     call.insert(call.end(), {"--out", "picture.png"});
     run_well(call);
-    return read_rgb_png(dir / "picture.png");
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    RgbImage image;
+    if (png_image_begin_read_from_file(&png, (dir / "picture.png").c_str()) == 0) return image;
+    png.format = PNG_FORMAT_RGB;
+    image = {static_cast<int>(png.width), static_cast<int>(png.height), {}};
+    image.pixels.resize(PNG_IMAGE_SIZE(png));
+    (void)png_image_finish_read(&png, nullptr, image.pixels.data(), 0, nullptr);
+    return image;
   }
 };
 
@@ -49,7 +59,6 @@ TEST_F(Render, EachKindIsAPictureOfTheSizeThatWasAsked) {
       {"run", "--what", "map"},
       {"run/map.vdb", "--what", "surface"},
       {"run", "--what", "sigma"},
-      {"run", "--what", "gain", "--sphere", "50,0.6"},
       {"run", "--what", "surface", "--azimuth", "120", "--elevation", "-10"}};
   std::vector<RgbImage> pictures;
   for (std::vector<std::string> call : kinds) {
@@ -62,12 +71,12 @@ TEST_F(Render, EachKindIsAPictureOfTheSizeThatWasAsked) {
       EXPECT_NE(pictures[i].pixels, pictures.back().pixels) << i << ", " << call[2];
     }
   }
-  EXPECT_EQ(pictures.size(), 5U);
+  EXPECT_EQ(pictures.size(), 4U);
 }
 
 TEST_F(Render, SaysWhatItCannotDraw) {
   make_run("run", {"--pictures", "off"});
-  const test::Refusals cases{{{"run", "--what", "gain"}, "--sphere"},
+  const test::Refusals cases{{{"run", "--what", "gain"}, "--what gain"},
                              {{"no-such-run", "--what", "map"}, "no-such-run"},
                              {{"cube.off", "--what", "map"}, "cube.off"}};
   expect_refused_with({"render", "--out", "picture.png"}, cases);

@@ -21,7 +21,7 @@
 #include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
-#include "viewgain/support/columns/mapped_poses.hpp"
+#include "viewgain/support/pose_numbers.hpp"
 
 namespace viewgain {
 namespace {
@@ -179,18 +179,11 @@ TEST_F(ScoreCandidates, CostsRankAndRowsHavePoses) {
     std::istringstream in(line);
     for (std::string word; in >> word;) words.push_back(word);
     EXPECT_NEAR(std::stod(words[1]), worth[i], 1e-6);
-    std::array<double, 7> numbers{};
-    for (std::size_t k = 0; k < 7; ++k) numbers[k] = std::stod(words[words.size() - 7 + k]);
-    EXPECT_TRUE(is_among(pose_of_row(numbers).value(), std::span(&poses[i], 1), {1e-12, 1e-9}));
+    const std::array<double, 7> expected = numbers_of_pose(poses[i]);
+    for (std::size_t k = 0; k < 7; ++k) {
+      EXPECT_NEAR(std::stod(words[words.size() - 7 + k]), expected[k], 1e-12);
+    }
   }
-  // Parts are ranked by it, too.
-  for (const char* part : {"0", "1"}) {
-    (void)score(test::joined(
-        costs, {"--shard", part + std::string("/2"), "--out", std::string(part) + ".csv"}));
-  }
-  const json merged =
-      json::parse(run_well({"merge", "0.csv", "1.csv", "--out", "m.csv", "--json"}));
-  EXPECT_EQ(merged["best"][0]["index"], best);
   write("few.txt", "1\n2\n");
   expect_refused_with(arguments({}), {{{"--costs", "few.txt"}, "2 costs for 40 poses"},
                                       {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"},

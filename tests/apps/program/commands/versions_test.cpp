@@ -76,14 +76,6 @@ TEST_F(Versions, TheFirstOnesFilesAreRead) {
   EXPECT_EQ(planner.grid().content_hash(), hash);
   EXPECT_EQ(count_of(planner.frames(), FrameVerdict::used), 2U);
 
-  std::size_t parts = 0;
-  for (const Strings& names : {Strings{"part0.csv", "part1.csv"}, Strings{"part.npy"}}) {
-    (void)run_well(test::joined({"merge", "--top", "1", "--out", "best.csv"}, names));
-    EXPECT_NE(read("best.csv").find("# map " + hash), std::string::npos);
-    ++parts;
-  }
-  EXPECT_EQ(parts, 2U);
-
   const json run = json::parse(read("run.json")), checkpoint = json::parse(read("checkpoint.json"));
   EXPECT_EQ(run["format"], 1);
   EXPECT_EQ(checkpoint["format"], 1);
@@ -91,16 +83,10 @@ TEST_F(Versions, TheFirstOnesFilesAreRead) {
 }
 
 TEST_F(Versions, NewerOnesAreRefused) {
-  change("part0.csv", "# format 1", "# format 2");
-  change("part.npy", "# format 1", "# format 2");
   change("sensor.toml", "\nformat = 1", "\nformat = 2");
   change("reach.toml", "format = 1", "format = 2");
   expect_refused(
-      {{{"merge", "part0.csv", "part1.csv", "--out", "b.csv"},
-        "part0.csv: line 1 of #: format 2; this library reads up to format 1"},
-       {{"merge", "part.npy", "--out", "b.csv"},
-        "part.npy: line 1 of #: format 2; this library reads up to format 1"},
-       {{"score", "state.vdb", "--sphere", "9,0.5", "--sensor", "sensor.toml"},
+      {{{"score", "state.vdb", "--sphere", "9,0.5", "--sensor", "sensor.toml"},
         "sensor.toml: line 2: key \"format\" is 2; this library reads files up to format 1"},
        {{"candidates", "state.vdb", "--generator", "sphere", "--reach", "reach.toml", "--out", "p"},
         "reach.toml: line 1: key \"format\" is 2; this library reads files up to format 1"}});

@@ -146,12 +146,10 @@ class VIEWGAIN_EXPORT RecordedFramesWriter {
   /// that no RecordedFramesWriter has written.
   explicit RecordedFramesWriter(const std::filesystem::path& dir);
 
-  /// Writes frame-NNNNNN.depth.png and frame-NNNNNN.pose.txt, NNNNNN being the number, and where
-  /// there are amplitudes (in units of kAmplitudeUnit) frame-NNNNNN.amplitude.png. Throws
+  /// Writes frame-NNNNNN.depth.png and frame-NNNNNN.pose.txt, NNNNNN being the number. Throws
   /// Error(io), and Error(invalid_argument) for a number that was written, an image that is none or
   /// of another size than the first, or a pose that is no rigid transform (1e-3).
-  void write_frame(std::uint64_t number, const GrayImage& depth, const Pose& T_world_camera,
-                   const std::optional<GrayImage>& amplitude = {});
+  void write_frame(std::uint64_t number, const GrayImage& depth, const Pose& T_world_camera);
 
   /// Writes camera-intrinsics.txt, depth-scale.txt ([m] per unit: depth_scale) and, where a sensor
   /// is given, sensor.toml with this camera in it, and puts all in the place of an earlier import.

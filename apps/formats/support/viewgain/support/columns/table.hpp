@@ -6,16 +6,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <vector>
+
+#include "viewgain/core/export.hpp"
 
 namespace viewgain {
 
 static_assert(std::endian::native == std::endian::little, "columns are written as they lie");
 
-/// What a column holds, little endian in files of columns.
+/// What a column holds, little endian in .npy files.
 enum class ColumnType : std::uint8_t {
   row,     ///< a row's number: int64, "<i8"
   real,    ///< double, "<f8"
@@ -28,21 +30,6 @@ struct Column {
   ColumnType type = ColumnType::real;
   bool operator==(const Column&) const = default;
 };
-
-/// numpy's name of a type.
-[[nodiscard]] constexpr std::string_view npy_type(ColumnType type) {
-  switch (type) {
-    case ColumnType::row:
-      return "<i8";
-    case ColumnType::real:
-      return "<f8";
-    case ColumnType::count:
-      return "<u4";
-    case ColumnType::status:
-      return "|u1";
-  }
-  return "";
-}
 
 /// [bytes]
 [[nodiscard]] constexpr std::size_t size_of(ColumnType type) {
@@ -69,6 +56,13 @@ struct Table {
   }
   [[nodiscard]] std::size_t size() const { return bytes.size() / row_bytes(columns); }
 };
+
+/// Writes a file with a line of the columns' names and one a row, or one that np.load() reads, by
+/// the ending .npy; it appears whole or not at all. Throws Error(io) that names it.
+VIEWGAIN_EXPORT void write_table(const std::filesystem::path& path, const Table& table);
+
+/// Whether a file is one of columns (.npy, capitals too) rather than text.
+[[nodiscard]] VIEWGAIN_EXPORT bool is_npy(const std::filesystem::path& path);
 
 /// A value of a row.
 template <typename Value>

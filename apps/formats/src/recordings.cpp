@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/formats/recordings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "folders.hpp"
+#include "frames/frame_names.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/masks.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/text.hpp"
+
+namespace viewgain {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kUnit = 1.0 / 5000;  // of the images [m]
+constexpr std::uint16_t kSaturated = 65535;
+
+// The poses, the lost ones among them.
+struct TimedPoses {
+  std::vector<ReadPose> poses;
+  std::vector<double> times;  // one a pose [s]; NaN: the line has none
+};
+
+TimedPoses read_timed_poses(const fs::path& path) {
+  TimedPoses read;
+  read.poses = read_pose_lines(path, false, &read.times);
+  const bool has_any = std::any_of(read.poses.begin(), read.poses.end(), [](const ReadPose& pose) {
+    return pose.fault.verdict == FrameVerdict::used;
+  });
+  if (!has_any) {
+    throw Error(ErrorCode::format, read.poses.empty() ? path.string() + ": holds no pose"
+                                                      : read.poses.front().fault.what);
+  }
+  return read;
+}
+
+// Poses in the order of their times, whatever order the file has.
+class PosesInTime {
+ public:
+  explicit PosesInTime(const TimedPoses& poses) : times_(poses.times) {
+    for (std::size_t i = 0; i < times_.size(); ++i) {
+      if (std::isfinite(times_[i])) order_.push_back(i);
+    }
+    std::stable_sort(order_.begin(), order_.end(),
+                     [this](std::size_t a, std::size_t b) { return times_[a] < times_[b]; });
+  }
+
+  // The pose nearest in time, the earlier of two; nothing if it is farther than the gap.
+  [[nodiscard]] std::optional<std::size_t> nearest(double time, double gap) const {
+    const auto after =
+        std::lower_bound(order_.begin(), order_.end(), time,
+                         [this](std::size_t pose, double wanted) { return times_[pose] < wanted; });
+    std::optional<std::size_t> best;
+    const auto offer = [&](std::size_t pose) {
+      const double off = std::abs(times_[pose] - time);
+      if (off <= gap && (!best || off < std::abs(times_[*best] - time))) best = pose;
+    };
+    if (after != order_.begin()) offer(*(after - 1));
+    if (after != order_.end()) offer(*after);
+    return best;
+  }
+
+ private:
+  const std::vector<double>& times_;
+  std::vector<std::size_t> order_;
+};
+
+// A frame that depth.txt names and that has a pose.
+struct RecordedFrame {
+  std::uint64_t number = 0;  // the place in depth.txt, from 0
+  fs::path image;
+  ReadPose pose;
+};
+
+// Counts those that cannot be used, and keeps the first that a file's contents are to blame for.
+struct Dropped {
+  FrameCounts& counts;
+  std::string fault{};
+
+  void add(const FrameFault& why) {
+    ++counts[why.verdict];
+    if (fault.empty()) fault = why.what;
+  }
+};
+
+std::vector<RecordedFrame> read_frames(const fs::path& source, double max_time_gap,
+                                       Dropped& dropped) {
+  const fs::path list = source / "depth.txt";
+  const std::string bytes = file_bytes(list);
+  const TimedPoses poses = read_timed_poses(source / "groundtruth.txt");
+  const PosesInTime in_time(poses);
+  std::vector<RecordedFrame> frames;
+  std::uint64_t number = 0;
+  for (LineReader line(list.string(), bytes); line.next();) {
+    if (line.words().empty() || line.words().front().front() == '#') continue;
+    if (line.words().size() != 2) {
+      line.fail("expected a timestamp and an image, found " + std::to_string(line.words().size()) +
+                " words");
+    }
+    // A recording may be of anybody, and names no files of elsewhere.
+    const auto image = fs::path(line.words()[1]).lexically_normal();
+    if (image.is_absolute() || *image.begin() == "..") {
+      line.fail("the image " + quoted(line.words()[1]) + " is outside of the recording");
+    }
+    const auto found = in_time.nearest(line.finite_number(0), max_time_gap);
+    const FrameFault fault =
+        found ? poses.poses[*found].fault : FrameFault{FrameVerdict::no_pose, {}};
+    if (fault.verdict == FrameVerdict::used) {
+      frames.push_back({number, source / image, poses.poses[*found]});
+    } else {
+      dropped.add(fault);
+    }
+    ++number;
+  }
+  if (number == 0) throw Error(ErrorCode::format, list.string() + ": names no image");
+  return frames;
+}
+
+// A recording may be of anybody, and leads to no files of elsewhere.
+void refuse_links_out(const fs::path& source) {
+  std::error_code ignored;
+  const fs::path root = fs::canonical(source, ignored) / "";
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source, ignored)) {
+    if (!entry.is_symlink(ignored)) continue;
+    std::error_code code;  // of one that leads nowhere, too
+    const std::string to = fs::canonical(entry.path(), code).string();
+    if (!code && to.starts_with(root.string())) continue;
+    throw Error(ErrorCode::format, entry.path().string() + ": is a link out of the recording");
+  }
+}
+
+// The image, of the camera's size, which the first one gives where the camera has none; else why
+// not.
+std::optional<GrayImage> read_depth(const fs::path& file, PinholeCamera& camera, Dropped& dropped) {
+  try {
+    const auto [width, height] = png_size(file);
+    if (camera.width == 0) camera.width = width, camera.height = height;
+    if (width == camera.width && height == camera.height) {
+      GrayImage image = read_gray_png(file, width, height);
+      std::replace(image.pixels.begin(), image.pixels.end(), kSaturated, std::uint16_t{0});
+      return image;
+    }
+    const auto size_text = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+    dropped.add({FrameVerdict::wrong_size, file.string() + ": the image has " +
+                                               size_text(width, height) + " pixels, not " +
+                                               size_text(camera.width, camera.height)});
+  } catch (const Error& error) {
+    dropped.add({FrameVerdict::unreadable, error.what()});
+  }
+  return std::nullopt;
+}
+
+void check(const fs::path& source, const ImportConfig& config) {
+  const auto refuse = [](const std::string& what) {
+    throw Error(ErrorCode::invalid_argument, what);
+  };
+  if (!(config.max_time_gap >= 0)) {
+    refuse("the gap of time " + short_text(config.max_time_gap) + " must not be negative");
+  }
+  PinholeCamera camera = config.camera;
+  if (camera.width == 0 && camera.height == 0) camera.width = camera.height = 1;
+  try {
+    camera.validate();
+  } catch (const Error& error) {
+    refuse(source.string() + ": " + error.what());
+  }
+  std::error_code ignored;
+  if (!fs::is_directory(source, ignored)) {
+    throw Error(ErrorCode::io, source.string() + ": no such folder");
+  }
+  refuse_links_out(source);
+}
+
+}  // namespace
+
+ImportReport import_recording(const fs::path& source, const fs::path& out,
+                              const ImportConfig& config) {
+  check(source, config);
+  ImportReport report;
+  report.camera = config.camera;
+  Dropped dropped{report.dropped};
+  const std::vector<RecordedFrame> frames = read_frames(source, config.max_time_gap, dropped);
+  std::vector<MaskFolder> folders;
+  if (!config.masks.empty()) folders.emplace_back(config.masks);
+  if (!config.confidences.empty()) {
+    folders.emplace_back(config.confidences, config.least_confidence);
+  }
+  std::vector<fs::path> images;
+  for (const RecordedFrame& frame : frames) images.push_back(frame.image);
+  for (const MaskFolder& folder : folders) folder.require_mask_of_any(images);
+  RecordedFramesWriter writer(out);
+  for (const auto& [number, image, pose] : frames) {
+    std::optional<GrayImage> depth = read_depth(image, report.camera, dropped);
+    if (!depth) continue;
+    bool is_masked = false;
+    for (const MaskFolder& folder : folders) {
+      std::optional<Gray8Image> mask = folder.mask_of(image, depth->width, depth->height);
+      if (!mask) continue;
+      is_masked = true;
+      report.masked_pixels += apply_mask(*mask, *depth);
+    }
+    report.masks += is_masked ? 1 : 0;
+    report.readings += static_cast<std::uint64_t>(
+        std::count_if(depth->pixels.begin(), depth->pixels.end(), [](auto z) { return z != 0; }));
+    writer.write_frame(number, *depth, pose.T_world_camera);
+    ++report.frames;
+    report.orthonormalized += pose.is_mended ? 1 : 0;
+    if (config.progress) config.progress(report.frames, frames.size());
+  }
+  if (report.frames == 0) {
+    std::string reasons;
+    for (const auto& [reason, count] : bad_frames(report.dropped)) {
+      reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + ' ' + reason;
+    }
+    if (!dropped.fault.empty()) reasons += "; " + dropped.fault;
+    throw Error(ErrorCode::format, source.string() + ": no frame can be used (" + reasons + ")");
+  }
+  writer.commit(report.camera, kUnit, config.sensor);
+  return report;
+}
+
+}  // namespace viewgain
