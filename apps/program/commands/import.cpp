@@ -147,7 +147,7 @@ Command add_import(App& program) {
   app->add_option("SOURCE", options->source, "folder of the recording")->required();
   app->add_option("--format", options->format, "how it is laid out")
       ->required()
-      ->one_of(recording_format_names(), "format");
+      ->check(one_of(recording_format_names(), "format"));
   app->add_option("--sensor", options->sensor,
                   kSensorHelp +
                       ", whose noise and ranges the folder is to say; of tum its intrinsics, too, "
@@ -162,7 +162,7 @@ Command add_import(App& program) {
   app->add_option("--confidence", options->confidence, kConfidenceHelp);
   app->add_option("--least-confidence", options->least_confidence, kLeastConfidenceHelp)
       ->capture_default_str()
-      ->range(1, 255, "confidence");
+      ->check(CLI::Range(1, 255, "confidence"));
   app->add_option("--amplitude", options->amplitude,
                   "folder of grayscale PNGs, up to 16 bits, with the names of the recording's "
                   "images: how strong the light is that comes back, which tells a shot noise "

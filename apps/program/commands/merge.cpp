@@ -67,9 +67,9 @@ void merge(const Options& options) {
               {"poses", head.poses},
               {"rows", head.scored},
               {"map", head.map},
-              {"sensor", utf8_text(head.sensor)},
-              {"isa", utf8_text(head.isa)},
-              {"version", utf8_text(head.version)},
+              {"sensor", head.sensor},
+              {"isa", head.isa},
+              {"version", head.version},
               {"best", best_json(merged.best)}});
 }
 
@@ -88,7 +88,7 @@ Command add_merge(App& program) {
          "--top", options->top,
          "so many of the best alone, best first: ties to the lower row, NaN last; default: "
          "all rows")
-      ->range(std::size_t{0}, std::size_t{1'000'000'000}, "count");
+      ->check(counted(0, 1'000'000'000));
   add_common_options(*app, options->common);
   add_help(*app, kViewsGroup, "merge part.csv --out best.csv --top 5");
   return {app, [options] { merge(*options); }};

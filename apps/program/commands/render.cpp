@@ -176,9 +176,9 @@ Command add_render(App& program) {
              "map (its voxels), surface, sigma (how well it is known) or gain (poses, which it "
              "needs, by what they gain)")
           ->required();
-  what->one_of({"map", "surface", "sigma", "gain"}, "kind of picture");
+  what->check(one_of({"map", "surface", "sigma", "gain"}, "kind of picture"));
   app->add_option("--width", o.width, "of the picture [px]")
-      ->range(64, 8192, "width")
+      ->check(CLI::Range(64, 8192, "width"))
       ->capture_default_str();
   app->add_option("--azimuth", o.azimuth, "of the viewer, from +x to +y [deg]")
       ->capture_default_str();
@@ -187,7 +187,7 @@ Command add_render(App& program) {
   add_seed_option(*app, o.seed, "of --shell");
   app->add_option("--sensor", o.sensor, std::string("gain: ").append(kMapSensorHelp));
   auto* gain = app->add_option("--gain", o.gain, "gain: paper, surface or combined, as in score");
-  gain->capture_default_str()->one_of(gain_model_names(), "gain");
+  gain->capture_default_str()->check(one_of(gain_model_names(), "gain"));
   app->add_option("--out", o.out, "PNG file to write")->required();
   add_trace_option(*app, o.common);
   add_common_options(*app, o.common);
