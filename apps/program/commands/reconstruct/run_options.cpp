@@ -53,8 +53,7 @@ void add_options(App& app, ReconstructOptions& o) {
   app.add_option("--policy", o.policy,
                  "gain, kriegel (left, right, top, bottom), sequence (turntable of 8, then top), "
                  "random, frontier (most unknown voxels in view), fibonacci (evenly round the "
-                 "object), proximity (most unknown space near known surface on its rays), oracle "
-                 "(knows the mesh: an upper reference)")
+                 "object), oracle (knows the mesh: an upper reference)")
       ->capture_default_str()
       ->check(one_of(policy_names(), "policy"));
   app.add_option("--generator", o.generator,
