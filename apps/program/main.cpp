@@ -12,6 +12,7 @@
 #include "program/cli/call_files.hpp"
 #include "program/cli/config_file.hpp"
 #include "program/cli/interrupt.hpp"
+#include "program/cli/values.hpp"
 #include "program/cli/words.hpp"
 #include "program/commands/commands.hpp"
 #include "viewgain/core/error.hpp"
@@ -43,22 +44,38 @@ int end_of_output() {
   return 0;
 }
 
-// Parses the command line, with what a --config stands for. False where that printed a help.
-bool parse(App& program, const std::vector<Command>& commands,
-           const std::vector<std::string>& words) {
-  const App* subcommand = subcommand_of(program, words);
-  if (subcommand == nullptr) {
-    if (!words.empty()) (void)sort_words(program, program.options(), {words[0]});
-    return program.parse(words);
-  }
-  const std::vector<std::string> after(words.begin() + 1, words.end());
-  const App& form = form_of(*subcommand, after);
-  std::vector<std::string> all = with_config(form, after);
+// The command of the subcommand that the first word names; null where it is a flag or there is
+// none.
+const Command* called(const std::vector<Command>& commands, const std::vector<std::string>& words) {
+  if (words.empty() || words[0].starts_with("-")) return nullptr;
+  std::vector<std::string> names;
   for (const Command& command : commands) {
-    if (command.app == &form && &form != subcommand) return command.app->parse(std::move(all));
+    if (command.app->get_name() == words[0]) return &command;
+    names.push_back(command.app->get_name());
   }
+  refuse(fault_of_name(words[0], names, "subcommand"));
+}
+
+// Parses the command line, with what a --config stands for. The command of the form that was meant;
+// null where that printed a help.
+const Command* parsed(App& program, const std::vector<Command>& commands,
+                      const std::vector<std::string>& words) {
+  const Command* command = called(commands, words);
+  if (command == nullptr) {
+    if (!words.empty()) (void)sort_words(program, {}, all_options(program), {words[0]});
+    (void)parse(program, words);  // a help, or an error
+    return nullptr;
+  }
+  Forms forms{command->app};
+  if (command->of_frames) forms.push_back(command->of_frames->app);
+  const std::vector<std::string> after(words.begin() + 1, words.end());
+  App& form = form_of(forms, after);
+  std::vector<std::string> all = with_config(form, forms, after);
+  if (&form != command->app) return parse(form, all) ? command->of_frames.get() : nullptr;
   all.insert(all.begin(), words[0]);
-  return program.parse(std::move(all));
+  if (parse(program, all)) return command;
+  if (command->of_frames) std::cout << "\n" << command->of_frames->app->help();
+  return nullptr;
 }
 
 int run(int argc, char** argv) {
@@ -74,27 +91,24 @@ int run(int argc, char** argv) {
                          add_score, add_candidates, add_next, add_info, add_surface, add_convert,
                          add_render, add_sensors, add_study, add_follow}) {
     commands.push_back(add(program));
-    const Command& first = commands.back();
-    if (first.add_form) commands.push_back(first.add_form(*first.app));
   }
   program.footer(
       "Examples:\n"
       "  viewgain reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 3 "
       "--out run\n"
       "  viewgain score run/map.vdb --sphere 2000,0.6 --race --top 3");
+  const Command* command = nullptr;
   try {
-    if (!parse(program, commands, {argv + 1, argv + argc})) return end_of_output();
+    command = parsed(program, commands, {argv + 1, argv + argc});
   } catch (const UsageError& error) {
     return report(std::string(error.what()) + " (see --help)", kBadInput);
   }
-  for (const Command& command : commands) {
-    if (!command.app->parsed()) continue;
-    check_call(*command.app);
-    command.run();
-    const Option* save = command.app->find_option("--save-config");
-    if (save != nullptr && !save->empty()) {
-      write_file_atomically(save->results().back(), config_text(*command.app));
-    }
+  if (command == nullptr) return end_of_output();
+  check_call(*command->app);
+  command->run();
+  const Option* save = command->app->get_option("--save-config");
+  if (!save->empty()) {
+    write_file_atomically(save->results().back(), config_text(*command->app));
   }
   wait_if_ended();
   return end_of_output();

@@ -69,20 +69,27 @@ vg_view_gain written(const ViewGain& view) {
           .refinement_saturated = view.refinement_saturated};
 }
 
-void require_choice(const vg_evaluator* evaluator, std::size_t k, const std::size_t* indices,
-                    const std::size_t* found) {
-  require("evaluator", evaluator);
-  require_array(indices, k, "indices");
-  require("found", found);
-}
+const std::vector<ViewGain>& gains_of(const BestViews& best) { return best.gains; }
+const std::vector<ViewGain>& gains_of(const ViewSet& set) { return set.marginal; }
 
-/// Hands over chosen views; `gains` may be null.
-void hand_over(std::span<const std::size_t> chosen, std::span<const ViewGain> views,
-               std::size_t* indices, double* gains, std::size_t* found) {
-  std::copy(chosen.begin(), chosen.end(), indices);
-  *found = chosen.size();
-  if (gains == nullptr) return;
-  for (std::size_t i = 0; i < views.size(); ++i) gains[i] = views[i].gain;
+/// Chooses some of the poses by `choose` and hands them over; `gains` may be null.
+template <typename Choose>
+vg_status choice(const vg_evaluator* evaluator, const double* poses, std::size_t count,
+                 std::size_t k, std::size_t total, std::size_t* indices, double* gains,
+                 std::size_t* found, const vg_watch* watch, const Choose& choose) {
+  return guarded([&] {
+    require("evaluator", evaluator);
+    require_array(indices, k, "indices");
+    require("found", found);
+    *found = 0;
+    Watcher watcher(watch, total);
+    const auto chosen = choose(poses_of(poses, count), watcher.control());
+    std::copy(chosen.indices.begin(), chosen.indices.end(), indices);
+    *found = chosen.indices.size();
+    const std::vector<ViewGain>& views = gains_of(chosen);
+    for (std::size_t i = 0; gains != nullptr && i < views.size(); ++i) gains[i] = views[i].gain;
+    watcher.finish(chosen.complete);
+  });
 }
 
 }  // namespace
@@ -97,11 +104,8 @@ vg_evaluator_config viewgain::c_api::defaults() noexcept {
   return config;
 }
 
-void vg_watch_init(vg_watch* watch, size_t struct_size) { initialise(watch, struct_size); }
-
-void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_size) {
-  initialise(config, struct_size);
-}
+VG_DEFINE_INIT(vg_watch)
+VG_DEFINE_INIT(vg_evaluator_config)
 
 vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
                               const vg_evaluator_config* config, vg_evaluator** evaluator) {
@@ -123,9 +127,7 @@ vg_status vg_evaluator_with_scene(const vg_evaluator* evaluator, const vg_scene*
 
 void vg_evaluator_release(vg_evaluator* evaluator) { delete evaluator; }
 
-void vg_evaluator_info_init(vg_evaluator_info* info, size_t struct_size) {
-  initialise(info, struct_size);
-}
+VG_DEFINE_INIT(vg_evaluator_info)
 
 vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info* info) {
   return guarded([&] {
@@ -176,55 +178,40 @@ vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* poses, 
 
 vg_status vg_best(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                   size_t* indices, double* gains, size_t* found, const vg_watch* watch) {
-  return guarded([&] {
-    require_choice(evaluator, k, indices, found);
-    *found = 0;
-    Watcher watcher(watch, count);
-    const BestViews best =
-        evaluator->evaluator.best(poses_of(poses, count), k, {}, watcher.control());
-    hand_over(best.indices, best.gains, indices, gains, found);
-    watcher.finish(best.complete);
-  });
+  return choice(evaluator, poses, count, k, count, indices, gains, found, watch,
+                [&](const std::vector<Pose>& among, const BatchControl& control) {
+                  return evaluator->evaluator.best(among, k, {}, control);
+                });
 }
 
 vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                   uint64_t seed, size_t* indices, double* gains, size_t* found,
                   const vg_watch* watch) {
-  return guarded([&] {
-    require_choice(evaluator, k, indices, found);
-    *found = 0;
-    Watcher watcher(watch, count);
-    const BestViews best =
-        evaluator->evaluator.race(poses_of(poses, count), k, {.seed = seed}, watcher.control());
-    hand_over(best.indices, best.gains, indices, gains, found);
-    watcher.finish(best.complete);
-  });
+  return choice(evaluator, poses, count, k, count, indices, gains, found, watch,
+                [&](const std::vector<Pose>& among, const BatchControl& control) {
+                  return evaluator->evaluator.race(among, k, {.seed = seed}, control);
+                });
 }
 
 vg_status vg_race_until(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                         uint64_t seed, double seconds, size_t* indices, double* gains,
                         size_t* found, size_t* estimated, size_t* scored) {
-  return guarded([&] {
-    require_choice(evaluator, k, indices, found);
-    *found = 0;
-    const BestViews best =
-        evaluator->evaluator.race(poses_of(poses, count), k, {.deadline = seconds, .seed = seed});
-    hand_over(best.indices, best.gains, indices, gains, found);
-    if (estimated != nullptr) *estimated = best.estimated;
-    if (scored != nullptr) *scored = best.scored_indices.size();
-  });
+  return choice(evaluator, poses, count, k, count, indices, gains, found, nullptr,
+                [&](const std::vector<Pose>& among, const BatchControl&) {
+                  BestViews best =
+                      evaluator->evaluator.race(among, k, {.deadline = seconds, .seed = seed});
+                  if (estimated != nullptr) *estimated = best.estimated;
+                  if (scored != nullptr) *scored = best.scored_indices.size();
+                  return best;
+                });
 }
 
 vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                       size_t* indices, double* gains, size_t* found, const vg_watch* watch) {
-  return guarded([&] {
-    require_choice(evaluator, k, indices, found);
-    *found = 0;
-    Watcher watcher(watch, std::min(k, count));
-    const ViewSet set = evaluator->evaluator.best_set(poses_of(poses, count), k, watcher.control());
-    hand_over(set.indices, set.marginal, indices, gains, found);
-    watcher.finish(set.complete);
-  });
+  return choice(evaluator, poses, count, k, std::min(k, count), indices, gains, found, watch,
+                [&](const std::vector<Pose>& among, const BatchControl& control) {
+                  return evaluator->evaluator.best_set(among, k, control);
+                });
 }
 
 vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_world_camera[16],
@@ -246,9 +233,7 @@ vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_world_cam
   });
 }
 
-void vg_ray_outcomes_init(vg_ray_outcomes* outcomes, size_t struct_size) {
-  initialise(outcomes, struct_size);
-}
+VG_DEFINE_INIT(vg_ray_outcomes)
 
 vg_status vg_outcomes(const vg_evaluator* evaluator, const double T_world_camera[16],
                       vg_ray_outcomes* outcomes) {

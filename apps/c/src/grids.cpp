@@ -27,9 +27,7 @@ vg_integrator_config viewgain::c_api::defaults() noexcept {
   return config;
 }
 
-void vg_grid_config_init(vg_grid_config* config, size_t struct_size) {
-  initialise(config, struct_size);
-}
+VG_DEFINE_INIT(vg_grid_config)
 
 vg_status vg_grid_create(const vg_grid_config* config, vg_grid** grid) {
   return make_handle(grid, "grid", [&] {
@@ -87,7 +85,7 @@ vg_status vg_grid_clone(const vg_grid* grid, vg_grid** copy) {
 
 void vg_grid_release(vg_grid* grid) { delete grid; }
 
-void vg_grid_info_init(vg_grid_info* info, size_t struct_size) { initialise(info, struct_size); }
+VG_DEFINE_INIT(vg_grid_info)
 
 vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info) {
   return guarded([&] {
@@ -248,13 +246,8 @@ vg_status vg_grid_hash(const vg_grid* grid, char hash[17]) {
   });
 }
 
-void vg_integrator_config_init(vg_integrator_config* config, size_t struct_size) {
-  initialise(config, struct_size);
-}
-
-void vg_integration_report_init(vg_integration_report* report, size_t struct_size) {
-  initialise(report, struct_size);
-}
+VG_DEFINE_INIT(vg_integrator_config)
+VG_DEFINE_INIT(vg_integration_report)
 
 vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_config* config,
                                vg_integrator** integrator) {

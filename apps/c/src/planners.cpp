@@ -4,12 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_set>
-#include <utility>
 #include <vector>
 
 #include "convert.hpp"
@@ -30,41 +27,12 @@ struct vg_planner {
 
 namespace {
 
-// The planners that there are, so that a released one is told apart.
-class LivePlanners {
- public:
-  void add(const vg_planner* planner) {
-    const std::lock_guard lock(mutex_);
-    live_.insert(planner);
-  }
-  /// True if it was there.
-  bool remove(const vg_planner* planner) {
-    const std::lock_guard lock(mutex_);
-    return live_.erase(planner) > 0;
-  }
-  void require_live(const vg_planner* planner) {
-    require("planner", planner);
-    const std::lock_guard lock(mutex_);
-    if (!live_.contains(planner)) reject("planner was released, or is no planner");
-  }
-
- private:
-  std::mutex mutex_;
-  std::unordered_set<const vg_planner*> live_;
-};
-
-// Never destroyed: a planner may be released while the process ends.
-LivePlanners& live_planners() {
-  static auto* const planners = new LivePlanners;
-  return *planners;
-}
-
-ViewPlanner& live(vg_planner* planner) {
-  live_planners().require_live(planner);
+ViewPlanner& of(vg_planner* planner) {
+  require("planner", planner);
   return planner->planner;
 }
-const ViewPlanner& live(const vg_planner* planner) {
-  live_planners().require_live(planner);
+const ViewPlanner& of(const vg_planner* planner) {
+  require("planner", planner);
   return planner->planner;
 }
 
@@ -104,18 +72,6 @@ PlannerConfig settings_of(const vg_planner_config& config) {
   settings.stop_gain = given(config.stop_gain);
   settings.stop_area = given(config.stop_area);
   return settings;
-}
-
-template <typename Make>
-vg_status make_planner(vg_planner** planner, const Make& make) {
-  const vg_status status = make_handle(planner, "planner", make);
-  if (status != VG_OK) return status;
-  const vg_status known = guarded([&] { live_planners().add(*planner); });
-  if (known != VG_OK) {
-    delete *planner;
-    *planner = nullptr;
-  }
-  return known;
 }
 
 // In the order of StopReason; a planner has none of those after max_views.
@@ -197,38 +153,30 @@ vg_planner_config viewgain::c_api::defaults() noexcept {
   return config;
 }
 
-void vg_planner_config_init(vg_planner_config* config, size_t struct_size) {
-  initialise(config, struct_size);
-}
-void vg_planner_view_init(vg_planner_view* view, size_t struct_size) {
-  initialise(view, struct_size);
-}
-void vg_registration_init(vg_registration* found, size_t struct_size) {
-  initialise(found, struct_size);
-}
+VG_DEFINE_INIT(vg_planner_config)
+VG_DEFINE_INIT(vg_planner_view)
+VG_DEFINE_INIT(vg_registration)
 
 vg_status vg_planner_create(const vg_sensor* sensor, const vg_planner_config* config,
                             vg_planner** planner) {
-  return make_planner(planner, [&] {
+  return make_handle(planner, "planner", [&] {
     const vg_planner_config chosen = read_struct(config, "vg_planner_config");
     return ViewPlanner(sensor_with_body(sensor, chosen), settings_of(chosen),
                        exec_of(chosen.num_threads, chosen.tracer));
   });
 }
 
-void vg_planner_release(vg_planner* planner) {
-  if (planner != nullptr && live_planners().remove(planner)) delete planner;
-}
+void vg_planner_release(vg_planner* planner) { delete planner; }
 
 vg_status vg_planner_add_poses(vg_planner* planner, const double* poses, size_t count) {
-  return guarded([&] { live(planner).add_poses({"poses", poses_of(poses, count)}); });
+  return guarded([&] { of(planner).add_poses({"poses", poses_of(poses, count)}); });
 }
 
 vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* amplitude,
                          const double T_world_camera[16], const double pose_sigma[2],
                          vg_planner_view* added) {
   return guarded([&] {
-    ViewPlanner& own = live(planner);
+    ViewPlanner& own = of(planner);
     require("depth T_world_camera", depth, T_world_camera);
     if (added != nullptr) require_struct(added, "vg_planner_view");
     const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
@@ -251,7 +199,7 @@ vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* a
 
 vg_status vg_planner_drop(vg_planner* planner, int32_t verdict, const double T_world_camera[16]) {
   return guarded([&] {
-    ViewPlanner& own = live(planner);
+    ViewPlanner& own = of(planner);
     if (verdict < VG_FRAME_LOST_POSE || verdict >= VG_FRAME_VERDICTS) {
       reject("verdict is " + std::to_string(verdict) + "; those of frames left out are 2 to 12");
     }
@@ -263,7 +211,7 @@ vg_status vg_planner_drop(vg_planner* planner, int32_t verdict, const double T_w
 
 vg_status vg_planner_frames(const vg_planner* planner, size_t* counts, size_t verdicts) {
   return guarded([&] {
-    const ViewPlanner& own = live(planner);
+    const ViewPlanner& own = of(planner);
     require_array(counts, verdicts, "counts");
     for (std::size_t i = 0; i < verdicts; ++i) {
       counts[i] = count_of(own.frames(), static_cast<FrameVerdict>(i));
@@ -275,7 +223,7 @@ vg_status vg_planner_register(vg_planner* planner, const float* depth, const flo
                               const double T_reported[16], double sigma_translation,
                               double sigma_rotation, vg_registration* found) {
   return guarded([&] {
-    const ViewPlanner& own = live(planner);
+    const ViewPlanner& own = of(planner);
     require("depth T_reported found", depth, T_reported, found);
     require_struct(found, "vg_registration");
     const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
@@ -302,7 +250,7 @@ vg_status vg_planner_register(vg_planner* planner, const float* depth, const flo
 vg_status vg_planner_propose(vg_planner* planner, size_t* candidates, size_t* dropped,
                              size_t reasons) {
   return guarded([&] {
-    ViewPlanner& own = live(planner);
+    ViewPlanner& own = of(planner);
     require("candidates", candidates);
     require_array(dropped, reasons, "dropped");
     const Proposal& proposal = own.propose();
@@ -318,7 +266,7 @@ vg_status vg_planner_rank(vg_planner* planner, size_t k, const double* costs, si
                           double cost_per_metre, vg_ranked_view* views, size_t view_size,
                           size_t* found, const vg_watch* watch) {
   return guarded([&] {
-    ViewPlanner& own = live(planner);
+    ViewPlanner& own = of(planner);
     const RankCall call{k, costs, cost_count, cost_per_metre, views, view_size, found, watch};
     call.check();
     call.run(own.candidate_count(), [&](const RankConfig& config, const BatchControl& control) {
@@ -332,7 +280,7 @@ vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses, size_t
                                 vg_ranked_view* views, size_t view_size, size_t* found,
                                 const vg_watch* watch) {
   return guarded([&] {
-    ViewPlanner& own = live(planner);
+    ViewPlanner& own = of(planner);
     const RankCall call{k, costs, cost_count, cost_per_metre, views, view_size, found, watch};
     call.check();
     const std::vector<Pose> given_poses = poses_of(poses, count);
@@ -344,12 +292,12 @@ vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses, size_t
 
 vg_status vg_planner_outcomes(vg_planner* planner, const double T_world_camera[16],
                               vg_ray_outcomes* outcomes) {
-  return guarded([&] { write_outcomes(live(planner).evaluator(), T_world_camera, outcomes); });
+  return guarded([&] { write_outcomes(of(planner).evaluator(), T_world_camera, outcomes); });
 }
 
 vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16], int32_t reached) {
   return guarded([&] {
-    ViewPlanner& own = live(planner);
+    ViewPlanner& own = of(planner);
     require("T_world_camera", T_world_camera);
     own.tried(rigid_pose_of(T_world_camera), reached != 0);
   });
@@ -357,7 +305,7 @@ vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16],
 
 vg_status vg_planner_should_stop(const vg_planner* planner, int32_t* reason) {
   return guarded([&] {
-    const ViewPlanner& own = live(planner);
+    const ViewPlanner& own = of(planner);
     require("reason", reason);
     *reason = code_of(own.should_stop());
   });
@@ -365,7 +313,7 @@ vg_status vg_planner_should_stop(const vg_planner* planner, int32_t* reason) {
 
 vg_status vg_planner_save(const vg_planner* planner, const char* path) {
   return guarded([&] {
-    const ViewPlanner& own = live(planner);
+    const ViewPlanner& own = of(planner);
     require("path", path);
     own.save(path);
   });
@@ -373,7 +321,7 @@ vg_status vg_planner_save(const vg_planner* planner, const char* path) {
 
 vg_status vg_planner_load(const char* path, const vg_sensor* sensor,
                           const vg_planner_config* config, vg_planner** planner) {
-  return make_planner(planner, [&] {
+  return make_handle(planner, "planner", [&] {
     require("path", path);
     const vg_planner_config chosen = read_struct(config, "vg_planner_config");
     return ViewPlanner::load(path, sensor_with_body(sensor, chosen), settings_of(chosen),
@@ -382,5 +330,5 @@ vg_status vg_planner_load(const char* path, const vg_sensor* sensor,
 }
 
 vg_status vg_planner_grid(const vg_planner* planner, vg_grid** grid) {
-  return make_handle(grid, "grid", [&] { return live(planner).grid().clone(); });
+  return make_handle(grid, "grid", [&] { return of(planner).grid().clone(); });
 }

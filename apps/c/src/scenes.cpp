@@ -77,9 +77,7 @@ vg_feasibility_config viewgain::c_api::defaults() noexcept {
   return config;
 }
 
-void vg_scene_config_init(vg_scene_config* config, size_t struct_size) {
-  initialise(config, struct_size);
-}
+VG_DEFINE_INIT(vg_scene_config)
 
 vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config, vg_scene** scene) {
   return make_handle(scene, "scene", [&] {
@@ -111,9 +109,7 @@ vg_status vg_calibrate_hazard(const vg_integrator* integrator, vg_grid* grid, co
   });
 }
 
-void vg_feasibility_config_init(vg_feasibility_config* config, size_t struct_size) {
-  initialise(config, struct_size);
-}
+VG_DEFINE_INIT(vg_feasibility_config)
 
 vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibility_config* config,
                                 vg_feasibility** feasibility) {

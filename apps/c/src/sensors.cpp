@@ -81,7 +81,7 @@ void write_sensor(const Sensor& sensor, vg_sensor* out) {
 using namespace viewgain;
 using namespace viewgain::c_api;
 
-void vg_sensor_init(vg_sensor* sensor, size_t struct_size) { initialise(sensor, struct_size); }
+VG_DEFINE_INIT(vg_sensor)
 
 vg_status vg_sensor_preset(const char* name, vg_sensor* sensor) {
   return guarded([&] {

@@ -106,6 +106,12 @@ void initialise(Struct* value, std::size_t struct_size) noexcept {
   value->struct_size = struct_size;
 }
 
+/// The _init of a struct.
+#define VG_DEFINE_INIT(name)                               \
+  void name##_init(name* value, std::size_t struct_size) { \
+    viewgain::c_api::initialise(value, struct_size);       \
+  }
+
 /// Makes a handle with what `make` returns; null if it throws.
 template <typename Handle, typename Make>
 vg_status make_handle(Handle** handle, const char* name, const Make& make) noexcept {

@@ -7,9 +7,16 @@
 #include <limits>
 #include <numeric>
 
-#include "viewgain/planner/proximity_measure.hpp"
-
 namespace viewgain {
+namespace {
+
+// At which a view has about 400 rays, which rank views nearly as well as all.
+int coarse_stride(const PinholeCamera& camera) {
+  const double pixels = static_cast<double>(camera.width) * camera.height;
+  return std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / 400))));
+}
+
+}  // namespace
 
 ClassicChoice::ClassicChoice(const SurfaceModel& model, const Sensor& sensor,
                              const ClassicRanking& ranking, const ExecConfig& exec)

@@ -9,7 +9,6 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/planner/hazard_views.hpp"
-#include "viewgain/planner/proximity_measure.hpp"
 #include "viewgain/planner/stop_settings.hpp"
 #include "viewgain/planner_mesh/mesh_area.hpp"
 #include "viewgain/support/mix64.hpp"
@@ -17,8 +16,8 @@
 
 namespace viewgain {
 const std::vector<std::string>& policy_names() {
-  static const std::vector<std::string> names{"gain",     "kriegel",   "sequence",  "random",
-                                              "frontier", "fibonacci", "proximity", "oracle"};
+  static const std::vector<std::string> names{"gain",     "kriegel",   "sequence", "random",
+                                              "frontier", "fibonacci", "oracle"};
   return names;
 }
 
@@ -132,10 +131,6 @@ const GainEvaluator& PolicyDecision::evaluator() {
 std::optional<CandidateScores> PolicyDecision::scores(std::span<const Candidate> candidates) {
   CandidateScores scores;
   scores.area.assign(candidates.size(), std::numeric_limits<double>::quiet_NaN());
-  if (config_.policy == Policy::proximity) {
-    scores.score = proximities(candidates);
-    return scores;
-  }
   if (classic_) {
     scores.score = classic_->gains(poses_of(candidates), /*all=*/true);
     return scores;
@@ -156,19 +151,6 @@ std::vector<ViewGain> PolicyDecision::score_classic(std::span<const Candidate> c
   std::vector<ViewGain> gains(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) gains[i].gain = values[i];
   return gains;
-}
-
-std::vector<double> PolicyDecision::proximities(std::span<const Candidate> candidates) {
-  if (coarse_) {
-    coarse_ = coarse_->with_scene(model_.scene());
-  } else {
-    GainConfig config;
-    config.pixel_stride = coarse_stride(sensor_.camera);
-    coarse_.emplace(model_.scene(), sensor_, config, exec_);
-  }
-  std::vector<double> values(candidates.size());
-  coarse_->evaluate(poses_of(candidates), values, ProximityMeasure(model_.scene()->hazard()));
-  return values;
 }
 
 double PolicyDecision::expected_area(const Pose& T_world_camera) {
@@ -208,10 +190,6 @@ std::optional<std::size_t> PolicyDecision::choose(const Pose& T_world_camera,
                                       candidates.size());
     case Policy::kriegel:
       return choose_by_boundary(candidates);
-    case Policy::proximity: {
-      const std::vector<double> values = proximities(candidates);
-      return best_by([&](std::size_t i) { return values[i]; });
-    }
     case Policy::oracle:
       return oracle_->next(candidates);
     case Policy::sequence:

@@ -78,27 +78,26 @@ Kind kind_of(const FileOption& option, const std::string& subcommand) {
 }
 
 void check_values(const App& subcommand) {
-  for (const Option* option : subcommand.options()) {
+  for (const Option* option : all_options(subcommand)) {
     for (const std::string& value : option->results()) {
-      if (value.empty()) refuse(option->name() + ": the value is empty");
+      if (value.empty()) refuse(option->get_name() + ": the value is empty");
     }
   }
-  for (const App* group : subcommand.subcommands()) check_values(*group);
 }
 
 std::vector<NamedFile> named_files(const App& subcommand) {
   std::vector<NamedFile> files;
   for (const FileOption& file_option : kFileOptions) {
-    const Option* option = subcommand.find_option(file_option.name);
+    const Option* option = subcommand.get_option_no_throw(std::string(file_option.name));
     if (option == nullptr) continue;
     for (const std::string& value : option->results()) {
       if (file_option.name == "--sensor" && !is_sensor_file(value)) continue;
       if (file_option.name == "--hazard" && !is_hazard_file(value)) continue;
       if (file_option.name == "--obstacle" && !is_obstacle_file(value)) continue;
       // There it is a switch, and the page a file of --out.
-      if (file_option.name == "--report" && subcommand.name() == "reconstruct") continue;
+      if (file_option.name == "--report" && name_of(subcommand) == "reconstruct") continue;
       files.push_back(
-          {std::string(file_option.name), value, kind_of(file_option, subcommand.name())});
+          {std::string(file_option.name), value, kind_of(file_option, name_of(subcommand))});
     }
   }
   return files;

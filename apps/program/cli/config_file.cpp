@@ -6,22 +6,34 @@
 #include <cctype>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <utility>
 
+#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
-#include "program/cli/words.hpp"
-#include "viewgain/support/settings_toml.hpp"
 #include "viewgain/support/text.hpp"
+#include "viewgain/support/toml_table.hpp"
 
 namespace viewgain::app {
 namespace {
 
-using Kind = SettingValue::Kind;
 using Options = std::vector<const Option*>;
+using Words = std::vector<std::string>;
+
+enum class Kind { boolean, number, whole_number, text };
+
+Kind kind_of(const Option& option) {
+  if (is_bare(option) || choices_of(option) == Words{"on", "off"}) return Kind::boolean;
+  const std::string type = option.get_type_name();
+  if (type.starts_with("FLOAT")) return Kind::number;
+  return type.starts_with("INT") || type.starts_with("UINT") ? Kind::whole_number : Kind::text;
+}
+
+bool is_repeated(const Option& option) { return option.get_expected_max() > 1; }
 
 std::string key_of(const Option& option) {
-  if (option.nonpositional()) return option.long_name();
-  std::string key = option.name();
+  if (option.nonpositional()) return option.get_name().substr(2);
+  std::string key = option.get_name();
   for (char& c : key) {
     c = c == '_' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
@@ -38,77 +50,49 @@ Options settable_options(const App& subcommand) {
   return options;
 }
 
-std::vector<std::string> keys_of(const Options& options) {
-  std::vector<std::string> keys;
-  for (const Option* option : options) keys.push_back(key_of(*option));
-  return keys;
-}
-
-bool is_switch(const Option& option) {
-  return option.choices() == std::vector<std::string>{"on", "off"};
-}
-
-Kind kind_of(const Option& option) {
-  if (option.is_bare() || is_switch(option)) return Kind::boolean;
-  const std::string type = option.type_name();
-  if (type.starts_with("FLOAT")) return Kind::number;
-  return type.starts_with("INT") || type.starts_with("UINT") ? Kind::whole_number : Kind::text;
-}
-
 // A value as the command line has it.
-std::string word_of(const std::string& path, const Setting& setting, const SettingValue& value,
-                    const Option& option) {
-  const auto is_plain = [](const SettingValue& element) {
-    return element.kind != Kind::list && element.kind != Kind::boolean;
-  };
-  switch (kind_of(option)) {
-    case Kind::boolean:
-      if (value.kind == Kind::boolean) return value.text == "true" ? "on" : "off";
-      refuse_setting(path, setting, "must be true or false");
-    case Kind::number:
-      if (value.kind == Kind::number || value.kind == Kind::whole_number) return value.text;
-      refuse_setting(path, setting, "must be a number");
-    case Kind::whole_number:
-      if (value.kind == Kind::whole_number) return value.text;
-      refuse_setting(path, setting, "must be a whole number");
-    case Kind::text:
-    case Kind::list:
-      break;
+std::string word_of(const TableReader& reader, const std::string& key, const toml::node& node,
+                    Kind kind) {
+  if (kind == Kind::boolean) {
+    if (!node.is_boolean()) reader.fail(key, "must be true or false");
+    return node.as_boolean()->get() ? "on" : "off";
   }
-  const bool is_list_of_plain = value.kind == Kind::list && !value.elements.empty() &&
-                                std::all_of(value.elements.begin(), value.elements.end(), is_plain);
-  if (value.text.find('\0') != std::string::npos) {
-    refuse_setting(path, setting, "must not hold a zero byte");
+  if (node.is_integer()) return std::to_string(node.as_integer()->get());
+  if (kind == Kind::whole_number) reader.fail(key, "must be a whole number");
+  if (node.is_floating_point()) return short_text(node.as_floating_point()->get());
+  if (kind == Kind::number) reader.fail(key, "must be a number");
+  if (node.is_string()) {
+    const std::string& text = node.as_string()->get();
+    if (text.find('\0') != std::string::npos) reader.fail(key, "must not hold a zero byte");
+    return text;
   }
-  if (is_plain(value) || is_list_of_plain) return value.text;
-  refuse_setting(path, setting, "must be a text, a number, or a list of these");
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->empty() ||
+      std::any_of(list->begin(), list->end(), [](const auto& part) { return part.is_array(); })) {
+    reader.fail(key, "must be a text, a number, or a list of these");
+  }
+  std::string words;
+  for (const toml::node& part : *list) {
+    words.append(words.empty() ? "" : ",").append(word_of(reader, key, part, kind));
+  }
+  return words;
 }
 
-void add_words(const std::string& path, const Setting& setting, const Option& option,
-               std::vector<std::string>& words) {
-  const std::string flag = option.name();
-  if (option.is_bare()) {
-    if (word_of(path, setting, setting.value, option) == "on") words.push_back(flag);
-  } else if (!option.is_repeated()) {
-    words.push_back(flag + "=" + word_of(path, setting, setting.value, option));
-  } else {
-    if (setting.value.kind != Kind::list) {
-      refuse_setting(path, setting, "must be a list, with an element for each " + flag);
-    }
-    for (const SettingValue& element : setting.value.elements) {
-      words.push_back(flag + "=" + word_of(path, setting, element, option));
-    }
+// The words that a key stands for.
+Words words_of(const TableReader& reader, const std::string& key, const toml::node& node,
+               const Option& option) {
+  const std::string name = option.get_name(), head = option.nonpositional() ? name + "=" : "";
+  const toml::array* list = node.as_array();
+  if (is_bare(option)) {
+    return word_of(reader, key, node, Kind::boolean) == "on" ? Words{name} : Words{};
   }
-}
-
-std::vector<std::string> positional_words(const std::string& path, const Setting& setting,
-                                          const Option& option) {
-  if (!option.is_repeated() || setting.value.kind != Kind::list) {
-    return {word_of(path, setting, setting.value, option)};
+  if (!is_repeated(option) || (list == nullptr && !option.nonpositional())) {
+    return {head + word_of(reader, key, node, kind_of(option))};
   }
-  std::vector<std::string> words;
-  for (const SettingValue& element : setting.value.elements) {
-    words.push_back(word_of(path, setting, element, option));
+  if (list == nullptr) reader.fail(key, "must be a list, with an element for each " + name);
+  Words words;
+  for (const toml::node& part : *list) {
+    words.push_back(head + word_of(reader, key, part, kind_of(option)));
   }
   return words;
 }
@@ -116,14 +100,12 @@ std::vector<std::string> positional_words(const std::string& path, const Setting
 // Whether the command line has said this, or another one of a group of which one may be given.
 bool is_given(const App& subcommand, const Option& option, const GivenWords& given) {
   if (given.options.contains(&option)) return true;
-  for (const App* group : subcommand.subcommands()) {
-    if (!group->takes_one_option()) continue;
-    const Options members = group->options();
-    const auto is_on_the_line = [&](const Option* member) {
-      return given.options.contains(member);
-    };
-    if (std::find(members.begin(), members.end(), &option) != members.end() &&
-        std::any_of(members.begin(), members.end(), is_on_the_line)) {
+  for (const App* group : subcommand.get_subcommands(nullptr)) {
+    const Options members = group->get_options();
+    if (group->get_require_option_max() == 1 &&
+        std::find(members.begin(), members.end(), &option) != members.end() &&
+        std::any_of(members.begin(), members.end(),
+                    [&](const Option* member) { return given.options.contains(member); })) {
       return true;
     }
   }
@@ -131,7 +113,7 @@ bool is_given(const App& subcommand, const Option& option, const GivenWords& giv
 }
 
 // The last value of --config among the words; empty: not given.
-std::string config_of(const std::vector<std::string>& words) {
+std::string config_of(const Words& words) {
   std::string path;
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
     if (words[i] == "--config" && i + 1 < words.size()) path = words[++i];
@@ -140,82 +122,85 @@ std::string config_of(const std::vector<std::string>& words) {
   return path;
 }
 
-// What was given, as TOML has it.
-SettingValue value_of(const Option& option) {
+// What it was given, as TOML has it.
+std::string value_of(const Option& option) {
   const std::string& text = option.results().back();
   switch (kind_of(option)) {
     case Kind::boolean:
-      return {Kind::boolean,
-              text == "on" || (option.is_bare() && option.as<bool>()) ? "true" : "false"};
+      return text == "on" || (is_bare(option) && option.as<bool>()) ? "true" : "false";
     case Kind::number:
-      return {Kind::number, short_text(option.as<double>())};
+      return short_text(option.as<double>());
     case Kind::whole_number:
-      return {Kind::whole_number, std::to_string(option.as<std::int64_t>())};
+      return std::to_string(option.as<std::int64_t>());
     case Kind::text:
-    case Kind::list:
       break;
   }
-  return {Kind::text, text};
+  if (!is_repeated(option)) return toml_string(text);
+  std::string list;
+  for (const std::string& value : option.results()) {
+    list.append(list.empty() ? "" : ", ").append(toml_string(value));
+  }
+  return "[" + list + "]";
 }
 
-SettingValue default_of(const Option& option) {
-  const std::string text = option.default_text();
+std::string default_of(const Option& option) {
+  const std::string text = option.get_default_str();
   const Kind kind = kind_of(option);
-  if (kind == Kind::boolean) return {kind, text == "on" ? "true" : "false"};
-  return {kind, text};
+  if (kind == Kind::boolean) return text == "on" ? "true" : "false";
+  return kind == Kind::text ? toml_string(text) : text;
+}
+
+bool is_utf8(const std::string& text) {
+  try {
+    (void)Json(text).dump();
+    return true;
+  } catch (const Json::exception&) {
+    return false;
+  }
 }
 
 }  // namespace
 
-const App& form_of(const App& subcommand, const std::vector<std::string>& words) {
-  const std::vector<const App*> forms = subcommand.forms();
-  if (forms.size() == 1) return subcommand;
-  const Options options = options_of_forms(subcommand);
-  const GivenWords given = sort_words(subcommand, options, words);
+App& form_of(const Forms& forms, const Words& words) {
+  if (forms.size() == 1) return *forms[0];
+  Options options = all_options(*forms[0]);
+  for (const Option* option : all_options(*forms[1])) options.push_back(option);
+  const GivenWords given = sort_words(*forms[0], forms, options, words);
   if (!given.positionals.empty()) {
-    const auto form = std::find_if(forms.begin(), forms.end(), [&](const App* of_forms) {
-      return of_forms->takes(given.positionals.front());
-    });
-    return form == forms.end() ? subcommand : **form;
+    std::error_code ignored;
+    return *forms[std::filesystem::is_directory(given.positionals[0], ignored) ? 1 : 0];
   }
   const std::string path = config_of(words);
-  if (path.empty()) return subcommand;
-  for (const Setting& setting : read_settings_toml(path, keys_of(options))) {
-    for (const App* form : forms) {
-      for (const Option* option : form->options()) {
-        if (!option->nonpositional() && key_of(*option) == setting.key) return *form;
-      }
-    }
+  if (path.empty()) return *forms[0];
+  const toml::table file = read_toml(path);
+  for (const Option* option : forms[1]->get_options()) {
+    if (!option->nonpositional() && file.contains(key_of(*option))) return *forms[1];
   }
-  return subcommand;
+  return *forms[0];
 }
 
-std::vector<std::string> with_config(const App& subcommand, const std::vector<std::string>& words) {
-  const GivenWords given = sort_words(subcommand, all_options(subcommand), words);
+Words with_config(const App& subcommand, const Forms& forms, const Words& words) {
+  const GivenWords given = sort_words(subcommand, forms, all_options(subcommand), words);
   const std::string path = config_of(words);
   if (path.empty()) return words;
-  const Options options = settable_options(subcommand);
-  const std::vector<Setting> settings = read_settings_toml(path, keys_of(options));
+  const toml::table file = read_toml(path);
+  TableReader reader(file, path, "");
 
-  std::vector<std::string> all, positionals;
+  Words all, positionals;
   std::size_t position = 0;
-  for (const Option* option : options) {
+  for (const Option* option : settable_options(subcommand)) {
+    const bool is_flag = option->nonpositional();
+    const bool is_on_the_line =
+        is_flag ? is_given(subcommand, *option, given) : position++ < given.positionals.size();
     const std::string key = key_of(*option);
-    const bool is_on_the_line = option->nonpositional() ? is_given(subcommand, *option, given)
-                                                        : position++ < given.positionals.size();
-    const auto setting = std::find_if(settings.begin(), settings.end(),
-                                      [&](const Setting& s) { return s.key == key; });
-    if (setting == settings.end()) continue;
-    std::vector<std::string> more;  // looked at in any case: what is wrong in a file is an error
-    if (option->nonpositional()) {
-      add_words(path, *setting, *option, more);
-    } else {
-      for (std::string& word : positional_words(path, *setting, *option)) {
-        if (!is_on_the_line) positionals.push_back(std::move(word));
-      }
-    }
-    if (!is_on_the_line) all.insert(all.end(), more.begin(), more.end());
+    const toml::node* node = reader.find(key);
+    if (node == nullptr) continue;
+    // Looked at in any case: what is wrong in a file is an error.
+    const Words more = words_of(reader, key, *node, *option);
+    Words& to = is_flag ? all : positionals;
+    if (!is_on_the_line) to.insert(to.end(), more.begin(), more.end());
   }
+  reader.refuse_unknown_keys();
   all.insert(all.end(), words.begin(), words.end());
   const bool needs_mark = std::any_of(positionals.begin(), positionals.end(),
                                       [](const std::string& p) { return p.starts_with("-"); });
@@ -224,26 +209,20 @@ std::vector<std::string> with_config(const App& subcommand, const std::vector<st
   return all;
 }
 
-std::string config_text(const App& subcommand, const std::vector<std::string>& left_out) {
-  std::string text = "# viewgain " + subcommand.name() + " --config FILE; what is behind a # is " +
-                     "the default\n";
+std::string config_text(const App& subcommand, const Words& left_out) {
+  std::string text =
+      "# viewgain " + name_of(subcommand) + " --config FILE; what is behind a # is the default\n";
   for (const Option* option : settable_options(subcommand)) {
     const std::string key = key_of(*option);
     if (std::find(left_out.begin(), left_out.end(), key) != left_out.end()) continue;
-    std::string line;
     if (option->empty()) {
-      if (option->default_text().empty()) continue;
-      line = "# " + setting_line(key, default_of(*option));
-    } else if (option->is_repeated()) {
-      SettingValue list{Kind::list, {}, {}};
-      for (const std::string& value : option->results())
-        list.elements.push_back({Kind::text, value});
-      line = setting_line(key, list);
+      if (option->get_default_str().empty()) continue;
+      text += "# " + key + " = " + default_of(*option) + "\n";
+    } else if (const std::string value = value_of(*option); is_utf8(value)) {
+      text += key + " = " + value + "\n";
     } else {
-      line = setting_line(key, value_of(*option));
+      text += "# not UTF-8, to be given on the command line: " + key + "\n";
     }
-    const std::string shown = utf8_text(line);
-    text += shown == line ? line : "# not UTF-8, to be given on the command line: " + shown;
   }
   return text;
 }

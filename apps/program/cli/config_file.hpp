@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "program/cli/app.hpp"
+#include "program/cli/words.hpp"
 
 namespace viewgain::app {
 
@@ -15,15 +16,15 @@ namespace viewgain::app {
 // lists; numbers and names with commas may be lists, too. Paths are as on the command line,
 // relative to where the program runs.
 
-/// The form of the subcommand that is for the source among the words after it, or for that in the
-/// file of --config; else the first. Throws Error as with_config().
-[[nodiscard]] const App& form_of(const App& subcommand, const std::vector<std::string>& words);
+/// The form that is for the source among the words after the subcommand, or for that in the file of
+/// --config; else the first. The second is for folders. Throws Error as with_config().
+[[nodiscard]] App& form_of(const Forms& forms, const std::vector<std::string>& words);
 
 /// The words after the subcommand with those that its --config stands for. What the command line
 /// says holds: an option, all repetitions of one, or one of a group of which only one may be given.
-/// Throws Error: as sort_words() and read_settings_toml(), and Error(format), naming file and line,
-/// for a value of the wrong type.
-[[nodiscard]] std::vector<std::string> with_config(const App& subcommand,
+/// Throws Error: as sort_words() and read_toml(), and Error(format), naming file and line, for an
+/// unknown key, with the nearest, and a value of the wrong type.
+[[nodiscard]] std::vector<std::string> with_config(const App& subcommand, const Forms& forms,
                                                    const std::vector<std::string>& words);
 
 /// What a parsed subcommand was given, as with_config() reads it back, and as comments the defaults

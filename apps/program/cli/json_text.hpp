@@ -6,10 +6,8 @@
 #include <map>
 #include <numbers>
 #include <string>
-#include <utility>
 
 #include "program/cli/json.hpp"
-#include "program/cli/values.hpp"
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -43,18 +41,8 @@ namespace viewgain::app {
   return json;
 }
 
-/// With every text made UTF-8: a file name may be any bytes.
-[[nodiscard]] inline Json with_utf8_text(Json json) {
-  if (json.is_string()) return utf8_text(json.get<std::string>());
-  if (!json.is_structured()) return json;
-  for (Json& part : json) part = with_utf8_text(std::move(part));
-  return json;
-}
-
 /// What run.json and --json hold.
-[[nodiscard]] inline std::string json_text(const Json& json) {
-  return with_utf8_text(json).dump(2) + "\n";
-}
+[[nodiscard]] inline std::string json_text(const Json& json) { return dumped(json, 2) + "\n"; }
 
 inline void print_json(const Json& json) { std::fputs(json_text(json).c_str(), stdout); }
 

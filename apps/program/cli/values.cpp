@@ -30,25 +30,6 @@ std::string general_text(double value, int digits) {
   return {buffer.data(), end};
 }
 
-// Bytes of the character at the front, 0 where that is no UTF-8.
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xc2 && first <= 0xdf   ? 2
-                             : first >= 0xe0 && first <= 0xef ? 3
-                             : first >= 0xf0 && first <= 0xf4 ? 4
-                                                              : 0;
-  if (length == 0 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xc0U) != 0x80) return 0;
-  }
-  // Longer than needed, half of a surrogate pair, past the last code point.
-  const bool is_wrong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
-                        (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
-  return is_wrong ? 0 : length;
-}
-
 }  // namespace
 
 void refuse(const std::string& what) { throw Error(ErrorCode::invalid_argument, what); }
@@ -128,22 +109,19 @@ Eigen::Vector3d parse_point(std::string_view flag, std::string_view text) {
   return {n[0], n[1], n[2]};
 }
 
-void check_one_of(std::string_view flag, std::string_view value,
-                  const std::vector<std::string>& names, const char* what) {
-  if (std::find(names.begin(), names.end(), value) != names.end()) return;
+std::string fault_of_name(const std::string& value, const std::vector<std::string>& names,
+                          const char* what) {
+  if (std::find(names.begin(), names.end(), value) != names.end()) return {};
   const std::string nearest = did_you_mean(value, names);
-  refuse(flag, value,
-         std::string("no such ") + what +
-             (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names));
+  return value + ": no such " + what +
+         (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names);
 }
 
-std::vector<std::string> parse_names(std::string_view flag, std::string_view text,
-                                     const std::vector<std::string>& valid, const char* what) {
+std::vector<std::string> names_in(std::string_view text) {
   std::vector<std::string> names;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     names.emplace_back(text.substr(begin, end - begin));
-    check_one_of(flag, names.back(), valid, what);
     begin = end + 1;
   }
   return names;
@@ -157,22 +135,6 @@ std::string describe(const Box& box) {
     }
   }
   return text;
-}
-
-std::string utf8_text(std::string_view text) {
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
-  std::string result;
-  while (!text.empty()) {
-    const std::size_t length = utf8_length(text);
-    const auto byte = static_cast<unsigned char>(text[0]);
-    if (length == 0) {
-      result.append("\\x").append(1, kDigits[byte >> 4U]).append(1, kDigits[byte & 15U]);
-    } else {
-      result.append(text.substr(0, length));
-    }
-    text.remove_prefix(std::max(length, std::size_t{1}));
-  }
-  return result;
 }
 
 std::string formatted(const char* format, ...) {

@@ -43,22 +43,16 @@ namespace viewgain::app {
 /// x,y,z [m]. Throws Error(invalid_argument) naming the flag.
 [[nodiscard]] Eigen::Vector3d parse_point(std::string_view flag, std::string_view text);
 
-/// Throws Error(invalid_argument) unless the value is one of the names: "--gain surfce: no such
-/// gain; did you mean surface? There are paper, surface, combined".
-void check_one_of(std::string_view flag, std::string_view value,
-                  const std::vector<std::string>& names, const char* what);
+/// What is wrong with a value that is to be one of the names: "surfce: no such gain; did you mean
+/// surface? There are paper, surface, combined"; empty: nothing.
+[[nodiscard]] std::string fault_of_name(const std::string& value,
+                                        const std::vector<std::string>& names, const char* what);
 
-/// A list of names separated by commas, each one of the valid ones as check_one_of() has it.
-[[nodiscard]] std::vector<std::string> parse_names(std::string_view flag, std::string_view text,
-                                                   const std::vector<std::string>& valid,
-                                                   const char* what);
+/// The names in a list with commas.
+[[nodiscard]] std::vector<std::string> names_in(std::string_view text);
 
 /// x0, y0, z0 .. x1, y1, z1 for people.
 [[nodiscard]] std::string describe(const Box& box);
-
-/// The text as UTF-8, in which a byte that is none stands as \xE9. For file names, which may be any
-/// bytes, in JSON.
-[[nodiscard]] std::string utf8_text(std::string_view text);
 
 /// As std::printf prints it, to at most 511 bytes.
 [[nodiscard]] __attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...);

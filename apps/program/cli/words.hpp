@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <set>
 #include <string>
 #include <vector>
@@ -18,20 +17,13 @@ struct GivenWords {
   bool has_mark = false;  ///< a bare --, after which all words are positionals
 };
 
-/// The options of a subcommand and of the groups in it, positionals among them, in their order.
-[[nodiscard]] std::vector<const Option*> all_options(const App& subcommand);
-
-/// The subcommand that the first word names; null where it is a flag or there is none. Throws
-/// Error(invalid_argument) for another word, naming the nearest subcommand.
-[[nodiscard]] const App* subcommand_of(const App& program, const std::vector<std::string>& words);
-
-/// The options of all its forms, each name once.
-[[nodiscard]] std::vector<const Option*> options_of_forms(const App& subcommand);
+/// A subcommand and, where it has one, its other form, which takes flags of its own.
+using Forms = std::vector<App*>;
 
 /// Sorts the words after the subcommand, which may name these options. Throws
-/// Error(invalid_argument) for another flag, naming the form of the subcommand that it goes with or
-/// the nearest, and for one whose value is missing.
-[[nodiscard]] GivenWords sort_words(const App& subcommand,
+/// Error(invalid_argument) for another flag, naming the one of `forms` that it goes with or the
+/// nearest, and for one whose value is missing.
+[[nodiscard]] GivenWords sort_words(const App& subcommand, const Forms& forms,
                                     const std::vector<const Option*>& options,
                                     const std::vector<std::string>& words);
 

@@ -175,12 +175,12 @@ Command add_candidates(App& program) {
                   "boundary (open boundaries of the surface in the map, and where more of it is "
                   "expected), sphere, dome, rings, shell or sequence")
       ->required()
-      ->one_of(generator_names(), "generator");
+      ->check(one_of(generator_names(), "generator"));
   app->add_option("--sensor", o.sensor, kMapSensorHelp);
   add_proposal_options(*app, o.proposal);
   app->add_option("--gain", o.proposal.gain,
                   "paper, surface or combined, as in score: order the poses by it, best first")
-      ->one_of(gain_model_names(), "gain");
+      ->check(one_of(gain_model_names(), "gain"));
   app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();
   add_trace_option(*app, o.common);
   add_common_options(*app, o.common);

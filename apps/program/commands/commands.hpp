@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "program/cli/app.hpp"
@@ -12,12 +13,21 @@
 namespace viewgain::app {
 
 /// One subcommand: its options are in `app`, `run` does the work after parsing. run throws Error
-/// for bad input; nothing half-written stays behind. The subcommand of the group "" is not shown.
+/// for bad input; nothing half-written stays behind.
 struct Command {
   App* app = nullptr;
   std::function<void()> run;
-  Command (*add_form)(App& first) = nullptr;  ///< where there is another form of it
+  /// Another form of it, with flags of its own, for a folder of frames in the place of the first
+  /// positional; its app is parsed by itself.
+  std::shared_ptr<Command> of_frames{};
+  std::shared_ptr<App> own{};  ///< such an app
 };
+
+/// The other form of a subcommand.
+[[nodiscard]] inline std::shared_ptr<App> app_of_frames(const std::string& subcommand,
+                                                        const std::string& description) {
+  return std::make_shared<App>(description, "viewgain " + subcommand);
+}
 
 /// Thrown by a command that a signal stopped before it was done: one line, exit code 130.
 struct Stopped {
@@ -30,7 +40,7 @@ struct Stopped {
 [[nodiscard]] Command add_integrate(App& program);
 [[nodiscard]] Command add_score(App& program);
 [[nodiscard]] Command add_reconstruct(App& program);
-[[nodiscard]] Command add_reconstruct_frames(App& reconstruct);  // its form
+[[nodiscard]] Command add_reconstruct_frames();  // its other form
 [[nodiscard]] Command add_candidates(App& program);
 [[nodiscard]] Command add_next(App& program);
 [[nodiscard]] Command add_info(App& program);

@@ -101,10 +101,8 @@ Command add_convert(App& program) {
   app->add_option("--sensor", options->sensor,
                   std::string("whose readings will be scored, for the prior of a tree's voxels: ") +
                       kSensorHelp);
-  app->add_option("--with-covariance", options->with_covariance,
-                  "add covariances and positions to the .vdb, for viewers")
-      ->capture_default_str()
-      ->on_or_off();
+  add_switch(*app, "--with-covariance", options->with_covariance,
+             "add covariances and positions to the .vdb, for viewers");
   add_common_options(*app, options->common);
   add_help(*app, kLookGroup, "convert map.vdb tree.ot");
   return {app, [options] { convert(*options); }};

@@ -113,7 +113,7 @@ Command add_import(App& program) {
   app->add_option("--confidence", options->confidence, kConfidenceHelp);
   app->add_option("--least-confidence", options->least_confidence, kLeastConfidenceHelp)
       ->capture_default_str()
-      ->range(1, 255, "confidence");
+      ->check(CLI::Range(1, 255, "confidence"));
   app->add_option(
          "--out", options->out,
          "folder to write; files that import has left in it are replaced, others are refused")

@@ -339,10 +339,10 @@ Command add_integrate(App& program) {
   app->add_option("--carve", options->carve,
                   "voxels that a pixel crosses: those in its pyramid, or on its ray")
       ->capture_default_str()
-      ->one_of({"cones", "lines"}, "way of carving");
+      ->check(one_of({"cones", "lines"}, "way of carving"));
   app->add_option("--occupancy", options->occupancy, "log-odds, or the paper's literal rule")
       ->capture_default_str()
-      ->one_of({"probabilistic", "literal"}, "rule");
+      ->check(one_of({"probabilistic", "literal"}, "rule"));
   app->add_option("--jump-edge-filter", options->jump_edge_filter, kJumpEdgeHelp)
       ->capture_default_str();
   add_scale_options(*app, options->scales);
@@ -352,16 +352,12 @@ Command add_integrate(App& program) {
                   "sigma of an unknown voxel [m]; default: max(voxel/2, twice the sensor's axial "
                   "sigma at its working distance)");
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
-  app->add_option("--calibrate-hazard", options->calibrate_hazard,
-                  "count how often frames met the surface in unknown space, for the "
-                  "surface and combined gain of the map")
-      ->capture_default_str()
-      ->on_or_off();
+  add_switch(*app, "--calibrate-hazard", options->calibrate_hazard,
+             "count how often frames met the surface in unknown space, for the "
+             "surface and combined gain of the map");
   add_registration_options(*app, options->registration);
-  app->add_option("--with-covariance", options->with_covariance,
-                  "add covariances and positions to the file, for viewers")
-      ->capture_default_str()
-      ->on_or_off();
+  add_switch(*app, "--with-covariance", options->with_covariance,
+             "add covariances and positions to the file, for viewers");
   app->add_option("--out", options->out, "map to write (.vdb, or OctoMap's .ot)")->required();
   app->add_option("--map", options->map,
                   "map to continue (.vdb, .ot, .bt); its voxel size, workspace and prior hold, and "

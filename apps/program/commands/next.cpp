@@ -99,17 +99,20 @@ void add_options(App& app, Options& o) {
   add_common_options(app, o.common);
 }
 
-Command add_next_of_frames(App& of_maps) {
+Command add_next_of_frames() {
   auto options = std::make_shared<Options>();
-  App* app = of_maps.add_form("The same for a folder of frames, which go into a map first.",
-                              is_frame_folder);
+  const auto own =
+      app_of_frames("next", "The same for a folder of frames, which go into a map first.");
+  App* app = own.get();
   add_frame_map_options(*app, options->frames);
   add_options(*app, *options);
   add_help(*app, kViewsGroup, "next frames --voxel 0.01 --top 3");
-  return {app, [options] {
+  return {app,
+          [options] {
             options->source = options->frames.folder.folder;
             next(*options);
-          }};
+          },
+          nullptr, own};
 }
 
 }  // namespace
@@ -124,7 +127,7 @@ Command add_next(App& program) {
   app->add_option("--sensor", options->frames.folder.sensor, kMapSensorHelp);
   add_options(*app, *options);
   add_help(*app, kViewsGroup, "next map.vdb --sensor sr4000 --top 3 --out next.txt");
-  return {app, [options] { next(*options); }, add_next_of_frames};
+  return {app, [options] { next(*options); }, std::make_shared<Command>(add_next_of_frames())};
 }
 
 }  // namespace viewgain::app

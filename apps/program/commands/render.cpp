@@ -118,9 +118,9 @@ Command add_render(App& program) {
   auto* what =
       app->add_option("--what", o.what, "map (its voxels), surface or sigma (how well it is known)")
           ->required();
-  what->one_of({"map", "surface", "sigma"}, "kind of picture");
+  what->check(one_of({"map", "surface", "sigma"}, "kind of picture"));
   app->add_option("--width", o.width, "of the picture [px]")
-      ->range(64, 8192, "width")
+      ->check(CLI::Range(64, 8192, "width"))
       ->capture_default_str();
   app->add_option("--azimuth", o.azimuth, "of the viewer, from +x to +y [deg]")
       ->capture_default_str();

@@ -15,7 +15,6 @@
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
-#include "program/cli/flags/sensing_flags.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
@@ -202,12 +201,10 @@ Command add_simulate(App& program) {
   app->add_option("--size", options->size,
                   "scale the mesh so that its bounding box's longest side is this [m]; default: "
                   "the file's own size, in metres");
-  app->add_option("--recenter", options->recenter, "move the bounding box's centre to the origin")
-      ->capture_default_str()
-      ->on_or_off();
+  add_switch(*app, "--recenter", options->recenter, "move the bounding box's centre to the origin");
   app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
       ->capture_default_str()
-      ->one_of({"x", "y", "z"}, "axis");
+      ->check(one_of({"x", "y", "z"}, "axis"));
   app->add_option(
       "--place", options->place,
       "x,y,z[,YAW_DEG] or tx,ty,tz,qx,qy,qz,qw: mesh to world, after --size, --recenter "
@@ -216,11 +213,11 @@ Command add_simulate(App& program) {
   add_sensing_options(*app, options->sensing);
   app->add_option("--frames-per-view", options->frames_per_view,
                   "frames from each pose, numbered on; poses.txt repeats the pose")
-      ->range(std::size_t{1}, std::size_t{1000}, "number")
+      ->check(counted(1, 1000))
       ->capture_default_str();
   app->add_option("--amplitude", options->amplitude,
                   "write amplitude images; default: on for sensors with shot noise")
-      ->on_or_off();
+      ->check(on_or_off());
   app->add_option(
          "--out", options->out,
          "folder to write; frames that simulate has left in it are replaced, others are refused")

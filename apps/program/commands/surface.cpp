@@ -176,13 +176,11 @@ Command add_surface(App& program) {
       "mesh (off, obj, stl, ply) that the surface is held against, in the world's frame");
   app->add_option("--size", options->size,
                   "longest side that the truth is scaled to [m]; default: as it is");
-  app->add_option("--recenter", options->recenter,
-                  "the middle of the truth's bounding box becomes the origin")
-      ->capture_default_str()
-      ->on_or_off();
+  add_switch(*app, "--recenter", options->recenter,
+             "the middle of the truth's bounding box becomes the origin");
   app->add_option("--up", options->up, "axis of the truth that is turned to +z")
       ->capture_default_str()
-      ->one_of({"x", "y", "z"}, "axis");
+      ->check(one_of({"x", "y", "z"}, "axis"));
   add_common_options(*app, options->common);
   add_help(*app, kLookGroup, "surface map.vdb --out surface.ply --points points.ply");
   return {app, [options, app] { surface(*options, *app); }};

@@ -17,7 +17,6 @@
 #include "core/expect_error.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/planner/pose_sets.hpp"
-#include "viewgain/planner/proximity_measure.hpp"
 
 namespace viewgain {
 namespace {
@@ -267,80 +266,6 @@ TEST(Oracle, NeedsTheObject) {
   test::expect_error(ErrorCode::invalid_argument, "mesh", [&] {
     const PolicyDecision decision(*model, generation, box.sensor, config, box.exec);
   });
-}
-
-// What the policy counts, by small steps along the rays.
-double proximity_of(const SurfaceModel& model, const Sensor& sensor, const Pose& pose) {
-  const BeliefGrid& grid = model.grid();
-  const HazardField hazard(grid.snapshot());
-  const double reach = 5 * hazard.model().decay_length, step = 0.02 * grid.voxel_size();
-  const int stride = coarse_stride(sensor.camera);
-  double sum = 0;
-  for (int v = 0; v < sensor.camera.height; v += stride) {
-    for (int u = 0; u < sensor.camera.width; u += stride) {
-      const Eigen::Vector3d direction = pose.rotation() * sensor.camera.ray(u, v).normalized();
-      std::optional<Index3> last;
-      for (double t = sensor.min_range; t < 0.7; t += step) {
-        const auto voxel = grid.index_of(pose.translation() + t * direction);
-        if (!voxel || voxel == last) continue;
-        last = voxel;
-        const VoxelState state = grid.state(*voxel);
-        if (state == VoxelState::occupied) break;
-        if (state != VoxelState::unknown) continue;
-        sum += std::max(0.0, 1 - hazard.distance(*voxel) / reach);
-      }
-    }
-  }
-  return sum;
-}
-
-TEST(Proximity, TakesWhatPassesMostUnknownSpaceNearKnownSurface) {
-  const SeenBox box;
-  const auto model = box.model_after({box.start});
-  std::vector<double> expected;
-  for (const Candidate& candidate : box.candidates) {
-    expected.push_back(proximity_of(*model, box.sensor, candidate.T_world_camera));
-  }
-  GainConfig coarse;
-  coarse.pixel_stride = coarse_stride(box.sensor.camera);
-  const GainEvaluator evaluator(model->scene(), box.sensor, coarse);
-  EXPECT_NEAR(static_cast<double>(evaluator.rays_per_pose()), 400, 50);
-  std::vector<Pose> poses;
-  for (const Candidate& candidate : box.candidates) poses.push_back(candidate.T_world_camera);
-  std::vector<double> values(poses.size());
-  evaluator.evaluate(poses, values, ProximityMeasure(model->scene()->hazard()));
-  std::size_t cases = 0, others = 0;
-  double sum = 0, expected_sum = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i, ++cases) {
-    // Steps miss corners that rays cut off by less, and so a wall now and then.
-    others += std::abs(values[i] - expected[i]) > 0.05 * expected[i] + 3 ? 1 : 0;
-    sum += values[i], expected_sum += expected[i];
-  }
-  EXPECT_EQ(cases, 32U);
-  EXPECT_LE(others, 2U);
-  EXPECT_GT(expected_sum, 1000);
-  EXPECT_NEAR(sum, expected_sum, 0.02 * expected_sum);
-  PolicyConfig config;
-  config.policy = Policy::proximity;
-  const auto decision = box.choice(*model, config, 2);
-  ASSERT_TRUE(decision);
-  EXPECT_EQ(
-      decision->candidate,
-      static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin()));
-  EXPECT_GT(values[decision->candidate], 0);
-}
-
-TEST(Proximity, IsNothingWhileNoSurfaceIsKnown) {
-  const SeenBox box;
-  const auto empty = box.model_after({});
-  const auto scene = VoxelScene::build(empty->grid());
-  const GainEvaluator evaluator(scene, box.sensor, {.pixel_stride = 8});
-  std::vector<double> value(1, 7);
-  evaluator.evaluate(std::span(&box.start, 1), value, ProximityMeasure(scene->hazard()));
-  EXPECT_EQ(value[0], 0);
-  PinholeCamera line = sensor_preset("laser_line").camera;
-  EXPECT_EQ(coarse_stride(line), 1);
-  EXPECT_EQ(coarse_stride(sensor_preset("sr4000").camera), 8);
 }
 
 }  // namespace

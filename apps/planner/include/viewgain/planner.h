@@ -5,9 +5,8 @@
 
 /* Next best views step by step, for C: frames in, views out. Its functions are in the library
    viewgain_planner (pkg-config viewgain-planner); viewgain/viewgain.h says what holds for all
-   functions, viewgain/planner/view_planner.hpp more about each step. A planner that was released is
-   known as such: VG_INVALID_ARGUMENT, and releasing it again does nothing, unless another planner
-   lies at its address by then. One call at a time on a planner. */
+   functions, viewgain/planner/view_planner.hpp more about each step. One call at a time on
+   a planner. */
 
 #include "viewgain/viewgain.h"
 

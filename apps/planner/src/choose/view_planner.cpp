@@ -9,10 +9,11 @@
 #include <mutex>
 #include <utility>
 
-#include "choose/planner_settings.hpp"
 #include "choose/planner_state.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/planner/align_frames.hpp"
+#include "viewgain/planner/map_model.hpp"
+#include "viewgain/planner/stop_settings.hpp"
 #include "viewgain/support/stop_rules.hpp"
 #include "viewgain/support/stopwatch.hpp"
 #include "viewgain/support/text.hpp"
@@ -49,6 +50,39 @@ std::optional<StopReason> limit_reached(const PlanningConfig& limits, const Stop
   return is_broken ? std::optional(StopReason::promises) : std::nullopt;
 }
 
+// What a planner's settings come to for its parts.
+
+MapModelConfig map_config(const PlannerConfig& config) {
+  MapModelConfig map;
+  map.grid = config.grid;
+  map.integration = config.integration;
+  map.jump_edges = config.jump_edges;
+  map.surroundings = config.surroundings;
+  map.hazard = config.hazard;
+  map.criterion = config.gain.criterion;
+  map.follow_surface = config.gain.model != GainModel::paper;
+  return map;
+}
+
+ProposerConfig proposer_config(const PlannerConfig& config, const Sensor& sensor) {
+  FeasibilityConfig feasibility = feasibility_of(sensor);
+  feasibility.clearance = config.clearance;
+  feasibility.reach = config.reach;
+  feasibility.taken_tolerance = config.taken_tolerance;
+  feasibility.max_near_share = config.max_near_share;
+  return {std::move(feasibility), config.check_feasibility};
+}
+
+PlanningConfig planning_config(const PlannerConfig& config) {
+  PlanningConfig planning;
+  planning.max_views = config.max_views;
+  planning.idle_views = config.idle_views;
+  planning.broken_promises = config.broken_promises;
+  set_stop_rules(planning, config.gain.model, config.gain.criterion, config.stop_gain,
+                 config.stop_area);
+  return planning;
+}
+
 }  // namespace
 
 struct ViewPlanner::Impl {
@@ -68,9 +102,9 @@ struct ViewPlanner::Impl {
   Impl(const PlannerConfig& config_in, const ExecConfig& exec_in, MapModel map_in)
       : config(config_in),
         exec(exec_in),
-        planning(detail::planning_config(config_in)),
+        planning(planning_config(config_in)),
         map(std::move(map_in)),
-        proposer(map.scene(), detail::proposer_config(config, map.sensor()), exec) {
+        proposer(map.scene(), proposer_config(config, map.sensor()), exec) {
     (void)StopRules(planning);  // refuses what no run can have
     config.ahead.check();
   }
@@ -213,8 +247,7 @@ struct ViewPlanner::Impl {
 };
 
 ViewPlanner::ViewPlanner(const Sensor& sensor, const PlannerConfig& config, const ExecConfig& exec)
-    : impl_(std::make_unique<Impl>(config, exec,
-                                   MapModel(sensor, detail::map_config(config), exec))) {
+    : impl_(std::make_unique<Impl>(config, exec, MapModel(sensor, map_config(config), exec))) {
   // The configuration of the gain is refused here, not at the first ranking.
   (void)impl_->current_evaluator();
 }
@@ -241,9 +274,8 @@ void ViewPlanner::add_generation(std::shared_ptr<ViewpointGeneration> generation
 FrameRegistration ViewPlanner::register_frame(const DepthFrame& frame, const Pose& T_reported,
                                               const PoseSigma& sigma) const {
   Impl& m = *impl_;
-  std::call_once(m.is_registering, [&] {
-    m.registration.emplace(m.map.sensor(), detail::map_config(m.config), m.exec);
-  });
+  std::call_once(m.is_registering,
+                 [&] { m.registration.emplace(m.map.sensor(), map_config(m.config), m.exec); });
   return m.registration->register_frame(m.map.grid(), frame, T_reported, sigma);
 }
 
@@ -331,7 +363,7 @@ void ViewPlanner::save(const std::filesystem::path& path, VdbWriteConfig config)
 
 ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& sensor,
                               const PlannerConfig& config, const ExecConfig& exec) {
-  const MapModelConfig map = detail::map_config(config);
+  const MapModelConfig map = map_config(config);
   std::map<std::string, std::string> notes;
   BeliefGrid grid = load_vdb(path, &notes, exec);
   const auto note = notes.find(kNote);

@@ -38,7 +38,7 @@ inline void add_trace_option(App& app, CommonOptions& options) {
                  "how rays meet voxels: by Embree's BVH or by sweeping cells from near to "
                  "far, as unless told otherwise; never changes a result")
       ->capture_default_str()
-      ->one_of(tracer_names(), "tracer");
+      ->check(one_of(tracer_names(), "tracer"));
 }
 
 [[nodiscard]] inline ExecConfig exec_of(const CommonOptions& options) {
@@ -81,7 +81,7 @@ inline constexpr const char* kStopPromisesHelp =
 
 /// --seed, the same bounds in every subcommand.
 inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {
-  app.add_option("--seed", seed, of_what)->takes_seed();
+  app.add_option("--seed", seed, of_what)->check(a_seed())->capture_default_str();
 }
 
 }  // namespace viewgain::app

@@ -38,12 +38,12 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options) {
                  "what 65535 says: carve (nothing up to the maximal range) or invalid (no "
                  "reading); default: as the sensor's file says, else carve for what simulate "
                  "writes (poses.txt), invalid for recorded frames")
-      ->one_of({"carve", "invalid"}, "meaning");
+      ->check(one_of({"carve", "invalid"}, "meaning"));
   app.add_option("--mask", options.mask, kMaskHelp);
   app.add_option("--confidence", options.confidence, kConfidenceHelp);
   app.add_option("--least-confidence", options.least_confidence, kLeastConfidenceHelp)
       ->capture_default_str()
-      ->range(1, 255, "confidence");
+      ->check(CLI::Range(1, 255, "confidence"));
 }
 
 std::vector<MaskFolder> mask_folders(const FrameFolderOptions& options,

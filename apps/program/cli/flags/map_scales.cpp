@@ -24,7 +24,7 @@ void add_scale_options(App& app, ScaleOptions& options) {
          "up to 2^this voxels an edge are known as one cell where a pixel is as large, 0 to "
          "3; a nearer look makes them finer")
       ->capture_default_str()
-      ->range(std::size_t{0}, std::size_t{3}, "scale");
+      ->check(counted(0, 3));
   app.add_option("--fine", options.fine,
                  "x0,y0,z0,x1,y1,z1 [m]: known by single voxels all the same; may be repeated")
       ->allow_extra_args(false);

@@ -71,11 +71,8 @@ double total_gain(const NextViews& next) {
 }  // namespace
 
 void add_plan_options(App& app, PlanOptions& options) {
-  app.add_option("--plan", options.plan, kPlanHelp)
-      ->capture_default_str()
-      ->range(std::size_t{1}, std::size_t{1000}, "count");
-  app.add_option("--take", options.take, kTakeHelp)
-      ->range(std::size_t{1}, std::size_t{1000}, "count");
+  app.add_option("--plan", options.plan, kPlanHelp)->capture_default_str()->check(counted(1, 1000));
+  app.add_option("--take", options.take, kTakeHelp)->check(counted(1, 1000));
 }
 
 void check(const PlanOptions& options) {

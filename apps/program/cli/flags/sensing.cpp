@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "program/cli/flags/common_options.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/noise.hpp"
 #include "viewgain/planner/register_frame.hpp"
@@ -21,6 +22,28 @@ constexpr int kFlyingPixelSubRays = 3;
 bool SensingOptions::has_flying_pixels(const Sensor& sensor) const {
   const bool wanted = (flying_pixels.empty() ? noise : flying_pixels) == "on";
   return wanted && std::isfinite(unambiguous_range(sensor.noise));
+}
+
+void add_sensing_options(App& app, SensingOptions& o) {
+  app.add_option("--support-plane", o.support_plane,
+                 "height z of a table without end that occludes [m]; default: none");
+  add_switch(app, "--noise", o.noise,
+             "Gaussian noise along the ray and across it by the sensor's model");
+  app.add_option("--flying-pixels", o.flying_pixels,
+                 "mix the returns of 3x3 rays in a pixel, in sensors with a modulation frequency; "
+                 "default: as --noise")
+      ->check(on_or_off());
+  app.add_option("--background", o.background,
+                 "radius of a sphere round the origin that stands for the room [m]; 0: none")
+      ->capture_default_str();
+  app.add_option("--scale-error", o.scale_error,
+                 "ranges read 1 + this times what they are, as by a calibration that is off")
+      ->capture_default_str();
+  app.add_option("--pose-noise", o.pose_noise,
+                 "SIGMA_M,SIGMA_DEG: reported poses are off by this, in each axis [m] and each "
+                 "component of the rotation vector [deg]; the first view's is exact and defines "
+                 "the world; default: none");
+  add_seed_option(app, o.seed, "of the noise of readings and of poses");
 }
 
 SimulationConfig simulation_config(const SensingOptions& options, const Sensor& sensor) {
@@ -49,11 +72,9 @@ std::optional<JumpEdgeFilter::Config> parse_jump_edge_filter(const std::string& 
 }
 
 void add_registration_options(App& app, RegistrationOptions& options) {
-  app.add_option("--register", options.is_on,
-                 "register each frame against the map before it goes in; one that "
-                 "contradicts the map is left out")
-      ->capture_default_str()
-      ->on_or_off();
+  add_switch(app, "--register", options.is_on,
+             "register each frame against the map before it goes in; one that "
+             "contradicts the map is left out");
   app.add_option("--pose-sigma", options.pose_sigma,
                  "SIGMA_M,SIGMA_DEG by which reported poses may be off, of --register; default: "
                  "0.005,0.5");
@@ -61,7 +82,7 @@ void add_registration_options(App& app, RegistrationOptions& options) {
                  "what --register does with a frame that contradicts the others: skip, or keep it "
                  "at its reported pose")
       ->capture_default_str()
-      ->one_of({"skip", "keep"}, "answer");
+      ->check(one_of({"skip", "keep"}, "answer"));
 }
 
 std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,

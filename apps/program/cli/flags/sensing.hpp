@@ -29,6 +29,9 @@ struct SensingOptions {
   [[nodiscard]] bool has_flying_pixels(const Sensor& sensor) const;
 };
 
+/// Its flags, the same in every subcommand that simulates a camera.
+void add_sensing_options(App& app, SensingOptions& options);
+
 [[nodiscard]] SimulationConfig simulation_config(const SensingOptions& options,
                                                  const Sensor& sensor);
 

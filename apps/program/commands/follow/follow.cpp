@@ -357,7 +357,7 @@ Command add_follow(App& program) {
   app->add_option("--gain", o.gain,
                   "that views are ranked by: paper, surface or combined, as in score")
       ->capture_default_str()
-      ->one_of(gain_model_names(), "gain");
+      ->check(one_of(gain_model_names(), "gain"));
   app->add_option("--object-size", o.object_size, kObjectSizeHelp);
   app->add_option("--hazard", o.hazard, kHazardHelp);
   app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
@@ -368,15 +368,15 @@ Command add_follow(App& program) {
   app->add_option("--top", o.top,
                   "how many views to say, at most, each by what it adds to those before it")
       ->capture_default_str()
-      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
+      ->check(counted(1, 1'000'000));
   add_plan_options(*app, o.plan);
   app->add_option("--cost-per-metre", o.cost_per_metre, kCostPerMetreHelp)->capture_default_str();
   app->add_option("--max-views", o.max_views, "view budget: a reason to stop")
       ->capture_default_str()
-      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
+      ->check(counted(1, 1'000'000));
   app->add_option("--stop-promises", o.stop_promises, kStopPromisesHelp)
       ->capture_default_str()
-      ->range(std::size_t{0}, std::size_t{1'000'000}, "count");
+      ->check(counted(0, 1'000'000));
   add_registration_options(*app, o.registration);
   app->add_option("--out", o.out, "folder for state.vdb, next.txt, next.json")->required();
   add_trace_option(*app, o.common);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/frames/frame_map.hpp"
 
-#include <system_error>
 #include <utility>
 
 #include "program/cli/flags/common_options.hpp"
@@ -54,11 +53,6 @@ Box seen_workspace(const FrameFolder& folder, const MapModelConfig& config, doub
   const std::optional<Box> seen = workspace_around(folder.size(), voxel, bounds);
   if (seen) return *seen;
   refuse_without_readings(folder, tally);
-}
-
-bool is_frame_folder(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::is_directory(path, ignored);
 }
 
 void add_frame_map_options(App& app, FrameMapOptions& options) {

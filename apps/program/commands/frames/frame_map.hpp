@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -27,9 +26,6 @@ struct FrameMapOptions {
   ScaleOptions scales;
   bool refine = true;
 };
-
-/// Is this a folder, and so no map and no mesh?
-[[nodiscard]] bool is_frame_folder(const std::filesystem::path& path);
 
 /// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter, --coarsest, --fine and those of
 /// a folder.

@@ -49,7 +49,7 @@ void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum
   std::fprintf(stderr,
                "viewgain: warning: %s: none of %s points is in the sensor's range: are they in "
                "metres?\n",
-               utf8_text(cloud).c_str(), with_commas(sum.out_of_range).c_str());
+               cloud.c_str(), with_commas(sum.out_of_range).c_str());
 }
 
 void FrameTally::add(const std::filesystem::path& image, const FrameFault& fault) {
@@ -64,7 +64,7 @@ void FrameTally::add(const IntegrationReport& counts) { readings_ += counts.read
 void FrameTally::name_left_out() const {
   if (quiet_) return;
   for (const std::string& fault : faults_) {
-    std::fprintf(stderr, "viewgain: %s; left out\n", utf8_text(fault).c_str());
+    std::fprintf(stderr, "viewgain: %s; left out\n", fault.c_str());
   }
 }
 
@@ -84,8 +84,7 @@ void FrameTally::require_any(const FrameFolder& folder) const {
       if (!suspicion.empty()) refuse(folder.name() + ": " + warning);
     }
     if (warning.empty()) return;
-    std::fprintf(stderr, "viewgain: warning: %s: %s\n", utf8_text(folder.name()).c_str(),
-                 warning.c_str());
+    std::fprintf(stderr, "viewgain: warning: %s: %s\n", folder.name().c_str(), warning.c_str());
     return;
   }
   std::string what =

@@ -64,7 +64,7 @@ void add_proposal_options(App& app, ProposalOptions& o) {
   app.add_option("--count", o.count,
                  "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
                  "(default 48)")
-      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
+      ->check(counted(1, 1'000'000));
   app.add_option("--distance", o.distance,
                  "boundary: from the surface; else from the centre [m]; default: the sensor's "
                  "working distance; the workspace fills the view, and a shell fills the shells or "
@@ -94,7 +94,7 @@ void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
                  "map, and where more of it is expected), sphere, dome, rings, shell or sequence; "
                  "default: boundary, and a "
                  "sphere round the workspace of a map without a surface or views")
-      ->one_of(generator_names(), "generator");
+      ->check(one_of(generator_names(), "generator"));
   app.add_option(
       "--poses", o.poses,
       "TUM or .npy file of camera-to-world poses to choose among; with --generator beside "
@@ -103,13 +103,13 @@ void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
   add_proposal_options(app, o);
   app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
       ->capture_default_str()
-      ->one_of(gain_model_names(), "gain");
+      ->check(one_of(gain_model_names(), "gain"));
   add_plan_options(app, o.plan);
   app.add_option("--top", top,
                  "views to name at most, each by what it adds to those before it, so that no two "
                  "show the same; with --plan that has the numbers")
       ->capture_default_str()
-      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
+      ->check(counted(1, 1'000'000));
 }
 
 void check(const ProposalOptions& options) {

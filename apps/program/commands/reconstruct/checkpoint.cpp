@@ -25,7 +25,7 @@ constexpr std::pair<const char*, double Decision::*> kFigures[]{
 }  // namespace
 
 Checkpoint::Checkpoint(RunFolder& folder, const Json& head, bool resume)
-    : folder_(folder), json_(with_utf8_text(head)) {
+    : folder_(folder), json_(Json::parse(dumped(head))) {
   json_["decisions"] = Json::array();
   if (resume) file_ = folder.last_checkpoint().string();
   if (!file_.empty()) {

@@ -145,7 +145,8 @@ Command add_reconstruct(App& program) {
       "The whole loop on a mesh: acquire with a simulated camera, update map and surface, propose "
       "views, rank them, move, until little is left to gain. Or of a folder of recorded frames.");
   add_options(*app, *options);
-  return {app, [options, app] { reconstruct(*options, *app); }, add_reconstruct_frames};
+  return {app, [options, app] { reconstruct(*options, *app); },
+          std::make_shared<Command>(add_reconstruct_frames())};
 }
 
 }  // namespace viewgain::app

@@ -273,22 +273,21 @@ void reconstruct(Options& options, const App& app) {
 
 }  // namespace
 
-Command add_reconstruct_frames(App& reconstruct_of_meshes) {
+Command add_reconstruct_frames() {
   auto options = std::make_shared<Options>();
-  App* app = reconstruct_of_meshes.add_form(
-      "Of a folder of recorded frames: map, surface and the views to take next.", is_frame_folder);
+  const auto own = app_of_frames(
+      "reconstruct", "Of a folder of recorded frames: map, surface and the views to take next.");
+  App* app = own.get();
   Options& o = *options;
   add_frame_map_options(*app, o.frames);
-  app->add_option("--refine", o.refine, "readings of a voxel refine it; off: the first one wins")
-      ->capture_default_str()
-      ->on_or_off();
+  add_switch(*app, "--refine", o.refine, "readings of a voxel refine it; off: the first one wins");
   add_registration_options(*app, o.registration);
   add_next_view_options(*app, o.proposal, o.top);
   add_output_options(*app, o.outputs);
   add_trace_option(*app, o.common);
   add_common_options(*app, o.common);
   add_help(*app, kLoopGroup, "reconstruct frames --voxel 0.01 --pictures off --out run_of_frames");
-  return {app, [options, app] { reconstruct(*options, *app); }};
+  return {app, [options, app] { reconstruct(*options, *app); }, nullptr, own};
 }
 
 }  // namespace viewgain::app

@@ -93,8 +93,7 @@ std::shared_ptr<const SurfaceScene> surroundings_of(const Obstacles& obstacles,
 
 std::vector<std::string> generators(const ReconstructOptions& options, Policy policy) {
   if (!options.generator.empty()) {
-    const auto names =
-        parse_names("--generator", options.generator, generator_names(), "generator");
+    const std::vector<std::string> names = names_in(options.generator);
     if (policy == Policy::kriegel && names != std::vector<std::string>{"boundary"}) {
       refuse("--policy kriegel chooses among boundary candidates alone");
     }
@@ -147,28 +146,60 @@ StageConfig stage_config(const ReconstructOptions& options) {
   return config;
 }
 
-Json resolved_settings(const ReconstructOptions& options, const RunSetup& setup) {
+// What can change the answer, for run.json: what was given, or what the run made of it. Not in it:
+// threads and where results go.
+Json settings_json(const ReconstructOptions& o, const RunSetup& setup) {
   Json generators = Json::array();
   if (setup.generation.at_boundaries) generators.push_back("boundary");
   for (const PoseSet& set : setup.generation.sets) generators.push_back(set.generator);
   if (!setup.reach.poses.empty()) generators.push_back("reach");
-  return {{"sensor", sensor_toml(setup.sensor)},
-          {"size", setup.stage.size},
-          {"workspace", to_json(setup.stage.workspace)},
-          {"prior_sigma", default_prior_sigma(options.voxel, setup.sensor)},
-          {"start", to_json(setup.start)},
-          {"distance", setup.distance},
-          {"generators", generators},
-          {"gain", setup.policy.classic ? classic_gain_name(setup.policy.classic->gain)
-                                        : gain_model_name(setup.policy.model)},
-          {"stop_gain", setup.planning.stop_gain},
-          {"stop_gain_is_relative", setup.planning.stop_gain_is_relative},
-          {"stop_area", setup.planning.stop_area},
-          {"flying_pixels", options.sensing.has_flying_pixels(setup.sensor)},
-          {"pose_noise", pose_sigma_json(setup.pose_noise)},
-          {"register", setup.registration.has_value()},
-          {"pose_sigma", setup.registration ? pose_sigma_json(*setup.registration) : Json()},
-          {"refine", options.refine == "on"}};
+  Json json{{"mesh", o.mesh},
+            {"sensor", sensor_toml(setup.sensor)},
+            {"voxel", o.voxel},
+            {"size", setup.stage.size},
+            {"workspace", to_json(setup.stage.workspace)},
+            {"prior_sigma", default_prior_sigma(o.voxel, setup.sensor)},
+            {"up", o.up},
+            {"start", to_json(setup.start)},
+            {"distance", setup.distance},
+            {"policy", o.policy},
+            {"generators", generators},
+            {"sphere_poses", o.count},
+            {"gain", setup.policy.classic ? classic_gain_name(setup.policy.classic->gain)
+                                          : gain_model_name(setup.policy.model)},
+            {"semantics", or_null(o.semantics)},
+            {"overlap", o.overlap},
+            {"region_depth", o.region_depth},
+            {"object_size", o.object_size},
+            {"hazard", or_null(o.hazard)},
+            {"criterion", o.criterion},
+            {"max_views", o.max_views},
+            {"stop_gain", setup.planning.stop_gain},
+            {"stop_gain_is_relative", setup.planning.stop_gain_is_relative},
+            {"stop_area", setup.planning.stop_area},
+            {"stop_idle", o.stop_idle},
+            {"stop_promises", o.stop_promises},
+            {"stop_coverage", o.stop_coverage},
+            {"tolerance", o.tolerance},
+            {"travel_cost", o.travel_cost},
+            {"reach", or_null(o.reach)},
+            {"support_plane", o.sensing.support_plane},
+            {"noise", o.sensing.noise},
+            {"flying_pixels", o.sensing.has_flying_pixels(setup.sensor)},
+            {"background", o.sensing.background},
+            {"scale_error", o.sensing.scale_error},
+            {"pose_noise", pose_sigma_json(setup.pose_noise)},
+            {"register", setup.registration.has_value()},
+            {"pose_sigma", setup.registration ? pose_sigma_json(*setup.registration) : Json()},
+            {"frames_per_view", o.frames_per_view},
+            {"jump_edge_filter", o.jump_edge_filter},
+            {"refine", o.refine == "on"}};
+  if (!o.obstacles.empty()) json["obstacles"] = o.obstacles;
+  json.update(o.scales.settings());
+  if (const PlanAhead& ahead = setup.policy.ahead; ahead.is_on()) {
+    json.update(Json{{"plan", ahead.plan}, {"take", ahead.take}});
+  }
+  return json;
 }
 
 PolicyConfig with_object(PolicyConfig policy, const RunSetup& setup,
@@ -229,12 +260,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
       surroundings_of(setup.model.map.surroundings.obstacles, exec);
   setup.generation = generation_config(options, setup);
   setup.planning = planning_config(options, setup.policy);
-  setup.settings = settings_json(options, resolved_settings(options, setup));
-  if (!options.obstacles.empty()) setup.settings["obstacles"] = options.obstacles;
-  setup.settings.update(options.scales.settings());
-  if (const PlanAhead& ahead = setup.policy.ahead; ahead.is_on()) {
-    setup.settings.update(Json{{"plan", ahead.plan}, {"take", ahead.take}});
-  }
+  setup.settings = settings_json(options, setup);
   return setup;
 }
 

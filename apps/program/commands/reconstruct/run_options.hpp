@@ -11,7 +11,6 @@
 #include "program/cli/flags/map_scales.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/sensing.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/boundary_generation.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
@@ -77,10 +76,6 @@ struct ReconstructOptions {
 
 /// Declares the flags, with o's values as defaults.
 void add_options(App& app, ReconstructOptions& o);
-
-/// What can change the answer, for run.json: each such flag under its key; `resolved` has what the
-/// run made of a flag, and what follows from several. Not in it: threads and where results go.
-[[nodiscard]] Json settings_json(const ReconstructOptions& options, const Json& resolved);
 
 /// Throws Error(invalid_argument), naming the flag, for numbers that no run on a mesh can have.
 void check(const ReconstructOptions& options);

@@ -244,12 +244,12 @@ Command add_score(App& program) {
                   "[m^2] or combined (both) [nat]; or gains of the literature, several "
                   "with commas, ranked by the first")
       ->capture_default_str()
-      ->several_of(all_gain_names(), "gain");
+      ->check(several_of(all_gain_names(), "gain"));
   app->add_option("--semantics", options->semantics,
                   "of the literature's gains: as the papers define them or as the code "
                   "that was shipped with them computes them")
       ->capture_default_str()
-      ->one_of(gain_semantics_names(), "semantics");
+      ->check(one_of(gain_semantics_names(), "semantics"));
   app->add_option("--refinement-weight", options->refinement_weight,
                   "combined: of refining known surface against finding new; default: 0.3");
   app->add_option("--object-size", options->object_size, kObjectSizeHelp);
@@ -260,20 +260,18 @@ Command add_score(App& program) {
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
   app->add_option("--reach", options->reach,
                   "TOML file: boxes, shells, half-spaces, poses in reach; other poses are dropped");
-  app->add_option("--feasible", options->feasible,
-                  "drop poses where the sensor's body would touch the map, an obstacle "
-                  "or the table, much would be too near to be measured, or a view of "
-                  "the map was taken")
-      ->capture_default_str()
-      ->on_or_off();
+  add_switch(*app, "--feasible", options->feasible,
+             "drop poses where the sensor's body would touch the map, an obstacle "
+             "or the table, much would be too near to be measured, or a view of "
+             "the map was taken");
   app->add_option("--body", options->body, kBodyHelp);
   app->add_option("--criterion", options->criterion,
                   "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] "
                   "or trace [m^2]")
       ->capture_default_str()
-      ->one_of(criterion_names(), "criterion");
+      ->check(one_of(criterion_names(), "criterion"));
   app->add_option("--stride", options->stride, "every s-th pixel of every s-th row")
-      ->range(1, std::numeric_limits<int>::max(), "stride")
+      ->check(CLI::Range(1, std::numeric_limits<int>::max(), "stride"))
       ->capture_default_str();
   app->add_option(
          "--weight", options->weights,
@@ -286,7 +284,7 @@ Command add_score(App& program) {
   app->add_option("--max-range", options->max_range, "along the ray [m]; default: the sensor's");
   add_cost_options(*app, options->costs, "the poses");
   app->add_option("--top", options->top, "how many of the best to print")
-      ->range(std::size_t{0}, std::size_t{1'000'000'000}, "count")
+      ->check(counted(0, 1'000'000'000))
       ->capture_default_str();
   auto* selection = app->add_option_group("selection", "at most one of; default: score all poses");
   selection->add_flag(
@@ -296,12 +294,12 @@ Command add_score(App& program) {
       ->add_option(
           "--approximate", options->approximate,
           "SHARE: estimates with standard errors from at most this share of each view's rays")
-      ->range(1e-6, 1.0, "share in (0, 1]");
+      ->check(CLI::Range(1e-6, 1.0, "share in (0, 1]"));
   selection
       ->add_option("--set", options->set,
                    "K views that are good together on this map, with what each adds to those "
                    "before")
-      ->range(std::size_t{1}, std::size_t{1'000'000}, "count");
+      ->check(counted(1, 1'000'000));
   selection->require_option(0, 1);
   app->add_option("--deadline", options->deadline,
                   "SECONDS: --race ends with the best that it can say by then; default: none");

@@ -45,7 +45,7 @@ std::string name_of(ClassicGain gain) { return std::string(classic_gain_name(gai
 
 std::optional<std::vector<ClassicGain>> classic_gains_of(const std::string& names) {
   const std::vector<std::string>& models = gain_model_names();
-  const std::vector<std::string> asked = parse_names("--gain", names, all_gain_names(), "gain");
+  const std::vector<std::string> asked = names_in(names);
   std::vector<ClassicGain> gains;
   for (const std::string& name : asked) {
     if (std::find(models.begin(), models.end(), name) == models.end()) {

@@ -128,11 +128,8 @@ StudyPolicy policy_of(TableReader& reader, const std::string& name) {
                                 "of reconstruct's (\"frontier\")");
   }
   if (by_gain) {
-    try {
-      check_one_of("--gain", policy.gain, gains, "gain");
-    } catch (const Error& error) {
-      reader.fail("policies", "holds \"" + name + "\": " + error.what());
-    }
+    const std::string fault = fault_of_name(policy.gain, gains, "gain");
+    if (!fault.empty()) reader.fail("policies", "holds \"" + name + "\": " + fault);
   }
   return policy;
 }

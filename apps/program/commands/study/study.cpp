@@ -12,7 +12,6 @@
 #include <tuple>
 #include <vector>
 
-#include "program/cli/described_options.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
@@ -195,8 +194,8 @@ Command add_study(App& program) {
   app->add_option("--out", options->out, "folder for results; several machines may share it")
       ->required();
   app->add_option("--jobs", options->jobs, "runs at once; default: as many as threads")
-      ->range(std::size_t{1}, std::size_t{1000}, "count");
-  switched(*app->add_option("--plots", options->plots, "draw plots, where python3 has matplotlib"));
+      ->check(counted(1, 1000));
+  add_switch(*app, "--plots", options->plots, "draw plots, where python3 has matplotlib");
   add_common_options(*app, options->common);
   add_help(*app, kLoopGroup, "study spec.toml --out study");
   return {app, [options] { study(*options); }};

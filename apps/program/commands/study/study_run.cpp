@@ -150,7 +150,7 @@ ReconstructOptions options_of(const StudySpec& spec, const StudyRun& run) {
   App app("", "reconstruct");
   ReconstructOptions options;
   add_options(app, options);
-  (void)app.parse(reconstruct_words(spec, run));
+  (void)parse(app, reconstruct_words(spec, run));
   return options;
 }
 

@@ -174,11 +174,7 @@ Reconstruction reconstruct(
 void bind_reconstruct(py::module_& module) {
   auto type = bound_class<Reconstruction>(
       module, "Reconstruction",
-      R"(What ``reconstruct`` came to: its views, why it ended, the surface and the map.
-
-Notes
------
-Cost: properties take constant time; surface and map are not copied.)");
+      R"(What ``reconstruct`` came to: its views, why it ended, the surface and the map.)");
   refuse_pickling(type);
   type.def_readonly("reason", &Reconstruction::reason,
                     "str: why it ended: gain, area, cost, no_candidates, unreachable, idle, "
@@ -207,8 +203,7 @@ Cost: properties take constant time; surface and map are not copied.)");
              R"(The whole loop: measure, update map and surface, propose views, rank them, go on.
 
 The paper's Algorithm 1 with your camera, or your simulator, in it. The GIL is left but while your
-functions are called, on the calling thread. Cost: grows with the views; each takes what
-acquire takes, the update of the map, a surface (see ``surface_of_grid``) and the candidates' scores.
+functions are called, on the calling thread.
 
 Parameters
 ----------
@@ -226,9 +221,8 @@ voxel_size : float
 workspace : array_like, (2, 3)
     Lowest and highest corner of what is mapped, world frame [m].
 criterion : {"log_diagonal", "log_determinant", "trace"}
-policy : {"gain", "kriegel", "random", "frontier", "proximity", "sequence"}
-    How the next view is chosen; "frontier" counts unknown voxels in view, "proximity" those near
-    known surface that rays pass, "sequence" takes the candidates in their order.
+policy : {"gain", "kriegel", "random", "frontier", "sequence"}
+    How the next view is chosen; "frontier" counts unknown voxels in view, "sequence" takes the candidates in their order.
 gain : {"combined", "surface", "paper"}
     Of policy "gain": expected new surface and refinement, new surface alone, entropy removed.
 boundary : bool, optional

@@ -81,7 +81,7 @@ TEST_F(Spelling, TheNearestIsNamed) {
         "--spere: no such flag of score; did you mean --sphere?"},
        {{"reconstruct", "--nonsense"}, "--nonsense: no such flag of reconstruct (see"},
        {{"score", "map.vdb", "--gain", "surfce"},
-        "--gain surfce: no such gain; did you mean surface? There are paper, surface, combined"},
+        "--gain: surfce: no such gain; did you mean surface? There are paper, surface, combined"},
        {{"score", "map.vdb", "--criterion", "tarce"}, "did you mean trace?"},
        {{"candidates", "map.vdb", "--generator", "boundry"}, "did you mean boundary?"},
        {{"reconstruct", "cube.off", "--policy", "fronteir"}, "did you mean frontier?"},
@@ -94,25 +94,6 @@ TEST_F(Spelling, TheNearestIsNamed) {
        {{"score", "map.vdb", "--top"}, "--top: needs a value"},
        {{"score", "map.vdb", "--gain", "--top", "3"},
         "--gain: needs a value; there are paper, surface, combined"}});
-}
-
-TEST_F(Spelling, AMeshKeepsItsSizeUnlessAsked) {
-  const auto reconstruct = [this](const Strings& more) {
-    run_well(test::joined({"reconstruct", "cube.off", "--sensor", "small.toml", "--voxel", "0.1",
-                           "--out", "run", "--quiet", "--pictures", "off", "--max-views", "1"},
-                          more));
-    return read("run/run.json");
-  };
-  EXPECT_NE(reconstruct({}).find("\"size\": 2.0,"), std::string::npos) << read("run/run.json");
-  EXPECT_NE(reconstruct({"--size", "1.5"}).find("\"size\": 1.5,"), std::string::npos);
-  const test::ProgramResult large = run({"reconstruct", "cube.off", "--sensor", "small.toml",
-                                         "--voxel", "1", "--size", "2000", "--out", "large"});
-  EXPECT_EQ(large.exit_code, 2);
-  EXPECT_NE(large.err.find("2000 m"), std::string::npos) << large.err;
-  EXPECT_NE(large.err.find("in millimetres? (--size)"), std::string::npos) << large.err;
-  expect_refused({"simulate", "cube.off", "--sensor", "small.toml", "--out", "frames", "--size",
-                  "0", "--orbit", "1,6,20"},
-                 "--size 0");
 }
 
 }  // namespace

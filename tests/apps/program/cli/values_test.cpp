@@ -42,23 +42,6 @@ TEST(Values, NumbersAndBoxes) {
   EXPECT_EQ(exact_text(-std::nan("")), "nan");
 }
 
-TEST(Utf8Text, BytesThatAreNoUtf8AreShown) {
-  const std::vector<std::pair<std::string, std::string>> texts{
-      {"map.vdb", "map.vdb"},
-      {"gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x99\x82",
-       "gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x99\x82"},
-      {"lat\xe9.off", "lat\\xE9.off"},
-      {"\xc3", "\\xC3"},                             // cut
-      {"\xc0\xaf", "\\xC0\\xAF"},                    // longer than needed
-      {"\xe0\x80\xaf", "\\xE0\\x80\\xAF"},           // longer than needed
-      {"\xed\xa0\x80", "\\xED\\xA0\\x80"},           // half of a surrogate pair
-      {"\xf4\x90\x80\x80", "\\xF4\\x90\\x80\\x80"},  // past the last code point
-      {"a\nb", "a\nb"}};
-  for (const auto& [bytes, text] : texts) {
-    EXPECT_EQ(utf8_text(bytes), text);
-  }
-}
-
 TEST(Values, ChecksNameFlagAndValue) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

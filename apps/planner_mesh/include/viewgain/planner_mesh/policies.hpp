@@ -29,7 +29,6 @@ enum class Policy : std::uint8_t {
   random,     ///< uniform over the feasible poses
   frontier,   ///< the most unknown voxels in view
   fibonacci,  ///< a fixed set in its order: evenly round the object
-  proximity,  ///< the most unknown voxels near known surface on its rays: see ProximityMeasure
   oracle,     ///< knows the object, an upper reference: see OracleChoice
 };
 /// Names of the policies, in their order.
@@ -51,7 +50,7 @@ struct VIEWGAIN_EXPORT PolicyConfig {
 
 /// What a policy ranks candidates by, one entry a candidate.
 struct VIEWGAIN_EXPORT CandidateScores {
-  /// One a candidate, in the unit of the policy's gain; a count for frontier, [m] for proximity.
+  /// One a candidate, in the unit of the policy's gain; a count for frontier.
   std::vector<double> score;
   /// One a candidate: the new surface to be expected [m²]; NaN where the policy's gain does not
   /// say.
@@ -87,7 +86,7 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
                                  std::span<const Candidate> candidates) override;
 
   /// What the policy ranks these candidates by, in their order, on the model as it stands, all of
-  /// them by all rays (proximity: by few) and the way there left out. Nothing for the policies that
+  /// them by all rays and the way there left out. Nothing for the policies that
   /// rank by no figure of a view: kriegel, sequence, random, fibonacci, oracle.
   [[nodiscard]] std::optional<CandidateScores> scores(std::span<const Candidate> candidates);
 
@@ -108,7 +107,6 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
 
   /// By a classic gain. Where the way there counts, all have their gain.
   [[nodiscard]] std::vector<ViewGain> score_classic(std::span<const Candidate> candidates);
-  [[nodiscard]] std::vector<double> proximities(std::span<const Candidate> candidates);
   /// The new surface to be expected of a view [m²], where the policy's own gain does not say.
   [[nodiscard]] double expected_area(const Pose& T_world_camera);
 
@@ -119,7 +117,6 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
   ExecConfig exec_;
   std::optional<GainEvaluator> evaluator_;       ///< of the last decision's scene
   std::optional<GainEvaluator> area_evaluator_;  ///< likewise, by the surface gain
-  std::optional<GainEvaluator> coarse_;          ///< likewise, of few rays
   BoundaryOrder order_;
   std::optional<OracleChoice> oracle_;
   std::optional<ClassicChoice> classic_;
