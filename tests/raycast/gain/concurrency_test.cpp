@@ -111,6 +111,53 @@ TEST_F(Concurrency, ASceneIsUpdatedWhileTheOneBeforeIsEvaluated) {
   for (const auto& [scene, result] : scored) EXPECT_TRUE(test::same_bits(gains(scene), result));
 }
 
+TEST_F(Concurrency, TenThousandCallsWhileFramesComeAreThoseOfOneThread) {
+  constexpr std::size_t kThreads = 8, kCalls = (test::kSlowBuild ? 400 : 10'000) / kThreads,
+                        kScenes = 12;
+  struct Call {
+    std::size_t scene, pose;
+    double gain;
+  };
+  std::vector<std::shared_ptr<const VoxelScene>> scenes{VoxelScene::build(grid_)};
+  auto current = std::make_shared<const GainEvaluator>(scenes[0], sensor_, test::kPaper,
+                                                       ExecConfig{.num_threads = 2});
+  std::mutex mutex;  // of these two
+  std::vector<std::vector<Call>> made(kThreads);
+  at_once(kThreads + 1, [&](std::size_t number) {
+    if (number == kThreads) {
+      for (int view = 2; view <= static_cast<int>(kScenes); ++view) {
+        see(view);
+        const auto next = VoxelScene::update(scenes.back(), grid_, {.num_threads = 1});
+        const auto following = std::make_shared<const GainEvaluator>(current->with_scene(next));
+        const std::lock_guard lock(mutex);
+        scenes.push_back(next);
+        current = following;
+      }
+      return;
+    }
+    for (std::size_t i = 0; i < kCalls; ++i) {
+      std::shared_ptr<const GainEvaluator> evaluator;
+      std::size_t scene = 0;
+      {
+        const std::lock_guard lock(mutex);
+        evaluator = current;
+        scene = scenes.size() - 1;
+      }
+      const std::size_t pose = (7 * number + i) % poses_.size();
+      made[number].push_back({scene, pose, evaluator->evaluate(poses_[pose]).gain});
+    }
+  });
+  ASSERT_EQ(scenes.size(), kScenes);
+  std::vector<std::vector<ViewGain>> expected;
+  for (const auto& scene : scenes) expected.push_back(gains(scene));
+  std::size_t same = 0;
+  for (const std::vector<Call>& calls : made) {
+    for (const Call& call : calls)
+      same += call.gain == expected[call.scene][call.pose].gain ? 1 : 0;
+  }
+  EXPECT_EQ(same, kThreads * kCalls);
+}
+
 TEST_F(Concurrency, TheFirstToNeedTheBvhMakesItForAll) {
   const auto expected =
       GainEvaluator(VoxelScene::build(grid_), sensor_, test::kPaper, {.num_threads = 1})

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Numbers at their limits: right, or refused with the limit named.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "core/expect_error.hpp"
+#include "grid/analytic_frames.hpp"
+#include "raycast/scene_makers.hpp"
+#include "viewgain/core/covariance.hpp"
+#include "viewgain/grid/fused_points.hpp"
+#include "viewgain/grid/integrate.hpp"
+
+namespace viewgain {
+namespace {
+
+using namespace test;
+
+/// Frames of 100 x 100 readings of one point, from a cone round +z: a million, whose sum is
+/// known in double precision, too.
+struct Fusions {
+  static constexpr int kEdge = 100, kFrames = 100;
+
+  Fusions(const ConstantNoise& noise, double cone)
+      : grid({1, {{-8, -8, -8}, {8, 8, 8}}, {}, 0.5}), sensor(small_sensor(kEdge, kEdge)) {
+    sensor.camera = {kEdge, kEdge, 1e6, 1e6, 49.5, 49.5, {}};
+    sensor.noise = noise;
+    FrameIntegrator integrator(sensor);
+    const Eigen::Vector3d point(0.5, 0.5, 0.5);
+    for (int i = 0; i < kFrames; ++i) {
+      const double turn = 2.4 * i, tilt = cone * i / kFrames;
+      const Eigen::Vector3d away(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn),
+                                 std::cos(tilt));
+      pose = look_at(point + 2 * away, point);
+      const DepthFrame frame{kEdge, kEdge, std::vector<float>(kEdge * kEdge, 2.0F)};
+      integrator.integrate(grid, frame, pose);
+      for (const Eigen::Vector3d& ray : sensor.camera.ray_table()) {
+        expected += measurement_information(pose.rotation() * ray.normalized(),
+                                            {noise.sigma_axial, noise.sigma_lateral})
+                        .matrix();
+      }
+    }
+    information = grid.belief({0, 0, 0}).value_or(Belief{}).information_matrix();
+  }
+
+  /// What is off, against sqrt(Λ_ii Λ_jj).
+  [[nodiscard]] double off() const {
+    const Eigen::Array3d scale = expected.diagonal().array().sqrt();
+    return ((information.matrix() - expected).array() /
+            (scale.matrix() * scale.matrix().transpose()).array())
+        .abs()
+        .maxCoeff();
+  }
+
+  BeliefGrid grid;
+  Sensor sensor;
+  Pose pose;  // of the last frame
+  Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
+  SymmetricMatrix3 information;
+};
+
+// Single precision rounds each sum by at most 2^-24 of itself: a sum of n readings is off by n
+// 2^-24 of sqrt(Λ_ii Λ_jj), 6 % after a million, and less where not all errors are alike.
+TEST(Limits, AMillionFusionsStayPositiveDefinite) {
+  for (const double axial : {0.004, 0.1}) {
+    SCOPED_TRACE(axial);
+    const Fusions fusions({axial, 0.002}, 1.0);
+    EXPECT_EQ(fusions.grid.belief({0, 0, 0})->hits, 1'000'000U);
+    EXPECT_LT(fusions.off(), 1e6 * 0x1p-24);
+    const SymmetricMatrix3 covariance = fusions.information.inverse();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance.matrix());
+    EXPECT_GT(axes.eigenvalues()[0], 0);
+    const std::vector<FusedPoint> points = fused_points(fusions.grid);
+    ASSERT_EQ(points.size(), 1U);
+    EXPECT_GT(points[0].covariance.inverse().xx, 0);
+  }
+}
+
+// Sigmas a factor of 10,000 apart, all from one side: single precision holds no more of the weak
+// axis.
+TEST(Limits, AMillionNeedlesLeaveGainsThatAreNumbers) {
+  const Fusions fusions({1.0, 1e-4}, 1e-3);
+  EXPECT_LT(fusions.off(), 1e6 * 0x1p-24);
+  const auto scene = VoxelScene::build(fusions.grid);
+  const Pose beside = look_at({2.5, 0.5, 0.5}, {0.5, 0.5, 0.5});
+  for (const GainModel model : {GainModel::paper, GainModel::combined}) {
+    const GainEvaluator evaluator(scene, fusions.sensor, {.model = model});
+    for (const Pose& pose : {fusions.pose, beside}) {
+      EXPECT_GE(evaluator.evaluate(pose).gain, 0) << static_cast<int>(model);
+    }
+  }
+}
+
+struct Counts {
+  double unknown, occupied, gain;
+};
+
+/// What four frames of an object of 48 voxels leave, all lengths as the voxel is, and the gain of a
+/// view.
+Counts counts_of(double voxel, const Eigen::Vector3d& shift) {
+  const double scale = voxel / (0.4 / 48);
+  Sensor sensor = small_sensor(96, 72);
+  sensor.camera.distortion = {};
+  sensor.min_range = 0.1 * scale, sensor.max_range = 5 * scale, sensor.working_distance = scale;
+  sensor.noise = ConstantNoise{0.002 * scale, 0.001 * scale};
+  std::vector<Sphere> spheres = three_spheres_in_a_room();
+  for (Sphere& sphere : spheres) {
+    sphere.center = scale * sphere.center + shift;
+    sphere.radius *= scale;
+  }
+  const double half = 24 * voxel;
+  BeliefGrid grid({voxel,
+                   {{-half, -half, -half}, {half, half, half}},
+                   Pose(Eigen::Matrix3d::Identity(), shift),
+                   voxel});
+  FrameIntegrator integrator(sensor);
+  const auto view = [&](int i) {
+    const Pose pose = ring_view(i);
+    return Pose(pose.rotation(), scale * pose.translation() + shift);
+  };
+  for (int i = 0; i < 4; ++i)
+    integrator.integrate(grid, see_spheres(sensor, view(i), spheres), view(i));
+  const BeliefGrid::Statistics statistics = grid.statistics();
+  const GainEvaluator evaluator(VoxelScene::build(grid), sensor, kPaper);
+  return {static_cast<double>(statistics.unknown), static_cast<double>(statistics.occupied),
+          evaluator.evaluate(view(5)).gain};
+}
+
+TEST(Limits, MapsOfAnyScaleAndPlaceAreAlike) {
+  const Eigen::Vector3d far(1e6, -1e6, 1e6);
+  const Counts expected = counts_of(1, Eigen::Vector3d::Zero());
+  EXPECT_GT(expected.occupied, 1000);
+  for (const auto& [voxel, shift] : {std::pair<double, Eigen::Vector3d>{1e-4, {0, 0, 0}},
+                                     {10, {0, 0, 0}},
+                                     {1e-4, far},
+                                     {0.01, far},
+                                     {10, far}}) {
+    SCOPED_TRACE(testing::Message() << voxel << " m, " << shift.transpose());
+    const Counts counts = counts_of(voxel, shift);
+    EXPECT_NEAR(counts.unknown, expected.unknown, 0.001 * expected.unknown);
+    EXPECT_NEAR(counts.occupied, expected.occupied, 0.005 * expected.occupied);
+    EXPECT_NEAR(counts.gain, expected.gain, 0.005 * expected.gain);
+  }
+}
+
+TEST(Limits, LatticesBeyondTheirIntegersAreRefused) {
+  const auto at = [](double voxel) {
+    return [voxel] { (void)BeliefGrid({voxel, {{1e6, 0, 0}, {1e6 + 1, 1, 1}}, {}, 0.01}); };
+  };
+  EXPECT_NO_THROW(at(0.01)());
+  expect_error(ErrorCode::capacity, "off the origin along x, the most is 1073741824", at(1e-4));
+}
+
+TEST(Limits, ImagesOfTwelveMillionPixels) {
+  const auto scene = VoxelScene::build(sparse_map({16, 16, 16}, {{6, 6, 6}}, VoxelState::unknown));
+  Sensor sensor = lattice_sensor(1, 1), small = sensor;
+  sensor.camera = {4096, 3072, 4096, 4096, 2047.5, 1535.5, {}};
+  small.camera = {512, 384, 512, 512, 2047.5 / 8, 1535.5 / 8, {}};
+  GainConfig config = kPaper;
+  const Pose pose = axis_pose({6.5, 6.5, -2}, 2, true);
+  const ViewGain expected = GainEvaluator(scene, small, config).evaluate(pose);
+  config.pixel_stride = 8;
+  const ViewGain gain = GainEvaluator(scene, sensor, config).evaluate(pose);
+  EXPECT_GT(gain.hits, 1000U);
+  EXPECT_EQ(gain.hits, expected.hits);
+  EXPECT_NEAR(gain.gain, expected.gain, 1e-9 * expected.gain);
+  sensor.camera.height = 4097;
+  expect_error(ErrorCode::invalid_argument, "more than 2^24 pixels",
+               [&] { (void)GainEvaluator(scene, sensor, config); });
+}
+
+}  // namespace
+}  // namespace viewgain
