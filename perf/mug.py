@@ -4,8 +4,8 @@
 """mug.py [--picture PNG]: a mug on a table in a room, rough and fine in one map. As Markdown. Needs PYTHONPATH of a build.
 
 A simulated Kinect v1 with all its noise looks round a room of 4 x 3 x 2.5 m in 24 frames, then at the mug in 16, from the side away
-from its handle. The same frames go into one map of voxels of 2.5 mm whose leaves may have cells of up to 20 mm, but none about the
-mug, into a map of the mug alone, and into a room of one scale.
+from its handle. The same frames go into one map of voxels of 2.5 mm that is known by cells of 20 mm but about the mug, one by cells as large as
+pixels, a map of the mug alone, and a room of one scale.
 The table says what each map takes, and how well it knows the mug; below is which view looks at the handle when the task says so.
 """
 import argparse
@@ -87,10 +87,10 @@ def frames_of(camera):
     return [(pose, camera.acquire(pose, i).depth) for i, pose in enumerate(poses)]
 
 
-def model(sensor, frames, workspace, coarsest, fine):
+def model(sensor, frames, workspace, coarsest, fine, finest):
     """The map, and the processor seconds that its frames took."""
     grid = viewgain.BeliefGrid(voxel_size=VOXEL, workspace=workspace, sensor=sensor)
-    integrator = viewgain.FrameIntegrator(sensor, coarsest=coarsest, fine=fine, num_threads=1)
+    integrator = viewgain.FrameIntegrator(sensor, coarsest=coarsest, fine=fine, finest=finest, num_threads=1)
     start = time.process_time()
     for pose, depth in frames:
         integrator.integrate(grid, depth, pose)
@@ -148,14 +148,15 @@ def main():
 
     print("| map | MB | integration, CPU s | mug within 2.5 mm | RMS [mm] |", "|---|---|---|---|---|", sep="\n")
     maps = {}
-    for name, workspace, coarsest, fine in (("room and mug, cells by footprint", room, COARSEST, [MUG_BOX]),
-                                            ("the mug alone, 2.5 mm", MUG_BOX, 0, None),
-                                            ("room and mug, 2.5 mm", room, 0, None)):
-        maps[name], seconds = model(sensor, frames, workspace, coarsest, fine)
+    for name, workspace, coarsest, fine, finest in (("room 20 mm, mug 2.5 mm", room, COARSEST, [MUG_BOX], COARSEST),
+                                                    ("room by footprint, mug 2.5 mm", room, COARSEST, [MUG_BOX], 0),
+                                                    ("the mug alone, 2.5 mm", MUG_BOX, 0, None, 0),
+                                                    ("room and mug, 2.5 mm", room, 0, None, 0)):
+        maps[name], seconds = model(sensor, frames, workspace, coarsest, fine, finest)
         covered, rms = knowledge(maps[name], samples)
         print(f"| {name} | {maps[name].statistics().bytes / 1e6:.1f} | {seconds:.1f} | {100 * covered:.1f} % | {1000 * rms:.2f} |", flush=True)
 
-    grid = maps["room and mug, cells by footprint"]
+    grid = maps["room 20 mm, mug 2.5 mm"]
     if arguments.picture:
         draw(arguments.picture, grid)
     # What is seen of the handle's samples, by the frames so far and by a view more.

@@ -70,10 +70,12 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
-/// Takes `coarsest` and `fine` over; throws Error(invalid_argument) for null instead of boxes.
+/// Takes `coarsest`, `fine` and `finest` over; throws Error(invalid_argument) for null instead of
+/// boxes.
 template <typename Config>
 void set_scales(const Config& given, IntegrationConfig& settings) {
   settings.coarsest = given.coarsest;
+  settings.finest = given.finest;
   require_array(given.fine, given.fine_count, "fine");
   for (const double* b = given.fine; settings.fine.size() < given.fine_count; b += 6) {
     settings.fine.push_back({{b[0], b[1], b[2]}, {b[3], b[4], b[5]}});

@@ -94,16 +94,19 @@ class PythonGeneration : public ViewpointGeneration {
   const MapModel& map_;
 };
 
-std::unique_ptr<Planner> make(
-    const Given<Sensor>& of, double voxel_size, const py::object& workspace,
-    const py::object& T_world_grid, std::optional<double> prior_sigma,
-    std::optional<double> support_plane, const py::object& boxes, const py::iterable& meshes,
-    const std::string& gain, const std::string& criterion, std::optional<double> object_size,
-    const GivenOrNone<ReachRegion>& reach, const py::object& body_size, double clearance,
-    bool jump_edges, bool check_feasibility, std::size_t max_views, std::size_t idle_views,
-    std::size_t broken_promises, std::size_t plan, std::size_t take,
-    std::optional<double> stop_gain, std::optional<double> stop_area, int coarsest,
-    const py::object& fine, const py::object& state, const std::string& tracer, int num_threads) {
+std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
+                              const py::object& workspace, const py::object& T_world_grid,
+                              std::optional<double> prior_sigma,
+                              std::optional<double> support_plane, const py::object& boxes,
+                              const py::iterable& meshes, const std::string& gain,
+                              const std::string& criterion, std::optional<double> object_size,
+                              const GivenOrNone<ReachRegion>& reach, const py::object& body_size,
+                              double clearance, bool jump_edges, bool check_feasibility,
+                              std::size_t max_views, std::size_t idle_views,
+                              std::size_t broken_promises, std::size_t plan, std::size_t take,
+                              std::optional<double> stop_gain, std::optional<double> stop_area,
+                              int coarsest, const py::object& fine, int finest,
+                              const py::object& state, const std::string& tracer, int num_threads) {
   Sensor sensor = *of;
   PlannerConfig config;
   config.grid.voxel_size = voxel_size;
@@ -114,6 +117,7 @@ std::unique_ptr<Planner> make(
   if (!jump_edges) config.jump_edges.reset();
   config.integration.coarsest = coarsest;
   config.integration.fine = optional_boxes(fine, "fine");
+  config.integration.finest = finest;
   config.hazard.object_size = object_size;
   config.gain.model = parse_gain_model(gain);
   config.gain.criterion = parse_criterion(criterion);
@@ -273,8 +277,9 @@ void bind_planner(py::module_& module) {
            py::arg("broken_promises") = defaults.broken_promises,
            py::arg("plan") = defaults.ahead.plan, py::arg("take") = defaults.ahead.take,
            py::arg("stop_gain") = py::none(), py::arg("stop_area") = py::none(),
-           py::arg("coarsest") = 0, py::arg("fine") = py::none(), py::arg("state") = py::none(),
-           py::arg("tracer") = "automatic", py::arg("num_threads") = 0)
+           py::arg("coarsest") = 0, py::arg("fine") = py::none(), py::arg("finest") = 0,
+           py::arg("state") = py::none(), py::arg("tracer") = "automatic",
+           py::arg("num_threads") = 0)
       .def_static(
           "load",
           [](const py::object& path, const py::args& args, const py::kwargs& settings) {

@@ -67,6 +67,8 @@ coarsest : int
     As in ``FrameIntegrator``.
 fine : array_like, (n, 2, 3), optional
     As in ``FrameIntegrator``.
+finest : int
+    As in ``FrameIntegrator``.
 state : path-like, optional
     A file of ``save`` to go on from, its map laid out as here; what ``load`` gives.
 tracer : {"automatic", "embree", "sweep"}

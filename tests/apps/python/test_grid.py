@@ -271,14 +271,15 @@ def test_leaves_have_scales(sensor):
     pose = np.eye(4)
     pose[2, 3] = -0.5
     hits = []
-    for coarsest, fine in [(0, None), (3, None), (3, [box])]:
+    for coarsest, fine, finest in [(0, None, 0), (3, None, 0), (3, [box], 3), (3, None, 3)]:
         grid = viewgain.BeliefGrid(voxel_size=0.001, workspace=box, sensor=sensor)
-        integrator = viewgain.FrameIntegrator(sensor, coarsest=coarsest, fine=fine)
+        integrator = viewgain.FrameIntegrator(sensor, coarsest=coarsest, fine=fine, finest=finest)
         report = integrator.integrate(grid, depth, pose)
         voxels = grid.occupied()["voxel"]
         scales = grid.scale(voxels)
         assert scales.dtype == np.uint8 and scales.shape == voxels.shape[:1]
         assert np.count_nonzero(scales) > 100 if coarsest and not fine else np.all(scales == 0)
+        assert np.all(scales == 3) == (finest > 0 and not fine)
         hits.append(np.sum(grid.beliefs()["hits"]))
         assert hits[-1] == report.readings_inside > 1000
     assert len(set(hits)) == 1
@@ -288,6 +289,8 @@ def test_leaves_have_scales(sensor):
         grid.resample(box, 4)
     with pytest.raises(ValueError, match="coarsest scale 5"):
         viewgain.CloudIntegrator(sensor, coarsest=5)
+    with pytest.raises(ValueError, match="finest scale 2"):
+        viewgain.FrameIntegrator(sensor, coarsest=1, finest=2)
     with pytest.raises(ValueError, match="fine"):
         viewgain.FrameIntegrator(sensor, fine=[[0, 1]])
 

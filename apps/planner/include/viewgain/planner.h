@@ -71,6 +71,7 @@ typedef struct vg_planner_config {
   int32_t coarsest;            /* scales, as in vg_integrator_config: 0 */
   const double* fine;          /* boxes in which scales stay 0 */
   size_t fine_count;           /* how many boxes */
+  int32_t finest;              /* 0 */
 } vg_planner_config;
 /* The defaults. */
 VG_API void vg_planner_config_init(vg_planner_config* config, size_t struct_size);

@@ -12,12 +12,12 @@
 
 namespace viewgain::app {
 
-/// --coarsest and --fine: which scales the leaves of a map that is made get.
+/// --coarsest, --fine and --finest: which scales the leaves of a map that is made get.
 struct ScaleOptions {
-  std::size_t coarsest = 0;
+  std::size_t coarsest = 0, finest = 0;
   std::vector<std::string> fine;
 
-  /// Throws Error(invalid_argument) naming --fine.
+  /// Throws Error(invalid_argument) naming --fine or --finest.
   void set(IntegrationConfig& config) const;
   /// For a run's settings, empty where they are the defaults.
   [[nodiscard]] Json settings() const;

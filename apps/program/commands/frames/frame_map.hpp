@@ -27,7 +27,7 @@ struct FrameMapOptions {
   bool refine = true;
 };
 
-/// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter, --coarsest, --fine and those of
+/// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter, --coarsest, --fine, --finest and those of
 /// a folder.
 void add_frame_map_options(App& app, FrameMapOptions& options);
 

@@ -37,6 +37,8 @@ coarsest : int
     a nearer look makes them finer.
 fine : array_like, (n, 2, 3), optional
     Boxes in the grid's frame [m] in which voxels stay single.
+finest : int
+    Outside of these, cells are of 2**finest voxels an edge or more; at most ``coarsest``.
 num_threads : int
     0: all hardware threads. Never changes the map.)";
 
@@ -174,16 +176,17 @@ T_world_sensor : array_like, (4, 4)
   refuse_pickling(type);
   type.def(py::init([](const Given<Sensor>& sensor, const std::string& occupancy,
                        std::optional<double> support_plane, int coarsest, const py::object& fine,
-                       int num_threads) {
+                       int finest, int num_threads) {
              IntegrationConfig config{.occupancy = parse_occupancy(occupancy),
                                       .support_plane = support_plane};
              config.coarsest = coarsest;
+             config.finest = finest;
              config.fine = optional_boxes(fine, "fine");
              return std::make_unique<Clouds>(*sensor, config, num_threads);
            }),
            py::arg("sensor"), py::kw_only(), py::arg("occupancy") = "probabilistic",
            py::arg("support_plane") = py::none(), py::arg("coarsest") = 0,
-           py::arg("fine") = py::none(), py::arg("num_threads") = 0)
+           py::arg("fine") = py::none(), py::arg("finest") = 0, py::arg("num_threads") = 0)
       .def("integrate", &integrate_cloud, py::arg("grid"), py::arg("points"),
            py::arg("T_world_sensor"), integrate_doc.c_str())
       .def("__repr__",
@@ -289,15 +292,17 @@ amplitude : array_like, (height, width), floating point, optional
   refuse_pickling(type);
   type.def(py::init([](const Given<Sensor>& sensor, const std::string& carve,
                        const std::string& occupancy, std::optional<double> support_plane,
-                       int coarsest, const py::object& fine, int num_threads) {
+                       int coarsest, const py::object& fine, int finest, int num_threads) {
              IntegrationConfig config = config_of(carve, occupancy, support_plane);
              config.coarsest = coarsest;
+             config.finest = finest;
              config.fine = optional_boxes(fine, "fine");
              return std::make_unique<Integrator>(*sensor, config, num_threads);
            }),
            py::arg("sensor"), py::kw_only(), py::arg("carve") = "cones",
            py::arg("occupancy") = "probabilistic", py::arg("support_plane") = py::none(),
-           py::arg("coarsest") = 0, py::arg("fine") = py::none(), py::arg("num_threads") = 0)
+           py::arg("coarsest") = 0, py::arg("fine") = py::none(), py::arg("finest") = 0,
+           py::arg("num_threads") = 0)
       .def("integrate", &integrate, py::arg("grid"), py::arg("depth"), py::arg("T_world_camera"),
            py::kw_only(), py::arg("pose_sigma") = std::array<double, 2>{0, 0},
            py::arg("amplitude") = py::none(), integrate_doc.c_str())

@@ -162,6 +162,7 @@ TEST_F(Sensing, CoarseLeavesKeepAllReadings) {
   EXPECT_EQ(scales_of({}), 0U);
   EXPECT_GT(scales_of({"--coarsest", "2"}), 100U);
   EXPECT_EQ(scales_of({"--coarsest", "2", "--fine", "-1,-1,-1,1,1,1"}), 0U);
+  EXPECT_NE(scales_of({"--coarsest", "3", "--finest", "3"}), scales_of({"--coarsest", "3"}));
 }
 
 TEST_F(Sensing, BadFlagsAndImagesAreRefused) {
@@ -184,6 +185,7 @@ TEST_F(Sensing, BadFlagsAndImagesAreRefused) {
   refused({"--jump-edge-filter", "on"}, "--jump-edge-filter");
   refused({"--coarsest", "4"}, "--coarsest");
   refused({"--fine", "0,0,0,1,1,1"}, "--fine goes with --coarsest");
+  refused({"--coarsest", "1", "--finest", "2"}, "--finest is at most --coarsest");
   refused({"--coarsest", "1", "--fine", "0,0,0,0,1,1"}, "--fine");
   refused({"--support-plane", "nan", "--workspace", "-1,-1,-1,1,1,1"}, "support plane");
   refused({"--support-plane", "inf"}, "support plane");

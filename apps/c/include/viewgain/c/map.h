@@ -205,6 +205,7 @@ typedef struct vg_integrator_config {
   const double* fine;   /* boxes in which scales stay 0: lowest and highest corners, grid's frame
                            [m]; null (the default): none */
   size_t fine_count;    /* of the boxes, 6 numbers each */
+  int32_t finest;       /* least scale outside the boxes, at most coarsest */
 } vg_integrator_config;
 /* The defaults. */
 VG_API void vg_integrator_config_init(vg_integrator_config* config, size_t struct_size);
