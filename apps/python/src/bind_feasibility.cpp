@@ -148,7 +148,8 @@ predicate : callable, optional
 Notes
 -----
 Regions without a predicate are equal by value and can be pickled; one with a predicate is equal to
-itself alone.)");
+itself alone. Holds the GIL, but not for files. Cost: linear in the parts, and in the poses that are asked
+about: some 10 ns for each of both.)");
   pickle_as_bytes(type, "region", ", if it has no predicate.", &bytes_of, &from_bytes);
   type.def(py::init(&region_of), py::kw_only(), py::arg("boxes") = py::none(),
            py::arg("shells") = py::none(), py::arg("half_spaces") = py::none(),
@@ -240,7 +241,8 @@ num_threads : int
 
 Notes
 -----
-Methods may run in many threads at once and leave the GIL while they work.)");
+Methods may run in many threads at once and leave the GIL while they work. Cost: linear in the poses,
+0.5 to 1 µs each; with a sensor 10 to 50 µs where much is near and it has the SR4000's 400 rays.)");
   refuse_pickling(type);
   type.def(py::init([](const Given<Scene>& scene, const py::object& body_size,
                        const py::object& T_flange_camera, double clearance,
@@ -268,7 +270,7 @@ Methods may run in many threads at once and leave the GIL while they work.)");
           },
           py::arg("scene"), R"(The same checker of another scene, for following a map as it grows.
 
-This one stays as it is.
+This one stays as it is. Cost: some microseconds.
 
 Parameters
 ----------

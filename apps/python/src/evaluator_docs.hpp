@@ -44,13 +44,20 @@ num_threads : int
 
 Notes
 -----
-Methods may run in many threads at once and leave the GIL while they work; Ctrl-C ends a batch.)";
+Methods may run in many threads at once and leave the GIL while they work; Ctrl-C ends a batch.
+
+Cost: linear in poses and rays per pose; some 120 million rays a second on two threads for a map of 128**3
+voxels by the paper's gain, which is 4,800 images of 176x144 pixels; a quarter of that by the surface gain,
+a fifth by the combined one. Making an evaluator undoes the lens distortion once: 1 ms for 176x144
+pixels. Properties take constant time.)";
 
 inline constexpr const char* kWithSceneDoc =
     R"(The evaluator of another scene, for following a map as it grows.
 
-It has the sensor, the settings and the threads of this one, which stays as it is. Its results are
-those of an evaluator made for that scene, whose map's ``prior_sigma`` counts unless one was given.
+It has the sensor, the settings and the threads of this one, which stays as it is; nothing is computed
+anew. Cost: some microseconds; by the surface and the combined gain the hazard of a scene that has none
+yet, some milliseconds. Its results are those of an evaluator made for that scene, whose
+map's ``prior_sigma`` counts unless one was given.
 
 Parameters
 ----------
@@ -122,7 +129,8 @@ inline constexpr const char* kRaceDoc =
     R"(The k best poses, very probably; see ``best``.
 
 All poses are scored by about 400 of their rays, and the best max(24, 4 k, 5 %) of them in
-full (1.6 % by the surface and the combined gain).
+full (1.6 % by the surface and the combined gain). Cost: some 6 times less than ``best`` for 500 poses
+and more, the less the larger the images.
 
 Parameters
 ----------
@@ -162,6 +170,8 @@ inline constexpr const char* kBestSetDoc =
 By gains "surface" and "combined" two looks at one place are not two chances: a set is worth what
 the views show of each place together, at most what is to be expected there.
 
+Cost: up to k times that of some calls of ``evaluate``, and memory for the voxels that are touched.
+
 Parameters
 ----------
 T_world_camera, k, return_gains
@@ -181,7 +191,7 @@ inline constexpr const char* kPlanTourDoc =
 
 Each choice is by what a view adds to those chosen before it less what it costs: its own cost, and
 what it adds to the way through the others. The first is chosen even if it is not worth its cost, others
-only if they are.
+only if they are. Cost: that of ``best_set``, and two calls of way for every pose and stop.
 
 Parameters
 ----------
@@ -214,6 +224,8 @@ ViewTour
 
 inline constexpr const char* kApproximateDoc =
     R"(Estimates of the gains from a part of each view's rays.
+
+Cost: goes down with the share, 3 times faster than ``evaluate`` at the default's.
 
 Parameters
 ----------

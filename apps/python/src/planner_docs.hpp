@@ -79,7 +79,9 @@ num_threads : int
 Notes
 -----
 One call at a time: while one is at work another raises RuntimeError. Calls leave the GIL while they
-work, but while your generators and the predicate of ``reach`` are asked.)";
+work, but while your generators and the predicate of ``reach`` are asked. Cost: a new planner takes
+some ms, one with a state that of ``BeliefGrid.load``; the methods that take long say so, others
+some microseconds; ``grid`` is a copy, 0.3 ms for 128**3 voxels.)";
 
 inline constexpr const char* kLoadDoc =
     R"(A planner that goes on where ``save`` was called, bit for bit.
@@ -97,7 +99,8 @@ Returns
 ViewPlanner)";
 
 inline constexpr const char* kSaveDoc =
-    R"(Writes the whole state, a map with notes, whole or not at all.
+    R"(Writes the whole state, a map with notes, whole or not at all. Cost: that of ``BeliefGrid.save``, and linear
+in the poses that were tried.
 
 Left out are the settings, poses, generators and the last proposal. ``BeliefGrid.load`` and the program read the map.
 
@@ -129,6 +132,9 @@ name : str
 inline constexpr const char* kAddDoc =
     R"(Puts a frame into the map; the last proposal is void.
 
+Cost: linear in the pixels and grows with the voxels that they carve: 12 ms for 176x144 pixels and voxels of
+5 mm on two threads.
+
 Parameters
 ----------
 depth : array_like, (height, width), floating point
@@ -148,7 +154,7 @@ AddedView
     where the scene cannot be made, the frame is in the map.)";
 
 inline constexpr const char* kAddFrameDoc =
-    R"(Reads a frame of a folder and puts it into the map, or counts why it cannot be used.
+    R"(Reads a frame of a folder and puts it into the map, or counts why it cannot be used. Cost: that of reading, and ``add``.
 
 Parameters
 ----------
@@ -162,7 +168,7 @@ Returns
 AddedView)";
 
 inline constexpr const char* kDropDoc =
-    R"(A view that came to nothing before there was a frame to add, or whose frame is left out.
+    R"(A view that came to nothing before there was a frame to add, or whose frame is left out. Cost: a pass over the map.
 
 It counts as a frame that cannot be used: a view that brought nothing; its pose is not proposed again.
 
@@ -183,7 +189,7 @@ inline constexpr const char* kRegisterFrameDoc =
 Minimises the distances of the frame's readings from the map's points along the surface's normals,
 by Gauss and Newton, with the reported pose as prior. Put a frame that is "registered" in at the pose
 that was found, one with "too_little_overlap" as reported, and leave out one that is "refused": it
-contradicts the map, or would move by more than five sigmas.
+contradicts the map, or would move by more than five sigmas. Cost: some 100 to 300 ms a frame.
 
 Parameters
 ----------
@@ -205,7 +211,8 @@ FrameRegistration)";
 inline constexpr const char* kProposeDoc =
     R"(The candidates that are possible now.
 
-What a generator or the predicate of ``reach`` raises passes through.
+What a generator or the predicate of ``reach`` raises passes through. Cost: linear in the candidates, 4 µs
+each, and what generators take.
 
 Returns
 -------
@@ -213,6 +220,9 @@ Proposal)";
 
 inline constexpr const char* kRankDoc =
     R"(The k best candidates of the proposal since the last view, or of any poses.
+
+Cost: linear in the candidates: 2 ms each in two stages, 20 ms with exact, by gain "combined", for 176x144
+pixels and a map of 128**3 voxels that is mostly unknown.
 
 Parameters
 ----------

@@ -169,7 +169,9 @@ T_world_grid : array_like, (4, 4), optional
 Notes
 -----
 Methods leave the GIL while they work. Threads of Python may share a grid: many read it at once, one
-changes it, and they wait for each other.)");
+changes it, and they wait for each other. Cost: methods that give or change voxels are linear in what
+they give or change, some ms for 128**3 voxels with 40,000 occupied ones; properties are constant but for
+a copy of a few numbers.)");
   bind_grid_files(grid_class);
   bind_voxels(grid_class);
   grid_class
@@ -256,7 +258,7 @@ ndarray, (nx, ny, nz), uint8
       .def("update_box", &update_box, py::arg("first"), py::arg("labels"),
            R"(Makes the voxels of a box what labels say, for a planner whose own map grows.
 
-Voxels that are that already keep log-odds and belief, the others have no belief afterwards.
+Voxels that are that already keep log-odds and belief, the others have no belief afterwards. Cost: linear in the labels.
 
 Parameters
 ----------
@@ -313,6 +315,9 @@ ndarray, (n,), structured
            py::arg("scale_sigma") = 0.0, py::arg("num_threads") = 0,
            R"(The points of the surface as the map knows it.
 
+Cost: linear in the voxels that were ever hit, some µs each, 0.25 s for 40,000 occupied ones on two
+threads.
+
 Parameters
 ----------
 min_hits : int
@@ -328,7 +333,7 @@ ndarray, (n,), structured
     position (float64, 3, world frame [m]), covariance (float64, 6: xx yy zz xy xz yz [m**2]),
     toward_free (float64, 3: unit normal towards free space, world frame), hits.)")
       .def("pooling_length", &pooling_length_of,
-           R"(How far apart the map's points are.
+           R"(How far apart the map's points are. Cost: that of a snapshot.
 
 Returns
 -------
