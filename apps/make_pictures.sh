@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes every picture of the READMEs and the site from the program's own output: apps/docs/gallery/, perf/*.png, apps/docs/figures/*.png. Needs a
 # full build and some minutes of a quiet machine; coverage, which makes a study, some hours.
-#   apps/make_pictures.sh [demo] [gains] [idea] [speed] [coverage] [approximate] [scaling] [depth_images]; default: all
+#   apps/make_pictures.sh [demo] [gains] [idea] [speed] [coverage] [approximate] [scaling] [depth_images] [scales]; default: all
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export PATH=$PWD/build/release/bin:$PATH PYTHONPATH=$PWD/build/release/python
@@ -10,7 +10,7 @@ gallery=apps/docs/gallery
 work=build/pictures
 mkdir -p "$work"
 wanted=("$@")
-[ "${#wanted[@]}" -gt 0 ] || wanted=(demo gains idea speed coverage approximate scaling depth_images)
+[ "${#wanted[@]}" -gt 0 ] || wanted=(demo gains idea speed coverage approximate scaling depth_images scales)
 
 # What demo.sh makes, kept for the pictures that show it.
 demo() {
@@ -52,6 +52,8 @@ for picture in "${wanted[@]}"; do
     scaling)
       viewgain-bench scaling --json >"$work/scaling.json"
       "$python" perf/plot.py "$work/scaling.json" perf/scaling.png ;;
+    scales)
+      PYTHONPATH=$PYTHONPATH:perf "$python" perf/mug.py --picture apps/docs/figures/scales.png ;;
     depth_images)
       examples=$PWD/apps/examples
       (cd "$work" && MPLBACKEND=agg "$python" "$examples/depth_images.py")
