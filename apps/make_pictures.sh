@@ -53,7 +53,7 @@ for picture in "${wanted[@]}"; do
       viewgain-bench scaling --json >"$work/scaling.json"
       "$python" perf/plot.py "$work/scaling.json" perf/scaling.png ;;
     scales)
-      PYTHONPATH=$PYTHONPATH:perf "$python" perf/mug.py --picture apps/docs/figures/scales.png ;;
+      "$python" perf/mug.py --picture apps/docs/figures/scales.png ;;
     depth_images)
       examples=$PWD/apps/examples
       (cd "$work" && MPLBACKEND=agg "$python" "$examples/depth_images.py")
