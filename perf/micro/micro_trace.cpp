@@ -74,7 +74,7 @@ void ordered_walk(benchmark::State& state, Isa isa) {
     const detail::WalkLimits limits = detail::walk_limits(scene, view.frame);
     for (std::size_t i = 0; i < view.tiles.size(); ++i) {
       detail::set_up(micro.tracer.table(), view.numbers[i], view.frame, view.tiles[i], task);
-      kernels.area(bricks, limits, task, kCap, out);
+      kernels.area(bricks, limits, task, kCap, nullptr, out);
       benchmark::DoNotOptimize(out.occupied);
     }
     rays += view.tiles.size() * detail::kTileRays;

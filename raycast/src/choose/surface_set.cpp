@@ -11,9 +11,20 @@
 namespace viewgain::detail {
 namespace {
 
+constexpr unsigned kBits = 21;  // of a coordinate in a key
+
 std::uint64_t key_of(Index3 v) {
-  const auto bits = [](std::int32_t i) { return static_cast<std::uint64_t>(i) & 0x1FFFFFU; };
-  return bits(v.x) << 42U | bits(v.y) << 21U | bits(v.z);
+  const auto bits = [](std::int32_t i) {
+    return static_cast<std::uint64_t>(i) & ((std::uint64_t{1} << kBits) - 1);
+  };
+  return bits(v.x) << 2 * kBits | bits(v.y) << kBits | bits(v.z);
+}
+Index3 voxel_of(std::uint64_t key) {
+  const auto number = [key](unsigned shift) {
+    const auto bits = static_cast<std::uint32_t>(key >> shift) << (32 - kBits);
+    return static_cast<std::int32_t>(bits) >> (32 - kBits);
+  };
+  return {number(2 * kBits), number(kBits), number(0)};
 }
 
 }  // namespace
@@ -108,6 +119,18 @@ double SurfaceSet::refinement(const Refined& added) const {
          surface_.saturated_gain(added.voxel, chosen->second);
 }
 
+ViewGain SurfaceSet::tighter(const Pose& T_world_camera, ViewDriver::Lease& lease) const {
+  ViewGain result = driver_.evaluate(T_world_camera, lease, missed_.data());
+  if (!refines() || result.status != ViewGain::Status::ok) return result;
+  const OccupiedSums& occupied = lease.workspace().occupied;
+  result.refinement_saturated = 0;
+  for (std::uint32_t i = 0; i < occupied.count(); ++i) {
+    result.refinement_saturated += refinement({occupied.voxel(i), occupied.information(i)});
+  }
+  result.gain = combined(result.area, result.refinement_saturated);
+  return result;
+}
+
 ViewGain SurfaceSet::after(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease) {
   const std::shared_ptr<const Look> held = look_of(i, T_world_camera, lease.workspace());
   const Look& look = *held;
@@ -124,19 +147,22 @@ ViewGain SurfaceSet::after(std::size_t i, const Pose& T_world_camera, ViewDriver
   for (const Refined& entry : look.refines) {
     result.refinement_saturated += refinement(entry);
   }
-  result.gain = surface_.nats_per_area() * result.area +
-                driver_.core()->config.refinement_weight * result.refinement_saturated;
+  result.gain = combined(result.area, result.refinement_saturated);
   return result;
 }
 
 void SurfaceSet::choose(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease) {
   const std::shared_ptr<const Look> held = look_of(i, T_world_camera, lease.workspace());
   const Look& look = *held;
+  if (missed_.empty()) missed_.assign(surface_.rate_places(), 1.0F);
   for (const Reached& one : look.cells) {
     Cell& cell = cells_[one.key];
     cell.worth = one.worth;
     cell.missed *= 1 - one.share;
     cell.largest = std::max(cell.largest, one.share);
+    if (const auto place = surface_.rate_place(voxel_of(one.key))) {
+      missed_[*place] = static_cast<float>(cell.missed);
+    }
   }
   for (const Refined& entry : look.refines) {
     refined_ += refinement(entry);
@@ -149,7 +175,7 @@ double SurfaceSet::by_best_alone() const {
   double area = 0;
   for (const auto& [key, cell] : cells_) area += cell.worth * cell.largest;
   if (!refines()) return area;
-  return surface_.nats_per_area() * area + driver_.core()->config.refinement_weight * refined_;
+  return combined(area, refined_);
 }
 
 }  // namespace viewgain::detail

@@ -31,6 +31,10 @@ class SurfaceSet {
                                ViewDriver::Lease& lease) const {
     return driver_.evaluate(T_world_camera, lease);
   }
+  /// The same once views are chosen, closer: no more than the kernel finds if what they show of
+  /// each cell is left out.
+  static constexpr bool kTightens = true;
+  [[nodiscard]] ViewGain tighter(const Pose& T_world_camera, ViewDriver::Lease& lease) const;
   /// What view `i` adds to those chosen. What it reaches is kept while there is room, so that it is
   /// traced once.
   [[nodiscard]] ViewGain after(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease);
@@ -66,6 +70,10 @@ class SurfaceSet {
   // The same of view `i`, as kept; traces it and keeps it if it was not.
   [[nodiscard]] std::shared_ptr<const Look> look_of(std::size_t i, const Pose& T_world_camera,
                                                     Workspace& workspace);
+  /// The combined gain of these.
+  [[nodiscard]] double combined(double area, double refinement) const {
+    return surface_.nats_per_area() * area + driver_.core()->config.refinement_weight * refinement;
+  }
   /// a p of a hazard cell, by its least voxel [m²].
   [[nodiscard]] double worth_of(Index3 least, double rate) const;
   /// The refinement of the voxel by the chosen views and `added` beyond that of the chosen.
@@ -76,6 +84,7 @@ class SurfaceSet {
   std::vector<std::shared_ptr<const Look>> looks_;  // null: not kept
   std::atomic<std::size_t> kept_ = 0;               // [bytes]
   std::unordered_map<std::uint64_t, Cell> cells_;
+  std::vector<float> missed_;  // of the cells, at the places of rates; those that share one: 1
   std::unordered_map<std::uint64_t, SymmetricMatrix3> known_;  // Σ T Λ_r of the chosen [m⁻²]
   double refined_ = 0;                                         // by the chosen [nat]
 };

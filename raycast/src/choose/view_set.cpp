@@ -86,6 +86,7 @@ class PaperSet {
   // Before any is chosen what a view adds is the first round's result.
   static constexpr bool kBoundIsFirst = true;
   static constexpr double kBoundFactor = 1;
+  static constexpr bool kTightens = false;
   [[nodiscard]] ViewGain bound(std::size_t i, const Pose& T_world_camera,
                                ViewDriver::Lease& lease) const {
     return after(i, T_world_camera, lease);
@@ -139,6 +140,19 @@ ViewTour choose_greedily(const ViewDriver& driver, Chosen& chosen,
       return chosen.after(i, T_world_camera[i], lease);
     });
   };
+  // Lowers the bounds of poses of earlier rounds where that is quicker than to score them anew.
+  const auto tighten = [&](std::span<const std::size_t> indices) {
+    if constexpr (Chosen::kTightens) {
+      set.complete = detail::for_each(
+          driver, indices.size(), control, [&](std::size_t j, ViewDriver::Lease& lease) {
+            const std::size_t i = indices[j];
+            const double bound = chosen.tighter(T_world_camera[i], lease).gain;
+            gains[i].gain = std::min(gains[i].gain, bound * Chosen::kBoundFactor);
+          });
+      set.evaluations += indices.size();
+    }
+    return set.complete;
+  };
   const auto better = [&](std::size_t a, std::size_t b) {
     const double of_a = pricing.rank(a, gains[a].gain), of_b = pricing.rank(b, gains[b].gain);
     if (of_a != of_b) return of_a > of_b;
@@ -177,9 +191,12 @@ ViewTour choose_greedily(const ViewDriver& driver, Chosen& chosen,
         stale.assign(open.begin() + static_cast<std::ptrdiff_t>(begin),
                      open.begin() + static_cast<std::ptrdiff_t>(end));
         std::erase_if(stale, [&](std::size_t i) { return round[i] == now; });
+        if (now > 1 && !tighten(stale)) return finished();
+        std::erase_if(stale, [&](std::size_t i) { return bound_of(i) < largest; });
         if (!score(stale, now)) return finished();
         for (; begin < end; ++begin) {
-          largest = std::max(largest, pricing.rank(open[begin], gains[open[begin]].gain));
+          const std::size_t i = open[begin];
+          if (round[i] == now) largest = std::max(largest, pricing.rank(i, gains[i].gain));
         }
       }
     }

@@ -100,8 +100,8 @@ double SurfaceView::area_of(const RayTile& rays, WalkedTile& tile) const {
 }
 
 template <typename Met>
-double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, std::uint32_t& hits,
-                          double* by_lane, Met&& met) const {
+double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, const float* missed,
+                          std::uint32_t& hits, double* by_lane, Met&& met) const {
   const bool refines = core_.config.model == GainModel::combined;
   const double V = scene_.snapshot.voxel_size;
   tracer_.prepare(frame, workspace.sweep);
@@ -129,7 +129,7 @@ double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, std::uin
   trace_rays(frame, workspace, [&](std::size_t number, const RayTile& rays) {
     if (rays.hit == 0) return;
     set_up(tracer_.table(), number, frame, rays, task);
-    walk_.area(bricks_, limits, task, cap_, walked);
+    walk_.area(bricks_, limits, task, cap_, missed, walked);
     sum += area_of(rays, walked);
     if (by_lane != nullptr) {
       for_each_lane(rays.hit, [&](int lane) {
@@ -203,9 +203,10 @@ double SurfaceView::saturated_gain(Workspace& workspace) const {
   return sum;
 }
 
-void SurfaceView::evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result) const {
+void SurfaceView::evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result,
+                           const float* missed) const {
   result.hits = 0;
-  result.area = result.gain = trace(frame, workspace, result.hits, nullptr,
+  result.area = result.gain = trace(frame, workspace, missed, result.hits, nullptr,
                                     [](std::size_t, const RayTile&, int, float, std::uint32_t) {});
   if (core_.config.model != GainModel::combined) return;
   result.occupied_voxels = workspace.occupied.count();
@@ -241,7 +242,7 @@ void SurfaceView::sample(const PoseFrame& frame, Workspace& workspace, double ra
   std::uint32_t hits = 0;
   // The rays' solid angles are those of what they stand for, so areas add up to the whole.
   const double area = trace(
-      frame, workspace, hits, tally.by_lane.data(),
+      frame, workspace, nullptr, hits, tally.by_lane.data(),
       [&](std::size_t number, const RayTile& rays, int lane, float range, std::uint32_t place) {
         ends.push_back(
             {place, lane, expected_hits(number, rays, lane, range, occupied.voxel(place))});

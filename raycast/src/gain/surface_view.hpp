@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,8 +24,10 @@ class SurfaceView {
   SurfaceView(const SceneData& scene, const EvaluatorCore& core, const ViewTracer& tracer,
               double prior_sigma);
 
-  /// Fills in the gain of the view from an opened pose.
-  void evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result) const;
+  /// Fills in the gain of the view from an opened pose. `missed`: as WalkKernels::area() has it;
+  /// nothing with weights.
+  void evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result,
+                const float* missed = nullptr) const;
 
   /// The gain of a view of which the tracer's rays are a sample; each stands for `rays_each`, and
   /// counts in `tally` by itself.
@@ -58,6 +61,11 @@ class SurfaceView {
   /// The voxel at table coordinates.
   [[nodiscard]] Index3 voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
+  /// Where BrickTable::rates has the voxel's hazard cell, and how many places there are.
+  [[nodiscard]] std::optional<std::size_t> rate_place(Index3 voxel) const {
+    return bricks_.rate_place(voxel);
+  }
+  [[nodiscard]] std::size_t rate_places() const { return bricks_.rates.size(); }
   /// Logarithm to base 2 of the hazard cells' edge [voxels].
   [[nodiscard]] int cell_shift() const { return bricks_.rate_shift; }
   /// Nats for one m² of new surface: ΔH_new / V².
@@ -75,8 +83,8 @@ class SurfaceView {
   /// workspace.occupied) for each occupied voxel by the combined gain, and adds up in by_lane what
   /// new surface each lane shows [m²] unless it is null. Returns that of all [m²].
   template <typename Met>
-  double trace(const PoseFrame& frame, Workspace& workspace, std::uint32_t& hits, double* by_lane,
-               Met&& met) const;
+  double trace(const PoseFrame& frame, Workspace& workspace, const float* missed,
+               std::uint32_t& hits, double* by_lane, Met&& met) const;
   /// How many of the tracer's rays would end in an occupied voxel if nothing stood before it.
   [[nodiscard]] double expected_hits(std::size_t number, const RayTile& rays, int lane, float range,
                                      Index3 voxel) const;

@@ -80,7 +80,9 @@ class ViewDriver {
   }
 
   /// A view's gain; the accumulator keeps the sums until its next view.
-  [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera, Lease& lease) const;
+  /// `missed`: as SurfaceView::evaluate() has it.
+  [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera, Lease& lease,
+                                  const float* missed = nullptr) const;
 
   [[nodiscard]] const SceneData& scene() const { return scene_; }
   [[nodiscard]] const std::shared_ptr<EvaluatorCore>& core() const { return core_; }

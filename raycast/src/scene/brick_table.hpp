@@ -41,6 +41,18 @@ struct BrickTable : BrickIndex {
   /// The outward normal at an occupied voxel in table coordinates, grid frame; zero if not known.
   [[nodiscard]] Eigen::Vector3f normal_at(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
+  /// Where `rates` has the hazard cell of an unknown voxel of the lattice; nothing where bricks
+  /// share a slot.
+  [[nodiscard]] std::optional<std::size_t> rate_place(Index3 voxel) const {
+    const auto [x, y, z] = in_table(voxel);
+    const std::uint32_t entry = entries[entry_index(x, y, z)];
+    if (entry >> 30U == kFree || (entry & kPayload) == kFarSlot) return std::nullopt;
+    const auto cell = [this](std::int32_t i) { return (i & (kBrick - 1)) >> rate_shift; };
+    const int bits = 3 - rate_shift;
+    return (std::size_t{entry & kPayload} << 3 * bits) +
+           static_cast<std::size_t>(cell(x) << 2 * bits | cell(y) << bits | cell(z));
+  }
+
   /// Which of the snapshot's leaves a voxel of the lattice is in; it must be in one.
   [[nodiscard]] std::size_t leaf_of(Index3 voxel) const {
     const auto [x, y, z] = in_table(voxel);

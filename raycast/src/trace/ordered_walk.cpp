@@ -63,8 +63,8 @@ class HazardFinder {
     return hn::And(lanes, hn::RebindMask(df, hn::Eq(place.state, hn::Set(du, state))));
   }
 
-  // The signed rates [1/voxel] of the hazard cells that lanes in unknown voxels are in.
-  [[nodiscard]] HWY_INLINE VF rates(const Place& place, const Voxels& at, MF lanes) const {
+  // Where BrickTable::rates has the hazard cells that lanes in unknown voxels are in.
+  [[nodiscard]] HWY_INLINE VI rate_places(const Place& place, const Voxels& at, MF lanes) const {
     const int shift = table_.rate_shift, bits = 3 - shift;
     const VI payload = set_i(static_cast<std::int32_t>(BrickTable::kPayload));
     const VI slot = hn::IfThenElseZero(to_i(lanes), hn::And(place.entry, payload));
@@ -76,8 +76,11 @@ class HazardFinder {
                            hn::ShiftLeftSame(cell_of(at.y), bits)),
                     cell_of(at.z));
     }
-    return hn::GatherIndex(df, table_.rates.data(),
-                           hn::Add(hn::ShiftLeftSame(slot, 3 * bits), cell));
+    return hn::Add(hn::ShiftLeftSame(slot, 3 * bits), cell);
+  }
+  // Their signed rates [1/voxel].
+  [[nodiscard]] HWY_INLINE VF rates(VI places) const {
+    return hn::GatherIndex(df, table_.rates.data(), places);
   }
 
   // Is what moved so far still in its hazard cell?
@@ -147,6 +150,7 @@ HWY_INLINE VF one_minus_exp(VF x) {
 // Sums expected area. A run is what a ray has of one hazard cell in one piece. It is summed with
 // its first step; what further ones add to its chance, and take its middle to, is made good then.
 // What a lane has depends on its own steps alone.
+template <bool kMissed>
 class AreaSink {
  public:
   static constexpr bool kCountsVoxels = false;
@@ -155,8 +159,8 @@ class AreaSink {
     return HazardFinder::is_in(place, BrickTable::kOccupiedVoxel, counts);
   }
 
-  HWY_INLINE AreaSink(const float* solid_angle, float cap)
-      : angle_(hn::LoadU(df, solid_angle)), cap_(hn::Set(df, cap)) {}
+  HWY_INLINE AreaSink(const float* solid_angle, float cap, const float* missed)
+      : angle_(hn::LoadU(df, solid_angle)), cap_(hn::Set(df, cap)), missed_(missed) {}
 
   HWY_INLINE void step(const HazardFinder& finder, const HazardStep& step) {
     const MF unknown = HazardFinder::is_in(step.place, BrickTable::kUnknownVoxel, step.counts);
@@ -171,7 +175,8 @@ class AreaSink {
       stretch_passed_ = hn::IfThenElse(begins, passed_, stretch_passed_);
       stretch_area_ = hn::IfThenElse(begins, hn::Zero(df), stretch_area_);
 
-      const VF rate = finder.rates(step.place, step.at, unknown);
+      const VI places = finder.rate_places(step.place, step.at, unknown);
+      const VF rate = finder.rates(places);
       const VF depth = hn::Mul(hn::Abs(rate), hn::Sub(next, t));
       const VF share = hn::Mul(passed_, one_minus_exp(hn::IfThenElseZero(unknown, depth)));
       passed_ = hn::Sub(passed_, share);
@@ -180,7 +185,8 @@ class AreaSink {
       begin_ = hn::IfThenElse(keeps, begin_, t);
       run_ = hn::Add(hn::IfThenElseZero(keeps, run_), share);  // P so far
       const VF middle = hn::Mul(hn::Set(df, 0.5F), hn::Add(begin_, next));
-      const VF across = hn::Min(hn::Mul(angle_, hn::Mul(middle, middle)), cap_);
+      VF across = hn::Min(hn::Mul(angle_, hn::Mul(middle, middle)), cap_);
+      if constexpr (kMissed) across = hn::Mul(across, hn::GatherIndex(df, missed_, places));
       const MF is_known = hn::Lt(rate, hn::Zero(df));
       const VF whole = hn::IfThenZeroElse(is_known, hn::Mul(run_, across));
       const VF more =
@@ -217,6 +223,7 @@ class AreaSink {
 
  private:
   VF angle_, cap_;
+  const float* missed_;
   VF passed_ = hn::Set(df, 1.0F), area_ = hn::Zero(df);
   MF in_unknown_ = no_lane();  // since the last step of any length
   VI moved_ = hn::Zero(di);    // since then
@@ -250,7 +257,7 @@ class VisitSink {
     HWY_ALIGN std::uint32_t states[kWidth];
     hn::Store(step.t, df, begins);
     hn::Store(step.next, df, ends);
-    hn::Store(finder.rates(step.place, step.at, unknown), df, rates);
+    hn::Store(finder.rates(finder.rate_places(step.place, step.at, unknown)), df, rates);
     hn::Store(step.at.x, di, xs);
     hn::Store(step.at.y, di, ys);
     hn::Store(step.at.z, di, zs);
@@ -267,18 +274,24 @@ class VisitSink {
   std::vector<VoxelVisit>& out_;
 };
 
-void area(const BrickTable& table, const WalkLimits& limits, const WalkTask& task, float cap,
-          WalkedTile& out) {
+template <bool kMissed>
+void area_of(const BrickTable& table, const WalkLimits& limits, const WalkTask& task, float cap,
+             const float* missed, WalkedTile& out) {
   out.occupied = 0;
   for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
-    AreaSink sink(task.solid_angle + lane0, cap);
-    PacketWalk<HazardFinder, AreaSink> walk(HazardFinder(table, false));
+    AreaSink<kMissed> sink(task.solid_angle + lane0, cap, missed);
+    PacketWalk<HazardFinder, AreaSink<kMissed>> walk(HazardFinder(table, false));
     if (walk.begin(table, limits, task, lane0)) {
       while (walk.step(sink)) {
       }
     }
     sink.store(lane0, out);
   }
+}
+
+void area(const BrickTable& table, const WalkLimits& limits, const WalkTask& task, float cap,
+          const float* missed, WalkedTile& out) {
+  (missed == nullptr ? area_of<false> : area_of<true>)(table, limits, task, cap, missed, out);
 }
 
 void visits(const BrickTable& table, const WalkLimits& limits, const WalkTask& task,

@@ -39,9 +39,10 @@ struct VoxelVisit {
 /// Walks rays through the bricks in order, through unknown voxels to the first occupied one or the
 /// end of what is to be seen.
 struct WalkKernels {
-  /// `cap`: the most that P is multiplied by.
+  /// `cap`: the most that P is multiplied by. `missed`: what of a hazard cell's area counts, at the
+  /// places of BrickTable::rates; null: all.
   void (*area)(const BrickTable& table, const WalkLimits& limits, const WalkTask& task, float cap,
-               WalkedTile& out);
+               const float* missed, WalkedTile& out);
   /// The same voxel by voxel: appends what the rays of a tile visit, each ray's in order.
   void (*visits)(const BrickTable& table, const WalkLimits& limits, const WalkTask& task,
                  std::vector<VoxelVisit>& out);
