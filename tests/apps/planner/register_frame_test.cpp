@@ -165,25 +165,6 @@ TEST(RegisterFrame, WhatSlidesStaysWithThePrior) {
   EXPECT_EQ(cases, 2 * 3 * (3 + 2 + 3));
 }
 
-TEST(RegisterFrame, TheSameBitsForAnyNumberOfThreads) {
-  const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, test::views_round());
-  for (std::uint64_t seed = 0; seed < 3; ++seed) {
-    const DepthFrame frame = scene.see(true_pose(), 1000 + seed);
-    const Pose reported = test::disturbed(true_pose(), kShift, kTurn, seed);
-    const FrameRegistration one = registered(scene, frame, reported, 1);
-    for (const int threads : {2, 3}) {
-      const FrameRegistration more = registered(scene, frame, reported, threads);
-      EXPECT_EQ(more.T_world_camera, one.T_world_camera);
-      EXPECT_EQ(more.covariance, one.covariance);
-      EXPECT_EQ(more.residual_after, one.residual_after);
-      EXPECT_EQ(more.smallest_information, one.smallest_information);
-      EXPECT_EQ(more.pairs, one.pairs);
-      EXPECT_EQ(more.contradiction, one.contradiction);
-      EXPECT_EQ(more.iterations, one.iterations);
-    }
-  }
-}
-
 TEST(RegisterFrame, TooLittleOverlapLeavesThePose) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), false, test::views_round());
   const FrameAlignment alignment = scene.alignment();

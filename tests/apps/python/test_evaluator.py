@@ -29,17 +29,6 @@ def test_any_real_dtype_and_any_strides(evaluator, poses):
     assert np.array_equal(evaluator.evaluate(single), evaluator.evaluate(single.astype(np.float64)))
 
 
-def test_details_add_up(evaluator, poses):
-    views = evaluator.evaluate_detailed(poses.reshape(6, 10, 4, 4))
-    assert views.shape == (6, 10)
-    assert np.array_equal(views["gain"].ravel(), evaluator.evaluate(poses))
-    assert np.allclose(views["gain"], views["exploration"] + views["refinement"], rtol=1e-12)
-    assert np.all(views["rays"] == evaluator.rays_per_pose)
-    assert np.all(views["status"] == viewgain.VIEW_STATUS_NAMES.index("ok"))
-    one = evaluator.evaluate_detailed(poses[3])
-    assert one["gain"] == views["gain"].ravel()[3]
-
-
 @pytest.mark.parametrize("criterion", ["log_diagonal", "log_determinant", "trace"])
 def test_choices_agree_with_the_gains(grid, sensor, poses, criterion):
     assert criterion in viewgain.criterion_names()
@@ -178,17 +167,6 @@ def test_images_of_a_view(evaluator, poses, sensor):
     assert isinstance(rays, viewgain.RayOutcomes) and rays.rays == depth.size == sum(rays) - rays.rays
     assert (rays.unknown, rays.known_surface) == tuple(
         np.count_nonzero(hits["kind"] == viewgain.HIT_KIND_NAMES.index(kind)) for kind in ("unknown", "occupied"))
-
-
-def test_contributions_say_why(evaluator, poses, labels, grid):
-    view = evaluator.evaluate_detailed(poses[20])
-    rows = evaluator.contributions(poses[20])
-    assert rows["gain"].sum() == pytest.approx(view["gain"], rel=1e-9)
-    assert rows["rays"].sum() == view["hits"]
-    assert len(rows) == view["unknown_voxels"] + view["occupied_voxels"] > 100
-    assert np.all(np.diff(rows["gain"]) <= 0)
-    index = rows["voxel"] - grid.min_index
-    assert np.array_equal(labels[tuple(index.T)], rows["state"])
 
 
 def test_a_gain_of_ones_own(evaluator, poses):

@@ -2,14 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The planner step by step against the parts that it is made of, and what it refuses."""
 import gc
-import json
-import os
-import subprocess
 import threading
 
 import numpy as np
 import pytest
-from conftest import box_mesh, gray_png
+from conftest import box_mesh
 
 import viewgain
 
@@ -208,30 +205,6 @@ def test_one_call_at_a_time(sensor, poses):
     assert len(planner.rank()["index"]) == 1
 
 
-def test_why_to_end(sensor, camera, poses):
-    planner = make(sensor, max_views=1)
-    assert planner.should_stop() is None
-    planner.add(camera.acquire(poses[0], 0)[0], poses[0])
-    assert planner.should_stop() == "max_views"
-    nothing = make(sensor)
-    nothing.add(camera.acquire(poses[0], 0)[0], poses[0])
-    assert len(nothing.propose()["T_world_camera"]) == 0 and nothing.should_stop() == "no_candidates"
-    idle = make(sensor, idle_views=1)
-    for _ in range(2):
-        idle.add(np.zeros((48, 64)), poses[0])
-    assert idle.should_stop() == "idle"
-    # Where the best view is said to be nothing is seen.
-    for broken_promises, reason in (2, "promises"), (0, None):
-        planner = make(sensor, idle_views=0, stop_area=0, broken_promises=broken_promises)
-        planner.add_poses(poses)
-        planner.add(camera.acquire(poses[0], 0)[0], poses[0])
-        for _ in range(2):
-            assert planner.should_stop() is None
-            planner.propose()
-            planner.add(np.zeros((48, 64)), planner.rank().T_world_camera[0])
-        assert planner.should_stop() == reason
-
-
 def test_refused(sensor, camera, poses):
     planner = make(sensor)
     depth = camera.acquire(poses[0], 0)[0]
@@ -274,48 +247,3 @@ def test_refused(sensor, camera, poses):
     control.stop()
     stopped = planner.rank(poses=np.tile(poses, (20, 1, 1)), control=control)
     assert not stopped["complete"]
-
-
-def test_the_program_says_the_same(tmp_path):
-    program = os.environ.get("VIEWGAIN_PROGRAM")
-    if not program:
-        pytest.skip("the program is not built")
-
-    def run(*words):
-        return json.loads(subprocess.run([program, *map(str, words), "--json"], cwd=tmp_path, check=True, capture_output=True).stdout)
-
-    corners = "0 0 0\n0 1 0\n1 1 0\n1 0 0\n0 0 1\n0 1 1\n1 1 1\n1 0 1\n"
-    faces = "".join(f"4 {f}\n" for f in ("0 1 2 3", "4 7 6 5", "0 4 5 1", "3 2 6 7", "0 3 7 4", "1 5 6 2"))
-    (tmp_path / "cube.off").write_text("OFF\n8 6 0\n" + corners + faces)
-    run("simulate", "cube.off", "--orbit", "30,0.5,30", "--sensor", "sr4000", "--size", 0.2, "--recenter", "on",
-        "--support-plane", -0.1, "--amplitude", "off", "--out", "frames")
-    # Six of 30 frames cannot be used, each for a reason of its own.
-    image = lambda number: tmp_path / f"frames/frame-{number:06d}.depth.png"
-    lines = (tmp_path / "frames/poses.txt").read_text().splitlines()
-    lines[1 + 3], lines[1 + 19] = "3 nan nan nan 0 0 0 0", "19 90 0 0 0 0 0 1"
-    (tmp_path / "frames/poses.txt").write_text("\n".join(lines[:-1]) + "\n")
-    image(7).write_bytes(image(7).read_bytes()[:60])
-    image(11).write_bytes(gray_png(np.full((8, 10), 6000)))
-    image(15).write_bytes(gray_png(np.zeros((144, 176))))
-    poses = viewgain.sphere_poses(60, 0.9)
-    viewgain.write_poses(tmp_path / "poses.txt", poses)
-    (tmp_path / "reach.toml").write_text('poses = "poses.txt"\n')
-    wall = ["--support-plane", -0.1, "--obstacle", "0.12,-0.3,-0.1,0.14,0.3,0"]
-    layout = ["--voxel", 0.01, "--workspace", "-0.2,-0.2,-0.1,0.2,0.2,0.2"]
-    said = run("integrate", "frames", *layout, *wall, "--out", "map.vdb")
-    following = run("next", "map.vdb", *wall, "--reach", "reach.toml", "--top", 3)
-
-    frames = viewgain.read_frames(tmp_path / "frames")
-    planner = viewgain.ViewPlanner(frames.sensor, voxel_size=0.01, workspace=[[-0.2, -0.2, -0.1], [0.2, 0.2, 0.2]],
-                                   support_plane=-0.1, boxes=[[[0.12, -0.3, -0.1], [0.14, 0.3, 0]]],
-                                   reach=viewgain.ReachRegion.load(tmp_path / "reach.toml"))
-    verdicts = [planner.add_frame(frames, i).verdict for i in range(len(frames))]
-    assert {v: verdicts.count(v) for v in verdicts if v != "used"} == said["bad"] == {
-        "lost_pose": 1, "no_pose": 1, "nothing_in_range": 1, "outside": 1, "unreadable": 1, "wrong_size": 1}
-    assert verdicts.count("used") == said["frames"] == 24
-    assert planner.grid.content_hash() == said["hash"]
-    planner.propose()
-    best = planner.rank(3, together=True)
-    assert len(best.index) == len(following["next"]) > 0
-    assert best.gain.tolist() == [view["gain"] for view in following["next"]]
-    assert best.T_world_camera.tolist() == [view["T_world_camera"] for view in following["next"]]

@@ -271,12 +271,6 @@ TEST_F(InfoRegion, SaysHowWellAPartIsKnown) {
   EXPECT_FALSE(json::parse(run_well({"info", "map.vdb", "--json"})).contains("region"));
 }
 
-TEST_F(InfoRegion, BadRegionsAreRefused) {
-  for (const char* bad : {"0,0,0,1,1", "0,0,0,1,1,0", "5,5,5,6,6,6", "a,0,0,1,1,1"}) {
-    expect_refused({"info", "map.vdb", "--region", bad}, "--region");
-  }
-}
-
 // `score` by gains of the literature: against the library's own answers, and what it refuses.
 
 class ScoreClassic : public test::ProgramTest {

@@ -1,8 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Geometry>
-#include <array>
-#include <cmath>
 #include <cstdlib>
 #include <sstream>
 #include <string>
@@ -14,21 +11,9 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/grid/vdb_io.hpp"
-#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain {
 namespace {
-
-std::vector<Strings> rows_of(const std::string& csv) {
-  std::vector<Strings> rows;
-  std::istringstream lines(csv);
-  for (std::string line; std::getline(lines, line);) {
-    Strings& row = rows.emplace_back();
-    std::istringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
-  }
-  return rows;
-}
 
 // simulate -> integrate -> info -> score on a cube, each as a user would run it.
 class Workflow : public test::ProgramTest {
@@ -55,45 +40,6 @@ class Workflow : public test::ProgramTest {
     return run_well({"info", map, "--hash"});
   }
 };
-
-TEST_F(Workflow, CsvReadsBackTheSameDoubles) {
-  simulate("frames");
-  integrate("frames", "map.vdb");
-  run_well({"score", "map.vdb", "--sphere", "30,0.6", "--sensor", "small.toml", "--gain", "paper",
-            "--out", "s.csv"});
-  const auto rows = rows_of(read("s.csv"));
-  ASSERT_EQ(rows.size(), 31U);
-  EXPECT_EQ(rows[0], (Strings{"index", "gain", "exploration", "refinement", "posterior_entropy",
-                              "rays", "hits", "unknown_voxels", "occupied_voxels", "status", "tx",
-                              "ty", "tz", "qx", "qy", "qz", "qw"}));
-  const BeliefGrid grid = load_vdb(dir / "map.vdb");
-  const GainEvaluator evaluator(VoxelScene::build(grid),
-                                open_frames(dir / "frames", "", std::nullopt).sensor,
-                                {.model = GainModel::paper, .posterior_entropy = true});
-  const std::vector<Pose> poses = sphere_poses(30, 0.6);
-  const auto expected = evaluator.evaluate(poses);
-  std::size_t cases = 0;
-  for (; cases < expected.size(); ++cases) {
-    const Strings& row = rows[cases + 1];
-    const ViewGain& gain = expected[cases];
-    EXPECT_EQ(row[0], std::to_string(cases));
-    EXPECT_EQ(std::stod(row[1]), gain.gain);
-    EXPECT_EQ(std::stod(row[2]), gain.exploration);
-    EXPECT_EQ(std::stod(row[3]), gain.refinement);
-    EXPECT_EQ(std::stod(row[4]), gain.posterior_entropy);
-    EXPECT_EQ(row[5], std::to_string(gain.rays));
-    EXPECT_EQ(row[6], std::to_string(gain.hits));
-    EXPECT_EQ(row[7], std::to_string(gain.unknown_voxels));
-    EXPECT_EQ(row[8], std::to_string(gain.occupied_voxels));
-    EXPECT_EQ(row[9], "ok");
-    std::array<double, 7> pose{};
-    for (std::size_t k = 0; k < pose.size(); ++k) pose[k] = std::stod(row.at(10 + k));
-    EXPECT_EQ(Eigen::Vector3d(pose.data()), poses[cases].translation());
-    const Eigen::Quaterniond q(pose[6], pose[3], pose[4], pose[5]);
-    EXPECT_TRUE(q.toRotationMatrix().isApprox(poses[cases].rotation(), 1e-14));
-  }
-  EXPECT_EQ(cases, 30U);
-}
 
 TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
   simulate("frames");
@@ -152,16 +98,6 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
       json::parse(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
                             "--depth-scale", "1e-4", "--out", "mended.vdb", "--json"}));
   EXPECT_EQ(mended.at("orthonormalized_poses"), 1);
-}
-
-TEST_F(Workflow, OutOfRangePixelsCarveOrSayNothing) {
-  simulate("frames", {"--background", "0"});
-  integrate("frames", "carve.vdb");
-  integrate("frames", "invalid.vdb", {"--out-of-range", "invalid"});
-  const json carve = json::parse(run_well({"info", "carve.vdb", "--json"}));
-  const json invalid = json::parse(run_well({"info", "invalid.vdb", "--json"}));
-  EXPECT_EQ(carve.at("occupied"), invalid.at("occupied"));
-  EXPECT_GT(carve.at("free").get<double>(), 1.5 * invalid.at("free").get<double>());
 }
 
 TEST_F(Workflow, AMapKeepsItsLayout) {
@@ -284,22 +220,6 @@ TEST_F(Workflow, FramesThatContradictTheMapAreLeftOut) {
                        {{"--register", "on", "--pose-sigma", "x"}, "--pose-sigma"}});
 }
 
-// Readings 5 mm apart: voxels finer than that leave gaps between the points, not in the surface.
-TEST_F(Workflow, TheSurfaceHasNoHolesWhereVoxelsAreFinerThanTheReadings) {
-  run_well({"simulate", "cube.off", "--orbit", "12,0.6,27,0,46", "--sensor", "small.toml", "--size",
-            "0.3", "--recenter", "on", "--out", "frames"});
-  const auto area = [this](const char* voxel) {
-    run_well({"integrate", "frames", "--voxel", voxel, "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-              "--out", "map.vdb"});
-    return json::parse(run_well({"surface", "map.vdb", "--json", "--out", "surface.ply"}))
-        .at("area")
-        .get<double>();
-  };
-  const double coarse = area("0.01");
-  EXPECT_GT(coarse, 0.05);
-  EXPECT_NEAR(area("0.0025"), coarse, 0.1 * coarse);
-}
-
 TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   simulate("frames");
   integrate("frames", "map.vdb");
@@ -365,26 +285,6 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   EXPECT_GT(readings({"--recenter", "on", "--size", "0.35"}),
             readings({"--recenter", "on", "--size", "0.1"}));
   EXPECT_NE(readings({"--recenter", "on", "--size", "0.35"}), readings({"--size", "0.35"}));
-}
-
-TEST_F(Workflow, FramesSayWhatTheHazardIs) {
-  simulate("frames");
-  integrate("frames", "plain.vdb", {"--calibrate-hazard", "off"});
-  integrate("frames", "one.vdb");
-  const auto factors = [this](const std::string& map) {
-    return json::parse(run_well({"info", map, "--json"})).at("hazard_factors");
-  };
-  EXPECT_TRUE(factors("plain.vdb").is_null());
-  BeliefGrid map = load_vdb(dir / "one.vdb");
-  ASSERT_EQ(factors("one.vdb").size(), HazardCounters::kClasses);
-  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
-    EXPECT_EQ(factors("one.vdb")[k], map.hazard_counters().factor(k));
-  }
-  EXPECT_EQ(run_well({"info", "plain.vdb"}).find("hazard factors"), std::string::npos);
-  EXPECT_NE(run_well({"info", "one.vdb"}).find("hazard factors"), std::string::npos);
-  // The rest of the map is the same.
-  map.set_hazard_counters({});
-  EXPECT_EQ(map.content_hash() + "\n", hash("plain.vdb"));
 }
 
 }  // namespace
