@@ -11,7 +11,6 @@
 #include <cstring>
 #include <limits>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 #include "viewgain/core/error.hpp"
@@ -54,9 +53,9 @@ void flush_nothing(png_structp) {}
 // What the functions below do is undone by libpng's longjmp where it fails: then they return false
 // with a message in `state`. No object with a destructor may live in them, but in what calls them.
 
-// What is read: an image of this colour and one of these depths.
+// What is read: a grey image of one of these depths.
 struct Wanted {
-  int color, least_bits, most_bits;
+  int least_bits, most_bits;
   const char* refusal;
 };
 
@@ -66,35 +65,28 @@ template <typename Image>
 bool set_rows(png_structp png, png_infop info, PngState& state, Image& image) {
   const png_uint_32 columns = png_get_image_width(png, info);
   const png_uint_32 rows = png_get_image_height(png, info);
-  constexpr std::size_t kChannels = std::is_same_v<Image, RgbImage> ? 3 : 1;
-  if constexpr (kChannels == 3) {
-    image.width = static_cast<int>(columns);
-    image.height = static_cast<int>(rows);
-  } else if (columns != static_cast<png_uint_32>(image.width) ||
-             rows != static_cast<png_uint_32>(image.height)) {
+  if (columns != static_cast<png_uint_32>(image.width) ||
+      rows != static_cast<png_uint_32>(image.height)) {
     std::snprintf(state.message.data(), state.message.size(),
                   "the image has %lux%lu pixels, not %dx%d", static_cast<unsigned long>(columns),
                   static_cast<unsigned long>(rows), image.width, image.height);
     return false;
   }
-  const std::size_t row = kChannels * columns;
-  image.pixels.resize(row * rows);
+  image.pixels.resize(std::size_t{columns} * rows);
   for (std::size_t v = 0; v < rows; ++v) {
-    state.rows.push_back(reinterpret_cast<png_bytep>(image.pixels.data() + v * row));
+    state.rows.push_back(reinterpret_cast<png_bytep>(image.pixels.data() + v * columns));
   }
   return true;
 }
 
 template <typename Image>
 bool decode(png_structp png, png_infop info, PngState& state, const Wanted& wanted, Image& image) {
-  constexpr png_uint_32 kMostPixels = 16384;  // a side, where the file says how many
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &state, read_bytes);
-  if (std::is_same_v<Image, RgbImage>) png_set_user_limits(png, kMostPixels, kMostPixels);
   png_read_info(png, info);
   const int bits = png_get_bit_depth(png, info);
   if (bits < wanted.least_bits || bits > wanted.most_bits ||
-      png_get_color_type(png, info) != wanted.color) {
+      png_get_color_type(png, info) != PNG_COLOR_TYPE_GRAY) {
     png_error(png, wanted.refusal);
   }
   if (!set_rows(png, info, state, image)) return false;
@@ -163,10 +155,10 @@ void write_image(const std::filesystem::path& path, int width, int height, int c
   write_file_atomically(path, bytes);
 }
 
-// Runs libpng's reading on the file. A size that `image` has is asked for.
+// Runs libpng's reading on the file, of the size that `image` has.
 template <typename Image>
-Image read_image(const std::filesystem::path& path, const Wanted& wanted, Image image = {}) {
-  if (!std::is_same_v<Image, RgbImage> && (image.width <= 0 || image.height <= 0)) {
+Image read_image(const std::filesystem::path& path, const Wanted& wanted, Image image) {
+  if (image.width <= 0 || image.height <= 0) {
     fail(ErrorCode::invalid_argument, path,
          "asked for as " + std::to_string(image.width) + " x " + std::to_string(image.height) +
              " px");
@@ -187,12 +179,12 @@ Image read_image(const std::filesystem::path& path, const Wanted& wanted, Image 
 }  // namespace
 
 GrayImage read_gray_png(const std::filesystem::path& path, int width, int height) {
-  constexpr Wanted kWanted{PNG_COLOR_TYPE_GRAY, 16, 16, "not a 16-bit grayscale image"};
+  constexpr Wanted kWanted{16, 16, "not a 16-bit grayscale image"};
   return read_image<GrayImage>(path, kWanted, {width, height, {}});
 }
 
 Gray8Image read_gray8_png(const std::filesystem::path& path, int width, int height) {
-  constexpr Wanted kWanted{PNG_COLOR_TYPE_GRAY, 1, 8, "not a grayscale image of 1 to 8 bits"};
+  constexpr Wanted kWanted{1, 8, "not a grayscale image of 1 to 8 bits"};
   return read_image<Gray8Image>(path, kWanted, {width, height, {}});
 }
 
@@ -212,11 +204,6 @@ std::array<int, 2> png_size(const std::filesystem::path& path) {
     fail(ErrorCode::format, path, "not a usable image: not a PNG file");
   }
   return {static_cast<int>(number(kBegin.size())), static_cast<int>(number(kBegin.size() + 4))};
-}
-
-RgbImage read_rgb_png(const std::filesystem::path& path) {
-  constexpr Wanted kWanted{PNG_COLOR_TYPE_RGB, 8, 8, "not an 8-bit RGB image"};
-  return read_image<RgbImage>(path, kWanted);
 }
 
 void write_png(const std::filesystem::path& path, const GrayImage& image) {

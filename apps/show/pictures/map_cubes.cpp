@@ -8,6 +8,9 @@
 
 namespace viewgain::app {
 
+namespace {
+
+// Leaf by leaf.
 std::vector<Index3> occupied_voxels(const GridSnapshot& snapshot) {
   std::vector<Index3> voxels;
   for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
@@ -20,6 +23,8 @@ std::vector<Index3> occupied_voxels(const GridSnapshot& snapshot) {
   }
   return voxels;
 }
+
+}  // namespace
 
 LatticeCubes occupied_cubes(const GridSnapshot& snapshot, std::size_t most) {
   LatticeCubes cubes{occupied_voxels(snapshot), snapshot.voxel_size};

@@ -9,9 +9,6 @@
 
 namespace viewgain::app {
 
-/// The occupied voxels of a map, leaf by leaf.
-[[nodiscard]] std::vector<Index3> occupied_voxels(const GridSnapshot& snapshot);
-
 /// As many cubes as a picture has room for.
 inline constexpr std::size_t kMaxCubes = 400'000;
 

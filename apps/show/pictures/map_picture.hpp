@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <vector>
 
 #include "show/pictures/picture_parts.hpp"
 #include "viewgain/core/exec_config.hpp"
@@ -20,22 +18,11 @@ namespace viewgain::app {
 [[nodiscard]] RgbImage map_picture(const GridSnapshot& snapshot, const Viewer& viewer,
                                    const ExecConfig& exec);
 
-/// The least and the largest of those that are numbers; zeros without one.
-[[nodiscard]] std::array<double, 2> range_of(const std::vector<double>& values);
-
-/// The same with poses round it as small frusta, from dark to bright by their gain in `range`; one
-/// whose gain is NaN or that stands between viewer and workspace is left out.
-[[nodiscard]] RgbImage gain_picture(const GridSnapshot& snapshot, const Sensor& sensor,
-                                    const std::vector<Pose>& poses,
-                                    const std::vector<double>& gains,
-                                    const std::array<double, 2>& range, const Viewer& viewer,
-                                    const ExecConfig& exec);
-
 /// A picture of one view, 1280x960 px: the map's occupied voxels as little grey cubes, the view's
 /// frustum, and the voxels where its rays end, unknown ones orange, occupied ones blue; by the
-/// surface and combined gain unknown voxels in which it may find surface, the stronger in orange
-/// the likelier; seen from a place that shows both. Throws Error(invalid_argument) unless the pose
-/// is rigid (1e-3).
+/// surface and combined gain unknown voxels in which it may find surface, the larger the likelier;
+/// seen from a place that shows both. Throws Error(invalid_argument) unless the pose is rigid
+/// (1e-3).
 [[nodiscard]] RgbImage score_picture(const GainEvaluator& evaluator, const Sensor& sensor,
                                      const Pose& T_world_camera, const ExecConfig& exec);
 

@@ -55,15 +55,6 @@ void PaintedMesh::add_surface(const std::vector<std::array<double, 3>>& vertices
                                 paint_of_triangle.end());
 }
 
-void PaintedMesh::add_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c,
-                               std::uint8_t paint) {
-  Part& part = part_for(paint);
-  const auto first = static_cast<std::uint32_t>(part.mesh.vertices.size());
-  for (const Vector3d& p : {a, b, c}) part.mesh.vertices.push_back({p.x(), p.y(), p.z()});
-  part.mesh.triangles.push_back({first, first + 1, first + 2});
-  part.paint_of_triangle.push_back(paint);
-}
-
 Vector3d PaintedMesh::Part::shading_normal(std::uint32_t triangle, const Vector3d& point,
                                            const Vector3d& normal) const {
   const auto& t = mesh.triangles[triangle];
@@ -89,18 +80,6 @@ void PaintedMesh::add_line(const Vector3d& a, const Vector3d& b, double width, s
                  ((k & 2U) != 0 ? 0.5 : -0.5) * width * v;
   }
   add_hexahedron(corners, paint);
-}
-
-void PaintedMesh::add_ribbon(const Vector3d& a, const Vector3d& b, double width,
-                             const Vector3d& viewer_eye, std::uint8_t paint) {
-  // In pieces: the box round a long slanting triangle is large and empty, which slows every ray.
-  constexpr int kPieces = 48;
-  const Vector3d half = 0.5 * width * (b - a).cross(a - viewer_eye).normalized();
-  for (int i = 0; i < kPieces; ++i) {
-    const Vector3d begin = a + i * (b - a) / kPieces, end = a + (i + 1) * (b - a) / kPieces;
-    add_triangle(begin - half, begin + half, end - half, paint);
-    add_triangle(end - half, begin + half, end + half, paint);
-  }
 }
 
 }  // namespace viewgain::app

@@ -16,7 +16,6 @@ namespace viewgain::app {
 struct Paint {
   Eigen::Vector3d color = Eigen::Vector3d::Ones();  ///< linear red, green, blue in [0, 1]
   bool lit = true;            ///< false: drawn flat and throws no shadow, for lines
-  double opacity = 1;         ///< in (0, 1]; less than 1 only where it is not lit
   double back_side = 1;       ///< brightness of a lit triangle's back, relative to its front
   bool passes_light = false;  ///< throws no shadow though it may be lit; fast to trace
 };
@@ -41,17 +40,9 @@ class PaintedMesh {
                    const std::vector<std::array<std::uint32_t, 3>>& triangles,
                    const std::vector<std::uint8_t>& paint_of_triangle);
 
-  void add_triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                    std::uint8_t paint);
-
   /// A square prism of this width [m] along the segment from a to b.
   void add_line(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double width,
                 std::uint8_t paint);
-
-  /// A flat line from a to b that turns its face to the viewer's eye; for many and translucent
-  /// ones.
-  void add_ribbon(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double width,
-                  const Eigen::Vector3d& viewer_eye, std::uint8_t paint);
 
   /// Triangles of one kind, apart since each is met in another way.
   struct Part {
@@ -67,18 +58,16 @@ class PaintedMesh {
   };
   [[nodiscard]] const Part& solid() const noexcept { return solid_; }      ///< lit, throws shadows
   [[nodiscard]] const Part& overlay() const noexcept { return overlay_; }  ///< passes light
-  [[nodiscard]] const Part& veils() const noexcept { return veils_; }      ///< translucent
   [[nodiscard]] const Paint& paint_of(const Part& part, std::uint32_t triangle) const {
     return paints_[part.paint_of_triangle[triangle]];
   }
 
  private:
   Part& part_for(std::uint8_t paint) {
-    if (paints_[paint].opacity < 1) return veils_;
     return paints_[paint].passes_light || !paints_[paint].lit ? overlay_ : solid_;
   }
 
-  Part solid_, overlay_, veils_;
+  Part solid_, overlay_;
   std::vector<Paint> paints_;
 };
 

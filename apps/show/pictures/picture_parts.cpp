@@ -52,7 +52,7 @@ Vector3d Viewer::direction() const {
           std::sin(elevation)};
 }
 
-HeatPaints::HeatPaints(PaintedMesh& scene, bool lit) {
+HeatPaints::HeatPaints(PaintedMesh& scene) {
   // Violet, blue, teal, green, yellow: lightness rises evenly.
   static const std::array<Vector3d, 5> kAnchors{{{0.058, 0.0, 0.089},
                                                  {0.044, 0.084, 0.258},
@@ -65,7 +65,6 @@ HeatPaints::HeatPaints(PaintedMesh& scene, bool lit) {
     const double share = at - static_cast<double>(below);
     paints_[k] =
         scene.add_paint({.color = (1 - share) * kAnchors[below] + share * kAnchors[below + 1],
-                         .lit = lit,
                          .back_side = 0.55});
   }
 }
@@ -94,41 +93,29 @@ void add_box_outline(PaintedMesh& scene, const std::array<Vector3d, 8>& corners,
 }
 
 void add_lattice_cube(PaintedMesh& scene, const Pose& T_world_grid, const Vector3d& index,
-                      double side, std::uint8_t paint) {
-  constexpr double kGap = 0.04;  // of a cube, on each side
-  scene.add_hexahedron(box_corners(T_world_grid, side * (index + Vector3d::Constant(kGap)),
-                                   side * (index + Vector3d::Constant(1 - kGap))),
-                       paint);
+                      double side, std::uint8_t paint, double share) {
+  const Vector3d low = index + Vector3d::Constant(0.5 - 0.5 * share);
+  scene.add_hexahedron(
+      box_corners(T_world_grid, side * low, side * (low + Vector3d::Constant(share))), paint);
 }
 
-namespace {
+VoxelPaints::VoxelPaints(PaintedMesh& scene)
+    : unknown_(scene.add_paint({.color = kUnknownColor, .passes_light = true})),
+      occupied_(scene.add_paint({.color = kOccupiedColor, .passes_light = true})) {}
 
-struct Chance {
-  double least;  // of a ray that reaches the voxel to end in it
-  double opacity;
-};
-constexpr std::array<Chance, ChancePaints::kLevels> kChances{
-    {{0.5, 1}, {0.2, 0.5}, {0.1, 0.3}, {0.05, 0.18}, {0.02, 0.1}, {0.01, 0.05}}};
-
-}  // namespace
-
-ChancePaints::ChancePaints(PaintedMesh& scene, bool for_squares) {
-  for (std::size_t k = 0; k < kLevels; ++k) {
-    const double face = kChances[k].opacity;
-    const double opacity = for_squares ? 1 - (1 - face) * (1 - face) : face;
-    paints_[k] = scene.add_paint({.color = kUnknownColor,
-                                  .lit = opacity == 1,
-                                  .opacity = opacity,
-                                  .passes_light = opacity < 1});
-  }
+void VoxelPaints::add(PaintedMesh& scene, const GridSnapshot& snapshot, Index3 voxel,
+                      bool is_unknown, double share) const {
+  add_lattice_cube(scene, snapshot.T_world_grid, Vector3d(voxel.x, voxel.y, voxel.z),
+                   snapshot.voxel_size, is_unknown ? unknown_ : occupied_, share);
 }
 
-std::optional<std::size_t> ChancePaints::level(const VoxelContribution& contribution) {
-  const double chance = contribution.expected_rays / std::max(1U, contribution.rays);
-  for (std::size_t k = 0; k < kLevels; ++k) {
-    if (chance >= kChances[k].least) return k;
-  }
-  return std::nullopt;
+void VoxelPaints::add(PaintedMesh& scene, const GridSnapshot& snapshot,
+                      const VoxelContribution& voxel) const {
+  constexpr double kLeast = 0.01, kWhole = 0.5;
+  if (voxel.state != VoxelState::unknown) return add(scene, snapshot, voxel.voxel, false);
+  const double chance = voxel.expected_rays / std::max(1U, voxel.rays);
+  if (chance < kLeast) return;
+  add(scene, snapshot, voxel.voxel, true, std::sqrt(std::min(1.0, chance / kWhole)));
 }
 
 std::array<Vector3d, 4> image_corners(const Sensor& sensor, const Pose& T_world_camera,

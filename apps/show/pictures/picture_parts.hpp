@@ -6,7 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "show/pictures/ray_tracer.hpp"
@@ -38,7 +37,7 @@ struct Viewer {
 /// too.
 class HeatPaints {
  public:
-  HeatPaints(PaintedMesh& scene, bool lit);
+  explicit HeatPaints(PaintedMesh& scene);
   [[nodiscard]] std::uint8_t at(double share) const;
 
  private:
@@ -55,25 +54,24 @@ void add_box_outline(PaintedMesh& scene, const std::array<Eigen::Vector3d, 8>& c
                      double width, std::uint8_t paint);
 
 /// The cube of this side [m] at `index` in the lattice of such cubes, a little smaller so that
-/// single ones stay visible.
+/// single ones stay visible; `share`: of its edge that is drawn.
 void add_lattice_cube(PaintedMesh& scene, const Pose& T_world_grid, const Eigen::Vector3d& index,
-                      double side, std::uint8_t paint);
+                      double side, std::uint8_t paint, double share = 0.92);
 
-/// Paints for unknown voxels in which rays of a view end, or may end: kUnknownColor, the likelier
-/// that a ray that reaches the voxel ends in it, the less translucent.
-class ChancePaints {
+/// Voxels in which rays of a view end or may end: cubes that cover those of the map, orange where
+/// unknown, blue where occupied.
+class VoxelPaints {
  public:
-  static constexpr std::size_t kLevels = 6;
+  explicit VoxelPaints(PaintedMesh& scene);
 
-  /// For cubes, or for squares that each stand for the two faces of a cube that a ray passes.
-  explicit ChancePaints(PaintedMesh& scene, bool for_squares = false);
-
-  /// 0: at least even chances, opaque; nothing: less than 1 %, not worth drawing.
-  [[nodiscard]] static std::optional<std::size_t> level(const VoxelContribution& contribution);
-  [[nodiscard]] std::uint8_t operator[](std::size_t level) const { return paints_[level]; }
+  void add(PaintedMesh& scene, const GridSnapshot& snapshot, Index3 voxel, bool is_unknown,
+           double share = 1) const;
+  /// An unknown one the larger the likelier a ray that reaches it ends in it: whole where chances
+  /// are even, not at all under 1 %.
+  void add(PaintedMesh& scene, const GridSnapshot& snapshot, const VoxelContribution& voxel) const;
 
  private:
-  std::array<std::uint8_t, kLevels> paints_{};
+  std::uint8_t unknown_, occupied_;
 };
 
 /// The four corners of the image at this depth [m], in order round it.

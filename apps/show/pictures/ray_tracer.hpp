@@ -11,7 +11,7 @@
 namespace viewgain::app {
 
 /// Renders with Embree: one sun with shadows, a sky with ambient occlusion up to `occlusion_range`
-/// [m], 2x2 samples in pixels at edges. The same picture for any number of threads.
+/// [m], 2x2 samples a pixel. The same picture for any number of threads.
 [[nodiscard]] RgbImage render(const PaintedMesh& scene, const PinholeCamera& camera,
                               const Pose& T_world_camera, double occlusion_range,
                               const ExecConfig& exec);

@@ -21,7 +21,7 @@ double share_of(double sigma, const std::array<double, 2>& range) {
 
 RgbImage draw(const SurfacePicture& picture, const Viewer& viewer, const ExecConfig& exec) {
   PaintedMesh scene;
-  const HeatPaints paints(scene, true);
+  const HeatPaints paints(scene);
   const SurfaceMesh& surface = picture.surface;
   if (surface.triangles.empty()) {
     throw Error(ErrorCode::invalid_argument, "the map has no surface to draw yet");

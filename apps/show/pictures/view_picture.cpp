@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,13 +26,13 @@ constexpr int kWidth = 640;  // of the picture [px]
 constexpr std::size_t kMaxCandidates = 200, kMaxRays = 300;
 
 // Widths and lengths as shares of the workspace's diagonal.
-constexpr double kOutlineWidth = 0.0026, kBoundaryWidth = 0.006, kRayWidth = 0.0018;
+constexpr double kOutlineWidth = 0.0026, kBoundaryWidth = 0.006, kRayWidth = 0.0008;
 constexpr double kCandidateWidth = 0.0030, kCandidateLength = 0.045;
 constexpr double kViewWidth = 0.0045, kViewLength = 0.10;
 constexpr double kChosenWidth = 0.006, kChosenLength = 0.14, kChosenEdgeWidth = 0.0030;
 
-std::uint8_t add_line_paint(PaintedMesh& scene, const Vector3d& color, double opacity = 1) {
-  return scene.add_paint({.color = color, .lit = false, .opacity = opacity, .passes_light = true});
+std::uint8_t add_line_paint(PaintedMesh& scene, const Vector3d& color) {
+  return scene.add_paint({.color = color, .lit = false, .passes_light = true});
 }
 
 struct Paints {
@@ -42,12 +41,9 @@ struct Paints {
         outline(add_line_paint(scene, {0.45, 0.48, 0.52})),
         view(add_line_paint(scene, {0.01, 0.01, 0.012})),
         chosen(add_line_paint(scene, {0.0, 0.19, 0.05})),
-        chosen_side(add_line_paint(scene, {0.0, 0.36, 0.10}, 0.10)),
         other(add_line_paint(scene, {0.32, 0.33, 0.35})),
-        unknown_ray(add_line_paint(scene, kUnknownColor, 0.45)),
-        occupied_ray(add_line_paint(scene, kOccupiedColor, 0.5)),
-        unknown_end(scene.add_paint({.color = kUnknownColor, .passes_light = true})),
-        occupied_end(scene.add_paint({.color = kOccupiedColor, .passes_light = true})) {
+        unknown_ray(add_line_paint(scene, kUnknownColor)),
+        occupied_ray(add_line_paint(scene, kOccupiedColor)) {
     const std::array<Vector3d, 4> colors{{{0.75, 0.01, 0.02},    // left: red
                                           {0.03, 0.50, 0.04},    // right: green
                                           {0.02, 0.10, 0.80},    // top: blue
@@ -63,8 +59,7 @@ struct Paints {
     return boundary_class ? of_class[static_cast<std::size_t>(*boundary_class)] : other;
   }
 
-  std::uint8_t surface, outline, view, chosen, chosen_side, other;
-  std::uint8_t unknown_ray, occupied_ray, unknown_end, occupied_end;
+  std::uint8_t surface, outline, view, chosen, other, unknown_ray, occupied_ray;
   std::array<std::uint8_t, 4> of_class{};
 };
 
@@ -122,61 +117,14 @@ std::vector<const Candidate*> shown_candidates(const ViewPicture& picture) {
   return shown;
 }
 
-void add_rays(PaintedMesh& scene, const Paints& paints, const std::vector<RayHit>& rays,
-              const Vector3d& eye, const Vector3d& viewer_eye, const GridSnapshot& snapshot,
+void add_rays(PaintedMesh& scene, const Paints& paints, const VoxelPaints& voxels,
+              const std::vector<RayHit>& rays, const Vector3d& eye, const GridSnapshot& snapshot,
               double width) {
-  std::map<std::array<std::int32_t, 3>, bool> ends;  // each voxel once, however many rays end in it
   for (const RayHit& ray : rays) {
     const bool unknown = ray.kind == RayHit::Kind::unknown;
-    const Vector3d center(ray.voxel.x + 0.5, ray.voxel.y + 0.5, ray.voxel.z + 0.5);
-    scene.add_ribbon(eye, snapshot.T_world_grid * Vector3d(snapshot.voxel_size * center), width,
-                     viewer_eye, unknown ? paints.unknown_ray : paints.occupied_ray);
-    ends[{ray.voxel.x, ray.voxel.y, ray.voxel.z}] = unknown;
-  }
-  for (const auto& [voxel, unknown] : ends) {
-    add_lattice_cube(scene, snapshot.T_world_grid, Vector3d(voxel[0], voxel[1], voxel[2]),
-                     snapshot.voxel_size, unknown ? paints.unknown_end : paints.occupied_end);
-  }
-}
-
-// A square that turns its face to the viewer.
-void add_square(PaintedMesh& scene, const Vector3d& center, double side, const Vector3d& viewer_eye,
-                std::uint8_t paint) {
-  const Vector3d away = (center - viewer_eye).normalized();
-  const Vector3d right = 0.5 * side * away.unitOrthogonal();
-  const Vector3d up = away.cross(right);
-  scene.add_triangle(center - right - up, center + right - up, center + right + up, paint);
-  scene.add_triangle(center - right - up, center + right + up, center - right + up, paint);
-}
-
-// Unknown voxels in which the view may find surface. The translucent ones are tens of thousands and
-// lie behind one another: a square each, as a cube has six times as many triangles.
-void add_chances(PaintedMesh& scene, const std::vector<VoxelContribution>& touched,
-                 const GridSnapshot& snapshot, const Vector3d& viewer_eye) {
-  const ChancePaints paints(scene, true);
-  for (const VoxelContribution& voxel : touched) {
-    if (voxel.state != VoxelState::unknown) continue;
-    const auto level = ChancePaints::level(voxel);
-    if (!level) continue;
-    if (*level > 0) {
-      add_square(scene, snapshot.center(voxel.voxel), 1.25 * snapshot.voxel_size, viewer_eye,
-                 paints[*level]);
-      continue;
-    }
-    add_lattice_cube(scene, snapshot.T_world_grid,
-                     Vector3d(voxel.voxel.x, voxel.voxel.y, voxel.voxel.z), snapshot.voxel_size,
-                     paints[*level]);
-  }
-}
-
-// What the chosen view covers: a tinted pyramid.
-void add_volume(PaintedMesh& scene, const Paints& paints, const Vector3d& apex,
-                const std::array<Vector3d, 4>& base, double width, const Vector3d& viewer_eye) {
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Vector3d& next = base[(k + 1) % 4];
-    scene.add_ribbon(apex, base[k], width, viewer_eye, paints.chosen);
-    scene.add_ribbon(base[k], next, width, viewer_eye, paints.chosen);
-    scene.add_triangle(apex, base[k], next, paints.chosen_side);
+    scene.add_line(eye, snapshot.center(ray.voxel), width,
+                   unknown ? paints.unknown_ray : paints.occupied_ray);
+    voxels.add(scene, snapshot, ray.voxel, unknown);
   }
 }
 
@@ -239,15 +187,17 @@ RgbImage view_picture(const ViewPicture& picture, const ExecConfig& exec) {
                 kCandidateWidth * extent, paints.candidate(candidate->boundary_class));
   }
   if (picture.chosen) {
-    add_volume(scene, paints, eye, far_corners, kChosenEdgeWidth * extent, viewer_eye);
-    add_rays(scene, paints, even_hits(hits, picture.sensor.camera, kMaxRays), eye, viewer_eye,
-             snapshot, kRayWidth * extent);
+    add_pyramid(scene, eye, far_corners, kChosenEdgeWidth * extent, paints.chosen);
+    const VoxelPaints voxels(scene);
+    add_rays(scene, paints, voxels, even_hits(hits, picture.sensor.camera, kMaxRays), eye, snapshot,
+             kRayWidth * extent);
     // By the paper's gain they are where the rays end.
     if (picture.evaluator.model() != GainModel::paper) {
-      add_chances(scene,
-                  picture.contributions != nullptr ? *picture.contributions
-                                                   : picture.evaluator.contributions(subject),
-                  snapshot, viewer_eye);
+      for (const VoxelContribution& voxel : picture.contributions != nullptr
+                                                ? *picture.contributions
+                                                : picture.evaluator.contributions(subject)) {
+        if (voxel.state == VoxelState::unknown) voxels.add(scene, snapshot, voxel);
+      }
     }
   }
   return render(scene, camera, T_world_viewer, 0.12 * extent, exec);

@@ -42,10 +42,6 @@ struct VIEWGAIN_EXPORT Gray8Image {
 [[nodiscard]] VIEWGAIN_EXPORT GrayImage read_gray_png(const std::filesystem::path& path, int width,
                                                       int height);
 
-/// Reads an 8-bit RGB PNG of at most 16,384 px a side; raw values, no gamma. Throws as
-/// read_gray_png().
-[[nodiscard]] VIEWGAIN_EXPORT RgbImage read_rgb_png(const std::filesystem::path& path);
-
 /// Reads a grayscale PNG of 1 to 8 bits of exactly this size; raw values, widened to 8 bits. Throws
 /// as read_gray_png().
 [[nodiscard]] VIEWGAIN_EXPORT Gray8Image read_gray8_png(const std::filesystem::path& path,
