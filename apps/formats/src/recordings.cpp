@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <set>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -15,6 +17,9 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/masks.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/formats/staged_folder.hpp"
+#include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -25,6 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr double kUnit = 1.0 / 5000;  // of the images [m]
 constexpr std::uint16_t kSaturated = 65535;
+constexpr const char* kImportedText = "# files written by viewgain import";
 
 // The poses, the lost ones among them.
 struct TimedPoses {
@@ -45,36 +51,17 @@ TimedPoses read_timed_poses(const fs::path& path) {
   return read;
 }
 
-// Poses in the order of their times, whatever order the file has.
-class PosesInTime {
- public:
-  explicit PosesInTime(const TimedPoses& poses) : times_(poses.times) {
-    for (std::size_t i = 0; i < times_.size(); ++i) {
-      if (std::isfinite(times_[i])) order_.push_back(i);
-    }
-    std::stable_sort(order_.begin(), order_.end(),
-                     [this](std::size_t a, std::size_t b) { return times_[a] < times_[b]; });
+// The pose nearest in time, the first of several; null if it is farther than the gap.
+const ReadPose* nearest(const TimedPoses& poses, double time, double gap) {
+  const ReadPose* best = nullptr;
+  for (std::size_t i = 0; i < poses.times.size(); ++i) {
+    const double off = std::abs(poses.times[i] - time);
+    if (!(off <= gap)) continue;
+    if (best == nullptr || off < gap) best = &poses.poses[i];
+    gap = off;
   }
-
-  // The pose nearest in time, the earlier of two; nothing if it is farther than the gap.
-  [[nodiscard]] std::optional<std::size_t> nearest(double time, double gap) const {
-    const auto after =
-        std::lower_bound(order_.begin(), order_.end(), time,
-                         [this](std::size_t pose, double wanted) { return times_[pose] < wanted; });
-    std::optional<std::size_t> best;
-    const auto offer = [&](std::size_t pose) {
-      const double off = std::abs(times_[pose] - time);
-      if (off <= gap && (!best || off < std::abs(times_[*best] - time))) best = pose;
-    };
-    if (after != order_.begin()) offer(*(after - 1));
-    if (after != order_.end()) offer(*after);
-    return best;
-  }
-
- private:
-  const std::vector<double>& times_;
-  std::vector<std::size_t> order_;
-};
+  return best;
+}
 
 // A frame that depth.txt names and that has a pose.
 struct RecordedFrame {
@@ -99,7 +86,6 @@ std::vector<RecordedFrame> read_frames(const fs::path& source, double max_time_g
   const fs::path list = source / "depth.txt";
   const std::string bytes = file_bytes(list);
   const TimedPoses poses = read_timed_poses(source / "groundtruth.txt");
-  const PosesInTime in_time(poses);
   std::vector<RecordedFrame> frames;
   std::uint64_t number = 0;
   for (LineReader line(list.string(), bytes); line.next();) {
@@ -113,13 +99,13 @@ std::vector<RecordedFrame> read_frames(const fs::path& source, double max_time_g
     if (image.is_absolute() || *image.begin() == "..") {
       line.fail("the image " + quoted(line.words()[1]) + " is outside of the recording");
     }
-    const auto found = in_time.nearest(line.finite_number(0), max_time_gap);
-    const FrameFault fault =
-        found ? poses.poses[*found].fault : FrameFault{FrameVerdict::no_pose, {}};
-    if (fault.verdict == FrameVerdict::used) {
-      frames.push_back({number, source / image, poses.poses[*found]});
+    const ReadPose* const pose = nearest(poses, line.finite_number(0), max_time_gap);
+    if (pose == nullptr) {
+      dropped.add({FrameVerdict::no_pose, {}});
+    } else if (pose->fault.verdict != FrameVerdict::used) {
+      dropped.add(pose->fault);
     } else {
-      dropped.add(fault);
+      frames.push_back({number, source / image, *pose});
     }
     ++number;
   }
@@ -161,6 +147,71 @@ std::optional<GrayImage> read_depth(const fs::path& file, PinholeCamera& camera,
   return std::nullopt;
 }
 
+// What an earlier import left in the folder, which a new one may replace.
+std::vector<fs::path> imported_files(const fs::path& dir) {
+  const std::vector<fs::path> files = frame_files(dir);
+  if (files.empty()) return files;
+  std::set<std::string> own;
+  if (is_there(dir / kImported)) {
+    std::istringstream lines(file_bytes(dir / kImported));
+    std::string line;
+    if (std::getline(lines, line) && line == kImportedText) {
+      own.insert(kImported);
+      while (std::getline(lines, line)) own.insert(line);
+    }
+  }
+  for (const fs::path& file : files) {
+    if (own.contains(file.string())) continue;
+    throw Error(ErrorCode::invalid_argument, (dir / file).string() + ": no file of import (" +
+                                                 kImported +
+                                                 " says which are); choose another folder");
+  }
+  return files;
+}
+
+// A folder in the recorded layout, which appears, or changes, only when all is written.
+class RecordedFolder {
+ public:
+  explicit RecordedFolder(const fs::path& dir) : earlier_(imported_files(dir)), staged_(dir) {}
+
+  void write(std::uint64_t number, const GrayImage& depth, const Pose& T_world_camera) {
+    const std::string image = frame_name(number, kDepthSuffix);
+    write_png(staged_.path() / image, depth);
+    files_.insert(image);
+    std::string text;
+    for (std::size_t i = 0; i < T_world_camera.m.size(); ++i) {
+      text += short_text(T_world_camera.m[i]) + (i % 4 == 3 ? "\n" : " ");
+    }
+    put(frame_name(number, kPoseSuffix), text + "0 0 0 1\n");
+  }
+
+  void commit(const PinholeCamera& camera, const std::optional<Sensor>& sensor) {
+    put(kIntrinsics, short_text(camera.fx) + " 0 " + short_text(camera.cx) + "\n0 " +
+                         short_text(camera.fy) + " " + short_text(camera.cy) + "\n0 0 1\n");
+    put(kScale, short_text(kUnit) + "\n");
+    if (sensor) {
+      Sensor own = *sensor;
+      own.camera = camera;
+      own.validate();
+      put(kSensor, sensor_toml(own));
+    }
+    std::string list = std::string(kImportedText) + "\n";
+    for (const std::string& file : files_) list += file + "\n";
+    put(kImported, list);
+    staged_.commit(earlier_);
+  }
+
+ private:
+  void put(const std::string& name, const std::string& text) {
+    write_file_atomically(staged_.path() / name, text);
+    files_.insert(name);
+  }
+
+  std::vector<fs::path> earlier_;
+  StagedFolder staged_;
+  std::set<std::string> files_;  // written
+};
+
 void check(const fs::path& source, const ImportConfig& config) {
   const auto refuse = [](const std::string& what) {
     throw Error(ErrorCode::invalid_argument, what);
@@ -191,21 +242,21 @@ ImportReport import_recording(const fs::path& source, const fs::path& out,
   report.camera = config.camera;
   Dropped dropped{report.dropped};
   const std::vector<RecordedFrame> frames = read_frames(source, config.max_time_gap, dropped);
-  std::vector<MaskFolder> folders;
-  if (!config.masks.empty()) folders.emplace_back(config.masks);
+  std::vector<MaskFolder> mask_folders;
+  if (!config.masks.empty()) mask_folders.emplace_back(config.masks);
   if (!config.confidences.empty()) {
-    folders.emplace_back(config.confidences, config.least_confidence);
+    mask_folders.emplace_back(config.confidences, config.least_confidence);
   }
   std::vector<fs::path> images;
   for (const RecordedFrame& frame : frames) images.push_back(frame.image);
-  for (const MaskFolder& folder : folders) folder.require_mask_of_any(images);
-  RecordedFramesWriter writer(out);
+  for (const MaskFolder& masks : mask_folders) masks.require_mask_of_any(images);
+  RecordedFolder folder(out);
   for (const auto& [number, image, pose] : frames) {
     std::optional<GrayImage> depth = read_depth(image, report.camera, dropped);
     if (!depth) continue;
     bool is_masked = false;
-    for (const MaskFolder& folder : folders) {
-      std::optional<Gray8Image> mask = folder.mask_of(image, depth->width, depth->height);
+    for (const MaskFolder& masks : mask_folders) {
+      std::optional<Gray8Image> mask = masks.mask_of(image, depth->width, depth->height);
       if (!mask) continue;
       is_masked = true;
       report.masked_pixels += apply_mask(*mask, *depth);
@@ -213,7 +264,7 @@ ImportReport import_recording(const fs::path& source, const fs::path& out,
     report.masks += is_masked ? 1 : 0;
     report.readings += static_cast<std::uint64_t>(
         std::count_if(depth->pixels.begin(), depth->pixels.end(), [](auto z) { return z != 0; }));
-    writer.write_frame(number, *depth, pose.T_world_camera);
+    folder.write(number, *depth, pose.T_world_camera);
     ++report.frames;
     report.orthonormalized += pose.is_mended ? 1 : 0;
     if (config.progress) config.progress(report.frames, frames.size());
@@ -226,7 +277,7 @@ ImportReport import_recording(const fs::path& source, const fs::path& out,
     if (!dropped.fault.empty()) reasons += "; " + dropped.fault;
     throw Error(ErrorCode::format, source.string() + ": no frame can be used (" + reasons + ")");
   }
-  writer.commit(report.camera, kUnit, config.sensor);
+  folder.commit(report.camera, config.sensor);
   return report;
 }
 

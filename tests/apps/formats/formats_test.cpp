@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -172,23 +171,6 @@ TEST(Formats, FramesAreReadByTheSensorAsItIs) {
   test::expect_error(ErrorCode::invalid_argument, "rise", [&] { (void)load_frame(plain, 0); });
   write_sensor_toml(dir / "sensor.toml", sensor_preset("sr4000"));
   EXPECT_EQ(open_frames(dir).corrector, nullptr);
-}
-
-TEST(Formats, WhatIsNoDepthIsWrittenAsInvalid) {
-  const test::TemporaryFolder folder;
-  Sensor sensor = sensor_preset("sr4000");
-  sensor.camera.width = 4, sensor.camera.height = 1;
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  FramesWriter writer(folder.path() / "frames");
-  writer.write_frame(0, {4, 1, {kNan, -1.F, 6.6F, 6.5534F}, {kNan, -1.F, 70.F, 65.F}});
-  writer.commit({look_at({0, 0, 1}, {0, 0, 0})}, sensor);
-  const DepthFrame read = load_frame(open_frames(folder.path() / "frames"), 0);
-  EXPECT_EQ(read.depth[0], DepthFrame::kInvalid);
-  EXPECT_EQ(read.depth[1], DepthFrame::kInvalid);
-  EXPECT_EQ(read.depth[2], DepthFrame::kOutOfRange);
-  EXPECT_NEAR(read.depth[3], 6.5534, 1e-6);
-  EXPECT_EQ(read.amplitude[0], 0.F);
-  EXPECT_NEAR(read.amplitude[2], 65.535, 1e-5);
 }
 
 TEST(Formats, FramesThatCannotBeAreRefusedAndNothingIsWritten) {

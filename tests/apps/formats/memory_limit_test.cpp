@@ -17,7 +17,6 @@
 #include "grid/analytic_frames.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/formats/cloud_io.hpp"
-#include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/thread_pool.hpp"
@@ -129,18 +128,6 @@ TEST(MemoryLimit, SavingWithoutMemoryLeavesNothingBehind) {
   EXPECT_GT(failed, 15);
   EXPECT_GT(saved, 0);
   EXPECT_EQ(failed + saved, 41);
-}
-
-TEST(MemoryLimit, TheResolutionOfAnOctreeIsInItsHead) {
-  const TemporaryFolder folder;
-  const auto path =
-      folder.file("tree.ot", "# Octomap OcTree file\nid OcTree\nsize 0\nres 0.125\ndata\n" +
-                                 std::string(30'000'000, '\0'));
-  EXPECT_LT(peak_of([&] { EXPECT_EQ(octomap_resolution(path), 0.125); }), 1'000'000);
-  expect_error(ErrorCode::format, "no line \"data\"", [&] {
-    (void)octomap_resolution(
-        folder.file("long.ot", "# Octomap OcTree file\n" + std::string(30'000'000, '#')));
-  });
 }
 
 /// A compressed cloud of 3 bytes a point, all 0: `runs` of 88 points, and one more.

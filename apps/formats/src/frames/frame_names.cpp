@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cinttypes>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <utility>
@@ -19,30 +18,6 @@
 namespace viewgain {
 
 namespace fs = std::filesystem;
-
-PinholeCamera camera_of_matrix(const std::array<double, 9>& k, const std::string& name) {
-  const bool is_finite =
-      std::all_of(k.begin(), k.end(), [](double value) { return std::isfinite(value); });
-  if (!is_finite || !(k[0] > 0) || k[4] == 0 || k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 ||
-      k[8] != 1) {
-    throw Error(ErrorCode::format, name +
-                                       ": must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew), fx "
-                                       "positive and fy not 0");
-  }
-  PinholeCamera camera;
-  camera.fx = k[0], camera.cx = k[2];
-  camera.fy = k[4], camera.cy = k[5];
-  return camera;
-}
-
-std::vector<double> finite_numbers(const fs::path& path) {
-  const std::string bytes = file_bytes(path);
-  std::vector<double> numbers;
-  for (LineReader line(path.string(), bytes); line.next();) {
-    for (std::size_t i = 0; i < line.words().size(); ++i) numbers.push_back(line.finite_number(i));
-  }
-  return numbers;
-}
 
 ReadPose unknown_pose(FrameVerdict verdict, std::string what) {
   ReadPose pose{{}, false, {verdict, std::move(what)}};

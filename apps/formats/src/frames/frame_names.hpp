@@ -21,14 +21,6 @@ namespace viewgain {
                                               const std::string& sensor,
                                               std::optional<double> depth_scale);
 
-/// The camera of a 3x3 matrix, row by row. Throws Error(format), beginning with `name`, unless it
-/// is fx 0 cx, 0 fy cy, 0 0 1 with fx > 0, fy not 0 and all numbers finite.
-[[nodiscard]] PinholeCamera camera_of_matrix(const std::array<double, 9>& k,
-                                             const std::string& name);
-
-/// The numbers of a file, whatever lines they stand on. Throws Error(format) for another word.
-[[nodiscard]] std::vector<double> finite_numbers(const std::filesystem::path& path);
-
 /// A pose as a file has it.
 struct ReadPose {
   Pose T_world_camera;

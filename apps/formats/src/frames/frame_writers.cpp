@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <set>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,7 +18,6 @@
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
-#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -28,27 +25,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kSimulatedText = "frames written by viewgain simulate: ";
-constexpr std::string_view kImportedText = "# files written by viewgain import";
 
 // In units, from 0 to the largest value of an image; 0 for what is no number.
 std::uint16_t saturated(double units) {
   constexpr double kMax = std::numeric_limits<std::uint16_t>::max();
   return units > 0 ? static_cast<std::uint16_t>(std::min(std::round(units), kMax))
                    : std::uint16_t{0};
-}
-
-[[noreturn]] void refuse_file(const fs::path& file, const char* what, const char* list) {
-  throw Error(ErrorCode::invalid_argument, file.string() + ": no " + what + " (" + list +
-                                               " says which are); choose another folder");
-}
-
-// Frames must have the camera's size.
-void check_size(int width, int height, const PinholeCamera& camera, const char* what) {
-  if (camera.width == width && camera.height == height) return;
-  throw Error(ErrorCode::invalid_argument, "frames of " + std::to_string(width) + " x " +
-                                               std::to_string(height) + " px for a " + what +
-                                               " of " + std::to_string(camera.width) + " x " +
-                                               std::to_string(camera.height) + " px");
 }
 
 // What an earlier simulation left in the folder, which a new one may replace.
@@ -70,26 +52,10 @@ std::vector<fs::path> simulated_files(const fs::path& dir) {
       const auto digits = frame_number(name, suffix);
       if (digits) is_own = is_own && std::stoull(*digits) < count;
     }
-    if (!is_own) refuse_file(dir / file, "frames of simulate", kSimulated);
-  }
-  return files;
-}
-
-// What an earlier import left in the folder, which a new one may replace.
-std::vector<fs::path> imported_files(const fs::path& dir) {
-  const std::vector<fs::path> files = frame_files(dir);
-  if (files.empty()) return files;
-  std::set<std::string> own;
-  if (is_there(dir / kImported)) {
-    std::istringstream lines(file_bytes(dir / kImported));
-    std::string line;
-    if (std::getline(lines, line) && line == kImportedText) {
-      own.insert(kImported);
-      while (std::getline(lines, line)) own.insert(line);
-    }
-  }
-  for (const fs::path& file : files) {
-    if (!own.contains(file.string())) refuse_file(dir / file, "file of import", kImported);
+    if (is_own) continue;
+    throw Error(ErrorCode::invalid_argument, (dir / file).string() + ": no frames of simulate (" +
+                                                 kSimulated +
+                                                 " says which are); choose another folder");
   }
   return files;
 }
@@ -137,66 +103,17 @@ void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) 
     throw Error(ErrorCode::invalid_argument, std::to_string(poses.size()) + " poses for " +
                                                  std::to_string(written_) + " frames");
   }
-  check_size(width_, height_, sensor.camera, "sensor");
+  const PinholeCamera& camera = sensor.camera;
+  if (camera.width != width_ || camera.height != height_) {
+    throw Error(ErrorCode::invalid_argument, "frames of " + std::to_string(width_) + " x " +
+                                                 std::to_string(height_) + " px for a sensor of " +
+                                                 std::to_string(camera.width) + " x " +
+                                                 std::to_string(camera.height) + " px");
+  }
   write_tum(staged_.path() / kPoses, poses);
   write_sensor_toml(staged_.path() / kSensor, sensor);
   write_file_atomically(staged_.path() / kSimulated,
                         std::string(kSimulatedText) + std::to_string(poses.size()) + "\n");
-  staged_.commit(earlier_);
-}
-
-RecordedFramesWriter::RecordedFramesWriter(const fs::path& dir)
-    : earlier_(imported_files(dir)), staged_(dir) {}
-
-void RecordedFramesWriter::write_frame(std::uint64_t number, const GrayImage& depth,
-                                       const Pose& T_world_camera) {
-  const std::string image = frame_name(number, kDepthSuffix);
-  const auto refuse = [&](const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, image + ": " + what);
-  };
-  if (files_.contains(image)) refuse("is written already");
-  if (!files_.empty() && (depth.width != width_ || depth.height != height_)) {
-    refuse("is of another size than those before");
-  }
-  if (!rigid_pose(T_world_camera)) refuse("the pose is no rigid transform");
-  const auto& m = T_world_camera.m;
-  std::string text;
-  for (std::size_t i = 0; i < m.size(); ++i) {
-    text += short_text(m[i]) + (i % 4 == 3 ? "\n" : " ");
-  }
-  const std::string pose = frame_name(number, kPoseSuffix);
-  write_png(staged_.path() / image, depth);
-  write_file_atomically(staged_.path() / pose, text + "0 0 0 1\n");
-  width_ = depth.width, height_ = depth.height;
-  files_.insert(image);
-  files_.insert(pose);
-}
-
-void RecordedFramesWriter::commit(const PinholeCamera& camera, double depth_scale,
-                                  const std::optional<Sensor>& sensor) {
-  if (files_.empty()) throw Error(ErrorCode::invalid_argument, "there is no frame to write");
-  camera.validate();
-  check_size(width_, height_, camera, "camera");
-  if (!(depth_scale > 0) || !std::isfinite(depth_scale)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the depth scale " + short_text(depth_scale) + " must be positive and finite");
-  }
-  const auto put = [this](const char* name, const std::string& text) {
-    write_file_atomically(staged_.path() / name, text);
-    files_.insert(name);
-  };
-  put(kIntrinsics, short_text(camera.fx) + " 0 " + short_text(camera.cx) + "\n0 " +
-                       short_text(camera.fy) + " " + short_text(camera.cy) + "\n0 0 1\n");
-  put(kScale, short_text(depth_scale) + "\n");
-  if (sensor) {
-    Sensor own = *sensor;
-    own.camera = camera;
-    own.validate();
-    put(kSensor, sensor_toml(own));
-  }
-  std::string list = std::string(kImportedText) + "\n";
-  for (const std::string& file : files_) list += file + "\n";
-  write_file_atomically(staged_.path() / kImported, list);
   staged_.commit(earlier_);
 }
 

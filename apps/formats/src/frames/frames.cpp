@@ -31,22 +31,28 @@ void check_index(std::size_t index, std::size_t count) {
               "there is no frame " + std::to_string(index) + " of " + std::to_string(count));
 }
 
-// Nine numbers of a 3x3 matrix fx 0 cx / 0 fy cy / 0 0 1.
+// The numbers of a 3x3 matrix, whatever lines they stand on.
 void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
-  const std::vector<double> k = finite_numbers(path);
-  if (k.size() != 9) {
-    throw Error(ErrorCode::format, path.string() +
-                                       ": needs the nine numbers of a 3x3 matrix, has " +
-                                       std::to_string(k.size()));
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorCode::format, path.string() + ": " + what);
+  };
+  const std::string bytes = file_bytes(path);
+  std::vector<double> k;
+  for (LineReader line(path.string(), bytes); line.next();) {
+    for (std::size_t i = 0; i < line.words().size(); ++i) k.push_back(line.finite_number(i));
   }
-  const PinholeCamera own =
-      camera_of_matrix({k[0], k[1], k[2], k[3], k[4], k[5], k[6], k[7], k[8]}, path.string());
-  camera.fx = own.fx, camera.cx = own.cx;
-  camera.fy = own.fy, camera.cy = own.cy;
+  if (k.size() != 9) {
+    refuse("needs the nine numbers of a 3x3 matrix, has " + std::to_string(k.size()));
+  }
+  if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
+    refuse("must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew)");
+  }
+  camera.fx = k[0], camera.cx = k[2];
+  camera.fy = k[4], camera.cy = k[5];
   try {
     camera.validate();
   } catch (const Error& error) {
-    throw Error(ErrorCode::format, path.string() + ": " + error.what());
+    refuse(error.what());
   }
 }
 

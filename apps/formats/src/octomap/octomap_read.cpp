@@ -284,11 +284,6 @@ BeliefGrid load_octomap(const std::filesystem::path& path, const OctomapConfig& 
   return grid_from_octomap_bytes(file_bytes(path), config, path.string());
 }
 
-double octomap_resolution(const std::filesystem::path& path) {
-  constexpr std::size_t kMostHeader = std::size_t{1} << 16U;  // [bytes]; OctoMap's has some 100
-  return octomap_resolution_of_bytes(file_head(path, kMostHeader), path.string());
-}
-
 double octomap_resolution_of_bytes(std::string_view bytes, const std::string& name) {
   return read_header(bytes, name).resolution;
 }

@@ -47,16 +47,6 @@ class DamagedOctomap : public testing::Test {
   int cases_ = 0;
 };
 
-TEST_F(DamagedOctomap, EveryCutIsRefused) {
-  for (const std::string& good : {full_, binary_}) {
-    for (std::size_t length = 0; length < good.size(); ++length) {
-      expect_refused("", good.substr(0, length));
-    }
-  }
-  EXPECT_EQ(cases_, static_cast<int>(full_.size() + binary_.size()));
-  EXPECT_GT(cases_, 800);
-}
-
 TEST_F(DamagedOctomap, HeadersAreNamedByLine) {
   const std::string size =
       full_.substr(full_.find("size "), full_.find("\nres") - full_.find("size "));
@@ -86,8 +76,6 @@ TEST_F(DamagedOctomap, HeadersAreNamedByLine) {
       folder_.file("good.ot", with(full_, "id OcTree", "# comment\nauthor me\nid OcTree"))));
   expect_error(ErrorCode::io, "none.ot", [&] { (void)load_octomap(folder_.path() / "none.ot"); });
   expect_error(ErrorCode::io, "directory", [&] { (void)load_octomap(folder_.path()); });
-  expect_error(ErrorCode::io, "none.ot",
-               [&] { (void)octomap_resolution(folder_.path() / "none.ot"); });
 }
 
 std::string tree_bytes(const char* kind, int nodes, const std::string& data) {

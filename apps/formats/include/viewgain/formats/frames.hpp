@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,7 +18,6 @@
 #include "viewgain/core/range_calibration.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/masks.hpp"
-#include "viewgain/formats/png.hpp"
 #include "viewgain/formats/staged_folder.hpp"
 
 /// @file
@@ -135,34 +133,6 @@ class VIEWGAIN_EXPORT FramesWriter {
   StagedFolder staged_;
   std::size_t written_ = 0;     // frames
   int width_ = 0, height_ = 0;  // of them [px]
-};
-
-/// Writes frames in the recorded layout, depth images as they are, into a folder that appears, or
-/// changes, only when all is written. imported.txt in it lists the files; only those are ever
-/// replaced. Thread safety: one call at a time.
-class VIEWGAIN_EXPORT RecordedFramesWriter {
- public:
-  /// Throws Error(io), and Error(invalid_argument) if the folder holds frames, poses or a sensor
-  /// that no RecordedFramesWriter has written.
-  explicit RecordedFramesWriter(const std::filesystem::path& dir);
-
-  /// Writes frame-NNNNNN.depth.png and frame-NNNNNN.pose.txt, NNNNNN being the number. Throws
-  /// Error(io), and Error(invalid_argument) for a number that was written, an image that is none or
-  /// of another size than the first, or a pose that is no rigid transform (1e-3).
-  void write_frame(std::uint64_t number, const GrayImage& depth, const Pose& T_world_camera);
-
-  /// Writes camera-intrinsics.txt, depth-scale.txt ([m] per unit: depth_scale) and, where a sensor
-  /// is given, sensor.toml with this camera in it, and puts all in the place of an earlier import.
-  /// Throws Error(io), and Error(invalid_argument) without a frame, for a camera of another size or
-  /// a scale that is not positive and finite.
-  void commit(const PinholeCamera& camera, double depth_scale,
-              const std::optional<Sensor>& sensor = {});
-
- private:
-  std::vector<std::filesystem::path> earlier_;
-  StagedFolder staged_;
-  std::set<std::string> files_;  // written
-  int width_ = 0, height_ = 0;   // of the images [px]
 };
 
 }  // namespace viewgain

@@ -45,11 +45,8 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid grid_from_octomap_bytes(
     std::string_view bytes, const OctomapConfig& config = {}, const std::string& name = "octree");
 
-/// The resolution of an OctoMap file [m], from its header alone. Throws as load_octomap. Cost: the
-/// first bytes are read.
-[[nodiscard]] VIEWGAIN_EXPORT double octomap_resolution(const std::filesystem::path& path);
-/// The same of a file's contents, or of the first part of them; `name` stands for the file in
-/// messages.
+/// The resolution of a file's contents [m], or of the first part of them, from its header alone;
+/// `name` stands for the file in messages. Throws Error(format) as load_octomap.
 [[nodiscard]] VIEWGAIN_EXPORT double octomap_resolution_of_bytes(
     std::string_view bytes, const std::string& name = "octree");
 

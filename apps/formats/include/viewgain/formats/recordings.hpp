@@ -45,15 +45,16 @@ struct VIEWGAIN_EXPORT ImportReport {
   std::size_t masks = 0;            ///< frames that have one or the other
 };
 
-/// Writes a recording's frames into a folder that open_frames() reads (RecordedFramesWriter), which
+/// Writes a recording's frames into a folder that open_frames() reads which
 /// appears whole or not at all. Each frame has the pose nearest in time, nothing is interpolated,
 /// and the number of its place in depth.txt, from 0; a pixel of 65535, which means nothing here,
 /// becomes 0.
 ///
 /// Throws Error(io) or Error(format), naming the file and where there is one the line, for what is
 /// missing or damaged and not one frame's, also for a recording without a frame that can be used
-/// and for masks none of which is of a frame; as MaskFolder and RecordedFramesWriter do;
-/// Error(invalid_argument) for a camera that cannot be used or a gap that is negative. Cost:
+/// and for masks none of which is of a frame; as MaskFolder does;
+/// Error(invalid_argument) for a camera that cannot be used, a gap that is negative, or a folder
+/// with frames that no import has left. Cost:
 /// O(pixels), one frame in memory.
 VIEWGAIN_EXPORT ImportReport import_recording(const std::filesystem::path& source,
                                               const std::filesystem::path& out,
