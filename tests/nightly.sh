@@ -13,10 +13,11 @@
 #     arm64       the library and the oracles' tests by cross compiler, run by qemu-user (root)
 #     kill        100 kills of runs, of follow and of studies: all end as if nothing had been
 #     vdb         .vdb files: damaged ones, with little memory, read by OpenVDB's own tools
+#     mutate      60 faults put into the code, one at a time: do the tests catch them?
 # Dates, commits and results are appended to tests/nightly.log, which is committed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all="statistics asan tsan golden packages browser docs perf debian13 arm64 kill vdb"
+all="statistics asan tsan golden packages browser docs perf debian13 arm64 kill vdb mutate"
 
 if [ $# -eq 0 ]; then
   echo "usage: tests/nightly.sh PART [...], of: $all" >&2
@@ -74,6 +75,7 @@ run_part() {
       ./tests/kill.py build/release/bin/viewgain build/kill/camel.off --work build/kill/work | tee build/kill.log
       ;;
     vdb) build release; run_ctest --preset vdb ;;
+    mutate) build release; ./tests/mutate.py build/release | tee build/mutate.log ;;
   esac
 }
 
@@ -88,7 +90,7 @@ for part in "$@"; do
   [ $? -eq 0 ] || result=FAILED failed=1
   set -e
   summary=$(grep -E 'tests passed|tests failed' build/ctest.log 2>/dev/null | tail -n 1 || true)
-  case "$part" in golden | packages | debian13 | arm64) summary= ;; kill) summary=$(tail -n 1 build/kill.log) ;; esac
+  case "$part" in golden | packages | debian13 | arm64) summary= ;; kill | mutate) summary=$(tail -n 1 "build/$part.log") ;; esac
   line="$(date -u +%F) $(git describe --always --dirty --exclude "*") $part: $result in $((SECONDS / 60)) min${summary:+, $summary}"
   echo "$line" | tee -a tests/nightly.log
 done

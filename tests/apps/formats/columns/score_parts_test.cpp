@@ -165,6 +165,7 @@ TEST_F(ScoreParts, BadColumnsOfPosesAreNamed) {
   std::vector<double> identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   write_npy("good.npy", "'<f8'", "(1, 4, 4)", identity);
   write("none.npy", "index,gain\n");
+  write("byte.npy", read("good.npy").substr(0, read("good.npy").size() - 1));
   write_npy("short.npy", "'<f8'", "(2, 4, 4)", identity);
   write_npy("empty.npy", "'<f8'", "(0, 4, 4)", {});
   write_npy("float.npy", "'<f4'", "(2, 4, 4)", identity);
@@ -183,6 +184,7 @@ TEST_F(ScoreParts, BadColumnsOfPosesAreNamed) {
   const Strings head{"score", "map.vdb", "--sensor", "small.toml", "--poses"};
   for (const auto& [name, word] :
        std::vector<std::pair<std::string, std::string>>{{"none.npy", "no .npy"},
+                                                        {"byte.npy", "cut off"},
                                                         {"short.npy", "cut off"},
                                                         {"empty.npy", "no pose"},
                                                         {"float.npy", "<f8"},
@@ -201,6 +203,16 @@ TEST_F(ScoreParts, BadColumnsOfPosesAreNamed) {
     EXPECT_NE(result.err.find(name), std::string::npos) << name << ": " << result.err;
   }
   EXPECT_EQ(run(test::joined(head, {"good.npy"})).exit_code, 0);
+}
+
+TEST(NpyHeader, OfTheSecondVersionMayBeLong) {
+  constexpr std::size_t kLength = 70'000;  // more than 16 bits hold
+  std::string bytes("\x93NUMPY\x02\0\x70\x11\x01\0", 12);
+  bytes += "{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }";
+  bytes.resize(12 + kLength, ' ');
+  const NpyHeader header = parse_npy_header("long.npy", bytes);
+  EXPECT_EQ(header.data_offset, 12 + kLength);
+  EXPECT_EQ(header.shape, std::vector<std::uint64_t>{3});
 }
 
 // By the bytes that numpy gives its types.
