@@ -5,6 +5,7 @@
 #   apps/install_dependencies.sh --perf     for all that and the benchmarks
 #   apps/install_dependencies.sh --browser  for all that and the test of the report in a browser
 #   apps/install_dependencies.sh --docs     for all that and the documentation site (target `docs`)
+#   apps/install_dependencies.sh --fuzz     for all that --tests is for and libFuzzer
 #   apps/install_dependencies.sh --packages for all that --tests is for and Debian packages
 #   apps/install_dependencies.sh --all      for all of it
 # Asks nothing; uses sudo only if not root.
@@ -24,6 +25,7 @@ tests=(
 )
 perf=(libbenchmark-dev python3-scipy)
 browser=(chromium-headless-shell)
+fuzz=(clang-19 libclang-rt-19-dev)
 docs=(doxygen doxygen-awesome-css python3-sphinx python3-myst-parser furo libjs-mathjax)
 case "${1:-}" in
   "") ;;
@@ -31,9 +33,10 @@ case "${1:-}" in
   --perf) packages+=("${tests[@]}" "${perf[@]}") ;;
   --browser) packages+=("${tests[@]}" "${browser[@]}") ;;
   --docs) packages+=("${tests[@]}" "${docs[@]}") ;;
+  --fuzz) packages+=("${tests[@]}" "${fuzz[@]}") ;;
   --packages) packages+=("${tests[@]}" dpkg-dev) ;;
-  --all) packages+=("${tests[@]}" "${perf[@]}" "${browser[@]}" "${docs[@]}" dpkg-dev) ;;
-  *) echo "$0: no option $1; there are --tests, --perf, --browser, --docs, --packages and --all" >&2; exit 2 ;;
+  --all) packages+=("${tests[@]}" "${perf[@]}" "${browser[@]}" "${fuzz[@]}" "${docs[@]}" dpkg-dev) ;;
+  *) echo "$0: no option $1; there are --tests, --perf, --browser, --docs, --fuzz, --packages and --all" >&2; exit 2 ;;
 esac
 
 missing=()

@@ -13,16 +13,24 @@
 #     arm64       the library and the oracles' tests by cross compiler, run by qemu-user (root)
 #     kill        100 kills of runs, of follow and of studies: all end as if nothing had been
 #     vdb         .vdb files: damaged ones, with little memory, read by OpenVDB's own tools
+#     mutate      60 faults put into the code, one at a time: do the tests catch them?
+#     fuzz [N]    libFuzzer for each reader and the calls of C, N minutes each (1)
 # Dates, commits and results are appended to tests/nightly.log, which is committed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all="statistics asan tsan golden packages browser docs perf debian13 arm64 kill vdb"
+all="statistics asan tsan golden packages browser docs perf debian13 arm64 kill vdb mutate fuzz"
 
 if [ $# -eq 0 ]; then
   echo "usage: tests/nightly.sh PART [...], of: $all" >&2
   exit 2
 fi
+minutes=1 parts=()
 for part in "$@"; do
+  if [[ "${parts[*]}" == *fuzz && $part =~ ^[0-9.]+$ ]]; then
+    minutes=$part
+    continue
+  fi
+  parts+=("$part")
   [[ " $all " == *" $part "* ]] || { echo "tests/nightly.sh: no part $part; there are $all" >&2; exit 2; }
 done
 
@@ -74,11 +82,13 @@ run_part() {
       ./tests/kill.py build/release/bin/viewgain build/kill/camel.off --work build/kill/work | tee build/kill.log
       ;;
     vdb) build release; run_ctest --preset vdb ;;
+    mutate) build release; ./tests/mutate.py build/release | tee build/mutate.log ;;
+    fuzz) ./apps/install_dependencies.sh --fuzz; build fuzz; ./tests/fuzz/run.sh "$minutes" | tee build/fuzz.log ;;
   esac
 }
 
 failed=0
-for part in "$@"; do
+for part in "${parts[@]}"; do
   SECONDS=0
   rm -f build/ctest.log
   result=passed
@@ -88,7 +98,7 @@ for part in "$@"; do
   [ $? -eq 0 ] || result=FAILED failed=1
   set -e
   summary=$(grep -E 'tests passed|tests failed' build/ctest.log 2>/dev/null | tail -n 1 || true)
-  case "$part" in golden | packages | debian13 | arm64) summary= ;; kill) summary=$(tail -n 1 build/kill.log) ;; esac
+  case "$part" in golden | packages | debian13 | arm64) summary= ;; kill | mutate | fuzz) summary=$(tail -n 1 "build/$part.log") ;; esac
   line="$(date -u +%F) $(git describe --always --dirty --exclude "*") $part: $result in $((SECONDS / 60)) min${summary:+, $summary}"
   echo "$line" | tee -a tests/nightly.log
 done

@@ -5,10 +5,13 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <fstream>
 #include <memory>
@@ -18,6 +21,17 @@
 
 #include "expect_error.hpp"
 #include "temporary_folder.hpp"
+
+namespace {
+std::atomic<int> files_synced{0}, folders_synced{0};
+}  // namespace
+
+// In the place of the C library's.
+extern "C" int fsync(int file) {
+  struct stat status {};
+  if (::fstat(file, &status) == 0) ++(S_ISDIR(status.st_mode) ? folders_synced : files_synced);
+  return static_cast<int>(::syscall(SYS_fsync, file));
+}
 
 namespace viewgain {
 namespace {
@@ -35,6 +49,10 @@ TEST(AtomicFile, AppearsOnlyWithCommit) {
     EXPECT_EQ(file.temporary_path().parent_path(), folder.path());
     EXPECT_EQ(file.temporary_path().extension(), ".vdb");
     EXPECT_TRUE(fs::exists(file.temporary_path()));
+    // By which writers elsewhere know that it is in use.
+    const int other = ::open(file.temporary_path().c_str(), O_WRONLY | O_CLOEXEC);
+    EXPECT_NE(::flock(other, LOCK_EX | LOCK_NB), 0);
+    ::close(other);
     file.write("one, ");
     file.write("");
     file.write("two");
@@ -44,6 +62,14 @@ TEST(AtomicFile, AppearsOnlyWithCommit) {
   }
   EXPECT_EQ(read_all(target), "one, two");
   EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(AtomicFile, ReachesTheDiskWithItsFolder) {
+  const TemporaryFolder folder;
+  const int files = files_synced, folders = folders_synced;
+  write_file_atomically(folder.path() / "map.vdb", "whole");
+  EXPECT_EQ(files_synced - files, 1);
+  EXPECT_EQ(folders_synced - folders, 1);
 }
 
 TEST(AtomicFile, WithoutCommitNothingChanges) {

@@ -43,6 +43,7 @@ TEST(StructuredLightNoise, IsNguyensModel) {
   EXPECT_NEAR(sigmas(noise, 1.0, 585, 1.0).lateral, 0.8 / 585, 1e-15);
   // Up to 60° the axial sigma does not depend on the incidence.
   EXPECT_EQ(sigmas(noise, 1.0, 585, 0.51).axial, sigmas(noise, 1.0, 585, 1.0).axial);
+  EXPECT_GT(sigmas(noise, 1.0, 585, 0.49).axial, sigmas(noise, 1.0, 585, 1.0).axial);
   // At 75°: θ²/(π/2-θ)² = 25, θ/(π/2-θ) = 5.
   const double cos_75 = std::cos(75 * std::numbers::pi / 180);
   EXPECT_NEAR(sigmas(noise, 0.64, 585, cos_75).axial,

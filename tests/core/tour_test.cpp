@@ -127,6 +127,28 @@ TEST(Tour, GoesRoundACircle) {
   EXPECT_EQ(cases, 12);
 }
 
+TEST(Tour, BeyondTwelveStopsNoPartIsBetterTurned) {
+  constexpr std::ptrdiff_t kCount = 24;
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> place(-1, 1);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    std::vector<Pose> poses;
+    for (std::ptrdiff_t i = 0; i < kCount; ++i) {
+      poses.emplace_back(Eigen::Matrix3d::Identity(),
+                         Eigen::Vector3d(place(random), place(random), 0));
+    }
+    const WayCost cost = straight_ways(Pose(), poses);
+    const Tour tour = order_stops(kCount, cost);
+    for (std::ptrdiff_t begin = 0; begin < kCount; ++begin) {
+      for (std::ptrdiff_t end = begin + 2; end <= kCount; ++end) {
+        std::vector<std::size_t> turned = tour.stops;
+        std::reverse(turned.begin() + begin, turned.begin() + end);
+        EXPECT_GE(cost_of(turned, cost), tour.cost * (1 - 1e-9));
+      }
+    }
+  }
+}
+
 TEST(Tour, BeyondTwelveStopsAvoidsWaysThatAreNone) {
   constexpr std::size_t kCount = 15;
   // Vetoes that leave many orders.

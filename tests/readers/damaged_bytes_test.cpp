@@ -8,261 +8,33 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <functional>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "core/temporary_folder.hpp"
 #include "mesh/files/mesh_dialects.hpp"
 #include "program/cli/json.hpp"
+#include "readers/readers.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/pose_io.hpp"
-#include "viewgain/core/sensor.hpp"
-#include "viewgain/formats/cloud_io.hpp"
-#include "viewgain/formats/frames.hpp"
-#include "viewgain/formats/masks.hpp"
-#include "viewgain/formats/octomap_io.hpp"
-#include "viewgain/formats/png.hpp"
-#include "viewgain/formats/reach_toml.hpp"
-#include "viewgain/formats/recordings.hpp"
-#include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
-#include "viewgain/support/columns/npy_poses.hpp"
-#include "viewgain/support/columns/table.hpp"
-#include "viewgain/support/pose_numbers.hpp"
 
 namespace viewgain {
-namespace {
-
-namespace fs = std::filesystem;
-using test::read_all;
-using test::TemporaryFolder;
-
-constexpr std::size_t kCuts = 400, kChanges = 1500;  // of a file, at most
-
-/// Good files below a folder, those of them that are to be damaged, and what reads them.
-struct Reader {
-  std::string name;
-  std::function<void(const TemporaryFolder&)> write;
-  std::vector<std::string> damaged;
-  std::function<void(const fs::path&)> read;
-};
+namespace test {
 
 void PrintTo(const Reader& reader, std::ostream* out) { *out << reader.name; }
 
-std::vector<Pose> three_poses() {
-  return {look_at({1, 0, 0.5}, {0, 0, 0}), look_at({0, 1, 0.5}, {0, 0, 0}),
-          look_at({-1, 0.2, 0.3}, {0, 0, 0})};
-}
+}  // namespace test
+namespace {
 
-GrayImage small_image(int width, int height) {
-  GrayImage image{width, height, {}};
-  for (int k = 0; k < width * height; ++k) {
-    image.pixels.push_back(static_cast<std::uint16_t>(2000 + 37 * k));
-  }
-  return image;
-}
+namespace fs = std::filesystem;
+using test::all_readers;
+using test::read_all;
+using test::Reader;
+using test::TemporaryFolder;
 
-Sensor small_sensor() {
-  Sensor sensor = sensor_preset("kinect_v1");
-  sensor.camera = {8, 6, 9.0, 9.0, 3.5, 2.5, {0.1, -0.05, 0.001, 0.002, 0.01}};
-  return sensor;
-}
-
-std::string matrix_text(const Pose& pose) {
-  std::string text;
-  for (std::size_t i = 0; i < 12; ++i)
-    text += std::to_string(pose.m[i]) + (i % 4 == 3 ? "\n" : " ");
-  return text + "0 0 0 1\n";
-}
-
-template <typename Value>
-void append(std::string& bytes, Value value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-void write_images(const TemporaryFolder& folder, const std::string& below,
-                  const std::vector<std::string>& names) {
-  fs::create_directories(folder.path() / below);
-  for (const std::string& name : names) {
-    write_png(folder.path() / below / name, small_image(8, 6));
-  }
-}
-
-void load_recording(const fs::path& folder) {
-  ImportConfig config;
-  config.camera = {8, 6, 9, 9, 3.5, 2.5, {}};
-  (void)import_recording(folder, folder.string() + "/frames", config);
-}
-
-std::string binary_ply(const std::string& order) {
-  std::string bytes = "ply\nformat binary_" + order +
-                      "_endian 1.0\nelement vertex 4\nproperty float x\nproperty float "
-                      "y\nproperty float z\nproperty list uchar short w\nend_header\n";
-  for (int k = 0; k < 4; ++k) {
-    bytes += std::string(12, static_cast<char>(k * k)) + std::string("\2abcd");
-  }
-  return bytes;
-}
-
-std::string binary_pcd() {
-  std::string bytes =
-      "VERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 4\nHEIGHT "
-      "1\nVIEWPOINT 0 0 1 1 0 0 0\nPOINTS 4\nDATA binary\n";
-  for (int k = 0; k < 16; ++k) append(bytes, static_cast<float>(k * k % 11));
-  return bytes;
-}
-
-// Compressed by liblzf: 16 points.
-std::string compressed_pcd() {
-  std::string bytes = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 16\nDATA binary_compressed\n";
-  append(bytes, std::uint32_t{39});
-  append(bytes, std::uint32_t{192});
-  return bytes + std::string(
-                     "\001\000\000\140\000\003\077\000\000\200\040\003\000\300\040\003"
-                     "\140\000\040\007\340\037\017\000\240\040\053\340\063\003\001\000"
-                     "\300\340\061\003\001\000\300",
-                     39);
-}
-
-// A free and an occupied voxel at the tree's corner.
-std::string binary_octomap() {
-  std::string bytes = "# Octomap OcTree binary file\nid OcTree\nsize 18\nres 0.1\ndata\n";
-  for (int level = 0; level < 15; ++level) bytes += std::string("\3\0", 2);
-  return bytes + std::string("\x09\0", 2);
-}
-
-std::string octomap_of_boxes() {
-  BeliefGrid grid(
-      {.voxel_size = 0.1, .workspace = {{-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4}}, .prior_sigma = 0.1});
-  for (std::int32_t i = -3; i < 3; ++i) {
-    grid.set({i, i, -i}, 0.85F);
-    grid.set({i, 0, 3}, -0.4F);
-  }
-  return octomap_bytes(grid);
-}
-
-// One file, its bytes and what reads it.
-Reader file_reader(const std::string& name, const std::string& bytes,
-                   std::function<void(const fs::path&)> read) {
-  return {name,
-          [=](const TemporaryFolder& folder) { folder.file(name, bytes); },
-          {name},
-          [=](const fs::path& folder) { read(folder / name); }};
-}
-
-std::vector<Reader> pose_readers() {
-  const auto write_columns = [](const TemporaryFolder& folder) {
-    Table table{};
-    for (const char* name : kPoseColumns) table.columns.push_back({name, ColumnType::real});
-    for (const Pose& pose : three_poses()) {
-      for (const double x : numbers_of_pose(pose)) table.add(x);
-    }
-    write_table(folder.path() / "poses.npy", table);
-  };
-  return {
-      {"poses.txt",
-       [](const TemporaryFolder& folder) { write_tum(folder.path() / "poses.txt", three_poses()); },
-       {"poses.txt"},
-       [](const fs::path& folder) { (void)read_tum(folder / "poses.txt"); }},
-      file_reader("pose.txt", matrix_text(three_poses()[0]),
-                  [](const fs::path& path) { (void)read_pose_matrix(path); }),
-      {"poses.npy", write_columns, {"poses.npy"}, [](const fs::path& folder) {
-         (void)read_npy_poses(folder / "poses.npy");
-       }}};
-}
-
-std::vector<Reader> settings_readers() {
-  return {file_reader("sensor.toml", sensor_toml(small_sensor()),
-                      [](const fs::path& path) { (void)read_sensor_toml(path); }),
-          {"reach.toml",
-           [](const TemporaryFolder& folder) {
-             ReachRegion region;
-             region.boxes.push_back({{0, 0, 0}, {1, 1, 1}});
-             region.poses = three_poses();
-             write_reach_toml(folder.path() / "reach.toml", region);
-           },
-           {"reach.toml", "reach.poses.txt"},
-           [](const fs::path& folder) { (void)read_reach_toml(folder / "reach.toml"); }}};
-}
-
-std::vector<Reader> image_readers() {
-  const auto write_both = [](const TemporaryFolder& folder) {
-    write_images(folder, ".", {"gray.png"});
-    write_png(folder.path() / "gray8.png",
-              Gray8Image{8, 6, std::vector<std::uint8_t>(48, std::uint8_t{255})});
-  };
-  return {{"png", write_both, {"gray.png", "gray8.png"}, [](const fs::path& folder) {
-             (void)png_size(folder / "gray.png");
-             (void)read_gray_png(folder / "gray.png", 8, 6);
-             (void)read_gray8_png(folder / "gray8.png", 8, 6);
-           }}};
-}
-
-std::vector<Reader> frame_readers() {
-  const auto write_frames = [](const TemporaryFolder& folder) {
-    write_images(folder, "frames", {"frame-000000.depth.png", "frame-000001.depth.png"});
-    write_images(folder, "masks", {"frame-000000.depth.png"});
-    write_tum(folder.path() / "frames/poses.txt", std::vector(2, three_poses()[0]));
-    write_sensor_toml(folder.path() / "frames/sensor.toml", small_sensor());
-  };
-  const auto write_tum_recording = [](const TemporaryFolder& folder) {
-    write_images(folder, "depth", {"1.png", "2.png"});
-    folder.file("depth.txt", "# timestamp filename\n1.0 depth/1.png\n2.0 depth/2.png\n");
-    write_tum(folder.path() / "groundtruth.txt", std::vector(2, three_poses()[0]),
-              std::vector<double>{1.0, 2.0});
-  };
-  return {{"frames",
-           write_frames,
-           {"frames/frame-000001.depth.png", "frames/poses.txt", "frames/sensor.toml"},
-           [](const fs::path& folder) {
-             const FrameSequence frames = open_frames(folder / "frames");
-             for (std::size_t i = 0; i < frames.images.size(); ++i) {
-               const FrameFault fault = read_frame(frames, i).fault;
-               if (fault.verdict != FrameVerdict::used) throw Error(ErrorCode::format, fault.what);
-             }
-           }},
-          {"tum",
-           write_tum_recording,
-           {"depth.txt", "groundtruth.txt"},
-           load_recording}};
-}
-
-std::vector<Reader> cloud_and_map_readers() {
-  const auto cloud = [](const fs::path& path) { (void)load_cloud(path); };
-  const auto map = [](const fs::path& path) { (void)load_octomap(path); };
-  return {file_reader("ascii.pcd",
-                      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH "
-                      "3\nHEIGHT 1\nVIEWPOINT 0 0 1 1 0 0 0\nPOINTS 3\nDATA ascii\n0 0 0\n1 0.5 "
-                      "2\n0.1 0.2 0.3\n",
-                      cloud),
-          file_reader("binary.pcd", binary_pcd(), cloud),
-          file_reader("ascii.ply",
-                      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
-                      "y\nproperty float z\nend_header\n0 0 0\n1 0.5 2\n0.1 0.2 0.3\n",
-                      cloud),
-          file_reader("compressed.pcd", compressed_pcd(), cloud),
-          file_reader("little.ply", binary_ply("little"), cloud),
-          file_reader("big.ply", binary_ply("big"), cloud),
-          file_reader("map.bt", binary_octomap(), map),
-          file_reader("map.ot", octomap_of_boxes(), map)};
-}
-
-std::vector<Reader> all_readers() {
-  std::vector<Reader> all;
-  for (const auto& some : {pose_readers(), settings_readers(), image_readers(), frame_readers(),
-                           cloud_and_map_readers()}) {
-    all.insert(all.end(), some.begin(), some.end());
-  }
-  return all;
-}
+constexpr std::size_t kCuts = 400, kChanges = 1500;  // of a file, at most
 
 // One of six kinds of change.
 std::string changed(std::string bytes, std::size_t kind, std::mt19937& random) {
@@ -370,23 +142,41 @@ TEST(DamagedMeshes, AreReadOrRefused) {
   EXPECT_GT(refused, kFiles / 40);
 }
 
-// What the fuzzers of clouds and trees begin with, and what they found.
+// What the fuzzers came upon.
 TEST(FuzzedBytes, AreReadOrRefused) {
   std::size_t read = 0, files = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(VIEWGAIN_FUZZ_CORPUS)) {
-    if (!entry.is_regular_file()) continue;
-    const fs::path& path = entry.path();
-    const std::string folder = path.parent_path().filename();
-    ++files;
-    try {
-      folder == "octomap" ? (void)load_octomap(path) : (void)load_cloud(path);
-      ++read;
-    } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
+  for (const Reader& reader : all_readers()) {
+    const fs::path inputs = fs::path(VIEWGAIN_FUZZ_CORPUS) / reader.name;
+    if (!fs::exists(inputs)) continue;
+    const TemporaryFolder folder;
+    reader.write(folder);
+    for (const auto& entry : fs::directory_iterator(inputs)) {
+      ++files;
+      try {
+        test::read_in_place(reader, folder, read_all(entry.path()));
+        ++read;
+      } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find(folder.path().string()), std::string::npos)
+            << entry.path() << ": " << error.what();
+      }
     }
   }
   EXPECT_GE(read, 6U);
-  EXPECT_GE(files, 7U);
+  EXPECT_GE(files, 8U);
+}
+
+TEST(FuzzedCalls, AreTakenOrRefused) {
+  std::size_t calls = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(VIEWGAIN_FUZZ_CORPUS) / "c_calls")) {
+    calls += test::c_calls(read_all(entry.path()));
+  }
+  std::mt19937 random(11);
+  for (int i = 0; i < 20; ++i) {
+    std::string bytes;
+    for (int k = 0; k < 300; ++k) bytes += static_cast<char>(random());
+    calls += test::c_calls(bytes);
+  }
+  EXPECT_GT(calls, 400U);
 }
 
 TEST(DamagedJson, IsReadOrRefused) {
@@ -401,7 +191,7 @@ TEST(DamagedJson, IsReadOrRefused) {
   EXPECT_EQ(app::dumped(app::Json("\xE9")), "\"\uFFFD\"");
 }
 
-TEST(DamagedBytes, EveryReaderIsHere) { EXPECT_EQ(all_readers().size(), 16U); }
+TEST(DamagedBytes, EveryReaderIsHere) { EXPECT_EQ(all_readers().size(), 22U); }
 
 }  // namespace
 }  // namespace viewgain

@@ -150,6 +150,22 @@ TEST(HazardCalibration, FindsTheRateOfAWorldThatHasOne) {
             field.far_rate());
 }
 
+// Where a class meets four times as much as the nearer ones, rates step up nowhere; the far rate's
+// share may grow a little.
+TEST(HazardCalibration, RatesDoNotStepUpWithTheDistance) {
+  BeliefGrid grid = unknown_cube();
+  HazardCounters counters;
+  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+    counters.classes[k].expected = 1'000'000'000;
+    counters.classes[k].met = k < 2 ? 1'000'000'000 : 4'000'000'000;
+  }
+  grid.set_hazard_counters(counters);
+  const HazardField field(grid.snapshot(), {.object_size = 1.4});
+  for (std::int32_t x = -18; x < 20; ++x) {
+    EXPECT_LE(field.rate({x + 1, -18, -18}), 1.01F * field.rate({x, -18, -18})) << x;
+  }
+}
+
 TEST(HazardCalibration, EarlierFramesFade) {
   const Sensor sensor = looking();
   const DepthFrame frame = frame_of(sensor, 0.6F);

@@ -299,6 +299,23 @@ TEST(Snapshot, FromTheOneBeforeIsTheSame) {
   EXPECT_GT(copied_leaves, 50U);
 }
 
+// A frame that changes no voxel's state has readings all the same.
+TEST(Snapshot, FromTheOneBeforeHasTheReadingsOfKnownVoxels) {
+  const Sensor sensor = small_sensor(48, 36);
+  const DepthFrame frame = see_spheres(sensor, ring_view(0), three_spheres_in_a_room());
+  BeliefGrid grid(object_grid(64));
+  FrameIntegrator integrator(sensor);
+  for (int i = 0; i < 40; ++i) integrator.integrate(grid, frame, ring_view(0));
+  const GridSnapshot before = grid.snapshot();
+  integrator.integrate(grid, frame, ring_view(0));
+  const GridSnapshot anew = grid.snapshot(), updated = grid.snapshot(before);
+  ASSERT_EQ(updated.leaves.size(), anew.leaves.size());
+  ASSERT_GT(anew.leaves.size(), 10U);
+  for (std::size_t k = 0; k < anew.leaves.size(); ++k) {
+    EXPECT_EQ(updated.leaves[k].beliefs, anew.leaves[k].beliefs);
+  }
+}
+
 // Where the workspace ends within a block, crossings beyond its face turn a tile into a leaf.
 TEST(Snapshot, FromTheOneBeforeIsTheSameAtARimWithinABlock) {
   const Sensor sensor = small_sensor(48, 36);

@@ -152,7 +152,7 @@ using Occupancy = IntegrationConfig::Occupancy;
 using Carve = IntegrationConfig::Carve;
 
 Sensor noisy_sensor(bool distorted) {
-  Sensor sensor = small_sensor(32, 24);
+  Sensor sensor = small_sensor(64, 48);  // for more than one thread
   if (distorted) sensor.camera.distortion = {-0.2, 0.05, 0.001, -0.002, 0.01};
   return sensor;
 }

@@ -80,6 +80,8 @@ TEST(BestViews, AreThoseOfTheLargestGainsTheFirstOfEqualOnes) {
   poses[5].m[7] = std::nan("");
   const GainEvaluator evaluator(VoxelScene::build(lump(9)), small_sensor(), test::kPaper);
   for (const std::size_t k : {1U, 7U, 118U, 123U}) expect_exact(evaluator, poses, k);
+  const std::vector<std::size_t> first = evaluator.best(poses, 2).indices;
+  EXPECT_EQ(first[1], first[0] + 60);  // the same pose
 }
 
 TEST(BestViews, TakeOddRequestsAndStops) {

@@ -80,37 +80,6 @@ TEST_F(Concurrency, AMapIsWrittenWhileItsSnapshotIsEvaluated) {
   EXPECT_EQ(same, 2 * kRounds);
 }
 
-TEST_F(Concurrency, ASceneIsUpdatedWhileTheOneBeforeIsEvaluated) {
-  std::mutex mutex;
-  auto current = VoxelScene::build(grid_);
-  std::vector<std::pair<std::shared_ptr<const VoxelScene>, std::vector<ViewGain>>> scored;
-  std::atomic<bool> is_done{false};
-  at_once(3, [&](std::size_t number) {
-    if (number == 0) {
-      for (int view = 2; view < 2 + kRounds; ++view) {
-        see(view);
-        auto next = VoxelScene::update(current, grid_, {.num_threads = 1});
-        const std::lock_guard lock(mutex);
-        current = std::move(next);
-      }
-      is_done = true;
-      return;
-    }
-    do {
-      std::shared_ptr<const VoxelScene> scene;
-      {
-        const std::lock_guard lock(mutex);
-        scene = current;
-      }
-      auto result = gains(scene);
-      const std::lock_guard lock(mutex);
-      scored.emplace_back(std::move(scene), std::move(result));
-    } while (!is_done);
-  });
-  EXPECT_GE(scored.size(), 2U);
-  for (const auto& [scene, result] : scored) EXPECT_TRUE(test::same_bits(gains(scene), result));
-}
-
 TEST_F(Concurrency, TenThousandCallsWhileFramesComeAreThoseOfOneThread) {
   constexpr std::size_t kThreads = 8, kCalls = (test::kSlowBuild ? 400 : 10'000) / kThreads,
                         kScenes = 12;

@@ -117,6 +117,7 @@ PlannerState state_of(const std::string& name, std::string_view text) {
   LineReader reader(name, text);
   std::size_t needed = 0;  // of the first four entries
   while (reader.next()) {
+    if (reader.words().empty()) reader.fail("an empty line");
     const std::string_view key = reader.words()[0];
     std::size_t at = 0;
     while (at < kEntries.size() && kEntries[at].name != key) ++at;

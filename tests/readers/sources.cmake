@@ -1,0 +1,13 @@
+# The table of readers, the calls of C, and the sources of the planner and the program that they reach into.
+find_package(nlohmann_json CONFIG REQUIRED)
+set(apps ${PROJECT_SOURCE_DIR}/apps)
+set(VIEWGAIN_READERS
+  ${CMAKE_CURRENT_LIST_DIR}/readers.cpp ${CMAKE_CURRENT_LIST_DIR}/../fuzz/c_calls.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../mesh/files/mesh_dialects.cpp
+  ${apps}/planner/src/choose/planner_state.cpp
+  ${apps}/program/cli/values.cpp ${apps}/program/commands/reconstruct/checkpoint.cpp)
+
+function(viewgain_link_readers target)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${apps} ${apps}/planner/src)
+  target_link_libraries(${target} PRIVATE viewgain_formats viewgain_mesh_io nlohmann_json::nlohmann_json)
+endfunction()
