@@ -15,10 +15,11 @@
 #     vdb         .vdb files: damaged ones, with little memory, read by OpenVDB's own tools
 #     mutate      60 faults put into the code, one at a time: do the tests catch them?
 #     fuzz [N]    libFuzzer for each reader and the calls of C, N minutes each (1)
+#     long        2,000 frames into 512³ voxels: does memory or time grow?
 # Dates, commits and results are appended to tests/nightly.log, which is committed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-all="statistics asan tsan golden packages browser docs perf debian13 arm64 kill vdb mutate fuzz"
+all="statistics asan tsan golden packages browser docs perf debian13 arm64 kill vdb mutate fuzz long"
 
 if [ $# -eq 0 ]; then
   echo "usage: tests/nightly.sh PART [...], of: $all" >&2
@@ -84,6 +85,7 @@ run_part() {
     vdb) build release; run_ctest --preset vdb ;;
     mutate) build release; ./tests/mutate.py build/release | tee build/mutate.log ;;
     fuzz) ./apps/install_dependencies.sh --fuzz; build fuzz; ./tests/fuzz/run.sh "$minutes" | tee build/fuzz.log ;;
+    long) build release; PYTHONPATH=build/release/python /usr/bin/python3 tests/long_run.py --csv build/long.csv | tee build/long.log ;;
   esac
 }
 
@@ -98,7 +100,7 @@ for part in "${parts[@]}"; do
   [ $? -eq 0 ] || result=FAILED failed=1
   set -e
   summary=$(grep -E 'tests passed|tests failed' build/ctest.log 2>/dev/null | tail -n 1 || true)
-  case "$part" in golden | packages | debian13 | arm64) summary= ;; kill | mutate | fuzz) summary=$(tail -n 1 "build/$part.log") ;; esac
+  case "$part" in golden | packages | debian13 | arm64) summary= ;; kill | mutate | fuzz | long) summary=$(tail -n 1 "build/$part.log") ;; esac
   line="$(date -u +%F) $(git describe --always --dirty --exclude "*") $part: $result in $((SECONDS / 60)) min${summary:+, $summary}"
   echo "$line" | tee -a tests/nightly.log
 done

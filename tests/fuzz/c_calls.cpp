@@ -272,7 +272,7 @@ class Calls {
       expect(best(evaluator, poses.data(), count + 1, k, indices.data(), gains.data(), &found,
                   &watch));
     } else if (which == 18) {
-      expect(vg_race(evaluator, poses.data(), count + 1, k, left, indices.data(), gains.data(),
+      expect(vg_race(evaluator, poses.data(), count + 1, k, byte(), indices.data(), gains.data(),
                      &found, nullptr));
       std::vector<std::int32_t> reasons(count + 1);
       expect(
