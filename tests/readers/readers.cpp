@@ -205,7 +205,7 @@ std::vector<Reader> frame_readers() {
                if (fault.verdict != FrameVerdict::used) throw Error(ErrorCode::format, fault.what);
              }
            }},
-          {"tum", write_tum_recording, {"depth.txt", "groundtruth.txt"}, load_recording}};
+          {"tum", write_tum_recording, {"depth.txt", "groundtruth.txt"}, load_recording, 20}};
 }
 
 std::vector<Reader> cloud_and_map_readers() {
