@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-
 #include "show/pictures/picture_parts.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/pose.hpp"

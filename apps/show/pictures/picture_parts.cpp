@@ -63,9 +63,8 @@ HeatPaints::HeatPaints(PaintedMesh& scene) {
     const double at = 4.0 * static_cast<double>(k) / static_cast<double>(paints_.size() - 1);
     const auto below = std::min<std::size_t>(3, static_cast<std::size_t>(at));
     const double share = at - static_cast<double>(below);
-    paints_[k] =
-        scene.add_paint({.color = (1 - share) * kAnchors[below] + share * kAnchors[below + 1],
-                         .back_side = 0.55});
+    paints_[k] = scene.add_paint(
+        {.color = (1 - share) * kAnchors[below] + share * kAnchors[below + 1], .back_side = 0.55});
   }
 }
 

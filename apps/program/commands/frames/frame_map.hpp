@@ -27,8 +27,8 @@ struct FrameMapOptions {
   bool refine = true;
 };
 
-/// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter, --coarsest, --fine, --finest and those of
-/// a folder.
+/// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter, --coarsest, --fine, --finest and
+/// those of a folder.
 void add_frame_map_options(App& app, FrameMapOptions& options);
 
 /// The workspace for what the frames see, but for the pixels that --jump-edge-filter takes; reads
