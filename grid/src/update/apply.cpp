@@ -109,7 +109,7 @@ class RegionUpdate {
           place.scale = scale_of(key, place, hit_block != nullptr);
           // Far off the rim of what an image shows is not worth a leaf.
           if (block_class == CubeClass::cut && hit_block == nullptr && place.leaf == nullptr &&
-              place.scale > 0) {
+              place.scale > 1) {
             continue;
           }
         }

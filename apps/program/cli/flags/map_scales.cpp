@@ -16,8 +16,7 @@ void ScaleOptions::set(IntegrationConfig& config) const {
 
 Json ScaleOptions::settings() const {
   Json json = Json::object();
-  if (coarsest > 0) json.update(Json{{"coarsest", coarsest}, {"fine", fine}});
-  if (finest > 0) json["finest"] = finest;
+  if (coarsest > 0) json.update(Json{{"coarsest", coarsest}, {"fine", fine}, {"finest", finest}});
   return json;
 }
 
