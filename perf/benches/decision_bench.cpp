@@ -155,8 +155,7 @@ void time_once(const World& world, const DecisionOptions& options, const ExecCon
   });
   boundary = possible.size();
   std::shared_ptr<const ClassicMap> map;
-  timed("classic_map",
-        [&] { map = ClassicMap::build(scene, grid, Acquisition{world.sensor}, exec); });
+  timed("classic_map", [&] { map = ClassicMap::build(scene, grid, {}, exec); });
   for (const std::size_t count : options.candidates) {
     const std::vector<Pose> poses = exactly(possible, scene->snapshot(), count);
     for (const GainModel model : {GainModel::paper, GainModel::surface, GainModel::combined}) {
