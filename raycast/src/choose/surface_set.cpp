@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "gain/task_weight.hpp"
@@ -120,6 +121,11 @@ double SurfaceSet::refinement(const Refined& added) const {
 }
 
 ViewGain SurfaceSet::tighter(const Pose& T_world_camera, ViewDriver::Lease& lease) const {
+  if (!driver_.core()->config.weights.empty()) {  // then the kernel is not asked
+    ViewGain none;
+    none.gain = std::numeric_limits<double>::infinity();
+    return none;
+  }
   ViewGain result = driver_.evaluate(T_world_camera, lease, missed_.data());
   if (!refines() || result.status != ViewGain::Status::ok) return result;
   const OccupiedSums& occupied = lease.workspace().occupied;

@@ -32,7 +32,7 @@ class SurfaceSet {
     return driver_.evaluate(T_world_camera, lease);
   }
   /// The same once views are chosen, closer: no more than the kernel finds if what they show of
-  /// each cell is left out.
+  /// each cell is left out. Infinite with task weights, by which a look is as quick.
   static constexpr bool kTightens = true;
   [[nodiscard]] ViewGain tighter(const Pose& T_world_camera, ViewDriver::Lease& lease) const;
   /// What view `i` adds to those chosen. What it reaches is kept while there is room, so that it is

@@ -59,7 +59,7 @@ struct Workspace {
   std::vector<RunMeasure::Run> view_runs;
   SampleScratch sample;
   OccupiedSums occupied;  ///< these seven for the surface gain
-  VoxelPlaces cells;      ///< of hazard, that a view of a set reaches
+  VoxelPlaces cells;      ///< that a view reaches, of hazard or voxels
   RefiningHits refining;
   std::vector<SampledEnd> sampled_ends;
   std::vector<VoxelVisit> mixed_visits, visits;

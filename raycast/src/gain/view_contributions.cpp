@@ -57,27 +57,27 @@ std::vector<VoxelContribution> surface_contributions(const detail::ViewDriver& d
   const GainConfig& config = driver.core()->config;
   const bool refines = config.model == GainModel::combined;
   const double per_area = refines ? surface.nats_per_area() : 1.0;
-  std::unordered_map<std::uint64_t, std::size_t> places;
+  detail::VoxelPlaces& places = workspace.cells;
+  places.begin();
   std::vector<VoxelContribution> parts;
   std::vector<SymmetricMatrix3> information;  // of parts
-  const Index3& base = driver.scene().snapshot.min_index;
   driver.tracer().prepare(*frame, workspace.sweep);
   surface.for_each_share(
       *frame, workspace,
       [&](std::size_t, const detail::RayTile&, const detail::SurfaceShare& share) {
         if (share.is_occupied && !refines) return;
         const Index3& v = share.voxel;
-        const auto [found, is_new] = places.try_emplace(
-            driver.scene().voxel_key(v.x - base.x, v.y - base.y, v.z - base.z), parts.size());
+        bool is_new = false;
+        const std::uint32_t place = places.of(v, is_new);
         if (is_new) {
           parts.push_back({v, share.is_occupied ? VoxelState::occupied : VoxelState::unknown});
           information.emplace_back();
         }
-        VoxelContribution& part = parts[found->second];
+        VoxelContribution& part = parts[place];
         ++part.rays;
         part.expected_rays += share.probability;
         part.gain += per_area * share.area;
-        information[found->second] += share.information;
+        information[place] += share.information;
       });
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (parts[i].state != VoxelState::occupied) continue;
