@@ -59,6 +59,7 @@ inline constexpr const char* kScaleGridName = "scale";
       return fault.str();
     }
     s.put_scale(key, scale);
+    s.fold_cell(key);
     if (const BeliefBlock* block = s.find_beliefs(key)) {
       const_cast<BeliefBlock*>(block)->scale = static_cast<std::uint8_t>(scale);  // nobody else's
     }

@@ -21,7 +21,7 @@ using BeliefMap = std::unordered_map<std::uint64_t, std::shared_ptr<const Belief
 /// Of the block with this key.
 [[nodiscard]] int scale_of(const BeliefGrid& grid, std::uint64_t key);
 [[nodiscard]] bool has_scales(const BeliefGrid& grid);  ///< that are not 0
-/// Does the block hold something by cells, a leaf or beliefs?
+/// Does the block hold something by cells: a leaf, an occupied tile or beliefs?
 [[nodiscard]] bool is_held(const BeliefGrid& grid, std::uint64_t key);
 /// Gives a block the largest scale up to this one that fits, with what it holds.
 void set_scale(BeliefGrid& grid, std::uint64_t key, int scale);

@@ -50,9 +50,11 @@ std::uint64_t tree_bytes(const CodeTree& tree) {
 
 LeafMask detail::occupied_in(const BeliefGrid& grid, Index3 origin) {
   LeafMask mask{};
-  const CodeLeaf* leaf = GridAccess::storage(grid).tree.probeConstLeaf(to_coord(origin));
-  for (unsigned i = 0; leaf != nullptr && i < kBlockVoxels; ++i) {  // a tile holds none
-    if (is_occupied(leaf->getValue(i))) set_bit(mask, i);
+  const CodeTree& tree = GridAccess::storage(grid).tree;
+  if (const CodeLeaf* leaf = tree.probeConstLeaf(to_coord(origin))) {
+    mask = occupied_mask(leaf->buffer().data());
+  } else if (is_occupied(tree.getValue(to_coord(origin)))) {
+    mask.fill(~std::uint64_t{0});
   }
   return mask;
 }
@@ -113,6 +115,20 @@ void detail::GridStorage::put_leaf(Index3 origin, std::unique_ptr<CodeLeaf> leaf
     tree.addTile(kBlockTileLevel, to_coord(origin), code, is_non_free(code));
   } else {
     tree.addLeaf(leaf.release());
+  }
+}
+
+bool detail::GridStorage::is_held(std::uint64_t key) const {
+  const openvdb::Coord at = to_coord(lattice.origin(key));
+  return beliefs.contains(key) || tree.probeConstLeaf(at) != nullptr ||
+         is_occupied(tree.getValue(at));
+}
+
+void detail::GridStorage::fold_cell(std::uint64_t key) {
+  if (scale(key) != kMaxScale) return;
+  const Index3 origin = lattice.origin(key);
+  if (const CodeLeaf* leaf = tree.probeConstLeaf(to_coord(origin))) {
+    put_leaf(origin, nullptr, leaf->buffer().data()[0]);
   }
 }
 
@@ -276,13 +292,14 @@ void BeliefGrid::for_each_occupied(
   const GridSnapshot now = snapshot();
   for (const GridSnapshot::Leaf& leaf : now.leaves) {
     if (leaf.occupied == LeafMask{}) continue;
-    const std::uint8_t* codes =
-        storage_->tree.probeConstLeaf(to_coord(leaf.origin))->buffer().data();
+    const CodeLeaf* codes = storage_->tree.probeConstLeaf(to_coord(leaf.origin));
+    const std::uint8_t tile_code = storage_->tree.getValue(to_coord(leaf.origin));
     const int scale = storage_->scale(storage_->lattice.key(leaf.origin));
     for_each_bit(leaf.occupied, [&](unsigned offset) {
       if (cell_offset(offset, scale) != offset) return;
       const Belief* belief = leaf.beliefs != nullptr ? leaf.beliefs->find(offset) : nullptr;
-      visit({offset_voxel(leaf.origin, offset), code_log_odds(codes[offset]),
+      visit({offset_voxel(leaf.origin, offset),
+             code_log_odds(codes != nullptr ? codes->getValue(offset) : tile_code),
              belief != nullptr ? std::optional(*belief) : std::nullopt});
     });
   }
@@ -321,7 +338,15 @@ void visit_grid(const BeliefGrid& grid,
   visit_blocks(
       GridAccess::storage(grid),
       [&](const CodeLeaf& leaf, Index3 origin) { block(origin, leaf.buffer().data()); },
-      [&](Index3 origin, int size, std::uint8_t code) { cube(origin, size, code); });
+      [&](Index3 origin, int size, std::uint8_t code) {
+        if (may_be_tile(code)) {
+          cube(origin, size, code);
+        } else {
+          std::array<std::uint8_t, kBlockVoxels> codes;
+          codes.fill(code);
+          block(origin, codes.data());
+        }
+      });
 }
 
 namespace detail {

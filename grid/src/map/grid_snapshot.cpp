@@ -68,7 +68,7 @@ class SnapshotMaker {
  private:
   static constexpr std::size_t kMasksAhead = 12, kCodesAhead = 4;
   struct Waiting {
-    const CodeLeaf* leaf;
+    const CodeLeaf* leaf;  ///< null: an occupied tile
     Index3 origin;
     std::uint64_t key;
   };
@@ -98,7 +98,9 @@ class SnapshotMaker {
       if (!storage_.lattice.overlaps(at, kBlockSize)) continue;
       const openvdb::Index place = CodeNode::coordToOffset(to_coord(at));
       if (!node.isChildMaskOn(place)) {
-        add_tile(at, kBlockSize, node.getTable()[place].getValue());
+        const std::uint8_t code = node.getTable()[place].getValue();
+        add_tile(at, kBlockSize, code);
+        if (is_occupied(code)) waiting_.push_back({nullptr, at, block});
       } else {
         const CodeLeaf* leaf = node.getTable()[place].getChild();
         waiting_.push_back({leaf, at, block});
@@ -142,14 +144,17 @@ class SnapshotMaker {
   }
 
   void read(const Waiting& entry) {
-    const CodeLeaf& leaf = *entry.leaf;
-    if (leaf.getValueMask().isOff()) return;
-    LeafMask non_free = leaf_mask(leaf.getValueMask());
+    const CodeLeaf* leaf = entry.leaf;
+    if (leaf != nullptr && leaf->getValueMask().isOff()) return;
+    LeafMask all;
+    all.fill(~std::uint64_t{0});
+    LeafMask non_free = leaf != nullptr ? leaf_mask(leaf->getValueMask()) : all;
     if (!storage_.lattice.covers(entry.origin, kBlockSize)) {
       non_free = intersection(non_free, storage_.lattice.clip(entry.origin));
       if (non_free == LeafMask{}) return;
     }
-    const LeafMask occupied = intersection(non_free, occupied_mask(leaf.buffer().data()));
+    const LeafMask occupied =
+        leaf != nullptr ? intersection(non_free, occupied_mask(leaf->buffer().data())) : non_free;
     std::shared_ptr<const BeliefBlock> beliefs;
     if (occupied != LeafMask{}) {
       const auto found = storage_.beliefs.find(entry.key);

@@ -121,6 +121,11 @@ struct GridStorage {
   /// Memory of all of it [bytes].
   [[nodiscard]] std::uint64_t bytes() const;
 
+  /// Does the block hold something by cells, a leaf, an occupied tile or beliefs?
+  [[nodiscard]] bool is_held(std::uint64_t key) const;
+  /// Makes the leaf of a block that is one cell a tile.
+  void fold_cell(std::uint64_t key);
+
   /// A leaf of the 512 codes of a block; null if they are a tile.
   [[nodiscard]] static std::unique_ptr<CodeLeaf> make_leaf(Index3 origin,
                                                            const std::uint8_t* codes);

@@ -39,14 +39,13 @@ void check_value(const GridStorage& s, const BeliefGrid::VoxelValue& value) {
 /// A value and the key of its block.
 using KeyedValue = std::pair<std::uint64_t, const BeliefGrid::VoxelValue*>;
 
-/// A block that is uniform, and may be a tile, has no scale unless it has beliefs.
+/// A block that is uniform and not occupied has no scale unless it has beliefs.
 void drop_if_idle(GridStorage& s, std::uint64_t key) {
-  if (s.beliefs.contains(key)) return;
   const CodeLeaf* leaf = s.tree.probeConstLeaf(to_coord(s.lattice.origin(key)));
-  const std::uint8_t* codes = leaf != nullptr ? leaf->buffer().data() : nullptr;
-  if (leaf == nullptr || GridStorage::make_leaf(to_index(leaf->origin()), codes) == nullptr) {
-    s.scales.erase(key);
-  }
+  const bool is_uniform =
+      leaf != nullptr &&
+      GridStorage::make_leaf(to_index(leaf->origin()), leaf->buffer().data()) == nullptr;
+  if (!s.is_held(key) || (is_uniform && !s.beliefs.contains(key))) s.scales.erase(key);
 }
 
 /// Sets voxels of one block; of those given twice the last counts.
@@ -71,6 +70,7 @@ void set_in_block(GridStorage& s, std::span<const KeyedValue> values) {
     std::uint64_t& word = mask[offset >> 6U];
     word = value->belief ? word | bit : word & ~bit;
   }
+  s.fold_cell(key);
   if (mask == LeafMask{}) {
     s.beliefs.erase(key);
     if (scale > 0) drop_if_idle(s, key);
@@ -154,9 +154,7 @@ bool detail::has_scales(const BeliefGrid& grid) {
   return !GridAccess::storage(grid).scales.empty();
 }
 bool detail::is_held(const BeliefGrid& grid, std::uint64_t key) {
-  const GridStorage& s = GridAccess::storage(grid);
-  return s.beliefs.contains(key) ||
-         s.tree.probeConstLeaf(to_coord(s.lattice.origin(key))) != nullptr;
+  return GridAccess::storage(grid).is_held(key);
 }
 void detail::set_scale(BeliefGrid& grid, std::uint64_t key, int scale) {
   set_scale(GridAccess::storage(grid), key, scale);
@@ -215,11 +213,11 @@ void detail::set_scale(GridStorage& s, std::uint64_t key, int scale) {
   scale = fitting_scale(s.lattice, origin, scale);
   if (scale == from) return;
   const auto held = s.beliefs.find(key);
-  const CodeLeaf* leaf = s.tree.probeConstLeaf(to_coord(origin));
-  if (leaf == nullptr && held == s.beliefs.end()) {  // nothing that would be by cells
+  if (!s.is_held(key)) {
     s.put_scale(key, scale);
     return;
   }
+  const CodeLeaf* leaf = s.tree.probeConstLeaf(to_coord(origin));
   std::array<std::uint8_t, kBlockVoxels> codes;
   if (leaf != nullptr) {
     std::memcpy(codes.data(), leaf->buffer().data(), codes.size());
@@ -231,6 +229,7 @@ void detail::set_scale(GridStorage& s, std::uint64_t key, int scale) {
   auto made = GridStorage::make_leaf(origin, codes.data());
   s.put_scale(key, scale);
   s.put_leaf(origin, std::move(made), codes[0]);
+  s.fold_cell(key);
   if (held != s.beliefs.end()) held->second = std::move(beliefs);
   s.mark_changed(key);
 }
@@ -239,7 +238,9 @@ std::vector<std::uint64_t> detail::held_blocks(const GridStorage& s) {
   std::vector<std::uint64_t> keys;
   visit_blocks(
       s, [&](const CodeLeaf&, Index3 origin) { keys.push_back(s.lattice.key(origin)); },
-      [](Index3, int, std::uint8_t) {});
+      [&](Index3 origin, int, std::uint8_t code) {
+        if (is_occupied(code)) keys.push_back(s.lattice.key(origin));
+      });
   for (const auto& [key, block] : s.beliefs) keys.push_back(key);
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
@@ -247,10 +248,7 @@ std::vector<std::uint64_t> detail::held_blocks(const GridStorage& s) {
 }
 
 void detail::drop_idle_scales(GridStorage& s) {
-  std::erase_if(s.scales, [&](const auto& held) {
-    return !s.beliefs.contains(held.first) &&
-           s.tree.probeConstLeaf(to_coord(s.lattice.origin(held.first))) == nullptr;
-  });
+  std::erase_if(s.scales, [&](const auto& entry) { return !s.is_held(entry.first); });
 }
 
 void BeliefGrid::set(Index3 voxel, float log_odds, const std::optional<Belief>& belief) {

@@ -18,10 +18,10 @@ void resample_block(Index3 origin, double voxel_size, int from, int to, std::uin
 /// As the grid's (belief_blocks.hpp).
 void set_scale(GridStorage& s, std::uint64_t key, int scale);
 
-/// Keys of the blocks that hold something by cells, a leaf or beliefs, in rising order.
+/// Keys of the blocks that hold something by cells, in rising order.
 [[nodiscard]] std::vector<std::uint64_t> held_blocks(const GridStorage& s);
 
-/// Takes the scales of blocks that hold nothing by cells, no leaf and no beliefs.
+/// Takes the scales of blocks that hold nothing by cells.
 void drop_idle_scales(GridStorage& s);
 
 }  // namespace viewgain::detail

@@ -121,7 +121,8 @@ class RegionUpdate {
  private:
   // A block that is not hit has one if it holds something; FrameHits has given the others theirs.
   [[nodiscard]] int scale_of(std::uint64_t key, const BlockPlace& place, bool is_hit) const {
-    const bool is_held = is_hit || place.leaf != nullptr || s_.beliefs.contains(key);
+    const bool is_held =
+        is_hit || place.leaf != nullptr || is_occupied(place.tile_code) || s_.beliefs.contains(key);
     return is_held ? s_.scale(key) : plan_.of_new(place.origin);
   }
 
@@ -164,12 +165,15 @@ class RegionUpdate {
                   frame_.T_grid_readings, place.origin, s_.voxel_size, place.scale);
   }
 
-  // The code of a block that needs no leaf: all are equal, or, in a map of many scales, all were
-  // crossed as if once in full, of which the least sure one stands for all.
+  // The code of a block that needs no leaf: it is one cell, all are equal, or, in a map of many
+  // scales, all were crossed as if once in full, of which the least sure one stands for all.
   [[nodiscard]] std::optional<std::uint8_t> tile_of(const BlockPlace& place,
                                                     const std::uint8_t* codes,
                                                     const BlockUpdate& update) const {
-    if (update.uniform) return may_be_tile(codes[0]) ? std::optional(codes[0]) : std::nullopt;
+    if (update.uniform) {
+      const bool is_tile = may_be_tile(codes[0]) || place.scale == kMaxScale;
+      return is_tile ? std::optional(codes[0]) : std::nullopt;
+    }
     if (plan_.is_idle() || !place.whole || update.non_free != LeafMask{}) return std::nullopt;
     const std::uint8_t least_sure = *std::max_element(codes, codes + kBlockVoxels);
     if (least_sure > kZeroCode + kMissDelta) return std::nullopt;
@@ -201,7 +205,8 @@ class RegionUpdate {
       if (leaf != nullptr || *code != place.tile_code) {
         result.tiles.emplace_back(place.origin, *code);
       }
-      if (leaf != nullptr && place.scale > 0 && !s_.beliefs.contains(key)) {
+      const bool was_held = leaf != nullptr || is_occupied(place.tile_code);
+      if (was_held && place.scale > 0 && !is_occupied(*code) && !s_.beliefs.contains(key)) {
         result.scales.emplace_back(key, 0);
       }
       return;
@@ -290,7 +295,7 @@ void FrameApply::Impl::put_results(GridStorage& s) {
     const auto* node = s.tree.probeConstNode<CodeNode>(origin);
     std::uint8_t code = 0;
     bool active = false;
-    if (node != nullptr && node->isConstant(code, active)) {
+    if (node != nullptr && node->isConstant(code, active) && may_be_tile(code)) {
       s.tree.addTile(kNodeTileLevel, origin, code, active);
     }
   }

@@ -305,6 +305,52 @@ TEST(LeafScales, EntropyCountsByArea) {
   }
 }
 
+TEST(LeafScales, ACellAsLargeAsABlockIsNoLeaf) {
+  const GridConfig config{kV, {{0, 0, 0}, {64 * kV, 64 * kV, 64 * kV}}, {}, 0.01};
+  std::mt19937 random(12);
+  BeliefGrid grid(config);
+  for (int x = 0; x < 64; x += 8) {
+    for (int y = 0; y < 64; y += 8) {
+      for (int z = 0; z < 64; z += 16) {
+        std::optional<Belief> belief;
+        if (x > 0) belief = random_belief(random, 8 * kV);
+        grid.set({x, y, z}, 0.85F, belief);
+      }
+    }
+  }
+  const std::uint64_t by_voxels = grid.statistics().bytes;
+  ASSERT_EQ(grid.resample(kAll, 3), 256U);
+  EXPECT_EQ(grid.statistics().occupied, 256U * 512U);
+  EXPECT_LT(grid.statistics().bytes, by_voxels / 2);
+
+  // The same states by voxels: what is traced is the same.
+  std::vector<std::uint8_t> states(64 * 64 * 64);
+  grid.copy_states(states);
+  const GridSnapshot coarse = grid.snapshot();
+  const GridSnapshot fine = BeliefGrid::from_states(config, states).snapshot();
+  ASSERT_EQ(coarse.leaves.size(), 256U);
+  ASSERT_EQ(fine.leaves.size(), 256U);
+  for (std::size_t i = 0; i < 256; ++i) {
+    ASSERT_EQ(coarse.leaves[i].origin, fine.leaves[i].origin);
+    ASSERT_EQ(coarse.leaves[i].occupied, fine.leaves[i].occupied);
+    ASSERT_EQ(coarse.leaves[i].non_free, fine.leaves[i].non_free);
+    ASSERT_EQ(coarse.leaves[i].beliefs != nullptr, coarse.leaves[i].origin.x > 0);
+  }
+  const test::TemporaryFolder folder;
+  save_vdb(grid, folder.path() / "map.vdb");
+  const BeliefGrid loaded = load_vdb(folder.path() / "map.vdb");
+  EXPECT_EQ(loaded.content_hash(), grid.content_hash());
+  EXPECT_LT(loaded.statistics().bytes, by_voxels / 2);
+  EXPECT_EQ(loaded.scale({0, 0, 0}), 3);  // without a belief, too
+
+  // Set and cut up again.
+  grid.set({1, 2, 3}, -1.0F);
+  EXPECT_EQ(grid.state({7, 7, 7}), VoxelState::free);
+  EXPECT_EQ(grid.scale({0, 0, 0}), 0);
+  EXPECT_EQ(grid.resample(kAll, 0), 255U);
+  EXPECT_EQ(grid.statistics().hits, loaded.statistics().hits);
+}
+
 TEST(LeafScales, EmptyUniformAndWrong) {
   BeliefGrid grid(kConfig);
   EXPECT_EQ(grid.resample(kAll, 2), 0U);  // nothing is known

@@ -35,7 +35,8 @@ inline constexpr std::uint8_t kLiteralOccupiedCode = kZeroCode + kHitDelta;
          : is_occupied(code)  ? VoxelState::occupied
                               : VoxelState::free;
 }
-/// Uniform blocks of such a code are kept as tiles; an occupied voxel always lies in a leaf.
+/// Uniform blocks of such a code are kept as tiles; an occupied voxel lies in a leaf, or in the one
+/// cell of a block of the largest scale.
 [[nodiscard]] inline bool may_be_tile(std::uint8_t code) { return code <= kZeroCode; }
 
 [[nodiscard]] inline float code_log_odds(std::uint8_t code) {
