@@ -51,13 +51,13 @@ class Loader {
     try {
       const std::int32_t version = version_of(contents.metadata);
       auto storage = make_storage(contents.metadata);
-      const FloatTree* scales = version == kVdbScaledVersion
-                                    ? &tree<FloatGrid>(contents, *storage, kScaleGridName)
-                                    : nullptr;
-      load_states(contents, scales, *storage);
+      if (version == kVdbScaledVersion) {
+        scales_ = &tree<FloatGrid>(contents, *storage, kScaleGridName);
+      }
+      load_states(contents, *storage);
       load_beliefs(contents, *storage);
-      if (scales != nullptr) {
-        const std::string fault = take_scales(*scales, *storage);
+      if (scales_ != nullptr) {
+        const std::string fault = take_scales(*scales_, *storage);
         if (!fault.empty()) fail("grid '" + std::string(kScaleGridName) + "': " + fault);
       }
       if (notes != nullptr) *notes = notes_of(contents.metadata);
@@ -183,8 +183,7 @@ class Loader {
   static constexpr const char* kOtherVoxels =
       "grids 'state' and 'log_odds' do not know the same voxels";
 
-  /// `scales` may be null.
-  void load_states(const VdbContents& contents, const FloatTree* scales, GridStorage& s) {
+  void load_states(const VdbContents& contents, GridStorage& s) {
     const auto& log_odds = tree<FloatGrid>(contents, s, "log_odds");
     const auto& state = tree<FloatGrid>(contents, s, "state");
     if (log_odds.activeVoxelCount() != state.activeVoxelCount()) {
@@ -227,7 +226,7 @@ class Loader {
       }
       float value = 0;
       if (!states.probeValue(at, value)) fail(kOtherVoxels);
-      load_tile(tile.getBoundingBox(), checked_code(at, *tile, value), scales, solid, s);
+      load_tile(tile.getBoundingBox(), checked_code(at, *tile, value), solid, s);
     }
   }
 
@@ -283,29 +282,21 @@ class Loader {
     }
   }
 
-  void load_tile(const CoordBBox& box, std::uint8_t code, const FloatTree* scales,
-                 SolidVoxels& solid, GridStorage& s) const {
+  void load_tile(const CoordBBox& box, std::uint8_t code, SolidVoxels& solid,
+                 GridStorage& s) const {
     if (may_be_tile(code)) {
       s.tree.sparseFill(box, code, is_non_free(code));
       return;
     }
-    // Of a single cell a tile is all; eight voxels' worth of a leaf's 512.
-    float scale = 0;
-    const bool is_cell = scales != nullptr && box.dim().x() == kBlockSize &&
-                         scales->probeValue(box.min(), scale) && scale == float{kMaxScale};
-    const auto low = to_index(box.min()), high = to_index(box.max().offsetBy(1));
-    if (is_cell) {
-      solid.add({0, 0, 0}, {2, 2, 2});
-      s.tree.addTile(kBlockTileLevel, box.min(), code, is_non_free(code));
-      return;
-    }
-    solid.add(low, high);
+    if (scales_ != nullptr && put_cell(*scales_, box, code, solid, s)) return;
+    solid.add(to_index(box.min()), to_index(box.max().offsetBy(1)));
     std::array<std::uint8_t, kBlockVoxels> codes;
     codes.fill(code);
-    for (std::int32_t x = low.x; x < high.x; x += kBlockSize) {
-      for (std::int32_t y = low.y; y < high.y; y += kBlockSize) {
-        for (std::int32_t z = low.z; z < high.z; z += kBlockSize)
+    for (std::int32_t x = box.min().x(); x <= box.max().x(); x += kBlockSize) {
+      for (std::int32_t y = box.min().y(); y <= box.max().y(); y += kBlockSize) {
+        for (std::int32_t z = box.min().z(); z <= box.max().z(); z += kBlockSize) {
           s.put_block({x, y, z}, codes.data());
+        }
       }
     }
   }
@@ -384,6 +375,7 @@ class Loader {
 
   std::filesystem::path path_;
   ThreadPool pool_;
+  const FloatTree* scales_ = nullptr;  ///< of the file's; null if there are none
 };
 
 }  // namespace

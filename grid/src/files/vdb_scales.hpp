@@ -7,6 +7,7 @@
 
 #include "map/leaf_scales.hpp"
 #include "vdb_layout.hpp"
+#include "viewgain/support/solid_voxels.hpp"
 
 namespace viewgain::detail {
 
@@ -33,6 +34,18 @@ inline constexpr const char* kScaleGridName = "scale";
     for_each_bit(block->mask, [&](unsigned i) { result = result && cell_offset(i, scale) == i; });
   }
   return result;
+}
+
+/// Puts an occupied tile of a file that is, by the file's scales, one cell; false if it is more. It
+/// counts as eight voxels, a leaf as 512.
+[[nodiscard]] inline bool put_cell(const openvdb::FloatTree& scales, const openvdb::CoordBBox& box,
+                                   std::uint8_t code, SolidVoxels& solid, GridStorage& s) {
+  float scale = 0;
+  if (box.dim().x() != kBlockSize || !scales.probeValue(box.min(), scale)) return false;
+  if (scale != float{kMaxScale}) return false;
+  solid.add({0, 0, 0}, {2, 2, 2});
+  s.tree.addTile(kBlockTileLevel, box.min(), code, is_non_free(code));
+  return true;
 }
 
 /// Takes the scales of a file over into a map that has its states and beliefs. Returns what is
