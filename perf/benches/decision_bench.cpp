@@ -138,9 +138,7 @@ void time_once(const World& world, const DecisionOptions& options, const ExecCon
   timed("scene", [&] { scene = VoxelScene::update(scene_before, grid, exec); });
   timed("hazard", [&] { (void)scene->hazard(); });
   SurfaceMesh surface;
-  timed("surface", [&] {
-    surface = surface_of(fused_points(grid, {}, exec), pooling_of(scene->snapshot()), exec);
-  });
+  timed("surface", [&] { surface = surface_of(fused_points(grid, {}, exec), exec); });
   std::vector<Pose> possible;
   timed("candidates", [&] {
     const EstimatedViews estimated =

@@ -106,7 +106,7 @@ Json refinement(const ModelScene& scene, const GroundTruth& truth, const ExecCon
   for (int repeat = 1; repeat <= kTimes; ++repeat) {
     for (const Pose& view : views) integrator.integrate(grid, scene.acquire(view, frame++), view);
     const std::vector<FusedPoint> points = fused_points(grid, {}, exec);
-    const SurfaceMesh surface = surface_of(points, pooling_of(grid.snapshot()), exec);
+    const SurfaceMesh surface = surface_of(points, exec);
     json.push_back(
         {{"repeats", repeat},
          {"rms_surface", truth.error(seen_by(scene, views[0], surface.vertices)).rms},

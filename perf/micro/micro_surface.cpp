@@ -23,9 +23,8 @@ void points(benchmark::State& state) {
 void surface(benchmark::State& state) {
   const MicroScene& micro = MicroScene::get();
   const std::vector<FusedPoint> fused = fused_points(micro.grid, {}, {.num_threads = 1});
-  const Pooling pooling = pooling_of(micro.grid.snapshot());
   for (auto _ : state) {
-    benchmark::DoNotOptimize(surface_of(fused, pooling, {.num_threads = 1}).vertices.size());
+    benchmark::DoNotOptimize(surface_of(fused, {.num_threads = 1}).vertices.size());
   }
   count(state, "points", static_cast<double>(fused.size()));
 }
@@ -33,8 +32,8 @@ void surface(benchmark::State& state) {
 void candidates(benchmark::State& state) {
   const MicroScene& micro = MicroScene::get();
   const double voxel = micro.grid.voxel_size();
-  const SurfaceMesh mesh = surface_of(fused_points(micro.grid, {}, {.num_threads = 1}),
-                                      pooling_of(micro.grid.snapshot()), {.num_threads = 1});
+  const SurfaceMesh mesh =
+      surface_of(fused_points(micro.grid, {}, {.num_threads = 1}), {.num_threads = 1});
   std::size_t n = 0;
   for (auto _ : state) {
     n = estimate_views(mesh, micro.grid.views(), micro.sensor, micro.sensor.working_distance,

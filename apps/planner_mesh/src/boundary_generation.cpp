@@ -92,8 +92,7 @@ Proposal BoundaryGeneration::generate(const Pose&) {
   estimated_ = {};
   SurfaceMesh made;
   if (model_ == nullptr) {
-    made = surface_of(fused_points(map_.grid(), {}, exec_), pooling_of(map_.scene()->snapshot()),
-                      exec_);
+    made = surface_of(fused_points(map_.grid(), {}, exec_), exec_);
   }
   const SurfaceMesh& surface = model_ != nullptr ? model_->surface() : made;
   if (map_.grid().views().empty() || surface.triangles.empty()) {

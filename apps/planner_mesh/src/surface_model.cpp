@@ -3,6 +3,7 @@
 #include "viewgain/planner_mesh/surface_model.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -20,13 +21,16 @@ SurfaceModelConfig with_scale(SurfaceModelConfig config, const Sensor& sensor) {
 
 }  // namespace
 
-SurfaceMesh surface_of(const std::vector<FusedPoint>& points, const Pooling& pooling,
-                       const ExecConfig& exec) {
+SurfaceMesh surface_of(const std::vector<FusedPoint>& points, const ExecConfig& exec) {
+  if (points.empty()) return {};
   std::vector<OrientedPoint> oriented;
   oriented.reserve(points.size());
-  for (const FusedPoint& point : points) oriented.push_back({point.position, point.toward_free});
   SurfaceConfig config;
-  config.spacing = pooling.length;
+  config.spacing = points.front().spacing;
+  for (const FusedPoint& point : points) {
+    oriented.push_back({point.position, point.toward_free, point.spacing});
+    config.spacing = std::min(config.spacing, point.spacing);
+  }
   return reconstruct_surface(oriented, config, exec);
 }
 
@@ -106,7 +110,7 @@ ModelOutlook SurfaceModel::after(const Measurements& measurements) const {
 
 void SurfaceModel::derive_surface() {
   points_ = fused_points(grid(), config_.points, exec_);
-  surface_ = surface_of(points_, pooling_of(scene()->snapshot()), exec_);
+  surface_ = surface_of(points_, exec_);
 }
 
 }  // namespace viewgain

@@ -17,7 +17,6 @@
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/fused_points.hpp"
-#include "viewgain/grid/pooling.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 
 namespace viewgain::app {
@@ -57,7 +56,7 @@ struct MapSurface {
   MapSurface(const MapOfSensor& map, const ExecConfig& exec)
       : points(fused_points(map.grid, {.scale_sigma = map.sensor ? map.sensor->scale_sigma : 0.0},
                             exec)),
-        surface(surface_of(points, pooling_of(map.grid.snapshot()), exec)),
+        surface(surface_of(points, exec)),
         sigmas(surface_sigmas(surface, points)) {}
 };
 

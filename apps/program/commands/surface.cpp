@@ -20,7 +20,6 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/fused_points.hpp"
-#include "viewgain/grid/pooling.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/mesh/quality.hpp"
 #include "viewgain/planner/point_arrays.hpp"
@@ -126,7 +125,7 @@ void surface(const Options& options, const App& app) {
   const std::vector<FusedPoint> points =
       fused_points(map.grid, {.scale_sigma = map.sensor ? map.sensor->scale_sigma : 0.0}, exec);
   if (points.empty()) refuse(options.map + ": no voxel has readings that make a surface");
-  const SurfaceMesh surface = surface_of(points, pooling_of(map.grid.snapshot()), exec);
+  const SurfaceMesh surface = surface_of(points, exec);
   std::optional<QualityFigures> figures;
   if (truth) figures = figures_of(*truth, map, surface, points, exec);
   write_surfaces(surface, points, options.out, options.points);

@@ -254,7 +254,8 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
     points.push_back({{p.x(), p.y(), p.z()},
                       SymmetricMatrix3::from(covariance),
                       {n.x(), n.y(), n.z()},
-                      seed.hits});
+                      seed.hits,
+                      pooling.length});
   }
   return points;
 }

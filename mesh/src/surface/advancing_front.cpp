@@ -110,18 +110,18 @@ class Triangulation : public Delaunay {
 // CGAL's own measure, the radius of the smallest empty sphere, but infinite, which means never, for
 // long edges.
 struct BoundedEdges {
-  double max_squared_edge;
+  std::span<const double> max_edge;  // by the vertices' id
 
   template <typename AdvancingFront, typename CellHandle>
   double operator()(const AdvancingFront& front, CellHandle& cell, const int& index) const {
-    const Point& a = cell->vertex((index + 1) & 3)->point();
-    const Point& b = cell->vertex((index + 2) & 3)->point();
-    const Point& c = cell->vertex((index + 3) & 3)->point();
-    if (CGAL::squared_distance(a, b) > max_squared_edge ||
-        CGAL::squared_distance(b, c) > max_squared_edge ||
-        CGAL::squared_distance(c, a) > max_squared_edge) {
-      return front.infinity();
-    }
+    const auto& a = *cell->vertex((index + 1) & 3);
+    const auto& b = *cell->vertex((index + 2) & 3);
+    const auto& c = *cell->vertex((index + 3) & 3);
+    const auto is_long = [&](const auto& from, const auto& to) {
+      const double most = std::max(max_edge[from.id()], max_edge[to.id()]);
+      return CGAL::squared_distance(from.point(), to.point()) > most * most;
+    };
+    if (is_long(a, b) || is_long(b, c) || is_long(c, a)) return front.infinity();
     return front.smallest_radius_delaunay_sphere(cell, index);
   }
 };
@@ -129,13 +129,13 @@ struct BoundedEdges {
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 3>> advancing_front(std::span<const Point3> points,
-                                                          double max_edge) {
+                                                          std::span<const double> max_edge) {
   std::vector<std::pair<Point, std::size_t>> input;
   input.reserve(points.size());
   for (const Point3& p : points) input.emplace_back(Point(p[0], p[1], p[2]), input.size());
   Triangulation triangulation(input.begin(), input.end());
   CGAL::Advancing_front_surface_reconstruction<Triangulation, BoundedEdges> front(
-      triangulation, BoundedEdges{max_edge * max_edge});
+      triangulation, BoundedEdges{max_edge});
   front.run();
   std::vector<std::array<std::size_t, 3>> faces;
   CGAL::write_triple_indices(std::back_inserter(faces), front);

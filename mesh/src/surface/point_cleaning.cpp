@@ -45,10 +45,16 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
 
 double dot(const Point3& a, const Point3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// Of the disc that holds smoothing_neighbors points at a density of one a spacing².
+// Of the disc that holds smoothing_neighbors points at a density of one a spacing² [spacings].
 double disc_radius(const SurfaceConfig& config) {
-  return config.spacing *
-         std::sqrt(static_cast<double>(config.smoothing_neighbors) / std::numbers::pi);
+  return std::sqrt(static_cast<double>(config.smoothing_neighbors) / std::numbers::pi);
+}
+
+// For searches within spacings of points, fine ones and coarse ones [m].
+double middle_spacing(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
+  double largest = config.spacing;
+  for (const OrientedPoint& p : points) largest = std::max(largest, spacing_at(p, config));
+  return largest > config.spacing ? std::sqrt(largest * config.spacing) : config.spacing;
 }
 
 using Neighbor = std::pair<double, std::uint32_t>;  // squared distance, index
@@ -70,8 +76,9 @@ class Smoother {
   // may reach.
   void find_neighbors(std::uint32_t i, std::vector<Neighbor>& found) const {
     const std::size_t wanted = config_.smoothing_neighbors;
-    const double disc = disc_radius(config_);
-    const double reach = std::max(disc, config_.max_edge * config_.spacing);
+    const double spacing = spacing_at(points_[i], config_);
+    const double disc = spacing * disc_radius(config_);
+    const double reach = std::max(disc, config_.max_edge * spacing);
     const auto collect = [&](double radius) {
       found.clear();
       grid_.for_each_within(positions_[i], radius, [&](std::uint32_t j, double d2) {
@@ -90,8 +97,9 @@ class Smoother {
 
   Point3 moved(std::uint32_t i, const std::vector<Neighbor>& neighbors) const {
     const Eigen::Map<const Eigen::Vector3d> p(positions_[i].data());
+    const double spacing = spacing_at(points_[i], config_);
     const auto offset = [&](const Neighbor& n) -> Eigen::Vector3d {
-      return (Eigen::Map<const Eigen::Vector3d>(positions_[n.second].data()) - p) / config_.spacing;
+      return (Eigen::Map<const Eigen::Vector3d>(positions_[n.second].data()) - p) / spacing;
     };
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
@@ -127,7 +135,7 @@ class Smoother {
       constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
       return {kNaN, kNaN, kNaN};
     }
-    const Eigen::Vector3d moved = p + height * config_.spacing * w;
+    const Eigen::Vector3d moved = p + height * spacing * w;
     return {moved.x(), moved.y(), moved.z()};
   }
 
@@ -149,16 +157,18 @@ std::vector<Point3> positions_of(std::span<const OrientedPoint> points) {
 std::vector<std::uint32_t> large_components(std::span<const OrientedPoint> points,
                                             const SurfaceConfig& config) {
   const std::vector<Point3> positions = positions_of(points);
-  const double radius = config.join_distance * config.spacing;
-  const PointGrid grid(positions, radius);
+  const PointGrid grid(positions, config.join_distance * middle_spacing(points, config));
   std::vector<std::uint32_t> parent(points.size());
   std::iota(parent.begin(), parent.end(), 0U);
   for (const std::uint32_t i : grid.order()) {
-    grid.for_each_within(positions[i], radius, [&](std::uint32_t j, double) {
-      if (j >= i) return;
-      const std::uint32_t a = root_of(parent, i), b = root_of(parent, j);
-      parent[std::max(a, b)] = std::min(a, b);
-    });
+    const double spacing = spacing_at(points[i], config);
+    grid.for_each_within(positions[i], config.join_distance * spacing,
+                         [&](std::uint32_t j, double) {
+                           if (j >= i && spacing_at(points[j], config) == spacing)
+                             return;  // j finds i
+                           const std::uint32_t a = root_of(parent, i), b = root_of(parent, j);
+                           parent[std::max(a, b)] = std::min(a, b);
+                         });
   }
   std::vector<std::uint32_t> size(points.size(), 0);
   for (std::uint32_t i = 0; i < parent.size(); ++i) ++size[root_of(parent, i)];
@@ -173,7 +183,7 @@ std::vector<Point3> smoothed(std::span<const OrientedPoint> points, const Surfac
                              const ExecConfig& exec) {
   std::vector<Point3> positions = positions_of(points);
   if (config.smoothing_neighbors == 0) return positions;
-  const PointGrid grid(positions, disc_radius(config));
+  const PointGrid grid(positions, middle_spacing(points, config) * disc_radius(config));
   const Smoother smoother(points, positions, grid, config);
   std::vector<Point3> result(points.size());
   ThreadPool pool(exec.num_threads);

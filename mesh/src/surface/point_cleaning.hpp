@@ -13,8 +13,13 @@ namespace viewgain::detail {
 
 [[nodiscard]] std::vector<Point3> positions_of(std::span<const OrientedPoint> points);
 
+/// The point's own spacing [m].
+[[nodiscard]] inline double spacing_at(const OrientedPoint& point, const SurfaceConfig& config) {
+  return point.spacing > 0 ? point.spacing : config.spacing;
+}
+
 /// Indices, rising, of the points that lie in a component of at least min_component points; points
-/// within join_distance · spacing are in one component.
+/// within join_distance spacings of either are in one component.
 [[nodiscard]] std::vector<std::uint32_t> large_components(std::span<const OrientedPoint> points,
                                                           const SurfaceConfig& config);
 

@@ -185,6 +185,12 @@ void check(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
                     "a coordinate of point " + std::to_string(i) + " is not finite");
       }
     }
+    const double spacing = points[i].spacing;
+    if (spacing != 0 && !(spacing >= config.spacing && std::isfinite(spacing))) {
+      refuse("the spacing at point " + std::to_string(i) + " must be finite and at least " +
+                 short_text(config.spacing),
+             spacing);
+    }
   }
 }
 
@@ -292,8 +298,12 @@ SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points, const Sur
   keep_apart(positions, kMinDistance);
   if (selection.points.size() < 3) return {};
 
-  std::vector<Triangle> triangles = detail::advancing_front(
-      triangulation_points(selection.points, config.spacing), config.max_edge);
+  std::vector<double> max_edge;
+  for (const OrientedPoint& p : selection.points) {
+    max_edge.push_back(config.max_edge * (detail::spacing_at(p, config) / config.spacing));
+  }
+  std::vector<Triangle> triangles =
+      detail::advancing_front(triangulation_points(selection.points, config.spacing), max_edge);
   std::erase_if(triangles, [&](const Triangle& t) {
     return area_vector(selection.points, t).norm() < kMinArea * config.spacing * config.spacing;
   });

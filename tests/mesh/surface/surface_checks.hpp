@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -55,6 +56,9 @@ inline Topology check_surface(const SurfaceMesh& mesh, const std::vector<Oriente
   EXPECT_EQ(mesh.normals.size(), mesh.vertices.size());
   EXPECT_EQ(mesh.source.size(), mesh.vertices.size());
   std::set<std::uint32_t> sources;
+  const auto spacing_of = [&](std::uint32_t vertex) {
+    return std::max(config.spacing, points[mesh.source[vertex]].spacing);
+  };
   for (std::size_t v = 0; v < mesh.source.size(); ++v) {
     const std::uint32_t source = mesh.source[v];
     if (source >= points.size()) {
@@ -63,7 +67,7 @@ inline Topology check_surface(const SurfaceMesh& mesh, const std::vector<Oriente
     }
     EXPECT_TRUE(sources.insert(source).second) << "a point became two vertices";
     const double moved = (vec(mesh.vertices[v]) - vec(points[source].position)).norm();
-    EXPECT_LE(moved, 1.25 * config.spacing * (1 + 1e-9));
+    EXPECT_LE(moved, 1.25 * spacing_of(static_cast<std::uint32_t>(v)) * (1 + 1e-9));
     EXPECT_NEAR(norm(mesh.normals[v]), 1, 1e-9);
   }
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> directed;
@@ -80,7 +84,7 @@ inline Topology check_surface(const SurfaceMesh& mesh, const std::vector<Oriente
       neighbors[a].insert(b);
       neighbors[b].insert(a);
       const double length = (vec(mesh.vertices[a]) - vec(mesh.vertices[b])).norm();
-      EXPECT_LE(length, (config.max_edge + 1e-3) * config.spacing);
+      EXPECT_LE(length, (config.max_edge + 1e-3) * std::max(spacing_of(a), spacing_of(b)));
     }
   }
   EXPECT_EQ(neighbors.size(), mesh.vertices.size()) << "a vertex is in no face";

@@ -142,6 +142,29 @@ TEST(SurfaceReconstruction, SparseRegionIsMeshedToo) {
   EXPECT_NEAR(area_of(mesh), 4 * std::numbers::pi * kRadius * kRadius, 0.03 * area_of(mesh));
 }
 
+TEST(SurfaceReconstruction, FineAndCoarsePointsAreOneSurface) {
+  // Below the equator a spacing apart, above four and more, said of each point or not.
+  for (const double ratio : {4.0, 6.0}) {
+    std::vector<OrientedPoint> mixed;
+    for (const auto& p : sphere_points(kRadius, kSpacing, 0.2 * kSpacing)) {
+      if (p.position[2] < 0) mixed.push_back(p);
+    }
+    const std::size_t fine = mixed.size();
+    for (OrientedPoint p : sphere_points(kRadius, ratio * kSpacing, 0.2 * kSpacing)) {
+      if (p.position[2] < 0) continue;
+      p.spacing = ratio * kSpacing;
+      mixed.push_back(p);
+    }
+    ASSERT_GT(mixed.size() - fine, 60U);
+    const SurfaceMesh mesh = reconstruct_surface(mixed, kConfig);
+    expect_topology(check_surface(mesh, mixed), 1, 0, 2);
+    EXPECT_GE(mesh.vertices.size(), mixed.size() * 98 / 100);
+    EXPECT_NEAR(area_of(mesh), 4 * std::numbers::pi * kRadius * kRadius, 0.03 * area_of(mesh));
+    for (OrientedPoint& p : mixed) p.spacing = 0;
+    EXPECT_GT(check_surface(reconstruct_surface(mixed, kConfig), mixed).border_loops, 0U);
+  }
+}
+
 TEST(SurfaceReconstruction, HintsDecideTheSideByMajority) {
   auto points = sphere_points(kRadius, kSpacing, 0.2 * kSpacing, 0.3);
   const SurfaceMesh outward = reconstruct_surface(points, kConfig);
@@ -257,6 +280,12 @@ TEST(SurfaceReconstruction, BadInputIsRefused) {
   for (const double bad : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(static_cast<void>(reconstruct_surface(points, {.spacing = bad})), Error);
   }
+  for (const double bad : {0.5 * kSpacing, -kSpacing, nan}) {
+    points[7].spacing = bad;
+    test::expect_error(ErrorCode::invalid_argument, "point 7",
+                       [&] { static_cast<void>(reconstruct_surface(points, kConfig)); });
+  }
+  points[7].spacing = 0;
   points[5].position[1] = nan;
   test::expect_error(ErrorCode::invalid_argument, "point 5",
                      [&] { static_cast<void>(reconstruct_surface(points, kConfig)); });

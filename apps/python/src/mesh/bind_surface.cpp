@@ -153,7 +153,7 @@ SurfaceMesh surface_of_grid(const Given<SharedGrid>& grid, std::uint32_t min_hit
   config.min_hits = min_hits;
   return grid->read([&](const BeliefGrid& g) {
     const ExecConfig exec{num_threads};
-    return surface_of(fused_points(g, config, exec), pooling_of(g.snapshot()), exec);
+    return surface_of(fused_points(g, config, exec), exec);
   });
 }
 

@@ -22,6 +22,7 @@ struct VIEWGAIN_EXPORT FusedPoint {
   SymmetricMatrix3 covariance{};        ///< of the position, with the floor F [m²]
   std::array<double, 3> toward_free{};  ///< unit surface normal on the side of free space
   std::uint32_t hits = 0;               ///< readings that support it
+  double spacing = 0;  ///< how far apart points of its leaf's scale are: the pooling length [m]
 };
 
 /// Lengths are in pooling lengths (pooling_of: a voxel, or the sensor's footprint where that is

@@ -18,6 +18,8 @@ struct VIEWGAIN_EXPORT OrientedPoint {
   std::array<double, 3> position{};  ///< [m]
   /// A direction [1], no precise normal: a hint; zero where not known.
   std::array<double, 3> toward_free{};
+  /// How far apart the points around it are [m]; 0: as SurfaceConfig::spacing says.
+  double spacing = 0;
 };
 
 /// An open, oriented triangle surface as plain arrays. Faces turn counter-clockwise seen from
@@ -32,7 +34,7 @@ struct VIEWGAIN_EXPORT SurfaceMesh {
 
 /// How points become a surface.
 struct VIEWGAIN_EXPORT SurfaceConfig {
-  double spacing = 0;  ///< typical distance of neighbouring points [m]; the voxel size
+  double spacing = 0;  ///< of neighbouring points, where they are closest [m]; the voxel size
   unsigned smoothing_neighbors = 24;  ///< of the jet fit that smooths the points; 0: no smoothing
   double max_edge = 4;                ///< longest edge of a triangle, in units of spacing
   double join_distance = 3;           ///< points within this, in spacings, belong to one component
@@ -42,13 +44,15 @@ struct VIEWGAIN_EXPORT SurfaceConfig {
 /// Rebuilds the surface through the points, given in any order: duplicates and small components
 /// dropped, jet smoothing, advancing front (CGAL), components of the mesh with fewer than
 /// min_component vertices dropped, faces turned outward by majority of the hints in each component.
-/// Neighbours whose hints are opposed are not smoothed together. A vertex is at most 1.25 spacings
-/// from its point; a point that smoothing would move further is an outlier. No hole is filled
+/// Neighbours whose hints are opposed are not smoothed together. Lengths are in each point's own
+/// spacing; an edge may be as long as either end allows. A vertex is at most 1.25 spacings from its
+/// point; a point that smoothing would move further is an outlier. No hole is filled
 /// beyond max_edge: open boundaries stay. Empty input, or nothing but outliers, gives an empty
 /// mesh. The same input gives the same bits, with any number of threads. Throws
-/// Error(invalid_argument) for a position that is not finite, or a length in the configuration that
-/// is not positive, and for 2^32 points or more. Cost: O(n log n) of the points, by a search tree
-/// and a Delaunay triangulation.
+/// Error(invalid_argument) for a position that is not finite, a spacing of a point that is finer
+/// than the configuration's or not finite, or a length in the configuration that is not positive,
+/// and for 2^32 points or more. Cost: O(n log n) of the points, by a search tree and a Delaunay
+/// triangulation.
 [[nodiscard]] VIEWGAIN_EXPORT SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points,
                                                               const SurfaceConfig& config,
                                                               const ExecConfig& exec = {});

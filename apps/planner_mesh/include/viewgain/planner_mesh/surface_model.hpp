@@ -12,7 +12,6 @@
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/fused_points.hpp"
-#include "viewgain/grid/pooling.hpp"
 #include "viewgain/mesh/surface.hpp"
 #include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
@@ -26,11 +25,9 @@ struct VIEWGAIN_EXPORT SurfaceModelConfig {
   FusedPointsConfig points{};  ///< how beliefs become points; scale_sigma is the sensor's
 };
 
-/// The surface through the points of a map with this pooling (pooling_of()), whose length is how
-/// far apart they are; vertex i comes from point source[i]. Throws and costs as
-/// reconstruct_surface().
+/// The surface through the points of a map; vertex i comes from point source[i]. Throws and costs
+/// as reconstruct_surface().
 [[nodiscard]] VIEWGAIN_EXPORT SurfaceMesh surface_of(const std::vector<FusedPoint>& points,
-                                                     const Pooling& pooling,
                                                      const ExecConfig& exec);
 
 /// One a vertex, the standard deviation along the surface's normal [m], of the point that it comes
