@@ -185,6 +185,7 @@ struct AxialFit {
   void operator()(StereoNoise& noise) const { noise.subpixel *= factor_of(steps); }
   void operator()(ConstantNoise& noise) const { noise.sigma_axial *= factor_of(steps); }
   void operator()(QuadraticNoise& noise) const {
+    noise.linear *= tells_shape(steps) ? 0 : factor_of(steps);
     fit_growth(steps, 0, noise.offset, noise.quadratic);
   }
   void operator()(StructuredLightNoise& noise) const {

@@ -64,6 +64,11 @@ TEST(StereoNoise, HasTheCamerasFocalLengthUnlessItSaysOtherwise) {
   EXPECT_NEAR(sigmas(StereoNoise{.focal = 600}, 1.0, 223.5, 1.0).axial, 0.08 / (600 * 0.05), 1e-15);
 }
 
+TEST(QuadraticNoise, HasALinearPart) {
+  const QuadraticNoise noise{.offset = 2e-3, .quadratic = 0, .linear = 5e-3};
+  EXPECT_NEAR(sigmas(noise, 2.0, 400, 1.0).axial, 12e-3, 1e-15);
+}
+
 TEST(QuadraticNoise, IsOffsetPlusSquare) {
   const QuadraticNoise noise{.offset = 2e-3, .quadratic = 0.5e-3};
   EXPECT_NEAR(sigmas(noise, 2.0, 400, 1.0).axial, 4e-3, 1e-15);

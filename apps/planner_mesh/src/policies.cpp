@@ -77,7 +77,7 @@ std::optional<DecisionMaking::Decision> PolicyDecision::decide_by_gain(
   const std::vector<Pose> poses = poses_of(candidates);
   const Eigen::Vector3d here = T_world_camera.translation();
   const GainEvaluator& by = evaluator();
-  const RankConfig rank{.cost_per_metre = config_.travel_cost};
+  const RankConfig rank{.cost_per_metre = config_.cost_per_metre};
   if (is_of_plan_) {
     planned_.erase(planned_.begin());
     return decision_of(rank_in_turn(by, poses, rank, here), config_.model);
@@ -146,7 +146,7 @@ std::optional<CandidateScores> PolicyDecision::scores(std::span<const Candidate>
 }
 
 std::vector<ViewGain> PolicyDecision::score_classic(std::span<const Candidate> candidates) {
-  const bool way_counts = config_.travel_cost > 0;
+  const bool way_counts = config_.cost_per_metre > 0;
   const std::vector<double> values = classic_->gains(poses_of(candidates), way_counts);
   std::vector<ViewGain> gains(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) gains[i].gain = values[i];
@@ -181,7 +181,7 @@ std::optional<std::size_t> PolicyDecision::choose(const Pose& T_world_camera,
       return best_by([&](std::size_t i) {
         const double distance =
             (candidates[i].T_world_camera.translation() - T_world_camera.translation()).norm();
-        return gains[i].gain - config_.travel_cost * distance;
+        return gains[i].gain - config_.cost_per_metre * distance;
       });
     case Policy::frontier:
       return best_by([&](std::size_t i) { return static_cast<double>(gains[i].unknown_voxels); });

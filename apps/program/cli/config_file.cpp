@@ -167,8 +167,10 @@ App& form_of(const Forms& forms, const Words& words) {
   for (const Option* option : all_options(*forms[1])) options.push_back(option);
   const GivenWords given = sort_words(*forms[0], forms, options, words);
   if (!given.positionals.empty()) {
+    const std::string& source = given.positionals[0];
     std::error_code ignored;
-    return *forms[std::filesystem::is_directory(given.positionals[0], ignored) ? 1 : 0];
+    if (!std::filesystem::exists(source, ignored)) refuse(source + ": no such file or folder");
+    return *forms[std::filesystem::is_directory(source, ignored) ? 1 : 0];
   }
   const std::string path = config_of(words);
   if (path.empty()) return *forms[0];

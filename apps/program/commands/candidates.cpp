@@ -180,7 +180,7 @@ Command add_candidates(App& program) {
   add_proposal_options(*app, o.proposal);
   app->add_option("--gain", o.proposal.gain,
                   "paper, surface or combined, as in score: order the poses by it, best first")
-      ->check(one_of(gain_model_names(), "gain"));
+      ->check(one_of_gain_models());
   app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();
   add_trace_option(*app, o.common);
   add_common_options(*app, o.common);

@@ -111,16 +111,19 @@ baseline : float
     [m])",
       {"float: matching error [px]", "float: [px]", "float: [m]"});
 
-  bind_model<QuadraticNoise>(module, "QuadraticNoise",
-                             R"(``axial = offset + quadratic * t**2``, ``lateral = t / fx``.
+  bind_model<QuadraticNoise>(
+      module, "QuadraticNoise",
+      R"(``axial = offset + linear * t + quadratic * t**2``, ``lateral = t / fx``.
 
 Parameters
 ----------
 offset : float
     [m]
 quadratic : float
-    [1/m])",
-                             {"float: [m]", "float: [1/m]"});
+    [1/m]
+linear : float
+    [1])",
+      {"float: [m]", "float: [1/m]", "float: [1]"});
 
   bind_model<ConstantNoise>(module, "ConstantNoise",
                             R"(The same everywhere; equal sigmas make an isotropic sensor.

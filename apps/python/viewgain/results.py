@@ -202,7 +202,7 @@ class Ranking(NamedTuple):
     A tuple of these six: ``len(ranking)`` is 6, and ``len(ranking.index)`` says how many views there are.
     """
 
-    index: Annotated[NDArray[np.int64], "(k,), int64: indices into the candidates or poses."]
+    index: Annotated[NDArray[np.int64], "(k,), int64: indices into ``poses`` where they are given, else into the proposal's candidates, in which poses of ``add_poses`` have other places."]
     T_world_camera: Annotated[_Floats, "(k, 4, 4), float64."]
     gain: Annotated[_Floats, "(k,), float64 [nat; by gain \"surface\" m**2]; together or in a new plan what each view adds."]
     area: Annotated[_Floats, "(k,), float64: new surface to be expected [m**2]; NaN by gain \"paper\"."]

@@ -47,7 +47,7 @@ MeasurementSigmas sigmas(const StereoNoise& noise, double t, double fx, double /
 MeasurementSigmas sigmas(const QuadraticNoise& noise, double t, double fx,
                          double /*cos_incidence*/) {
   t = clamped_range(t);
-  return {noise.offset + noise.quadratic * t * t, t / fx};
+  return {noise.offset + (noise.linear + noise.quadratic * t) * t, t / fx};
 }
 
 MeasurementSigmas sigmas(const ConstantNoise& noise, double /*t*/, double /*fx*/,

@@ -54,7 +54,8 @@ void validate_noise(const StereoNoise& n) {
   check_not_negative({{"focal", n.focal}});
 }
 void validate_noise(const QuadraticNoise& n) {
-  check_positive({{"offset", n.offset}, {"quadratic", n.quadratic}});
+  check_positive({{"offset", n.offset}});
+  check_not_negative({{"quadratic", n.quadratic}, {"linear", n.linear}});
 }
 void validate_noise(const ConstantNoise& n) {
   check_positive({{"sigma_axial", n.sigma_axial}, {"sigma_lateral", n.sigma_lateral}});

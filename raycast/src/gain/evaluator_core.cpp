@@ -100,7 +100,7 @@ FrontalSigmas frontal_sigmas(const Sensor& sensor) {
       return {.a2 = n.subpixel / (n.focal_with(fx) * n.baseline), .l1 = 1.0 / fx};
     }
     FrontalSigmas operator()(const QuadraticNoise& n) const {
-      return {.a0 = n.offset, .a2 = n.quadratic, .l1 = 1.0 / fx};
+      return {.a0 = n.offset, .a1 = n.linear, .a2 = n.quadratic, .l1 = 1.0 / fx};
     }
     FrontalSigmas operator()(const ConstantNoise& n) const {
       return {.a0 = n.sigma_axial, .l0 = n.sigma_lateral};

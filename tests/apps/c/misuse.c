@@ -24,7 +24,7 @@ static void of_sensors(void) {
   CHECK_REFUSED(vg_default_prior_sigma(0.1, &bad, &sigma), "noise_model is 9");
   bad = sensor;
   bad.noise_model = VG_NOISE_QUADRATIC;
-  CHECK_REFUSED(vg_default_prior_sigma(0.1, &bad, &sigma), "noise[2] is 0.0085");
+  CHECK_REFUSED(vg_default_prior_sigma(0.1, &bad, &sigma), "noise[3] is 0.001");
   bad = sensor;
   bad.fx = -3;
   CHECK_REFUSED(vg_default_prior_sigma(0.1, &bad, &sigma), "fx");

@@ -75,7 +75,7 @@ TEST_F(Files, SensorsReadBackEqual) {
     sensor.camera.distortion = {-unit(random), unit(random), 1e-5 * unit(random), 0, -1e-17};
     const NoiseModel models[]{ShotNoise{unit(random), 1, 2, 1e-3, 1e6 * unit(random), unit(random)},
                               StructuredLightNoise{}, StereoNoise{unit(random), 400, 0.1},
-                              QuadraticNoise{unit(random), 3},
+                              QuadraticNoise{unit(random), 3, i % 2 == 0 ? 0.0 : unit(random)},
                               ConstantNoise{unit(random), unit(random)}};
     sensor.noise = models[i % 5];
     sensor.T_flange_camera =

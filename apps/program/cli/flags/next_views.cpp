@@ -19,6 +19,7 @@ constexpr std::string_view kCriterion = "log_diagonal";
 std::string why(const NextView& view) {
   std::string text = view.generator;
   if (view.boundary_class) text.append(" ").append(boundary_class_name(*view.boundary_class));
+  if (view.generator == kGivenPoses) text.append(" ").append(std::to_string(view.number));
   return text;
 }
 
@@ -87,7 +88,8 @@ NextViews next_views(const Ranking& ranking, const Proposal& proposal, GainModel
   for (const RankedView& view : ranking.views) {
     const Candidate& candidate = proposal.candidates[view.index];
     next.views.push_back({view.T_world_camera, view.index, view.gain, view.worth,
-                          candidate.generator, candidate.boundary_class});
+                          candidate.generator, candidate.number.value_or(0),
+                          candidate.boundary_class});
   }
   return next;
 }
@@ -119,6 +121,7 @@ Json to_json(const NextViews& next) {
                             {"share", view.gain.gain / total},
                             {"area", view.gain.area},
                             {"generator", view.generator},
+                            {"number", view.number},
                             {"class", of ? Json(boundary_class_name(*of)) : Json()},
                             {"T_world_camera", to_json(view.T_world_camera)}});
     if (view.rays) json["next"].back()["rays"] = to_json(view.rays);
@@ -132,23 +135,33 @@ std::string summary_of(const NextViews& next) {
                          ? "no view is possible"
                          : "the best of " + with_commas(next.candidates) + " views";
   if (!next.dropped.empty()) text += "; dropped: " + counts_text(next.dropped);
+  if (next.candidates == 0 && next.dropped.contains("collision")) {
+    text +=
+        " (the body would be in voxels that are not known to be free: is the workspace only "
+        "round the object? see --workspace, --body)";
+  }
   return text;
 }
 
 std::string text_of(const NextViews& next) {
+  const char* const unworthy = next.all_worth ? "" : "no other view gains more than it costs\n";
   if (next.no_gain) return "none of the candidates gains: " + text_of(*next.no_gain) + "\n";
-  if (next.views.empty()) return {};
+  if (next.views.empty()) return unworthy;
   const bool has_area = next.model != GainModel::paper;
   const std::string gain = "gain [" + std::string(gain_unit(next.model, kCriterion)) + "]";
-  std::string text =
-      formatted("rank %12s  share%s  %-26s %-23s why\n", gain.c_str(),
-                has_area ? "   area [cm^2]" : "", "eye x y z [m]", "looks along x y z");
+  const bool has_cost = std::any_of(next.views.begin(), next.views.end(), [](const NextView& view) {
+    return view.worth != view.gain.gain;
+  });
+  std::string text = formatted("rank %12s  share%s%s  %-26s %-23s why\n", gain.c_str(),
+                               has_cost ? "  less cost" : "", has_area ? "   area [cm^2]" : "",
+                               "eye x y z [m]", "looks along x y z");
   const double total = total_gain(next);
   for (std::size_t i = 0; i < next.views.size(); ++i) {
     const NextView& view = next.views[i];
     const Eigen::Vector3d eye = view.T_world_camera.translation();
     const Eigen::Vector3d axis = view.T_world_camera.rotation().col(2);
     text += formatted("%4zu %12.6g %4.0f %%", i + 1, view.gain.gain, 100 * view.gain.gain / total);
+    if (has_cost) text += formatted(" %10.4g", view.worth);
     if (has_area) text += formatted(" %13.4g", 1e4 * view.gain.area);
     text += formatted("  %8.3f %8.3f %8.3f %7.3f %7.3f %7.3f  %s\n", eye.x(), eye.y(), eye.z(),
                       axis.x(), axis.y(), axis.z(), why(view).c_str());
@@ -157,7 +170,7 @@ std::string text_of(const NextViews& next) {
   if (next.views.size() > 1) text += "gain and area are what each view adds to the others\n";
   if (next.plan_metres) text += formatted("%.3f m by straight ways\n", *next.plan_metres);
   if (next.views.front().worth <= 0) text += "no view is worth its way\n";
-  return text;
+  return text + unworthy;
 }
 
 std::vector<Pose> poses_of(const NextViews& next) {

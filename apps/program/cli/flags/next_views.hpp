@@ -35,6 +35,9 @@ void add_plan_options(App& app, PlanOptions& options);
 /// Throws Error(invalid_argument), naming the flag.
 void check(const PlanOptions& options);
 
+/// The generator's name of --poses.
+inline constexpr const char* kGivenPoses = "poses";
+
 /// A view worth taking, and why it was proposed.
 struct NextView {
   Pose T_world_camera;
@@ -42,6 +45,7 @@ struct NextView {
   ViewGain gain;          ///< what it adds to the views before it
   double worth = 0;       ///< that less its cost
   std::string generator;
+  std::size_t number = 0;                            ///< among what this generator proposed, from 0
   std::optional<BoundaryClass> boundary_class{};     ///< of the boundary that it looks beyond
   std::optional<GainEvaluator::RayOutcomes> rays{};  ///< what becomes of them, by explain()
 };
@@ -55,6 +59,7 @@ struct NextViews {
   std::optional<GainEvaluator::RayOutcomes>
       no_gain{};                        ///< by explain(): candidates' rays, if none gains
   std::optional<double> plan_metres{};  ///< of a new plan: its way, from the last view on [m]
+  bool all_worth = true;                ///< false: other views gain less than they cost
 };
 
 /// Of a ranking of a proposal's candidates.

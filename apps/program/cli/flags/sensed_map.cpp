@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "program/cli/values.hpp"
+#include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain::app {
@@ -54,6 +55,12 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
     refuse(path + ": does not say which sensor its readings come from; give --sensor");
   }
   if (asked) warn_of_other_sensor(path, map, *asked);
+  if (is_octomap(path)) {
+    std::fprintf(stderr,
+                 "viewgain: note: %s has states alone: its surface counts as never measured, and "
+                 "the views that were taken are not known\n",
+                 path.c_str());
+  }
   return {std::move(map.grid), asked ? std::move(*asked) : std::move(*map.sensor)};
 }
 

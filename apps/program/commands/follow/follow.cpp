@@ -357,7 +357,7 @@ Command add_follow(App& program) {
   app->add_option("--gain", o.gain,
                   "that views are ranked by: paper, surface or combined, as in score")
       ->capture_default_str()
-      ->check(one_of(gain_model_names(), "gain"));
+      ->check(one_of_gain_models());
   app->add_option("--object-size", o.object_size, kObjectSizeHelp);
   app->add_option("--hazard", o.hazard, kHazardHelp);
   app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");

@@ -19,8 +19,6 @@
 namespace viewgain::app {
 namespace {
 
-constexpr const char* kGivenPoses = "poses";  // the generator's name of --poses
-
 bool is_at_boundaries(const ProposalOptions& options) {
   if (options.generator.empty()) return options.poses.empty();
   return options.generator == "boundary";
@@ -103,7 +101,7 @@ void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
   add_proposal_options(app, o);
   app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
       ->capture_default_str()
-      ->check(one_of(gain_model_names(), "gain"));
+      ->check(one_of_gain_models());
   add_plan_options(app, o.plan);
   app.add_option("--top", top,
                  "views to name at most, each by what it adds to those before it, so that no two "
@@ -199,10 +197,13 @@ NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
   Ranking ranking = ahead.is_on() ? plan_views(evaluator, poses, ahead, 0.0, config, here)
                                   : rank_views(evaluator, poses, top, config, here);
   leave_out_gainless(ranking, config);
+  const std::size_t found = ranking.views.size();
   const std::size_t most = ahead.is_on() ? ahead.take : top;
   ranking.views.resize(std::min(ranking.views.size(), most));
   NextViews next = next_views(ranking, proposal, evaluator.model());
   if (ahead.is_on()) next.plan_metres = ranking.way;
+  const bool has_costs = !costs.empty() || options.costs.per_metre > 0;
+  next.all_worth = !has_costs || found >= std::min(most, poses.size());
   return next;
 }
 

@@ -181,7 +181,7 @@ Json settings_json(const ReconstructOptions& o, const RunSetup& setup) {
             {"stop_promises", o.stop_promises},
             {"stop_coverage", o.stop_coverage},
             {"tolerance", o.tolerance},
-            {"travel_cost", o.travel_cost},
+            {"cost_per_metre", o.cost_per_metre},
             {"reach", or_null(o.reach)},
             {"support_plane", o.sensing.support_plane},
             {"noise", o.sensing.noise},
@@ -214,7 +214,7 @@ PolicyConfig policy_config(const ReconstructOptions& options) {
   PolicyConfig policy;
   policy.policy = parse_policy(options.policy);
   policy.criterion = parse_criterion(options.criterion);
-  policy.travel_cost = options.travel_cost;
+  policy.cost_per_metre = options.cost_per_metre;
   policy.ahead = options.plan.ahead();
   if (options.stop_area.value_or(0) > 0) policy.ahead.least_share = *options.stop_area;
   policy.seed = options.sensing.seed;

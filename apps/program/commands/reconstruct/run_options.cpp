@@ -109,13 +109,15 @@ void add_options(App& app, ReconstructOptions& o) {
   app.add_option("--tolerance", o.tolerance,
                  "a point of the mesh counts as covered where the surface is within this of it [m]")
       ->capture_default_str();
-  app.add_option("--travel-cost", o.travel_cost,
+  app.add_option("--cost-per-metre", o.cost_per_metre,
                  "rank by gain - L * distance [nat/m, surface: m^2/m]")
       ->capture_default_str();
   app.add_option("--plan", o.plan.plan, kPlanHelp)->capture_default_str()->check(counted(1, 1000));
   app.add_option("--take", o.plan.take, kTakeHelp)->check(counted(1, 1000));
   app.add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
-  app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
+  app.add_option("--obstacle", o.obstacles,
+                 std::string(kObstacleHelp) + "; the object's box has its centre at the origin")
+      ->allow_extra_args(false);
   app.add_option("--body", o.body, kBodyHelp);
   add_sensing_options(app, o.sensing);
   add_switch(app, "--register", o.registration.is_on,
@@ -151,7 +153,7 @@ void check(const ReconstructOptions& options) {
            classic.front() + ", ...)");
   }
   check_positive("--tolerance", options.tolerance);
-  check_at_least_0("--travel-cost", options.travel_cost);
+  check_at_least_0("--cost-per-metre", options.cost_per_metre);
   check(options.plan);
   if (options.plan.plan > 1 && (parse_policy(options.policy) != Policy::gain || is_classic)) {
     refuse("--plan goes with --policy gain by the gains paper, surface and combined");

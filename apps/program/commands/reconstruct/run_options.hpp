@@ -59,7 +59,7 @@ struct ReconstructOptions {
   std::size_t stop_promises = PlanningConfig{}.broken_promises;
   std::optional<double> stop_coverage;
   double tolerance = kCovered;
-  double travel_cost = 0;
+  double cost_per_metre = 0;
   PlanOptions plan;
   std::string reach;
   std::vector<std::string> obstacles;

@@ -120,6 +120,12 @@ std::string means(const Group& group) {
   return text;
 }
 
+Figure metres_if_there(std::size_t goal) {
+  return [goal](const ResultRow& row) {
+    return row.views_to[goal] ? row.metres_to[goal] : std::nan("");
+  };
+}
+
 std::string probability(double p) { return p < 0.001 ? "<0.001" : fixed(p, 3); }
 
 // Mean difference ± standard error (wins-ties-losses; p of both tests); both lists run by run.
@@ -144,12 +150,16 @@ std::string difference(const Rows& of, const Rows& against, const Figure& figure
 std::string pairs(const Group& group) {
   const StudySpec& spec = group.spec;
   if (spec.policies.size() < 2) return "";
-  std::string text = "\nPaired with " + spec.policies[spec.against].name +
-                     ": mean difference ± standard error (wins-ties-losses; p of the sign test, of "
-                     "Wilcoxon's signed-rank test)\n\n" +
-                     head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "way to 95 % [m] ↓",
-                              "AUC ↑", "RMS [mm] ↓"});
   const Rows against = group.of(spec.against);
+  std::string text =
+      "\nPaired with " + spec.policies[spec.against].name +
+      ": mean difference ± standard error (wins-ties-losses; p of the sign test, of "
+      "Wilcoxon's signed-rank test; of " +
+      std::to_string(against.size()) + " pairs p cannot be below " +
+      probability(std::min(1.0, std::ldexp(2.0, -static_cast<int>(against.size())))) +
+      "). The way to 95 % is of pairs that both got there\n\n" +
+      head_of({"policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "way to 95 % [m] ↓", "AUC ↑",
+               "RMS [mm] ↓"});
   for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
     if (policy == spec.against) continue;
     const Rows of = group.of(policy);
@@ -157,7 +167,7 @@ std::string pairs(const Group& group) {
     for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
       cells.push_back(difference(of, against, views_to(goal), 2, false));
     }
-    cells.push_back(difference(of, against, metres_to(kGoals.size() - 1), 2, false));
+    cells.push_back(difference(of, against, metres_if_there(kGoals.size() - 1), 2, false));
     cells.push_back(difference(of, against, &ResultRow::auc, 3, true));
     cells.push_back(difference(of, against, rms_mm, 2, false));
     text += line_of(cells);
@@ -260,7 +270,9 @@ std::string results_markdown(const StudySpec& spec, const std::vector<ResultRow>
       "- decisions: views that were decided on anew, not taken as a plan said. s a view: "
       "candidates "
       "and choice.\n"
-      "- AUC: mean coverage over the views. RMS: error of the surface. Consistency: the points' "
+      "- AUC: mean coverage over the views. In the end: coverage by the last view. RMS: error of "
+      "the "
+      "surface that is there, lower too where hard places are not. Consistency: the points' "
       "squared errors by their own sigmas, 1 if these are honest, above if too small.\n- ±: " +
       (objects.size() > 1
            ? "standard errors by object, for runs on one object are not independent; p is of these "

@@ -55,10 +55,11 @@ struct VIEWGAIN_EXPORT StereoNoise {
   bool operator==(const StereoNoise&) const = default;
 };
 
-/// sigma_ax = offset + quadratic * t²; sigma_lat = t / fx.
+/// sigma_ax = offset + linear * t + quadratic * t²; sigma_lat = t / fx.
 struct VIEWGAIN_EXPORT QuadraticNoise {
   double offset = 1.0e-3;       ///< [m]
   double quadratic = 1.074e-3;  ///< [1/m]
+  double linear = 0;            ///< [1]
   bool operator==(const QuadraticNoise&) const = default;
 };
 

@@ -53,8 +53,10 @@ struct NoiseLayout<StereoNoise> {
 template <>
 struct NoiseLayout<QuadraticNoise> {
   static constexpr const char* kName = "quadratic";
-  static constexpr std::array<NoiseField<QuadraticNoise>, 2> kFields{
-      {{"offset", &QuadraticNoise::offset}, {"quadratic", &QuadraticNoise::quadratic}}};
+  static constexpr std::array<NoiseField<QuadraticNoise>, 3> kFields{
+      {{"offset", &QuadraticNoise::offset},
+       {"quadratic", &QuadraticNoise::quadratic},
+       {"linear", &QuadraticNoise::linear, true, true}}};
 };
 template <>
 struct NoiseLayout<ConstantNoise> {

@@ -69,7 +69,7 @@ class Reconstruct : public test::ProgramTest {
 
 TEST_F(Reconstruct, TakesThePlansViewsBeforeItPlansAnew) {
   const json result = reconstruct("cube.off", {"--max-views", "6", "--size", "0.2", "--plan", "3",
-                                               "--take", "2", "--travel-cost", "10"});
+                                               "--take", "2", "--cost-per-metre", "10"});
   ASSERT_EQ(result["views"], 6);
   std::size_t planned = 0, decided = 0;
   const json& views = result["per_view"];
@@ -322,7 +322,7 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--policy", "random", "--stop-area", "0.01"}), "stop_area"},
       {arguments("cube.off", {"--policy", "oracle", "--gain", "surface"}), "--policy gain"},
       {arguments("cube.off", {"--size", "0.001"}), "no larger"},
-      {arguments("cube.off", {"--travel-cost", "-1"}), "--travel-cost -1"},
+      {arguments("cube.off", {"--cost-per-metre", "-1"}), "--cost-per-metre -1"},
       {arguments("cube.off", {"--region-depth", "0"}), "--region-depth"},
       {arguments("cube.off", {"--max-views", "0"}), "max-views"},
       {arguments("cube.off", {"--workspace", "0,0,0,-1,1,1"}), "--workspace"},
@@ -337,7 +337,7 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--generator", "boundary,cone"}), "cone"},
       {arguments("cube.off", {"--jump-edge-filter", "80"}), "angle"},
       {arguments("cube.off", {"--frames-per-view", "0"}), "frames-per-view"},
-      {arguments("cube.off", {"--travel-cost", "nan"}), "travel"},
+      {arguments("cube.off", {"--cost-per-metre", "nan"}), "--cost-per-metre"},
       {arguments("cube.off", {"--stop-coverage", "2"}), "coverage"},
       {arguments("cube.off", {"--support-plane", "nan"}), "--support-plane nan"},
   };

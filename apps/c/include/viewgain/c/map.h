@@ -22,7 +22,7 @@ enum {
   VG_NOISE_STRUCTURED_LIGHT = 1, /* offset, quadratic, vertex, grazing, lateral_px,
                                     lateral_grazing_px */
   VG_NOISE_STEREO = 2,           /* subpixel, focal (0: fx), baseline */
-  VG_NOISE_QUADRATIC = 3,        /* offset, quadratic */
+  VG_NOISE_QUADRATIC = 3,        /* offset, quadratic, linear */
   VG_NOISE_CONSTANT = 4          /* sigma_axial, sigma_lateral */
 };
 

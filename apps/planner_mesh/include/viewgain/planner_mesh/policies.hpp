@@ -42,7 +42,7 @@ struct VIEWGAIN_EXPORT PolicyConfig {
   GainModel model = kDefaultGain;                 ///< of Policy::gain
   std::optional<ClassicRanking> classic{};        ///< of Policy::gain, instead of `model`
   Criterion criterion = Criterion::log_diagonal;  ///< of the paper's gain
-  double travel_cost = 0;                         ///< gain - this * way [the gain's unit per m]
+  double cost_per_metre = 0;                      ///< gain - this * way [the gain's unit per m]
   PlanAhead ahead{};                              ///< of Policy::gain by `model`
   KnownObject object{};                           ///< of Policy::oracle
   std::uint64_t seed = 1;                         ///< of random choices
