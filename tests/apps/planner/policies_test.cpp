@@ -225,8 +225,8 @@ TEST(Oracle, ChoosesWhatABruteForceOverAllCandidatesChooses) {
   EXPECT_EQ(model->grid().content_hash(), before);
   // Its own simulation comes to the same numbers.
   const OracleChoice oracle(*model, box.sensor, {box.mesh, box.truth, {}}, box.exec);
-  EXPECT_EQ(oracle.outcome_of(box.candidates[best].T_world_camera).covered, covered[best]);
-  EXPECT_EQ(oracle.outcome_of(box.candidates[30].T_world_camera).covered, covered[30]);
+  EXPECT_EQ(oracle.covered_after(box.candidates[best].T_world_camera), covered[best]);
+  EXPECT_EQ(oracle.covered_after(box.candidates[30].T_world_camera), covered[30]);
 }
 
 TEST(Oracle, CountsUncoveredSamplesInView) {

@@ -44,20 +44,26 @@ double deciding_seconds(const Json& json, std::size_t views) {
   return views > 1 ? seconds / static_cast<double>(views - 1) : kNone;
 }
 
-double mean_over_views(const Json& prediction, const char* key) {
-  std::vector<double> values;
-  for (const Json& view : prediction) values.push_back(number_of(view.at(key)));
-  return mean_of(values).mean;
-}
-
-}  // namespace
-
+// As CSV has it: with a comma, a quote or a line's end in quotes (RFC 4180).
 std::string csv_text(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted.append(c == '"' ? "\"\"" : std::string(1, c));
   return quoted + "\"";
 }
+
+// Which run a line is of.
+std::string run_columns(const StudySpec& spec, const StudyRun& run) {
+  const StudyPolicy& policy = spec.policies[run.policy];
+  std::string columns = csv_text(spec.objects[run.object].name);
+  columns.append(",").append(policy.policy).append(",").append(policy.gain).append(",");
+  columns.append(policy.semantics).append(",").append(std::to_string(run.seed)).append(",");
+  columns.append(csv_text(run.sensor)).append(",").append(short_text(run.voxel)).append(",");
+  if (run.size) columns.append(short_text(*run.size));
+  return columns;
+}
+
+}  // namespace
 
 double ResultRow::counted_views_to(std::size_t goal) const {
   return static_cast<double>(views_to[goal].value_or(coverage_by_view.size() + 1));
@@ -96,33 +102,12 @@ ResultRow row_of(const StudyRun& run, const Json& json, std::size_t max_views) {
   return row;
 }
 
-Json prediction_of(const std::string& policy, const Json& maps) {
-  Json prediction = Json::array();
-  for (Json entry : maps.at("prediction")) {
-    if (entry.at("policy") != Json(policy)) continue;
-    entry.erase("policy");
-    prediction.push_back(std::move(entry));
-  }
-  return prediction;
-}
-
-std::string run_columns(const StudySpec& spec, const StudyRun& run) {
-  const StudyPolicy& policy = spec.policies[run.policy];
-  std::string columns = csv_text(spec.objects[run.object].name);
-  columns.append(",").append(policy.policy).append(",").append(policy.gain).append(",");
-  columns.append(policy.semantics).append(",").append(std::to_string(run.seed)).append(",");
-  columns.append(csv_text(run.sensor)).append(",").append(short_text(run.voxel)).append(",");
-  if (run.size) columns.append(short_text(*run.size));
-  return columns;
-}
-
 std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows) {
   std::string csv =
-      std::string(kRunColumns) +
-      ",views,decisions,stop_reason,views_to_80,"
+      "object,policy,gain,semantics,seed,sensor,voxel,size,views,decisions,stop_reason,views_to_80,"
       "views_to_90,views_to_95,metres_to_80,metres_to_90,metres_to_95,auc,coverage_visible,"
       "coverage,"
-      "rms_error,consistency,outliers,travelled,spearman_area,spearman_entropy,top1_share,hash,isa,"
+      "rms_error,consistency,outliers,travelled,hash,isa,"
       "deciding_seconds,seconds\n";
   for (const ResultRow& row : rows) {
     const StudyRun& run = *row.run;
@@ -134,9 +119,6 @@ std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& row
     }
     for (const double metres : row.metres_to) csv.append(",").append(exact_text(metres));
     for (const RowFigure& figure : kFigures) csv.append(",").append(exact_text(row.*figure.value));
-    for (const char* key : {"spearman_area", "spearman_entropy", "top1_share"}) {
-      csv.append(",").append(exact_text(mean_over_views(row.prediction, key)));
-    }
     csv.append(",").append(run.hash).append(",").append(row.isa);
     csv.append(",").append(exact_text(row.deciding_seconds));
     csv.append(",").append(exact_text(row.seconds)).append("\n");
@@ -166,7 +148,6 @@ Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows) {
     }
     for (const RowFigure& figure : kFigures) json[figure.key] = row.*figure.value;
     json["coverage_by_view"] = row.coverage_by_view;
-    json["prediction"] = row.prediction;
     json["hash"] = run.hash;
     json["isa"] = row.isa;
     json["deciding_seconds"] = row.deciding_seconds;

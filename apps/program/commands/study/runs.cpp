@@ -23,8 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kHead = std::string("policy,") + kPredictionColumns;  // of prediction.csv
-
 void make_folder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
@@ -172,31 +170,8 @@ Json StudyFolder::read(const StudyRun& run) const {
   return json;
 }
 
-std::vector<std::string> StudyFolder::prediction_rows(const StudyRun& run,
-                                                      const std::string& policy) const {
-  const fs::path path = file(run, "prediction.csv");
-  const std::string text = file_bytes(path);
-  const std::size_t head = text.find('\n');
-  if (text.substr(0, head) != kHead) {
-    throw Error(ErrorCode::format, path.string() + ": line 1: must be " + kHead);
-  }
-  if (text.back() != '\n') throw Error(ErrorCode::format, path.string() + ": is cut off");
-  const std::string own = policy + ",";
-  std::vector<std::string> rows;
-  for (std::size_t begin = head + 1; begin < text.size();) {
-    const std::size_t end = text.find('\n', begin);
-    if (text.compare(begin, own.size(), own) == 0) {
-      rows.push_back(text.substr(begin + own.size(), end - begin - own.size()));
-    }
-    begin = end + 1;
-  }
-  return rows;
-}
-
 void StudyFolder::write(const StudyRun& run, const StudyResult& result) const {
   make_folder(runs() / run.hash);
-  write_file_atomically(file(run, "prediction.csv"),
-                        std::string(kHead).append("\n").append(result.prediction_rows));
   if (!result.candidates.empty()) {
     write_tum(file(run, "candidates.txt"), result.candidates, result.candidate_views);
   }

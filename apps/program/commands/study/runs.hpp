@@ -6,8 +6,6 @@
 #include <filesystem>
 #include <functional>
 #include <stop_token>
-#include <string>
-#include <vector>
 
 #include "program/cli/json.hpp"
 #include "program/commands/study/spec.hpp"
@@ -23,8 +21,8 @@ struct StudyProgress {
   double seconds = 0;             ///< that it took
 };
 
-/// The runs of a study in a folder: DIR/runs/HASH/run.json, prediction.csv and, where the spec asks
-/// for them, candidates.txt; run.json last, so that a run that is there is whole.
+/// The runs of a study in a folder: DIR/runs/HASH/run.json and, where the spec asks for them,
+/// candidates.txt; run.json last, so that a run that is there is whole.
 class StudyFolder {
  public:
   /// Makes the folders that are missing. Throws Error(io).
@@ -33,10 +31,6 @@ class StudyFolder {
   [[nodiscard]] bool has(const StudyRun& run) const;
   /// run.json. Throws Error(format) that names the file if it is not that of this run.
   [[nodiscard]] Json read(const StudyRun& run) const;
-  /// The rows of prediction.csv of a policy's scores, by kPredictionColumns. Throws Error(io),
-  /// Error(format).
-  [[nodiscard]] std::vector<std::string> prediction_rows(const StudyRun& run,
-                                                         const std::string& policy) const;
   void write(const StudyRun& run, const StudyResult& result) const;
   [[nodiscard]] std::filesystem::path runs() const { return dir_ / "runs"; }
   [[nodiscard]] std::filesystem::path file(const StudyRun& run, const char* name) const;

@@ -3,7 +3,6 @@
 #include "program/commands/study/spec.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -25,7 +24,7 @@ namespace viewgain::app {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kRunFormat = 3;  // of run.json and prediction.csv; grows when one changes
+constexpr int kRunFormat = 4;  // of run.json; grows when that changes
 constexpr std::size_t kMostRuns = 1'000'000;
 constexpr std::int64_t kMostViews = 1000, kMostCandidates = 100'000;
 
@@ -208,30 +207,6 @@ std::size_t policy_at(TableReader& reader, const char* key, const StudySpec& spe
   return static_cast<std::size_t>(found - spec.policies.begin());
 }
 
-Json names_of(const StudySpec& spec, const std::vector<std::size_t>& policies) {
-  Json names = Json::array();
-  for (const std::size_t policy : policies) names.push_back(spec.policies[policy].name);
-  return names;
-}
-
-StudyPrediction prediction_of(TableReader& root, const StudySpec& spec) {
-  StudyPrediction prediction;
-  if (root.find("prediction") == nullptr) return prediction;
-  TableReader reader = root.table("prediction");
-  const auto most = static_cast<std::int64_t>(spec.max_views);
-  for (const std::int64_t view : whole_numbers(reader, "views", 1, most)) {
-    prediction.views.push_back(static_cast<std::size_t>(view));
-  }
-  std::sort(prediction.views.begin(), prediction.views.end());
-  if (reader.find("candidates") != nullptr) {
-    prediction.candidates = static_cast<std::size_t>(
-        whole_number(reader, reader.require("candidates"), "candidates", 3, kMostCandidates));
-  }
-  if (reader.find("maps") != nullptr) prediction.maps = policy_at(reader, "maps", spec);
-  reader.refuse_unknown_keys();
-  return prediction;
-}
-
 }  // namespace
 
 StudySpec read_study_spec(const fs::path& path) {
@@ -279,7 +254,6 @@ StudySpec read_study_spec(const fs::path& path) {
         reader, reader.require("kept_candidates"), "kept_candidates", 1, kMostCandidates));
   }
   if (reader.find("against") != nullptr) spec.against = policy_at(reader, "against", spec);
-  spec.prediction = prediction_of(reader, spec);
   reader.refuse_unknown_keys();
 
   const std::size_t count = spec.objects.size() * spec.policies.size() * seeds.size() *
@@ -298,11 +272,8 @@ StudySpec read_study_spec(const fs::path& path) {
         for (std::size_t object = 0; object < spec.objects.size(); ++object) {
           for (const std::int64_t seed : seeds) {
             for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
-              const std::size_t maps =
-                  spec.runs.size() - policy + spec.prediction.maps.value_or(policy);
-              StudyRun run{object, policy, static_cast<std::uint64_t>(seed),
-                           sensor, voxel,  size,
-                           maps,   {},     {}};
+              StudyRun run{object, policy, static_cast<std::uint64_t>(seed), sensor, voxel, size,
+                           {},     {}};
               run.configuration = {
                   {"version", VIEWGAIN_VERSION},
                   {"format", kRunFormat},
@@ -316,10 +287,7 @@ StudySpec read_study_spec(const fs::path& path) {
                   {"max_views", spec.max_views},
                   {"tolerance", spec.tolerance},
                   {"flags", flags},
-                  {"kept_candidates", spec.kept_candidates},
-                  {"prediction_views", spec.prediction.views},
-                  {"prediction_candidates", spec.prediction.candidates},
-                  {"prediction_policies", names_of(spec, scored_policies(spec, run))}};
+                  {"kept_candidates", spec.kept_candidates}};
               run.hash = hash_of(dumped(run.configuration));
               spec.runs.push_back(std::move(run));
             }
@@ -329,14 +297,6 @@ StudySpec read_study_spec(const fs::path& path) {
     }
   }
   return spec;
-}
-
-std::vector<std::size_t> scored_policies(const StudySpec& spec, const StudyRun& run) {
-  if (spec.prediction.views.empty()) return {};
-  if (!spec.prediction.maps) return {run.policy};
-  std::vector<std::size_t> all(*spec.prediction.maps == run.policy ? spec.policies.size() : 0);
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return all;
 }
 
 std::vector<std::string> reconstruct_words(const StudySpec& spec, const StudyRun& run) {

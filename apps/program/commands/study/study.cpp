@@ -71,20 +71,6 @@ void print_progress(const StudySpec& spec, const StudyProgress& progress, double
                name_of(spec, *progress.run).c_str(), progress.seconds, time_text(left).c_str());
 }
 
-// All runs' prediction.csv in one, each row with what the run was whose score it has.
-std::string predictions_csv(const StudySpec& spec, const StudyFolder& folder) {
-  std::string csv(kRunColumns);
-  csv.append(",").append(kPredictionColumns).append("\n");
-  for (const StudyRun& run : spec.runs) {
-    const std::string head = run_columns(spec, run);
-    const std::string& policy = spec.policies[run.policy].name;
-    for (const std::string& row : folder.prediction_rows(spec.runs[run.maps], policy)) {
-      csv.append(head).append(",").append(row).append("\n");
-    }
-  }
-  return csv;
-}
-
 // A study's folder has runs/; another one that holds more than the spec is somebody else's.
 void check_folder(const std::filesystem::path& dir, const std::filesystem::path& spec) {
   std::error_code ignored;
@@ -97,25 +83,14 @@ void check_folder(const std::filesystem::path& dir, const std::filesystem::path&
   refuse("--out " + dir.string() + ": has files, but no runs/ of a study; name a new folder");
 }
 
-// What `take` takes from a run's run.json.
-template <typename Take>
-auto taken_from(const StudyFolder& folder, const StudyRun& run, Take&& take) {
+ResultRow row_in(const StudyFolder& folder, const StudySpec& spec, const StudyRun& run) {
   const Json json = folder.read(run);
   try {
-    return take(json);
+    return row_of(run, json, spec.max_views);
   } catch (const Json::exception& error) {
     throw Error(ErrorCode::format, folder.file(run, "run.json").string() + ": " + error.what() +
                                        "; a run whose folder is removed is made again");
   }
-}
-
-ResultRow row_in(const StudyFolder& folder, const StudySpec& spec, const StudyRun& run) {
-  ResultRow row =
-      taken_from(folder, run, [&](const Json& json) { return row_of(run, json, spec.max_views); });
-  row.prediction = taken_from(folder, spec.runs[run.maps], [&](const Json& json) {
-    return prediction_of(spec.policies[run.policy].name, json);
-  });
-  return row;
 }
 
 void warn_of_tolerance(const StudySpec& spec) {
@@ -155,17 +130,10 @@ void study(const Options& options) {
   for (const StudyRun& run : spec.runs) rows.push_back(row_in(folder, spec, run));
   const Json json = results_json(spec, rows);
   const std::string table = results_markdown(spec, rows);
-  const bool has_predictions = !spec.prediction.views.empty();
-  const std::string predictions = has_predictions ? predictions_csv(spec, folder) : "";
-  // Nothing of another spec stays beside what is of this one.
-  for (const char* name :
-       {"predictions.csv", "coverage.png", "prediction.png", "calibration.png"}) {
-    std::error_code ignored;
-    std::filesystem::remove(dir / name, ignored);
-  }
+  std::error_code ignored;
+  std::filesystem::remove(dir / "coverage.png", ignored);  // it may be of another spec
   write_file_atomically(dir / "results.csv", results_csv(spec, rows));
   write_file_atomically(dir / "table.md", table);
-  if (has_predictions) write_file_atomically(dir / "predictions.csv", predictions);
   write_file_atomically(dir / "plots.py", plots_script());
   write_file_atomically(dir / "results.json", json_text(json));
   const bool is_drawn = options.plots == "on" && draw_plots(dir / "plots.py");
@@ -176,9 +144,8 @@ void study(const Options& options) {
   if (options.common.json) {
     print_json(json);
   } else {
-    std::printf("%s\nleft in %s: results.csv, results.json, table.md, plots.py%s%s, runs/\n",
-                table.c_str(), options.out.c_str(), has_predictions ? ", predictions.csv" : "",
-                is_drawn ? ", plots" : "");
+    std::printf("%s\nleft in %s: results.csv, results.json, table.md, plots.py%s, runs/\n",
+                table.c_str(), options.out.c_str(), is_drawn ? ", coverage.png" : "");
   }
 }
 

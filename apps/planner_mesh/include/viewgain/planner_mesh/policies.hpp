@@ -48,15 +48,6 @@ struct VIEWGAIN_EXPORT PolicyConfig {
   std::uint64_t seed = 1;                         ///< of random choices
 };
 
-/// What a policy ranks candidates by, one entry a candidate.
-struct VIEWGAIN_EXPORT CandidateScores {
-  /// One a candidate, in the unit of the policy's gain; a count for frontier.
-  std::vector<double> score;
-  /// One a candidate: the new surface to be expected [m²]; NaN where the policy's gain does not
-  /// say.
-  std::vector<double> area;
-};
-
 /// set_stop_rules() of the policy: that of its gain, and where it does not choose by a gain, or by
 /// a classic one, neither gain nor area ends a run. `stop_gain` [nat, m² for trace], `stop_area` a
 /// share of the surface. Throws Error(invalid_argument), too, for an area or a gain above 0 with
@@ -84,11 +75,6 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
   /// kriegel if none of them is left to try.
   std::optional<Decision> decide(const Pose& T_world_camera,
                                  std::span<const Candidate> candidates) override;
-
-  /// What the policy ranks these candidates by, in their order, on the model as it stands, all of
-  /// them by all rays and the way there left out. Nothing for the policies that
-  /// rank by no figure of a view: kriegel, sequence, random, fibonacci, oracle.
-  [[nodiscard]] std::optional<CandidateScores> scores(std::span<const Candidate> candidates);
 
  private:
   /// The evaluator by the policy's gain of the model's scene.
