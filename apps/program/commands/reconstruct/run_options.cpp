@@ -70,11 +70,6 @@ void add_options(App& app, ReconstructOptions& o) {
          "of --policy gain: paper (entropy removed), surface (new surface to be expected) or "
          "combined (default); or a gain of the literature")
       ->check(one_of(all_gain_names(), "gain"));
-  app.add_option(
-         "--semantics", o.semantics,
-         "of a gain of the literature: as the papers define it (default) or as the code that "
-         "was shipped with them computes it")
-      ->check(one_of(gain_semantics_names(), "semantics"));
   app.add_option("--overlap", o.overlap, kOverlapHelp)->capture_default_str();
   app.add_option("--region-depth", o.region_depth, kRegionDepthHelp)->capture_default_str();
   app.add_option("--object-size", o.object_size, kObjectSizeHelp);
@@ -146,10 +141,6 @@ void check(const ReconstructOptions& options) {
   }
   const std::vector<std::string>& classic = classic_gain_names();
   const bool is_classic = std::find(classic.begin(), classic.end(), options.gain) != classic.end();
-  if (!options.semantics.empty() && !is_classic) {
-    refuse("--semantics " + options.semantics + " goes with a gain of the literature (--gain " +
-           classic.front() + ", ...)");
-  }
   check_positive("--tolerance", options.tolerance);
   check_at_least_0("--travel-cost", options.travel_cost);
   check(options.plan);

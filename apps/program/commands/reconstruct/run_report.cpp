@@ -49,8 +49,8 @@ RunReport::RunReport(const PolicyConfig& policy, double tolerance)
   gain_unit_ = entropy_unit_;  // what a policy without a gain foretells is the paper's
   if (policy.policy != Policy::gain) return;
   if (policy.classic) {
-    ranked_by_ = classic_gain_name(policy.classic->gain);
-    gain_unit_ = classic_gain_unit(policy.classic->gain);
+    ranked_by_ = classic_gain_name(*policy.classic);
+    gain_unit_ = classic_gain_unit(*policy.classic);
   } else {
     ranked_by_ = gain_model_name(policy.model);
     gain_unit_ = gain_unit(policy.model, criterion_name(policy.criterion));

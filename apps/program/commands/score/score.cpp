@@ -64,9 +64,6 @@ GainConfig gain_config(const Options& options) {
   if (config.model != GainModel::paper && options.criterion != "log_diagonal") {
     refuse("--criterion " + options.criterion + " goes with --gain paper, not " + options.gain);
   }
-  if (options.semantics != "paper") {
-    refuse("--semantics " + options.semantics + " goes with classic gains");
-  }
   config.refinement_weight = options.refinement_weight.value_or(config.refinement_weight);
   config.criterion = parse_criterion(options.criterion);
   config.pixel_stride = options.stride;
@@ -245,11 +242,6 @@ Command add_score(App& program) {
                   "with commas, ranked by the first")
       ->capture_default_str()
       ->check(several_of(all_gain_names(), "gain"));
-  app->add_option("--semantics", options->semantics,
-                  "of the literature's gains: as the papers define them or as the code "
-                  "that was shipped with them computes them")
-      ->capture_default_str()
-      ->check(one_of(gain_semantics_names(), "semantics"));
   app->add_option("--refinement-weight", options->refinement_weight,
                   "combined: of refining known surface against finding new; default: 0.3");
   app->add_option("--object-size", options->object_size, kObjectSizeHelp);

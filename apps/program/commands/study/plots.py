@@ -21,7 +21,7 @@ import matplotlib.pyplot as plt
 
 
 def name_of(run):
-    return ":".join(part for part in (run["policy"], run["gain"], run["semantics"]) if part)
+    return ":".join(part for part in (run["policy"], run["gain"]) if part)
 
 
 def group_of(run):

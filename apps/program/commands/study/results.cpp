@@ -56,8 +56,13 @@ std::string csv_text(const std::string& text) {
 std::string run_columns(const StudySpec& spec, const StudyRun& run) {
   const StudyPolicy& policy = spec.policies[run.policy];
   std::string columns = csv_text(spec.objects[run.object].name);
-  columns.append(",").append(policy.policy).append(",").append(policy.gain).append(",");
-  columns.append(policy.semantics).append(",").append(std::to_string(run.seed)).append(",");
+  columns.append(",")
+      .append(policy.policy)
+      .append(",")
+      .append(policy.gain)
+      .append(",")
+      .append(std::to_string(run.seed))
+      .append(",");
   columns.append(csv_text(run.sensor)).append(",").append(short_text(run.voxel)).append(",");
   if (run.size) columns.append(short_text(*run.size));
   return columns;
@@ -104,7 +109,7 @@ ResultRow row_of(const StudyRun& run, const Json& json, std::size_t max_views) {
 
 std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows) {
   std::string csv =
-      "object,policy,gain,semantics,seed,sensor,voxel,size,views,decisions,stop_reason,views_to_80,"
+      "object,policy,gain,seed,sensor,voxel,size,views,decisions,stop_reason,views_to_80,"
       "views_to_90,views_to_95,metres_to_80,metres_to_90,metres_to_95,auc,coverage_visible,"
       "coverage,"
       "rms_error,consistency,outliers,travelled,hash,isa,"
@@ -134,7 +139,6 @@ Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows) {
     Json json{{"object", spec.objects[run.object].name},
               {"policy", policy.policy},
               {"gain", or_null(policy.gain)},
-              {"semantics", or_null(policy.semantics)},
               {"seed", run.seed},
               {"sensor", run.sensor},
               {"voxel", run.voxel},

@@ -88,7 +88,7 @@ bool is_count(const std::string& text) {
 
 // "tour:K:M": K views are planned, M of them taken before it is planned anew.
 StudyPolicy tour_of(TableReader& reader, const std::string& name) {
-  StudyPolicy policy{name, name, "", "", "", ""};
+  StudyPolicy policy{name, name, "", "", ""};
   const std::string counts = name.substr(name.find(':') + 1);
   const std::size_t between = counts.find(':');
   policy.plan = counts.substr(0, between);
@@ -102,18 +102,13 @@ StudyPolicy tour_of(TableReader& reader, const std::string& name) {
                               "taken before it is planned anew");
 }
 
-// "gain:GAIN:SEMANTICS", "gain:GAIN", "tour:K:M" or another policy. `reconstruct` knows which names
-// there are.
+// "gain:GAIN", "tour:K:M" or another policy. `reconstruct` knows which names there are.
 StudyPolicy policy_of(TableReader& reader, const std::string& name) {
   if (name == "tour" || name.starts_with("tour:")) return tour_of(reader, name);
-  StudyPolicy policy{name, name, "", "", "", ""};
+  StudyPolicy policy{name, name, "", "", ""};
   if (const std::size_t first = name.find(':'); first != std::string::npos) {
     policy.policy = name.substr(0, first);
     policy.gain = name.substr(first + 1);
-    if (const std::size_t second = policy.gain.find(':'); second != std::string::npos) {
-      policy.semantics = policy.gain.substr(second + 1);
-      policy.gain.resize(second);
-    }
   }
   const bool by_gain = policy.policy == "gain";
   const std::vector<std::string> gains = all_gain_names();
@@ -131,11 +126,6 @@ StudyPolicy policy_of(TableReader& reader, const std::string& name) {
     if (!fault.empty()) reader.fail("policies", "holds \"" + name + "\": " + fault);
   }
   return policy;
-}
-
-// Where nothing is said it is the first.
-std::string semantics_of(const StudyPolicy& policy) {
-  return policy.semantics.empty() ? gain_semantics_names().front() : policy.semantics;
 }
 
 std::vector<StudyObject> objects_of(TableReader& reader, const fs::path& folder) {
@@ -157,10 +147,9 @@ std::vector<StudyObject> objects_of(TableReader& reader, const fs::path& folder)
 // What a run is asked by the study itself.
 const std::set<std::string>& own_flags() {
   static const std::set<std::string> flags{
-      "--sensor", "--voxel",     "--size",   "--seed",        "--policy",
-      "--gain",   "--semantics", "--out",    "--max-views",   "--pictures",
-      "--report", "--save-maps", "--plan",   "--take",        "--threads",
-      "--json",   "--quiet",     "--config", "--save-config", "--tolerance"};
+      "--sensor",    "--voxel",    "--size",   "--seed",        "--policy",   "--gain", "--out",
+      "--max-views", "--pictures", "--report", "--save-maps",   "--plan",     "--take", "--threads",
+      "--json",      "--quiet",    "--config", "--save-config", "--tolerance"};
   return flags;
 }
 
@@ -215,13 +204,8 @@ StudySpec read_study_spec(const fs::path& path) {
   const fs::path folder = path.parent_path();
   StudySpec spec;
   spec.objects = objects_of(reader, folder);
-  std::set<std::string> policies;
   for (const std::string& name : texts(reader, "policies")) {
     spec.policies.push_back(policy_of(reader, name));
-    const StudyPolicy& policy = spec.policies.back();
-    if (!policies.insert(policy.policy + ":" + policy.gain + ":" + semantics_of(policy)).second) {
-      reader.fail("policies", "holds \"" + name + "\" twice: paper is the semantics unless said");
-    }
   }
   const std::vector<std::int64_t> seeds = whole_numbers(reader, "seeds", 0, INT64_MAX);
   std::vector<std::string> sensors = texts(reader, "sensors");
@@ -313,7 +297,6 @@ std::vector<std::string> reconstruct_words(const StudySpec& spec, const StudyRun
     words.push_back("--plan=" + policy.plan);
     words.push_back("--take=" + policy.take);
   }
-  if (!policy.semantics.empty()) words.push_back("--semantics=" + policy.semantics);
   if (run.size) words.push_back("--size=" + short_text(*run.size));
   // Every policy has the whole budget, unless the spec says otherwise.
   for (const char* rule : {"--stop-gain", "--stop-area", "--stop-idle", "--stop-promises"}) {

@@ -14,12 +14,11 @@
 namespace viewgain::app {
 
 /// How a study's run chooses its views: a policy of `reconstruct`, for the policy gain with the
-/// gain that it ranks by and, where that has several, its semantics; or plans by the default gain.
+/// gain that it ranks by; or plans by the default gain.
 struct StudyPolicy {
-  std::string
-      name;  ///< as in the spec: "frontier", "gain:combined", "gain:rear_side_voxel:shipped"
-  std::string policy, gain, semantics;  ///< the last two may be empty
-  std::string plan, take;               ///< of "tour:K:M"; else empty
+  std::string name;          ///< as in the spec: "frontier", "gain:combined"
+  std::string policy, gain;  ///< the last may be empty
+  std::string plan, take;    ///< of "tour:K:M"; else empty
 };
 
 /// One run of a study.

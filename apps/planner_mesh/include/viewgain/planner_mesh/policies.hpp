@@ -40,7 +40,7 @@ enum class Policy : std::uint8_t {
 struct VIEWGAIN_EXPORT PolicyConfig {
   Policy policy = Policy::gain;                   ///< which one
   GainModel model = kDefaultGain;                 ///< of Policy::gain
-  std::optional<ClassicRanking> classic{};        ///< of Policy::gain, instead of `model`
+  std::optional<ClassicGain> classic{};           ///< of Policy::gain, instead of `model`
   Criterion criterion = Criterion::log_diagonal;  ///< of the paper's gain
   double travel_cost = 0;                         ///< gain - this * way [the gain's unit per m]
   PlanAhead ahead{};                              ///< of Policy::gain by `model`
