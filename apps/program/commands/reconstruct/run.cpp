@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "program/cli/flags/scene_sources.hpp"
-#include "program/cli/json_text.hpp"
+#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"

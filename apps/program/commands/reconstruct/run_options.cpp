@@ -8,7 +8,6 @@
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/values.hpp"
-#include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
 
@@ -107,8 +106,7 @@ void add_options(App& app, ReconstructOptions& o) {
   app.add_option("--travel-cost", o.travel_cost,
                  "rank by gain - L * distance [nat/m, surface: m^2/m]")
       ->capture_default_str();
-  app.add_option("--plan", o.plan.plan, kPlanHelp)->capture_default_str()->check(counted(1, 1000));
-  app.add_option("--take", o.plan.take, kTakeHelp)->check(counted(1, 1000));
+  add_plan_options(app, o.plan);
   app.add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
   app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
   app.add_option("--body", o.body, kBodyHelp);

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/json_text.hpp"
+#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/frames/registration_json.hpp"
 

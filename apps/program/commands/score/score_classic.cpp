@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/json_text.hpp"
+#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 
 namespace viewgain::app {

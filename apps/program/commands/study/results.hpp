@@ -46,9 +46,10 @@ struct ResultRow {
 /// missing in it.
 [[nodiscard]] ResultRow row_of(const StudyRun& run, const Json& json, std::size_t max_views);
 
-/// The contents of results.csv and results.json, a row a run in the spec's order.
-[[nodiscard]] std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows);
+/// The contents of results.json, a row a run in the spec's order, and of results.csv, the same but
+/// for the lists.
 [[nodiscard]] Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows);
+[[nodiscard]] std::string results_csv(const Json& results);
 
 /// A study's results for people, as Markdown: for each sensor, voxel and size the policies' means,
 /// their paired differences to the spec's `against`, and views by object.

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <set>
-#include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "program/cli/flags/gain_names.hpp"

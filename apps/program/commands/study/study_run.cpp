@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/study/study_run.hpp"
 
-#include <algorithm>
-#include <string>
 #include <utility>
 #include <vector>
 
