@@ -3,9 +3,7 @@
 #include "readers/readers.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
