@@ -6,7 +6,6 @@
 //   octomap_planner [VIEWS]        exit codes: 0, 2 for bad input
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <vector>
 #include <viewgain/formats/octomap_tree.hpp>

@@ -6,7 +6,6 @@
 #include <iostream>
 #include <new>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "program/cli/call_files.hpp"

@@ -77,15 +77,21 @@ TEST(ThreadPool, CountsNearTheLargestSizeDoNotOverflow) {
   }
 }
 
-TEST(ThreadPool, AllThreadsWorkAtOnce) {
+bool all_threads_meet(ThreadPool& pool) {
+  std::atomic<int> arrived{0};
+  std::atomic<bool> met{true};
+  const int all = pool.num_threads();
+  pool.for_each_chunk(static_cast<std::size_t>(all), 1, [&](std::size_t, std::size_t) {
+    if (!meet(arrived, all)) met = false;
+  });
+  return met;
+}
+
+TEST(ThreadPool, AllThreadsWorkAtOnceAndSleepersWakeUp) {
   ThreadPool pool(4);
   for (int repetition = 0; repetition < 50; ++repetition) {
-    std::atomic<int> arrived{0};
-    std::atomic<bool> met{true};
-    pool.for_each_chunk(4, 1, [&](std::size_t, std::size_t) {
-      if (!meet(arrived, 4)) met = false;
-    });
-    ASSERT_TRUE(met.load());
+    if (repetition % 10 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ASSERT_TRUE(all_threads_meet(pool));
   }
 }
 
@@ -219,19 +225,6 @@ TEST(ThreadPool, AllThrowingAtOnceGivesOneOfTheExceptions) {
   }
 }
 
-TEST(ThreadPool, SleepingWorkersWakeUp) {
-  ThreadPool pool(2);
-  for (int i = 0; i < 5; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    std::atomic<int> arrived{0};
-    std::atomic<bool> met{true};
-    pool.for_each_chunk(2, 1, [&](std::size_t, std::size_t) {
-      if (!meet(arrived, 2)) met = false;
-    });
-    ASSERT_TRUE(met.load());
-  }
-}
-
 TEST(ThreadPool, StartsAndStopsManyTimes) {
   for (int i = 0; i < 200; ++i) {
     ThreadPool pool(1 + i % 5);
@@ -266,19 +259,10 @@ void expect_in_child(const Body& body) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "status " << status;
 }
 
-bool two_threads_meet(ThreadPool& pool) {
-  std::atomic<int> arrived{0};
-  std::atomic<bool> met{true};
-  pool.for_each_chunk(2, 1, [&](std::size_t, std::size_t) {
-    if (!meet(arrived, 2)) met = false;
-  });
-  return met;
-}
-
 TEST(ThreadPool, AChildOfAForkHasItsOwnThreads) {
   auto pool = std::make_unique<ThreadPool>(2);
-  ASSERT_TRUE(two_threads_meet(*pool));
-  expect_in_child([&] { return two_threads_meet(*pool) && two_threads_meet(*pool); });
+  ASSERT_TRUE(all_threads_meet(*pool));
+  expect_in_child([&] { return all_threads_meet(*pool) && all_threads_meet(*pool); });
   expect_in_child([&] {  // a child that only drops it
     pool.reset();
     return true;
@@ -292,10 +276,10 @@ TEST(ThreadPool, AChildOfAForkHasItsOwnThreads) {
     });
   });
   while (!inside) std::this_thread::yield();
-  expect_in_child([&] { return two_threads_meet(*pool); });
+  expect_in_child([&] { return all_threads_meet(*pool); });
   leave = true;
   busy.join();
-  EXPECT_TRUE(two_threads_meet(*pool));
+  EXPECT_TRUE(all_threads_meet(*pool));
 }
 
 TEST(ThreadPool, ZeroMeansAllHardwareThreads) {

@@ -3,9 +3,7 @@
 #include "readers/readers.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -94,18 +92,6 @@ std::string binary_pcd() {
       "1\nVIEWPOINT 0 0 1 1 0 0 0\nPOINTS 4\nDATA binary\n";
   for (int k = 0; k < 16; ++k) append(bytes, static_cast<float>(k * k % 11));
   return bytes;
-}
-
-// Compressed by liblzf: 16 points.
-std::string compressed_pcd() {
-  std::string bytes = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 16\nDATA binary_compressed\n";
-  append(bytes, std::uint32_t{39});
-  append(bytes, std::uint32_t{192});
-  return bytes + std::string(
-                     "\001\000\000\140\000\003\077\000\000\200\040\003\000\300\040\003"
-                     "\140\000\040\007\340\037\017\000\240\040\053\340\063\003\001\000"
-                     "\300\340\061\003\001\000\300",
-                     39);
 }
 
 // A free and an occupied voxel at the tree's corner.
@@ -221,7 +207,6 @@ std::vector<Reader> cloud_and_map_readers() {
                       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
                       "y\nproperty float z\nend_header\n0 0 0\n1 0.5 2\n0.1 0.2 0.3\n",
                       cloud),
-          file_reader("compressed.pcd", compressed_pcd(), cloud),
           file_reader("little.ply", binary_ply("little"), cloud),
           file_reader("big.ply", binary_ply("big"), cloud),
           file_reader("map.bt", binary_octomap(), map),

@@ -82,12 +82,15 @@ void set_scales(const Config& given, IntegrationConfig& settings) {
   }
 }
 
-/// Throws Error(invalid_argument) for a number that is no VG_TRACER_.
+/// A number of C as an enumerator; throws Error(invalid_argument) unless it is in 0..last.
+template <typename Enum>
+[[nodiscard]] Enum enum_of(std::int32_t value, std::int32_t last, const std::string& name) {
+  if (value >= 0 && value <= last) return static_cast<Enum>(value);
+  reject(name + " is " + std::to_string(value) + "; it must be in 0.." + std::to_string(last));
+}
+
 [[nodiscard]] inline ExecConfig exec_of(std::int32_t num_threads, std::int32_t tracer) {
-  if (tracer < VG_TRACER_AUTOMATIC || tracer > VG_TRACER_SWEEP) {
-    reject("tracer is " + std::to_string(tracer) + "; the tracers are 0 to 2");
-  }
-  return {num_threads, static_cast<ExecConfig::Tracer>(tracer)};
+  return {num_threads, enum_of<ExecConfig::Tracer>(tracer, VG_TRACER_SWEEP, "tracer")};
 }
 
 /// A pose from 16 numbers, row by row; all NaN if the lowest row is off by more than 1e-3.

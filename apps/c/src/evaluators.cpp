@@ -23,15 +23,9 @@ static_assert(VG_VIEW_CAMERA_IN_OCCUPIED == static_cast<int>(ViewGain::Status::c
 static_assert(VG_HIT_OBSTACLE == static_cast<int>(RayHit::Kind::obstacle));
 
 GainConfig settings_of(const vg_evaluator_config& config) {
-  if (config.criterion < VG_LOG_DIAGONAL || config.criterion > VG_TRACE) {
-    reject("criterion is " + std::to_string(config.criterion) + "; the criteria are 0 to 2");
-  }
   require_array(config.weights, config.weight_count, "weights");
-  if (config.gain < VG_GAIN_PAPER || config.gain > VG_GAIN_COMBINED) {
-    reject("gain is " + std::to_string(config.gain) + "; the gains are 0 to 2");
-  }
-  GainConfig settings{.model = static_cast<GainModel>(config.gain),
-                      .criterion = static_cast<Criterion>(config.criterion),
+  GainConfig settings{.model = enum_of<GainModel>(config.gain, VG_GAIN_COMBINED, "gain"),
+                      .criterion = enum_of<Criterion>(config.criterion, VG_TRACE, "criterion"),
                       .pixel_stride = config.pixel_stride,
                       .prior_sigma = given(config.prior_sigma),
                       .min_range = given(config.min_range),

@@ -254,17 +254,10 @@ vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_conf
   return make_handle(integrator, "integrator", [&] {
     const Sensor camera = sensor_of(sensor);
     const vg_integrator_config chosen = read_config(config, "vg_integrator_config");
-    if (chosen.carve != VG_CARVE_CONES && chosen.carve != VG_CARVE_LINES) {
-      reject("carve is " + std::to_string(chosen.carve) + "; it must be 0 or 1 (VG_CARVE_)");
-    }
-    if (chosen.occupancy != VG_OCCUPANCY_PROBABILISTIC &&
-        chosen.occupancy != VG_OCCUPANCY_LITERAL) {
-      reject("occupancy is " + std::to_string(chosen.occupancy) +
-             "; it must be 0 or 1 (VG_OCCUPANCY_)");
-    }
-    IntegrationConfig settings{static_cast<IntegrationConfig::Carve>(chosen.carve),
-                               static_cast<IntegrationConfig::Occupancy>(chosen.occupancy),
-                               given(chosen.support_plane)};
+    IntegrationConfig settings{
+        enum_of<IntegrationConfig::Carve>(chosen.carve, VG_CARVE_LINES, "carve"),
+        enum_of<IntegrationConfig::Occupancy>(chosen.occupancy, VG_OCCUPANCY_LITERAL, "occupancy"),
+        given(chosen.support_plane)};
     set_scales(chosen, settings);
     return vg_integrator{FrameIntegrator(camera, settings, {.num_threads = chosen.num_threads}),
                          HazardCalibration(camera, settings.support_plane), camera.camera};

@@ -44,9 +44,6 @@ Sensor sensor_with_body(const vg_sensor* given_sensor, const vg_planner_config& 
 }
 
 PlannerConfig settings_of(const vg_planner_config& config) {
-  if (config.gain < VG_GAIN_PAPER || config.gain > VG_GAIN_COMBINED) {
-    reject("gain is " + std::to_string(config.gain) + "; the gains are 0 to 2");
-  }
   PlannerConfig settings;
   settings.grid = {config.voxel_size,
                    {std::to_array(config.box_min), std::to_array(config.box_max)},
@@ -60,7 +57,7 @@ PlannerConfig settings_of(const vg_planner_config& config) {
     settings.jump_edges.emplace();
     settings.jump_edges->angle = config.jump_edge_angle;
   }
-  settings.gain.model = static_cast<GainModel>(config.gain);
+  settings.gain.model = enum_of<GainModel>(config.gain, VG_GAIN_COMBINED, "gain");
   settings.check_feasibility = config.check_feasibility != 0;
   settings.clearance = config.clearance;
   settings.reach.predicate = predicate_of(config.reachable, config.user);

@@ -14,11 +14,7 @@ namespace {
 static_assert(VG_NOISE_SHOT == 0 && VG_NOISE_CONSTANT == kNoiseModels.size() - 1);
 
 NoiseModel noise_of(const vg_sensor& sensor) {
-  const auto model = static_cast<std::size_t>(sensor.noise_model);
-  if (model >= kNoiseModels.size()) {
-    reject("noise_model is " + std::to_string(sensor.noise_model) +
-           "; the models are 0 to 4 (VG_NOISE_)");
-  }
+  const auto model = enum_of<std::size_t>(sensor.noise_model, VG_NOISE_CONSTANT, "noise_model");
   NoiseModel noise = kNoiseModels[model];
   std::size_t used = 0;
   for_each_parameter(noise, [&](double& value, const auto&) { value = sensor.noise[used++]; });

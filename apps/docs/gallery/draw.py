@@ -78,7 +78,7 @@ def coverage(results_file, out):
         results = json.load(file)
     curves = collections.defaultdict(list)
     for run in results:
-        name = ":".join(part for part in (run["policy"], run["gain"], run["semantics"]) if part)
+        name = ":".join(part for part in (run["policy"], run["gain"]) if part)
         curves[name].append([100 * share for share in run["coverage_by_view"]])
     means = {name: [statistics.fmean(view) for view in zip(*runs)] for name, runs in curves.items()}
     views = range(1, len(next(iter(means.values()))) + 1)

@@ -4,7 +4,6 @@
 
 #include <map>
 #include <sstream>
-#include <utility>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/file_names.hpp"

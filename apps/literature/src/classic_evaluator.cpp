@@ -39,17 +39,6 @@ bool needs_occlusion(ClassicGain gain) {
   return gain == ClassicGain::proximity_count || gain == ClassicGain::area_factor;
 }
 
-const std::vector<std::string>& gain_semantics_names() {
-  static const std::vector<std::string> names{"paper", "shipped"};
-  return names;
-}
-std::string_view gain_semantics_name(GainSemantics semantics) {
-  return gain_semantics_names().at(static_cast<std::size_t>(semantics));
-}
-GainSemantics parse_gain_semantics(std::string_view name) {
-  return static_cast<GainSemantics>(place_of_name(name, gain_semantics_names(), "semantics"));
-}
-
 }  // namespace viewgain
 
 namespace viewgain::detail {
@@ -67,19 +56,13 @@ double entropy_of(double p) {
 
 VoxelValues::VoxelValues(const ClassicConfig& config) {
   static_assert(kMaxCode < 128 && kZeroCode < kPassed);
-  const bool shipped = config.semantics == GainSemantics::shipped;
   for (int i = 0; i <= kMaxCode; ++i) {
     const auto code = static_cast<std::uint8_t>(i);
     const auto at = static_cast<std::size_t>(i);
-    const bool is_known = code != kUnknownCode;
-    const double p = is_known ? 1 / (1 + std::exp(-static_cast<double>(code_log_odds(code))))
-                              : config.unknown_prior;
-    // p rises with the code.
-    const bool is_occupied = shipped ? p > config.occupied_above : detail::is_occupied(code);
-    const bool is_free = shipped ? p < config.free_below : !detail::is_occupied(code);
-    if (is_known && is_free) free_end = i + 1;
-    if (is_known && is_occupied && occupied_begin > i) occupied_begin = i;
-    const double H = entropy_of(p), q = shipped ? p : 1 - p;
+    const double p = code != kUnknownCode
+                         ? 1 / (1 + std::exp(-static_cast<double>(code_log_odds(code))))
+                         : config.unknown_prior;
+    const double H = entropy_of(p), q = 1 - p;
     entropy[at] = static_cast<float>(H);
     if (i > kZeroCode) continue;
     passed_entropy[at] = entropy[at];
@@ -119,13 +102,6 @@ const ClassicConfig& checked(const ClassicConfig& config) {
   const double prior = config.unknown_prior;
   if (!(prior >= 0 && prior <= 1)) {
     reject("the unknown voxels' prior is " + short_text(prior) + "; it must be in 0..1");
-  }
-  if (config.semantics == GainSemantics::shipped &&
-      !(config.free_below >= 0 && config.free_below <= prior && prior <= config.occupied_above &&
-        config.occupied_above <= 1)) {
-    reject("thresholds " + short_text(config.free_below) + " and " +
-           short_text(config.occupied_above) + " must be in 0..1, on both sides of the prior " +
-           short_text(prior));
   }
   return config;
 }
@@ -182,7 +158,6 @@ class SumConsumer final : public RayConsumer {
       : data_(data),
         gains_(config.gains),
         view_{data.table, values, 2 * data.occlusion_depth,
-              config.semantics == GainSemantics::shipped,
               std::any_of(gains_.begin(), gains_.end(),
                           [](ClassicGain gain) {
                             return gain == ClassicGain::unknown_count ||

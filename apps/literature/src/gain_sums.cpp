@@ -159,10 +159,6 @@ class GainSink {
     const VI code =
         hn::IfThenZeroElse(is_unobserved, hn::And(step.place.word, set_i(ClassicTable::kCode)));
     const MI unobserved = hn::And(counts, is_unobserved);
-    const MI is_free = hn::AndNot(is_unobserved, hn::Lt(code, set_i(values.free_end)));
-    const MI is_occupied = hn::Gt(code, set_i(values.occupied_begin - 1));
-    const MI unknown = hn::AndNot(is_free, hn::AndNot(is_occupied, counts));
-
     const VI passed_code = hn::And(code, set_i(VoxelValues::kPassed - 1));
     const VI voxels = hn::IfThenElse(ends, set_i(1), step.voxels);
     const VI counted = hn::IfThenElseZero(counts, voxels);
@@ -185,14 +181,14 @@ class GainSink {
     occlusion_aware_ = hn::Add(occlusion_aware_, visible);
     add_to_long(entropy_, entropy_error_, hn::Mul(n, H));
     voxels_ = hn::Add(voxels_, counted);
-    if (!hn::AllFalse(di, ends)) end(hn::And(ends, is_occupied), visible);
+    if (!hn::AllFalse(di, ends)) end(ends);
 
-    const VF of_unknown = hn::IfThenElseZero(to_f(unknown), visible);
-    unobserved_ = hn::Add(unobserved_, of_unknown);
-    const VF stretch = hn::IfThenElseZero(to_f(unknown), hn::Add(stretch_, visible));
+    const VF of_unobserved = hn::IfThenElseZero(to_f(unobserved), visible);
+    unobserved_ = hn::Add(unobserved_, of_unobserved);
+    const VF stretch = hn::IfThenElseZero(to_f(unobserved), hn::Add(stretch_, visible));
     stretch_ = hn::IfThenElse(to_f(counts), stretch, stretch_);
-    from_unknown_ = hn::Or(unknown, hn::AndNot(counts, from_unknown_));
-    from_free_ = hn::Or(hn::And(counts, is_free), hn::AndNot(counts, from_free_));
+    const MI is_free = hn::AndNot(is_unobserved, hn::AndNot(ends, counts));
+    from_free_ = hn::Or(is_free, hn::AndNot(counts, from_free_));
     const MI turns = hn::And(counts, hn::Xor(in_unobserved_, is_unobserved));
     if (!hn::AllFalse(di, turns)) turn(step.t, turns, unobserved);
     if (!hn::AllFalse(di, unobserved)) pass_unobserved(step, unobserved);
@@ -203,8 +199,8 @@ class GainSink {
     turn(end, in_unobserved_, no_lane_i());
     sums.occlusion_aware += total(occlusion_aware_);
     sums.unobserved += total(unobserved_);
-    sums.entropy += total(view_.is_shipped ? ended_entropy_ : entropy_);
-    sums.voxels += static_cast<double>(total(view_.is_shipped ? ended_voxels_ : voxels_));
+    sums.entropy += total(entropy_);
+    sums.voxels += static_cast<double>(total(voxels_));
     sums.rear_side_entropy += total(rear_side_entropy_);
     sums.proximity +=
         view_.most_steps * static_cast<double>(hidden_) - static_cast<double>(total(hidden_steps_));
@@ -215,16 +211,12 @@ class GainSink {
   }
 
  private:
-  // Rays that come to what counts as occupied; `visible` is P H of it.
-  HWY_INLINE void end(MI occupied, VF visible) {
-    const MI rear = hn::And(occupied, from_unknown_);
+  // Rays that come to an occupied voxel.
+  HWY_INLINE void end(MI occupied) {
+    const MI rear = hn::And(occupied, in_unobserved_);
     rear_side_ += hn::CountTrue(di, rear);
     rear_side_entropy_ = hn::Add(rear_side_entropy_, hn::IfThenElseZero(to_f(rear), stretch_));
     on_surface_ += hn::CountTrue(di, hn::AndNot(is_on_hidden_, hn::And(occupied, from_free_)));
-    if (!view_.is_shipped) return;
-    rear_side_entropy_ = hn::Add(rear_side_entropy_, hn::IfThenElseZero(to_f(occupied), visible));
-    ended_entropy_ = hn::IfThenElse(to_f(occupied), entropy_, ended_entropy_);
-    ended_voxels_ = hn::IfThenElse(occupied, voxels_, ended_voxels_);
   }
 
   // Rays that come into unobserved space, at t, or leave it: the cones of the voxels between differ
@@ -266,14 +258,13 @@ class GainSink {
   const float* solid_angle_;
   DistinctVoxels& distinct_;
   VF absorbed_ = hn::Zero(df), rest_ = hn::Zero(df);      // -log2 of P, as VoxelValues has it
-  VF left_ = hn::Set(df, 1.0F), stretch_ = hn::Zero(df);  // P, and Σ P H since what was not unknown
+  VF left_ = hn::Set(df, 1.0F), stretch_ = hn::Zero(df);  // P, and Σ P H since the last known voxel
   VF occlusion_aware_ = hn::Zero(df), unobserved_ = hn::Zero(df);
   VF entropy_ = hn::Zero(df), entropy_error_ = hn::Zero(df);
-  VI voxels_ = hn::Zero(di), ended_voxels_ = hn::Zero(di), hidden_steps_ = hn::Zero(di);
-  VF ended_entropy_ = hn::Zero(df), rear_side_entropy_ = hn::Zero(df);
-  // What the voxel before counted as, and whether the ray has come to what surfaces hide.
-  MI from_unknown_ = no_lane_i(), from_free_ = no_lane_i(), is_on_hidden_ = no_lane_i();
-  MI in_unobserved_ = no_lane_i();
+  VI voxels_ = hn::Zero(di), hidden_steps_ = hn::Zero(di);
+  VF rear_side_entropy_ = hn::Zero(df);
+  // What the voxel before is, and whether the ray has come to what surfaces hide.
+  MI in_unobserved_ = no_lane_i(), from_free_ = no_lane_i(), is_on_hidden_ = no_lane_i();
   std::uint64_t rear_side_ = 0, on_surface_ = 0, hidden_ = 0;
   double volume_ = 0;
 };

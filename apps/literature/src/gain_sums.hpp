@@ -68,7 +68,7 @@ class DistinctVoxels {
   std::uint64_t count_ = 0, frontiers_ = 0;
 };
 
-/// What voxels weigh by the code of their log-odds, for one semantics; q is what each lets through.
+/// What voxels weigh by the code of their log-odds; q is what each lets through.
 struct VoxelValues {
   /// Codes of voxels that rays go on through are below this.
   static constexpr std::size_t kPassed = 64;
@@ -79,9 +79,6 @@ struct VoxelValues {
   alignas(64) std::array<float, kPassed> per_taken{};
   alignas(64) std::array<float, kPassed> passed_entropy{};  ///< H of these [nat]
   alignas(64) std::array<float, 128> entropy{};             ///< H of all codes [nat]
-  /// Known voxels count as free below, as occupied from there on; others, and those that no reading
-  /// told of, as unknown.
-  std::int32_t free_end = 0, occupied_begin = kMaxCode + 1;
 
   explicit VoxelValues(const ClassicConfig& config);
 };
@@ -102,7 +99,6 @@ struct ClassicView {
   const ClassicTable& table;
   const VoxelValues& values;
   double most_steps = 0;     ///< proximity_count: what a voxel's steps are taken from
-  bool is_shipped = false;   ///< average_entropy and rear_side_entropy differ
   bool is_distinct = false;  ///< are distinct unknown voxels asked for?
 };
 

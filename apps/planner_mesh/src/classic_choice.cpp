@@ -18,13 +18,13 @@ int coarse_stride(const PinholeCamera& camera) {
 
 }  // namespace
 
-ClassicChoice::ClassicChoice(const SurfaceModel& model, const Sensor& sensor,
-                             const ClassicRanking& ranking, const ExecConfig& exec)
-    : model_(model), sensor_(sensor), ranking_(ranking), exec_(exec) {}
+ClassicChoice::ClassicChoice(const SurfaceModel& model, const Sensor& sensor, ClassicGain gain,
+                             const ExecConfig& exec)
+    : model_(model), sensor_(sensor), gain_(gain), exec_(exec) {}
 
 std::vector<double> ClassicChoice::gains(std::span<const Pose> T_world_camera, bool all) {
   const auto acquisition =
-      needs_occlusion(ranking_.gain) ? std::optional(Acquisition{sensor_}) : std::nullopt;
+      needs_occlusion(gain_) ? std::optional(Acquisition{sensor_}) : std::nullopt;
   const auto map = ClassicMap::build(model_.scene(), model_.grid(), acquisition, exec_);
   const auto follow = [&](std::optional<ClassicGainEvaluator>& evaluator, int stride) {
     if (evaluator) {
@@ -32,8 +32,7 @@ std::vector<double> ClassicChoice::gains(std::span<const Pose> T_world_camera, b
       return;
     }
     ClassicConfig config;
-    config.gains = {ranking_.gain};
-    config.semantics = ranking_.semantics;
+    config.gains = {gain_};
     config.pixel_stride = stride;
     evaluator.emplace(map, sensor_, config, exec_);
   };

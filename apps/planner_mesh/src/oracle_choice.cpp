@@ -62,14 +62,8 @@ std::vector<std::size_t> OracleChoice::uncovered_in_view(
   return counts;
 }
 
-TrueOutcome OracleChoice::outcome_of(const Pose& T_world_camera) const {
-  const ModelOutlook outlook = model_.after({T_world_camera, {camera_.acquire(T_world_camera)}});
-  return {covered_by(outlook.points), outlook.entropy_removed};
-}
-
-std::size_t OracleChoice::covered() const { return covered_by(model_.points()); }
-
-std::size_t OracleChoice::covered_by(const std::vector<FusedPoint>& points) const {
+std::size_t OracleChoice::covered_after(const Pose& T_world_camera) const {
+  const auto points = model_.points_after({T_world_camera, {camera_.acquire(T_world_camera)}});
   const std::vector<double> distances =
       object_.truth->ground_truth().distances_to(arrays_of(points).positions);
   return static_cast<std::size_t>(std::count_if(distances.begin(), distances.end(), [&](double d) {
@@ -87,7 +81,7 @@ std::size_t OracleChoice::next(std::span<const Candidate> candidates) const {
   std::sort(ranking.begin(), ranking.end());
   std::size_t best = ranking.front(), most = 0;
   for (const std::size_t i : ranking) {
-    const std::size_t covered = outcome_of(candidates[i].T_world_camera).covered;
+    const std::size_t covered = covered_after(candidates[i].T_world_camera);
     if (covered > most) most = covered, best = i;
   }
   return best;

@@ -128,23 +128,6 @@ const GainEvaluator& PolicyDecision::evaluator() {
   return *evaluator_;
 }
 
-std::optional<CandidateScores> PolicyDecision::scores(std::span<const Candidate> candidates) {
-  CandidateScores scores;
-  scores.area.assign(candidates.size(), std::numeric_limits<double>::quiet_NaN());
-  if (classic_) {
-    scores.score = classic_->gains(poses_of(candidates), /*all=*/true);
-    return scores;
-  }
-  const bool by_gain = is_by_gain();
-  if (!by_gain && config_.policy != Policy::frontier) return std::nullopt;
-  const std::vector<ViewGain> gains = evaluator().evaluate(poses_of(candidates));
-  for (std::size_t i = 0; i < gains.size(); ++i) {
-    scores.score.push_back(by_gain ? gains[i].gain : static_cast<double>(gains[i].unknown_voxels));
-    scores.area[i] = gains[i].area;
-  }
-  return scores;
-}
-
 std::vector<ViewGain> PolicyDecision::score_classic(std::span<const Candidate> candidates) {
   const bool way_counts = config_.cost_per_metre > 0;
   const std::vector<double> values = classic_->gains(poses_of(candidates), way_counts);

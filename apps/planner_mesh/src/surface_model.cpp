@@ -102,10 +102,8 @@ ModelProgress SurfaceModel::progress_after(const MapUpdate& update) {
   return progress;
 }
 
-ModelOutlook SurfaceModel::after(const Measurements& measurements) const {
-  const BeliefGrid grid = map_.grid_after(measurements);
-  return {fused_points(grid, config_.points, exec_),
-          grid.statistics(config_.map.criterion).entropy_removed};
+std::vector<FusedPoint> SurfaceModel::points_after(const Measurements& measurements) const {
+  return fused_points(map_.grid_after(measurements), config_.points, exec_);
 }
 
 void SurfaceModel::derive_surface() {

@@ -7,10 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <utility>
 
 #include "program/cli/json.hpp"
-#include "program/cli/values.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/toml_table.hpp"
 

@@ -174,6 +174,11 @@ std::string counts_text(const std::map<std::string, std::size_t>& counts) {
   return text;
 }
 
+void print_mended(std::size_t poses) {
+  if (poses == 0) return;
+  std::printf("rotations that were off and were orthonormalised: %zu\n", poses);
+}
+
 void check_finite(std::string_view flag, double value) {
   if (!std::isfinite(value)) refuse(flag, short_text(value), "must be finite");
 }

@@ -66,6 +66,9 @@ namespace viewgain::app {
 /// "12 collision, 3 unreachable"
 [[nodiscard]] std::string counts_text(const std::map<std::string, std::size_t>& counts);
 
+/// Says how many poses were not quite rigid and were mended; nothing of none.
+void print_mended(std::size_t poses);
+
 /// A flag's value, checked: each throws Error(invalid_argument) that names both. NaN never passes.
 void check_finite(std::string_view flag, double value);
 void check_positive(std::string_view flag, double value);    ///< and finite

@@ -9,7 +9,8 @@
 
 #include "calibration/noise_calibration.hpp"
 #include "program/cli/flags/common_options.hpp"
-#include "program/cli/json_text.hpp"
+#include "program/cli/flags/frame_folder.hpp"
+#include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
@@ -31,24 +32,14 @@ struct Options {
   std::string out;
 };
 
-FrameSequence open_static_frames(const Options& options) {
-  if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
-  try {
-    FrameSequence frames = open_depth_images(options.frames, options.sensor, options.depth_scale);
-    frames.out_of_range = Sensor::OutOfRange::invalid;
-    return frames;
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::invalid_argument || !options.sensor.empty()) throw;
-    throw Error(error.code(), std::string(error.what()) + " (--sensor)");
-  }
-}
-
 void calibrate(const Options& options) {
   const Stopwatch watch;
   if (!is_sensor_file(options.out) && !is_special_file(options.out)) {
     refuse("--out " + options.out + ": the name of a sensor file must end in .toml");
   }
-  const FrameSequence frames = open_static_frames(options);
+  FrameSequence frames =
+      opened(&open_depth_images, options.frames, options.sensor, options.depth_scale);
+  frames.out_of_range = Sensor::OutOfRange::invalid;
   NoiseCalibration calibration(frames.sensor, frames.depth_scale);
   std::map<std::string, std::size_t> dropped;
   std::size_t used = 0;

@@ -8,7 +8,7 @@
 
 #include "program/cli/app.hpp"
 #include "program/cli/flags/common_options.hpp"
-#include "program/cli/json_text.hpp"
+#include "program/cli/json.hpp"
 
 namespace viewgain::app {
 

@@ -57,7 +57,6 @@ void convert(const Options& options) {
   const LostInTree lost = save_map(grid, options.out, how);
   warn_of_lost_frame(lost, options.out);
   const BeliefGrid::Statistics statistics = grid.statistics();
-  const Index3 dims = grid.dims();
   if (options.common.json) {
     Json json = {{"in", options.in}, {"out", options.out}};
     json.update(map_json(grid, statistics));
@@ -70,10 +69,7 @@ void convert(const Options& options) {
     print_json(json);
     return;
   }
-  std::printf("workspace %s m: %d x %d x %d voxels of %g m\n", describe(grid.workspace()).c_str(),
-              dims.x, dims.y, dims.z, grid.voxel_size());
-  std::printf("voxels: %s unknown, %s free, %s occupied\n", with_commas(statistics.unknown).c_str(),
-              with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
+  print_map(grid, statistics);
   if (lost.beliefs > 0 || lost.views > 0) {
     std::printf("not in a tree: the beliefs of %s voxels, %s views%s\n",
                 with_commas(lost.beliefs).c_str(), with_commas(lost.views).c_str(),

@@ -65,10 +65,7 @@ void print_summary(const Options& options, const ImportReport& report,
   std::printf("%zu frames of %dx%d px, %s readings: %s\n", report.frames, camera.width,
               camera.height, with_commas(report.readings).c_str(), options.out.c_str());
   if (!dropped.empty()) std::printf("left out: %s\n", counts_text(dropped).c_str());
-  if (report.orthonormalized > 0) {
-    std::printf("rotations that were off and were orthonormalised: %zu of %zu\n",
-                report.orthonormalized, report.frames);
-  }
+  print_mended(report.orthonormalized);
   if (!options.mask.empty() || !options.confidence.empty()) {
     std::printf("masks: of %zu frames, %s pixels taken away\n", report.masks,
                 with_commas(report.masked_pixels).c_str());
@@ -109,11 +106,7 @@ Command add_import(App& program) {
   app->add_option("--max-time-gap", options->max_time_gap,
                   "between an image and its pose [s]; nothing is interpolated")
       ->capture_default_str();
-  app->add_option("--mask", options->mask, kMaskHelp);
-  app->add_option("--confidence", options->confidence, kConfidenceHelp);
-  app->add_option("--least-confidence", options->least_confidence, kLeastConfidenceHelp)
-      ->capture_default_str()
-      ->check(CLI::Range(1, 255, "confidence"));
+  add_mask_options(*app, options->mask, options->confidence, options->least_confidence);
   app->add_option(
          "--out", options->out,
          "folder to write; files that import has left in it are replaced, others are refused")

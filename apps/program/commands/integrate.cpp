@@ -3,7 +3,6 @@
 #include "viewgain/grid/integrate.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <initializer_list>
 #include <memory>
@@ -160,7 +159,6 @@ Totals integrate_all(ReadingSource& source, const Options& options, std::set<std
 void print_summary(const Options& options, const ReadingSource& source, const BeliefGrid& grid,
                    const Totals& totals, const LostInTree& lost, double seconds) {
   const BeliefGrid::Statistics statistics = grid.statistics();
-  const Index3 dims = grid.dims();
   const std::size_t taken = totals.seconds.size();
   const std::optional<double> frame_seconds = median(totals.seconds);
   if (options.common.json) {
@@ -195,9 +193,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
     print_json(json);
     return;
   }
-  std::printf("workspace %s m: %d x %d x %d voxels of %g m, prior sigma %g m\n",
-              describe(grid.workspace()).c_str(), dims.x, dims.y, dims.z, grid.voxel_size(),
-              grid.prior_sigma());
+  print_map(grid, statistics);
   if (const auto scale = scale_of(source)) {
     std::printf("depth images: %s m per unit\n", short_text(*scale).c_str());
   }
@@ -225,15 +221,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
     std::printf("readings of the support plane: %s\n",
                 with_commas(totals.sum.plane_readings).c_str());
   }
-  if (source.orthonormalized() > 0) {
-    std::printf("rotations that were off and were orthonormalised: %zu of %zu\n",
-                source.orthonormalized(), source.size());
-  }
-  const double voxels = static_cast<double>(grid.voxel_count());
-  std::printf("voxels: %s unknown (%.1f %%), %s free, %s occupied\n",
-              with_commas(statistics.unknown).c_str(),
-              100 * static_cast<double>(statistics.unknown) / voxels,
-              with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
+  print_mended(source.orthonormalized());
   std::printf("%.2f s in all", seconds);
   if (frame_seconds) {
     std::printf("; into the map: %.1f ms per %s (median)", 1e3 * *frame_seconds,

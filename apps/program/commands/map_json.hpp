@@ -6,6 +6,7 @@
 #include <string>
 
 #include "program/cli/json.hpp"
+#include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
@@ -20,6 +21,19 @@ namespace viewgain::app {
           {"dims", {dims.x, dims.y, dims.z}}, {"prior_sigma", grid.prior_sigma()},
           {"unknown", statistics.unknown},    {"free", statistics.free},
           {"occupied", statistics.occupied}};
+}
+
+/// The same for people: two lines.
+inline void print_map(const BeliefGrid& grid, const BeliefGrid::Statistics& statistics) {
+  const Index3 dims = grid.dims();
+  std::printf("workspace %s m (grid frame): %d x %d x %d voxels of %g m, prior sigma %g m\n",
+              describe(grid.workspace()).c_str(), dims.x, dims.y, dims.z, grid.voxel_size(),
+              grid.prior_sigma());
+  std::printf(
+      "voxels: %s unknown (%.1f %%), %s free, %s occupied\n",
+      with_commas(statistics.unknown).c_str(),
+      100 * static_cast<double>(statistics.unknown) / static_cast<double>(grid.voxel_count()),
+      with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
 }
 
 /// Warns on stderr of what a tree cannot hold, where save_map lost it.

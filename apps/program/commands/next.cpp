@@ -9,7 +9,7 @@
 
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/sensed_map.hpp"
-#include "program/cli/json_text.hpp"
+#include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/frames/frame_map.hpp"

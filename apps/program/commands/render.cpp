@@ -15,7 +15,6 @@
 #include "show/pictures/map_picture.hpp"
 #include "show/pictures/surface_picture.hpp"
 #include "viewgain/formats/map_file.hpp"
-#include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 

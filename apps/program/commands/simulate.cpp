@@ -180,9 +180,7 @@ void simulate(const Options& options) {
   std::printf("pixels: %s readings, %s out of range, %s invalid\n",
               with_commas(counts.readings).c_str(), with_commas(counts.out_of_range).c_str(),
               with_commas(counts.invalid).c_str());
-  if (source.orthonormalized > 0) {
-    std::printf("rotations that were off and were orthonormalised: %zu\n", source.orthonormalized);
-  }
+  print_mended(source.orthonormalized);
 }
 
 }  // namespace

@@ -17,7 +17,6 @@
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/reconstruct/run_report.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/mesh/mesh_io.hpp"

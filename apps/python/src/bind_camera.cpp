@@ -166,7 +166,7 @@ cx, cy : float
     Principal point [px].
 distortion : sequence of float, (5,), optional
     The coefficients k1 k2 p1 p2 k3, without a unit.)");
-  pickle_as_call(type, {"width", "height", "fx", "fy", "cx", "cy", "distortion"});
+  pickle_by_attributes(type, {"width", "height", "fx", "fy", "cx", "cy", "distortion"});
   type.def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
                        const std::array<double, 5>& distortion) {
              const PinholeCamera camera{width, height, fx, fy, cx, cy, distortion};

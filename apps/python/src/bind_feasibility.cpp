@@ -75,48 +75,25 @@ bool is_same(const ReachRegion& a, const ReachRegion& b) {
                     b.half_spaces.end(), same_half_space);
 }
 
-// What a pickle is of. A predicate is a function, which bytes cannot hold.
-constexpr const char* kKind = "viewgain reach 1\n";
-
-py::bytes bytes_of(const ReachRegion& region) {
-  if (region.predicate) {
-    throw py::type_error("a ReachRegion with a predicate cannot be pickled or made bytes");
-  }
-  std::vector<std::array<double, 5>> shells;
+// Of the constructor. A predicate is a function, which may not be pickled.
+py::dict keywords_of(const py::object& self) {
+  const auto& region = self.cast<const ReachRegion&>();
+  if (region.predicate) throw py::type_error("a ReachRegion with a predicate cannot be pickled");
+  py::list boxes, shells, half_spaces;
+  for (const Box& b : region.boxes) boxes.append(py::make_tuple(b.min, b.max));
   for (const ReachRegion::Shell& s : region.shells) {
-    shells.push_back({s.center.x(), s.center.y(), s.center.z(), s.min_radius, s.max_radius});
+    shells.append(
+        py::make_tuple(s.center.x(), s.center.y(), s.center.z(), s.min_radius, s.max_radius));
   }
-  std::vector<std::array<double, 4>> half_spaces;
   for (const ReachRegion::HalfSpace& h : region.half_spaces) {
-    half_spaces.push_back({h.normal.x(), h.normal.y(), h.normal.z(), h.offset});
+    half_spaces.append(py::make_tuple(h.normal.x(), h.normal.y(), h.normal.z(), h.offset));
   }
-  SealedWriter writer(kKind);
-  writer.add(region.boxes);
-  writer.add(shells);
-  writer.add(half_spaces);
-  writer.add(region.poses);
-  writer.add(std::vector<double>{region.tolerance.distance, region.tolerance.angle});
-  return writer.seal();
-}
-
-ReachRegion from_bytes(const py::bytes& data) {
-  const auto bytes = data.cast<std::string>();
-  SealedReader reader(kKind, bytes, "region");
-  ReachRegion region;
-  region.boxes = reader.next<Box>();
-  for (const auto& s : reader.next<std::array<double, 5>>()) {
-    region.shells.push_back({{s[0], s[1], s[2]}, s[3], s[4]});
-  }
-  for (const auto& h : reader.next<std::array<double, 4>>()) {
-    region.half_spaces.push_back({{h[0], h[1], h[2]}, h[3]});
-  }
-  region.poses = reader.next<Pose>();
-  const auto tolerance = reader.next<double>();
-  reader.require_end();
-  if (tolerance.size() != 2) reader.refuse();
-  region.tolerance = {tolerance[0], tolerance[1]};
-  region.validate();
-  return region;
+  const py::array_t<double> poses =
+      to_array(region.poses, {static_cast<py::ssize_t>(region.poses.size())});
+  return py::dict(py::arg("boxes") = boxes, py::arg("shells") = shells,
+                  py::arg("half_spaces") = half_spaces, py::arg("poses") = poses,
+                  py::arg("distance") = region.tolerance.distance,
+                  py::arg("angle") = region.tolerance.angle);
 }
 
 }  // namespace
@@ -150,7 +127,7 @@ Notes
 Regions without a predicate are equal by value and can be pickled; one with a predicate is equal to
 itself alone. Holds the GIL, but not for files. Cost: linear in the parts, and in the poses that are asked
 about: some 10 ns for each of both.)");
-  pickle_as_bytes(type, "region", ", if it has no predicate.", &bytes_of, &from_bytes);
+  pickle_as_call(type, &keywords_of);
   type.def(py::init(&region_of), py::kw_only(), py::arg("boxes") = py::none(),
            py::arg("shells") = py::none(), py::arg("half_spaces") = py::none(),
            py::arg("poses") = py::none(), py::arg("distance") = tolerance.distance,

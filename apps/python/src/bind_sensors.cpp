@@ -33,7 +33,7 @@ void bind_model(py::module_& module, const char* name, const char* doc,
     type.def_readonly(field.name, field.member, docs[names.size()]);
     names.push_back(field.name);
   }
-  pickle_as_call(type, std::move(names));
+  pickle_by_attributes(type, std::move(names));
   const auto with_constructor = [&]<std::size_t... i>(std::index_sequence<i...>) {
     const Model defaults;
     type.def(py::init([](decltype(i, double())... values) {
@@ -199,7 +199,7 @@ Notes
 -----
 Equal by value; can be pickled. Refuses parameters of the noise that are out of their bounds. Holds the GIL. Cost: some µs; linear in the rows of
 range_calibration.)");
-  pickle_as_call(
+  pickle_by_attributes(
       type, {"camera", "min_range", "max_range", "working_distance", "noise", "name",
              "T_flange_camera", "body_size", "range_calibration", "pose_sigma", "scale_sigma"});
   type.def(py::init([](const Given<PinholeCamera>& camera, double min_range, double max_range,

@@ -3,7 +3,6 @@
 #include "show/report/view_parts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "program/cli/flags/gain_names.hpp"

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "vdb_contents.hpp"
 #include "viewgain/core/error.hpp"

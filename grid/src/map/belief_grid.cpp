@@ -5,10 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <cstring>
-#include <span>
-#include <string>
 #include <utility>
 
 #include "belief_blocks.hpp"

@@ -12,8 +12,7 @@
 
 #include "belief_bricks.hpp"
 #include "hit_moments.hpp"
-#include "point_support.hpp"
-#include "point_thinning.hpp"
+#include "point_cells.hpp"
 #include "reading_sigma.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/pooling.hpp"
@@ -29,6 +28,60 @@ constexpr double kMaxReach = BrickNeighborhood::kMaxReach;
 constexpr double kSupportRadius = 4.0;  // pooling lengths
 constexpr double kMostHeight = 6.0;     // half of a column's [voxels]
 constexpr int kSteps = 3;               // of a point towards its column's mean
+
+/// A point and what supports it.
+struct SupportedPoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [voxels]
+  double evidence = 0;
+};
+
+/// For each point, whether it has at least `share` of the upper quartile of the evidence within
+/// `radius` [voxels], its own included. Silhouettes leave a halo of readings that lie beside the
+/// surface and are few compared with those on it. share 0 keeps all.
+std::vector<std::uint8_t> well_supported(const std::vector<SupportedPoint>& points, double radius,
+                                         double share, ThreadPool& pool) {
+  PointCells<std::size_t> cells(radius);
+  for (std::size_t i = 0; i < points.size(); ++i) cells.at(points[i].position).push_back(i);
+  std::vector<std::uint8_t> kept(points.size());
+  pool.for_each_chunk(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> around;
+    for (std::size_t i = begin; i < end; ++i) {
+      around.clear();
+      cells.for_each_near(points[i].position, [&](std::size_t j) {
+        if ((points[j].position - points[i].position).squaredNorm() <= radius * radius) {
+          around.push_back(points[j].evidence);
+        }
+      });
+      const auto quartile = around.begin() + static_cast<std::ptrdiff_t>(around.size() * 3 / 4);
+      std::nth_element(around.begin(), quartile, around.end());
+      kept[i] = points[i].evidence >= share * *quartile ? 1 : 0;
+    }
+  });
+  return kept;
+}
+
+/// Takes points one by one and refuses those that are nearer than a distance to one it has taken.
+class PointThinning {
+ public:
+  explicit PointThinning(double min_distance)
+      : cells_(std::max(min_distance, kLeastEdge)), limit_(min_distance * min_distance) {}
+
+  [[nodiscard]] bool accept(const Eigen::Vector3d& point) {
+    bool crowded = false;
+    cells_.for_each_near(point, [&](const Eigen::Vector3d& other) {
+      crowded = crowded || (other - point).squaredNorm() < limit_;
+    });
+    if (!crowded) cells_.at(point).push_back(point);
+    return !crowded;
+  }
+
+ private:
+  /// Tinier cubes than this save nothing, and their numbers would not fit into an integer.
+  static constexpr double kLeastEdge = 0.1;
+
+  PointCells<Eigen::Vector3d> cells_;
+  double limit_;
+};
 
 void check(const FusedPointsConfig& config) {
   const auto need = [](bool ok, const char* name, double value) {

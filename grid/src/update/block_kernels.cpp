@@ -166,7 +166,6 @@ const BlockKernels& block_kernels_of_target() {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <cmath>
 #include <limits>
 
 namespace viewgain::detail {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include "input_checks.hpp"
 #include "map/grid_layout.hpp"

@@ -3,7 +3,6 @@
 #include "cone_cull.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 

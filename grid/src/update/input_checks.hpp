@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <optional>
-#include <string>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/sensor.hpp"

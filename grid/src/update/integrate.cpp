@@ -2,13 +2,182 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/grid/integrate.hpp"
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <optional>
-#include <utility>
+#include <vector>
 
-#include "frame_pixels.hpp"
 #include "input_checks.hpp"
 #include "map/grid_layout.hpp"
 #include "map_update.hpp"
+#include "readings.hpp"
+#include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/support/thread_pool.hpp"
+
+namespace viewgain::detail {
+
+/// The support plane in a camera's frame: points p with normal · p = offset.
+struct CameraPlane {
+  Eigen::Vector3d normal;  ///< unit, up in the world
+  double offset = 0;       ///< [m]; negative where the camera stands above the plane
+
+  /// The plane world z = `height` [m].
+  CameraPlane(double height, const Pose& T_world_camera)
+      : normal(T_world_camera.rotation().row(2).transpose()),
+        offset(height - T_world_camera.translation().z()) {}
+};
+
+/// One sensor's pixels: where they look and what the current frame says there, in the camera's
+/// frame.
+class FramePixels : public Readings {
+ public:
+  /// Undoes the lens distortion of every pixel once.
+  explicit FramePixels(const Sensor& sensor);
+
+  /// By which the pose of the next frames may be off, beside the sensor's own.
+  void set_pose_sigma(const PoseSigma& sigma);
+
+  /// Sorts the frame's pixels into the kinds and computes what follows from the readings alone.
+  /// cosθ = amplitude · range² where the frame has amplitudes, else cos_incidence(). With `tapered`
+  /// false crossings keep their weight up to the reading. Readings of the frame's known
+  /// depth, and those below `plane` or less than 3 σ above it, are on_known. The frame must have
+  /// the camera's size.
+  void load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
+            const std::optional<CameraPlane>& plane = {});
+
+  /// Cosine of the angle between a reading's ray and the normal of its 3×3 neighbourhood: the cross
+  /// product of the sums, over rows and over columns, of differences across the pixel (one-sided at
+  /// the pixel itself if there is no such pair). Neighbours that are no readings, or whose depth
+  /// differs by more than a surface at the least cosine of the noise models would explain, do not
+  /// count. 1 where no normal is left.
+  [[nodiscard]] double cos_incidence(int u, int v) const;
+
+ private:
+  PoseSigma own_pose_sigma_;
+  std::vector<double> depths_;  ///< of readings, else NaN; with a border of one pixel
+};
+
+namespace {
+
+constexpr std::size_t kRowChunk = 8;
+constexpr double kNoDepth = std::numeric_limits<double>::quiet_NaN();
+
+/// An amplitude that is no number, or negative, counts as the darkest: least information.
+double cos_from_amplitude(double amplitude, double range) {
+  return amplitude > 0 ? std::min(1.0, amplitude * range * range) : 0.0;
+}
+
+}  // namespace
+
+FramePixels::FramePixels(const Sensor& sensor)
+    : Readings(sensor), own_pose_sigma_(sensor.pose_sigma) {
+  row_length_ = sensor_.camera.width;
+  rays_ = sensor_.camera.ray_table();
+  norms_.reserve(rays_.size());
+  for (const Eigen::Vector3d& ray : rays_) norms_.push_back(ray.norm());
+  resize(rays_.size());
+  depths_.assign((static_cast<std::size_t>(sensor_.camera.width) + 2) *
+                     (static_cast<std::size_t>(sensor_.camera.height) + 2),
+                 kNoDepth);
+}
+
+void FramePixels::set_pose_sigma(const PoseSigma& sigma) {
+  sensor_.pose_sigma = {std::hypot(own_pose_sigma_.translation, sigma.translation),
+                        std::hypot(own_pose_sigma_.rotation, sigma.rotation)};
+}
+
+void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
+                       const std::optional<CameraPlane>& plane) {
+  const auto width = static_cast<std::size_t>(sensor_.camera.width);
+  const auto height = static_cast<std::size_t>(sensor_.camera.height);
+
+  pool.for_each_chunk(height, kRowChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin * width; i < end * width; ++i) {
+      const double depth = frame.depth[i];
+      // The range is NaN where the lens model has no ray.
+      const PixelKind kind = sort_by_range(i, depth > 0 ? depth * norms_[i] : kNoDepth);
+      points_[i] = kind == PixelKind::reading ? Eigen::Vector3d(rays_[i] * depth)
+                                              : Eigen::Vector3d(Eigen::Vector3d::Zero());
+      depths_[(i / width + 1) * (width + 2) + i % width + 1] =
+          kind == PixelKind::reading ? depth : kNoDepth;
+    }
+  });
+
+  pool.for_each_chunk(height, kRowChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      for (std::size_t u = 0; u < width; ++u) {
+        const std::size_t i = v * width + u;
+        if (kinds_[i] != PixelKind::reading) continue;
+        const double range = reach_taper_[2 * i];
+        const double cosine = frame.amplitude.empty()
+                                  ? cos_incidence(static_cast<int>(u), static_cast<int>(v))
+                                  : cos_from_amplitude(frame.amplitude[i], range);
+        sigmas_[i] = sensor_.sigmas(range, cosine);
+        if (tapered) reach_taper_[2 * i + 1] = kTaperSigmas * sigmas_[i].axial;
+        if (frame.shows_known(i)) {
+          kinds_[i] = PixelKind::on_known;
+          continue;
+        }
+        if (!plane) continue;
+        const double up = plane->normal.dot(points_[i]);
+        if (is_of_plane(up - plane->offset, up / range, sigmas_[i])) {
+          kinds_[i] = PixelKind::on_known;
+        }
+      }
+    }
+  });
+}
+
+double FramePixels::cos_incidence(int u, int v) const {
+  const PinholeCamera& camera = sensor_.camera;
+  const Eigen::Vector3d* points =
+      points_.data() + static_cast<std::ptrdiff_t>(v) * camera.width + u;
+  const double* depths =
+      depths_.data() + static_cast<std::ptrdiff_t>(v + 1) * (camera.width + 2) + u + 1;
+  const auto at = [&](int i, int j) -> const Eigen::Vector3d& {
+    return points[static_cast<std::ptrdiff_t>(j) * camera.width + i];
+  };
+  const Eigen::Vector3d& center = at(0, 0);
+  // Depth per pixel of the steepest surface that the noise models tell apart.
+  static const double kMaxSlope =
+      std::sqrt(1.0 - kMinCosIncidence * kMinCosIncidence) / kMinCosIncidence;
+  const double max_step = kMaxSlope * center.z() / std::min(camera.fx, camera.fy);
+
+  bool ok[3][3];
+  for (int j = -1; j <= 1; ++j) {
+    for (int i = -1; i <= 1; ++i) {
+      const double depth = depths[static_cast<std::ptrdiff_t>(j) * (camera.width + 2) + i];
+      const double pixels = std::abs(i) + std::abs(j);
+      ok[j + 1][i + 1] = std::abs(depth - center.z()) <= pixels * max_step;  // not for NaN
+    }
+  }
+  Eigen::Vector3d du = Eigen::Vector3d::Zero(), dv = Eigen::Vector3d::Zero();
+  bool has_du = false, has_dv = false;
+  for (int n = -1; n <= 1; ++n) {
+    if (ok[n + 1][0] && ok[n + 1][2]) du += at(1, n) - at(-1, n), has_du = true;
+    if (ok[0][n + 1] && ok[2][n + 1]) dv += at(n, 1) - at(n, -1), has_dv = true;
+  }
+  if (!has_du) {
+    if (ok[1][2]) du = at(1, 0) - center, has_du = true;
+    if (!has_du && ok[1][0]) du = center - at(-1, 0), has_du = true;
+  }
+  if (!has_dv) {
+    if (ok[2][1]) dv = at(0, 1) - center, has_dv = true;
+    if (!has_dv && ok[0][1]) dv = center - at(0, -1), has_dv = true;
+  }
+  if (!has_du || !has_dv) return 1.0;
+  const Eigen::Vector3d normal = du.cross(dv);
+  const double length = normal.norm();
+  if (!(length > 0)) return 1.0;
+  return std::min(1.0, std::abs(normal.dot(center)) / (length * center.norm()));
+}
+
+}  // namespace viewgain::detail
 
 namespace viewgain {
 namespace {

@@ -10,7 +10,6 @@
 #include <optional>
 #include <span>
 #include <tuple>
-#include <utility>
 
 namespace viewgain::detail {
 namespace {

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/raycast/depth_image.hpp"
 
-#include <string>
-
 #include "trace/ray_tile.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/text.hpp"

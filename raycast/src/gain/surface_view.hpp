@@ -4,8 +4,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include "evaluator_core.hpp"
 #include "ray_sample.hpp"

@@ -7,8 +7,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include "evaluator_core.hpp"
 #include "scene/scene_data.hpp"

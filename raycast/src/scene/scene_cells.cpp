@@ -3,7 +3,6 @@
 #include "scene_cells.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "scene_data.hpp"
 

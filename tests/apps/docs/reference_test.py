@@ -41,9 +41,6 @@ voxels = [0.02]
 sizes = [0.35]
 max_views = 2
 tolerance = 0.02
-[prediction]
-views = [1]
-candidates = 4
 """
 WALL = "OFF\n4 2 0\n-3 -3 1\n3 -3 1\n3 3 1\n-3 3 1\n3 0 1 2\n3 0 2 3\n"
 # A wall with a box's front before it.

@@ -16,7 +16,6 @@
 #include "core/temporary_folder.hpp"
 #include "grid/analytic_frames.hpp"
 #include "viewgain/core/generators.hpp"
-#include "viewgain/formats/cloud_io.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/thread_pool.hpp"
@@ -128,32 +127,6 @@ TEST(MemoryLimit, SavingWithoutMemoryLeavesNothingBehind) {
   EXPECT_GT(failed, 15);
   EXPECT_GT(saved, 0);
   EXPECT_EQ(failed + saved, 41);
-}
-
-/// A compressed cloud of 3 bytes a point, all 0: `runs` of 88 points, and one more.
-std::string compressed_zeros(std::uint32_t runs) {
-  const std::uint32_t points = 88 * runs + 1;
-  std::string data = {2, 0, 0, 0};  // three bytes as they are
-  for (std::uint32_t i = 0; i < runs; ++i) data += {'\xE0', '\xFF', '\0'};  // 264 from one back
-  std::string file = "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nPOINTS " + std::to_string(points) +
-                     "\nDATA binary_compressed\n";
-  for (const auto length : {static_cast<std::uint32_t>(data.size()), 3 * points}) {
-    for (unsigned shift = 0; shift < 32; shift += 8) {
-      file += static_cast<char>(length >> shift & 255U);
-    }
-  }
-  return file + data;
-}
-
-TEST(MemoryLimit, CompressedCloudsDoNotGrowWithoutBounds) {
-  const TemporaryFolder folder;
-  EXPECT_EQ(load_cloud(folder.file("a.pcd", compressed_zeros(1000))).points.size(), 88'001U);
-  const auto bomb = folder.file("bomb.pcd", compressed_zeros(120'000));  // 360 KB
-  const auto load = [&] {
-    expect_error(ErrorCode::capacity, "bomb.pcd: 360004 bytes of compressed data stand for",
-                 [&] { (void)load_cloud(bomb); });
-  };
-  EXPECT_LT(peak_of(load), 2'000'000);
 }
 
 }  // namespace

@@ -41,12 +41,11 @@ BeliefGrid row_map(const std::vector<std::optional<float>>& log_odds) {
 Pose row_pose() { return test::axis_pose({-4, 1.5, 1.5}, 0, true); }
 
 std::vector<double> gains_of(const BeliefGrid& grid, const Sensor& sensor, const Pose& pose,
-                             GainSemantics semantics = GainSemantics::paper,
                              std::vector<ClassicGain> gains = test::all_classic_gains()) {
   const auto map = ClassicMap::build(
       VoxelScene::build(grid), grid,
       grid.views().empty() ? std::nullopt : std::optional(Acquisition{sensor, 8 * kExactVoxel}));
-  ClassicConfig config{.gains = std::move(gains), .semantics = semantics};
+  const ClassicConfig config{.gains = std::move(gains)};
   return ClassicGainEvaluator(map, sensor, config).evaluate(std::vector<Pose>{pose});
 }
 
@@ -74,7 +73,6 @@ TEST(ClassicGains, NamesAreThereAndBack) {
   }
   const std::string text = error_of([] { (void)parse_classic_gain("rear_side"); });
   for (const std::string& name : classic_gain_names()) EXPECT_NE(text.find(name), text.npos);
-  EXPECT_NE(error_of([] { (void)parse_gain_semantics("code"); }).find("shipped"), text.npos);
 }
 
 TEST(ClassicGains, ARowWithASurfaceHasItsClosedForm) {
@@ -98,14 +96,6 @@ TEST(ClassicGains, ARowWithASurfaceHasItsClosedForm) {
   // Voxels 2 to 4 of the row and none beside it are passed; of these 4 is next to the surface but
   // has no free neighbour.
   EXPECT_EQ(paper[9], 0);
-
-  const auto shipped = gains_of(grid, one_ray(), row_pose(), GainSemantics::shipped);
-  // 0.4 counts as unknown, 0.18 as free, 0.88 as occupied; what lets through is p.
-  const double Q2 = p0 * p1, hidden = Q2 * kLn2 * 1.75;
-  EXPECT_NEAR(shipped[1], entropy(p0) + hidden, kSingle);
-  EXPECT_NEAR(shipped[2], paper[2], kSingle);
-  EXPECT_EQ(shipped[3], 1);
-  EXPECT_NEAR(shipped[4], hidden + Q2 / 8 * entropy(p5), kSingle);
 }
 
 TEST(ClassicGains, PosesThatSeeNothing) {
@@ -154,8 +144,6 @@ TEST(ClassicGains, RefuseWhatTheyCannotDo) {
   expect(refused(map, {.gains = {one}, .pixel_stride = 0}), "stride is 0");
   expect(refused(map, {.gains = {one}, .min_range = 2, .max_range = 1}), "min_range 2 m");
   expect(refused(map, {.gains = {one}, .unknown_prior = 1.5}), "1.5");
-  expect(refused(map, {.gains = {one}, .semantics = GainSemantics::shipped, .free_below = 0.6}),
-         "0.6");
   expect(error_of([&] { (void)ClassicMap::build(nullptr, grid); }), "no scene");
   expect(error_of([&] {
            (void)ClassicMap::build(scene, row_map({}).clone(), Acquisition{one_ray(), 99});

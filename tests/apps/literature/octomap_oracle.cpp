@@ -117,7 +117,6 @@ std::array<double, 10> OctomapOracle::gains(const Sensor& sensor, const ClassicC
                                             const Pose& T_world_camera) const {
   const double V = map_.voxel_size;
   const double near = config.min_range.value_or(sensor.min_range) / V;
-  const bool shipped = config.semantics == GainSemantics::shipped;
   std::array<double, 10> result{};
 
   const Eigen::Vector3d eye = map_.T_world_grid.inverse() * T_world_camera.translation() / V;
@@ -151,18 +150,10 @@ std::array<double, 10> OctomapOracle::gains(const Sensor& sensor, const ClassicC
   const auto p_of = [&](const Visit& v) {
     return v.node == nullptr ? config.unknown_prior : v.node->getOccupancy();
   };
-  const auto counts_unknown = [&](const Visit& v) {
-    if (!shipped) return v.node == nullptr;
-    return p_of(v) >= config.free_below && p_of(v) <= config.occupied_above;
+  const auto is_unknown = [](const Visit& v) { return v.node == nullptr; };
+  const auto is_occupied = [](const Visit& v) {
+    return v.node != nullptr && v.node->getLogOdds() > 0;
   };
-  const auto counts_occupied = [&](const Visit& v) {
-    if (!shipped) return v.node != nullptr && v.node->getLogOdds() > 0;
-    return p_of(v) > config.occupied_above;
-  };
-  const auto counts_free = [&](const Visit& v) {
-    return !counts_unknown(v) && !counts_occupied(v);
-  };
-  const auto lets_through = [&](const Visit& v) { return shipped ? p_of(v) : 1 - p_of(v); };
   const auto at = [&](ClassicGain gain) -> double& {
     return result[static_cast<std::size_t>(gain)];
   };
@@ -172,36 +163,34 @@ std::array<double, 10> OctomapOracle::gains(const Sensor& sensor, const ClassicC
     double P = 1;
     for (const Visit& v : ray.visits) {
       at(ClassicGain::occlusion_aware) += P * entropy(p_of(v));
-      if (counts_unknown(v)) at(ClassicGain::unobserved_voxel) += P * entropy(p_of(v));
-      P *= lets_through(v);
+      if (is_unknown(v)) at(ClassicGain::unobserved_voxel) += P * entropy(p_of(v));
+      P *= 1 - p_of(v);
     }
   }
   // average_entropy
   double sum = 0, count = 0;
   for (const SeenRay& ray : rays) {
-    if (ray.visits.empty() || (shipped && !counts_occupied(ray.visits.back()))) continue;
     for (const Visit& v : ray.visits) sum += entropy(p_of(v)), count += 1;
   }
   at(ClassicGain::average_entropy) = count > 0 ? sum / count : 0;
   // rear_side_voxel
   for (const SeenRay& ray : rays) {
     for (std::size_t i = 1; i < ray.visits.size(); ++i) {
-      if (counts_occupied(ray.visits[i]) && counts_unknown(ray.visits[i - 1])) {
+      if (is_occupied(ray.visits[i]) && is_unknown(ray.visits[i - 1])) {
         at(ClassicGain::rear_side_voxel) += 1;
       }
     }
   }
   // rear_side_entropy
   for (const SeenRay& ray : rays) {
-    if (ray.visits.empty() || !counts_occupied(ray.visits.back())) continue;
+    if (ray.visits.empty() || !is_occupied(ray.visits.back())) continue;
     double P = 1, stretch = 0;
     for (std::size_t i = 0; i + 1 < ray.visits.size(); ++i) {
       const Visit& v = ray.visits[i];
-      stretch = counts_unknown(v) ? stretch + P * entropy(p_of(v)) : 0;
-      P *= lets_through(v);
+      stretch = is_unknown(v) ? stretch + P * entropy(p_of(v)) : 0;
+      P *= 1 - p_of(v);
     }
-    at(ClassicGain::rear_side_entropy) +=
-        stretch + (shipped ? P * entropy(p_of(ray.visits.back())) : 0.0);
+    at(ClassicGain::rear_side_entropy) += stretch;
   }
   // proximity_count
   for (const SeenRay& ray : rays) {
@@ -219,7 +208,7 @@ std::array<double, 10> OctomapOracle::gains(const Sensor& sensor, const ClassicC
         on_hidden += 1;
         break;
       }
-      if (counts_occupied(v) && i > 0 && counts_free(ray.visits[i - 1])) {
+      if (is_occupied(v) && i > 0 && !is_unknown(ray.visits[i - 1])) {
         on_surface += 1;
         break;
       }

@@ -147,13 +147,11 @@ TEST(Classic, ChoosesTheFirstOfTheBestByItsGain) {
   const auto model = box.model_after({box.start});
   PolicyConfig config;
   for (const ClassicGain gain : {ClassicGain::unknown_count, ClassicGain::proximity_count}) {
-    config.classic = {gain, GainSemantics::shipped};
+    config.classic = gain;
     const auto map = ClassicMap::build(model->scene(), model->grid(), Acquisition{box.sensor});
     const std::vector<Pose> poses = poses_of(box.candidates);
     const std::vector<double> values =
-        ClassicGainEvaluator(map, box.sensor,
-                             {.gains = {gain}, .semantics = GainSemantics::shipped})
-            .evaluate(poses);
+        ClassicGainEvaluator(map, box.sensor, {.gains = {gain}}).evaluate(poses);
     const auto best = std::max_element(values.begin(), values.end());
     for (const int threads : {1, 3}) {
       const auto decision = box.choice(*model, config, threads);
@@ -169,7 +167,7 @@ TEST(Classic, OfManyThirtyTwoAreScoredInFull) {
   const SeenBox box;
   const auto model = box.model_after({box.start});
   const std::vector<Pose> poses = sphere_poses(100, 0.4);
-  ClassicChoice choice(*model, box.sensor, {}, box.exec);
+  ClassicChoice choice(*model, box.sensor, ClassicGain::occlusion_aware, box.exec);
   const std::vector<double> all = choice.gains(poses, true), some = choice.gains(poses, false);
   std::size_t scored = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -185,7 +183,7 @@ TEST(Classic, OfManyThirtyTwoAreScoredInFull) {
 
 TEST(Classic, NeitherGainNorAreaEndsARun) {
   PolicyConfig policy;
-  policy.classic = ClassicRanking{};
+  policy.classic = ClassicGain::occlusion_aware;
   PlanningConfig planning;
   set_stop_rules(planning, policy, {}, {});
   EXPECT_EQ(planning.stop_area, 0);
@@ -225,8 +223,8 @@ TEST(Oracle, ChoosesWhatABruteForceOverAllCandidatesChooses) {
   EXPECT_EQ(model->grid().content_hash(), before);
   // Its own simulation comes to the same numbers.
   const OracleChoice oracle(*model, box.sensor, {box.mesh, box.truth, {}}, box.exec);
-  EXPECT_EQ(oracle.outcome_of(box.candidates[best].T_world_camera).covered, covered[best]);
-  EXPECT_EQ(oracle.outcome_of(box.candidates[30].T_world_camera).covered, covered[30]);
+  EXPECT_EQ(oracle.covered_after(box.candidates[best].T_world_camera), covered[best]);
+  EXPECT_EQ(oracle.covered_after(box.candidates[30].T_world_camera), covered[30]);
 }
 
 TEST(Oracle, CountsUncoveredSamplesInView) {

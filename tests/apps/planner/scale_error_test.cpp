@@ -4,7 +4,6 @@
 // A camera whose ranges are all off by one factor: points are honest where the sensor says so.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
 
 #include "apps/planner/planner_scene.hpp"

@@ -4,9 +4,7 @@
 // Views that go together, and plans of which some are taken before it is decided anew.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "apps/planner/bin_scene.hpp"

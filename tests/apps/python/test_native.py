@@ -227,7 +227,7 @@ def test_pictures_of_what_cannot_be_drawn_say_why(evaluator, poses, sensor):
 def test_the_tutorial_on_depth_images_runs(tmp_path, monkeypatch, capsys):
     pytest.importorskip("matplotlib").use("agg")
     monkeypatch.chdir(tmp_path)
-    runpy.run_path(os.path.join(os.path.dirname(os.environ["VIEWGAIN_EXAMPLE"]), "depth_images.py"))
+    runpy.run_path(os.path.join(os.environ["VIEWGAIN_EXAMPLES"], "depth_images.py"))
     printed = capsys.readouterr().out
     assert "of 500 are possible" in printed and "of the workspace known" in printed
     for name in ("depth.png", "gains.png", "why.png", "known.png"):

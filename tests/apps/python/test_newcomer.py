@@ -104,26 +104,17 @@ def region(poses):
                                 half_spaces=[[0, 0, 1, 0.1]], poses=poses[:5], distance=0.03, angle=0.2)
 
 
-def test_a_region_goes_through_bytes_and_pickles(region, poses):
-    for one in (region, viewgain.ReachRegion()):
-        again = viewgain.ReachRegion.from_bytes(one.to_bytes())
-        assert again == one and repr(again) == repr(one) and again.to_bytes() == one.to_bytes()
-        assert np.array_equal(again.contains(poses), one.contains(poses))
+def test_a_region_is_pickled(region, poses):
+    for one in (region, viewgain.ReachRegion(), viewgain.ReachRegion(poses=poses[:3], distance=0.03, angle=0.2)):
         for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
-            assert pickle.loads(pickle.dumps(one, protocol)) == one
+            again = pickle.loads(pickle.dumps(one, protocol))
+            assert again == one and repr(again) == repr(one)
+        assert np.array_equal(again.contains(poses), one.contains(poses))
         assert copy.copy(one) == one == copy.deepcopy(one)
-    others = [viewgain.ReachRegion(boxes=[[[0, 0, 0], [1, 1, 1]]]), viewgain.ReachRegion(distance=0.03)]
-    assert len({one.to_bytes() for one in (region, viewgain.ReachRegion(), *others)}) == 4
 
 
 def test_a_region_with_a_predicate_is_not_pickled():
     asked = viewgain.ReachRegion(predicate=lambda pose: True)
-    for call in (asked.to_bytes, lambda: pickle.dumps(asked), lambda: copy.copy(asked)):
+    for call in (pickle.dumps, copy.copy):
         with pytest.raises(TypeError, match="predicate cannot be pickled"):
-            call()
-
-    class Mine(viewgain.ReachRegion):
-        pass
-
-    with pytest.raises(TypeError, match="cannot pickle 'Mine' object: it is a subclass of ReachRegion"):
-        pickle.dumps(Mine())
+            call(asked)

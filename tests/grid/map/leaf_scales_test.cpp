@@ -12,7 +12,6 @@
 #include <optional>
 #include <random>
 #include <set>
-#include <tuple>
 #include <vector>
 
 #include "core/expect_error.hpp"

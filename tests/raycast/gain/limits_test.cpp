@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "core/expect_error.hpp"
 #include "grid/analytic_frames.hpp"

@@ -26,7 +26,7 @@ struct Field {
   std::size_t word = 0;   ///< in a line
 };
 
-enum class Data { none, ascii, binary, compressed };
+enum class Data { none, ascii, binary };
 
 struct Header {
   std::vector<Field> fields;
@@ -136,12 +136,11 @@ Header read_header(LineReader& line) {
       header.viewpoint = read_viewpoint(line);
     } else if (words[0] == "DATA") {
       const std::string_view data = words.size() > 1 ? words[1] : std::string_view();
-      header.data = data == "ascii"               ? Data::ascii
-                    : data == "binary"            ? Data::binary
-                    : data == "binary_compressed" ? Data::compressed
-                                                  : Data::none;
+      header.data = data == "ascii" ? Data::ascii : data == "binary" ? Data::binary : Data::none;
       if (header.data == Data::none) {
-        line.fail("DATA " + quoted(data) + " is none of ascii, binary, binary_compressed");
+        line.fail("DATA " + quoted(data) +
+                  " is none of ascii, binary; pcl_convert_pcd_ascii_binary"
+                  " writes these");
       }
     } else {
       line.fail("the header's word " + quoted(words[0]) + " is unknown");
@@ -157,10 +156,6 @@ Header read_header(LineReader& line) {
   }
   lay_out(line, header);
   return header;
-}
-
-[[noreturn]] void fail_data(const LineReader& line, const std::string& what) {
-  throw Error(ErrorCode::format, line.name() + ": " + what);
 }
 
 void read_ascii(LineReader& line, const Header& header,
@@ -186,107 +181,23 @@ void read_ascii(LineReader& line, const Header& header,
   }
 }
 
-void expect_size(const LineReader& line, std::uint64_t points, std::uint64_t point_bytes,
-                 std::uint64_t given) {
+void read_binary(const LineReader& line, const Header& header,
+                 std::vector<std::array<double, 3>>& points) {
   // The product stays below 2^64: at most 2^32 points of 999 fields of 800,000 bytes.
-  if (points * point_bytes > given) {
-    fail_data(line, std::to_string(points) + " points of " + std::to_string(point_bytes) +
-                        " bytes are said, " + std::to_string(given) + " bytes are there");
+  const std::string_view data = line.rest();
+  if (header.points * header.point_bytes > data.size()) {
+    throw Error(ErrorCode::format, line.name() + ": " + std::to_string(header.points) +
+                                       " points of " + std::to_string(header.point_bytes) +
+                                       " bytes are said, " + std::to_string(data.size()) +
+                                       " bytes are there");
   }
-}
-
-/// LZF (M. Lehmann), as PCL uses it: runs of literal bytes and references backward.
-std::string decompress(const LineReader& line, std::string_view in, std::size_t size) {
-  std::string out;
-  out.reserve(size);
-  const auto cut = [&] { fail_data(line, "the compressed data is damaged"); };
-  std::size_t i = 0;
-  const auto next = [&]() -> std::size_t {
-    if (i >= in.size()) cut();
-    return static_cast<unsigned char>(in[i++]);
-  };
-  while (i < in.size()) {
-    const std::size_t control = next();
-    if (control < 32) {
-      const std::size_t run = control + 1;
-      if (in.size() - i < run || size - out.size() < run) cut();
-      out.append(in.substr(i, run));
-      i += run;
-      continue;
-    }
-    std::size_t run = control >> 5U;
-    if (run == 7) run += next();
-    run += 2;
-    const std::size_t back = ((control & 31U) << 8U | next()) + 1;
-    if (back > out.size() || size - out.size() < run) cut();
-    for (std::size_t k = 0; k < run; ++k) out.push_back(out[out.size() - back]);
-  }
-  if (out.size() != size) cut();
-  return out;
-}
-
-/// `stride` and `begin` [bytes] of each axis say where its values lie.
-void decode_points(std::string_view data, const Header& header,
-                   const std::array<std::size_t, 3>& begin,
-                   const std::array<std::size_t, 3>& stride,
-                   std::vector<std::array<double, 3>>& points) {
   points.resize(header.points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t a = 0; a < 3; ++a) {
-      points[i][a] =
-          decode(data.data() + begin[a] + i * stride[a], header.fields[header.xyz[a]].type);
+      const Field& field = header.fields[header.xyz[a]];
+      points[i][a] = decode(data.data() + i * header.point_bytes + field.begin, field.type);
     }
   }
-}
-
-void read_binary(const LineReader& line, const Header& header,
-                 std::vector<std::array<double, 3>>& points) {
-  expect_size(line, header.points, header.point_bytes, line.rest().size());
-  std::array<std::size_t, 3> begin{};
-  for (std::size_t a = 0; a < 3; ++a) begin[a] = header.fields[header.xyz[a]].begin;
-  const std::size_t stride = header.point_bytes;
-  decode_points(line.rest(), header, begin, {stride, stride, stride}, points);
-}
-
-/// Field by field, each for all points.
-void read_compressed(const LineReader& line, const Header& header,
-                     std::vector<std::array<double, 3>>& points) {
-  if (header.points == 0) return;
-  constexpr ScalarType kLength{ScalarType::Kind::unsigned_integer, 4};
-  constexpr std::size_t kMostExpansion = 264;  // three bytes stand for this many at most
-  std::string_view rest = line.rest();
-  if (rest.size() < 8) fail_data(line, "the file ends before its compressed data");
-  const auto packed = static_cast<std::size_t>(decode(rest.data(), kLength));
-  const auto unpacked = static_cast<std::size_t>(decode(rest.data() + 4, kLength));
-  rest.remove_prefix(8);
-  if (packed > rest.size()) {
-    fail_data(line, std::to_string(packed) + " bytes of compressed data are said, " +
-                        std::to_string(rest.size()) + " are there");
-  }
-  if (unpacked > packed * kMostExpansion) fail_data(line, "the compressed data is damaged");
-  expect_size(line, header.points, header.point_bytes, unpacked);
-  if (header.points * header.point_bytes != unpacked) {
-    // The fields would lie elsewhere than the header says.
-    fail_data(line, std::to_string(unpacked) + " bytes are said to be compressed, " +
-                        std::to_string(header.points) + " points of " +
-                        std::to_string(header.point_bytes) + " bytes are less");
-  }
-  // A few bytes can stand for many, and a point of 3 bytes takes 24 in memory.
-  constexpr std::uint64_t kMostGrowth = 64, kAlwaysAllowed = std::uint64_t{1} << 28U;  // [bytes]
-  const std::uint64_t memory = unpacked + header.points * sizeof(std::array<double, 3>);
-  if (memory > std::max(kAlwaysAllowed, kMostGrowth * packed)) {
-    throw Error(ErrorCode::capacity, line.name() + ": " + std::to_string(packed) +
-                                         " bytes of compressed data stand for " +
-                                         std::to_string(memory) + " bytes in memory");
-  }
-  const std::string data = decompress(line, rest.substr(0, packed), unpacked);
-  std::array<std::size_t, 3> begin{}, stride{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const Field& field = header.fields[header.xyz[a]];
-    begin[a] = field.begin * static_cast<std::size_t>(header.points);
-    stride[a] = field.type.size;
-  }
-  decode_points(data, header, begin, stride, points);
 }
 
 }  // namespace
@@ -296,15 +207,10 @@ PointCloud parse_pcd(std::string_view bytes, const std::string& name) {
   const Header header = read_header(line);
   PointCloud cloud;
   cloud.viewpoint = header.viewpoint;
-  switch (header.data) {
-    case Data::ascii:
-      read_ascii(line, header, cloud.points);
-      break;
-    case Data::binary:
-      read_binary(line, header, cloud.points);
-      break;
-    default:
-      read_compressed(line, header, cloud.points);
+  if (header.data == Data::ascii) {
+    read_ascii(line, header, cloud.points);
+  } else {
+    read_binary(line, header, cloud.points);
   }
   return cloud;
 }

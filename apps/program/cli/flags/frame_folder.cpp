@@ -11,18 +11,35 @@ namespace viewgain::app {
 namespace {
 
 FrameSequence frames_of(const FrameFolderOptions& options) {
-  if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
-  try {
-    FrameSequence frames = open_frames(options.folder, options.sensor, options.depth_scale);
-    if (const auto meaning = out_of_range_of(options)) frames.out_of_range = *meaning;
-    return frames;
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::invalid_argument || !options.sensor.empty()) throw;
-    throw Error(error.code(), std::string(error.what()) + " (--sensor)");
+  FrameSequence frames = opened(&open_frames, options.folder, options.sensor, options.depth_scale);
+  if (const auto meaning = out_of_range_of(options)) frames.out_of_range = *meaning;
+  return frames;
+}
+
+// Throws Error as MaskFolder, also where none of the images has one.
+std::vector<MaskFolder> mask_folders(const FrameFolderOptions& options,
+                                     const std::vector<std::filesystem::path>& images) {
+  std::vector<MaskFolder> folders;
+  if (!options.mask.empty()) folders.emplace_back(options.mask);
+  if (!options.confidence.empty()) {
+    folders.emplace_back(options.confidence, static_cast<std::uint8_t>(options.least_confidence));
   }
+  for (const MaskFolder& folder : folders) folder.require_mask_of_any(images);
+  return folders;
 }
 
 }  // namespace
+
+FrameSequence opened(OpenFrames open, const std::string& folder, const std::string& sensor,
+                     std::optional<double> depth_scale) {
+  if (depth_scale) check_positive("--depth-scale", *depth_scale);
+  try {
+    return open(folder, sensor, depth_scale);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::invalid_argument || !sensor.empty()) throw;
+    throw Error(error.code(), std::string(error.what()) + " (--sensor)");
+  }
+}
 
 std::optional<Sensor::OutOfRange> out_of_range_of(const FrameFolderOptions& options) {
   if (options.out_of_range.empty()) return std::nullopt;
@@ -39,22 +56,20 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options) {
                  "reading); default: as the sensor's file says, else carve for what simulate "
                  "writes (poses.txt), invalid for recorded frames")
       ->check(one_of({"carve", "invalid"}, "meaning"));
-  app.add_option("--mask", options.mask, kMaskHelp);
-  app.add_option("--confidence", options.confidence, kConfidenceHelp);
-  app.add_option("--least-confidence", options.least_confidence, kLeastConfidenceHelp)
-      ->capture_default_str()
-      ->check(CLI::Range(1, 255, "confidence"));
+  add_mask_options(app, options.mask, options.confidence, options.least_confidence);
 }
 
-std::vector<MaskFolder> mask_folders(const FrameFolderOptions& options,
-                                     const std::vector<std::filesystem::path>& images) {
-  std::vector<MaskFolder> folders;
-  if (!options.mask.empty()) folders.emplace_back(options.mask);
-  if (!options.confidence.empty()) {
-    folders.emplace_back(options.confidence, static_cast<std::uint8_t>(options.least_confidence));
-  }
-  for (const MaskFolder& folder : folders) folder.require_mask_of_any(images);
-  return folders;
+void add_mask_options(App& app, std::string& mask, std::string& confidence, int& least_confidence) {
+  app.add_option("--mask", mask,
+                 "folder of grayscale PNGs with the depth images' names: where they are not 0, an "
+                 "image says nothing");
+  app.add_option("--confidence", confidence,
+                 "folder of grayscale PNGs with the depth images' names: where they are under "
+                 "--least-confidence, an image says nothing");
+  app.add_option("--least-confidence", least_confidence,
+                 "least value of --confidence that counts, 1..255")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 255, "confidence"));
 }
 
 FrameFolder::FrameFolder(const FrameFolderOptions& options)

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -37,10 +36,19 @@ struct FrameFolderOptions {
 /// frames.
 void add_frame_folder_options(App& app, FrameFolderOptions& options);
 
+/// --mask, --confidence and --least-confidence.
+void add_mask_options(App& app, std::string& mask, std::string& confidence, int& least_confidence);
+
+/// open_frames() or open_depth_images(); their errors name --sensor where that would help.
+using OpenFrames = FrameSequence (*)(const std::filesystem::path&, const std::string&,
+                                     std::optional<double>);
+[[nodiscard]] FrameSequence opened(OpenFrames open, const std::string& folder,
+                                   const std::string& sensor, std::optional<double> depth_scale);
+
 /// Recorded or simulated frames with their poses, and what masks leave of them.
 class FrameFolder {
  public:
-  /// Throws Error as open_frames() and MaskFolder, naming --sensor where that would help.
+  /// Throws Error as opened() and MaskFolder.
   explicit FrameFolder(const FrameFolderOptions& options);
 
   /// FRAMES_DIR, for errors.
@@ -60,20 +68,6 @@ class FrameFolder {
   FrameSequence frames_;
   std::vector<MaskFolder> masks_;
 };
-
-inline constexpr const char* kMaskHelp =
-    "folder of grayscale PNGs with the depth images' names: where they are not 0, an image says "
-    "nothing";
-inline constexpr const char* kConfidenceHelp =
-    "folder of grayscale PNGs with the depth images' names: where they are under "
-    "--least-confidence, an image says nothing";
-inline constexpr const char* kLeastConfidenceHelp =
-    "least value of --confidence that counts, 1..255";
-
-/// The masks and confidences of --mask and --confidence for these images. Throws Error as
-/// MaskFolder, also where none of the images has one.
-[[nodiscard]] std::vector<MaskFolder> mask_folders(
-    const FrameFolderOptions& options, const std::vector<std::filesystem::path>& images);
 
 /// The workspace for what frames or clouds see: the box around `bounds(i)`, i < count, with half a
 /// voxel more on each side, since a reading on its face would lie outside of it; nothing if none

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/json_text.hpp"
+#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 
 namespace viewgain::app {
@@ -72,8 +71,15 @@ double total_gain(const NextViews& next) {
 }  // namespace
 
 void add_plan_options(App& app, PlanOptions& options) {
-  app.add_option("--plan", options.plan, kPlanHelp)->capture_default_str()->check(counted(1, 1000));
-  app.add_option("--take", options.take, kTakeHelp)->check(counted(1, 1000));
+  app.add_option("--plan", options.plan,
+                 "K views are planned together, at most, as a set, and taken in an order that is "
+                 "short to drive by straight ways; 1: one at a time")
+      ->capture_default_str()
+      ->check(counted(1, 1000));
+  app.add_option("--take", options.take,
+                 "of the views of --plan so many are taken before it is planned anew, if they are "
+                 "possible and promise enough by then; default: all")
+      ->check(counted(1, 1000));
 }
 
 void check(const PlanOptions& options) {

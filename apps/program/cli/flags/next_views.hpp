@@ -25,12 +25,6 @@ struct PlanOptions {
 
   [[nodiscard]] PlanAhead ahead() const { return {.plan = plan, .take = take.value_or(plan)}; }
 };
-inline constexpr const char* kPlanHelp =
-    "K views are planned together, at most, as a set, and taken in an order that is short to drive "
-    "by straight ways; 1: one at a time";
-inline constexpr const char* kTakeHelp =
-    "of the views of --plan so many are taken before it is planned anew, if they are possible and "
-    "promise enough by then; default: all";
 void add_plan_options(App& app, PlanOptions& options);
 /// Throws Error(invalid_argument), naming the flag.
 void check(const PlanOptions& options);

@@ -3,7 +3,6 @@
 #include "program/cli/flags/pose_source.hpp"
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <numbers>
 #include <optional>
 #include <utility>

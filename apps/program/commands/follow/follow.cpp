@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -24,7 +23,6 @@
 #include "program/cli/interrupt.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/follow/asked_views.hpp"
 #include "program/commands/follow/followed_map.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "viewgain/core/error.hpp"

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -13,7 +12,9 @@
 
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/next_views.hpp"
+#include "program/cli/json.hpp"
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/frame_watch.hpp"
 #include "viewgain/planner/register_frame.hpp"
@@ -53,6 +54,45 @@ struct SavedFrames {
 /// What is looked for in the frames' folder. Throws Error, naming the flag or the file.
 [[nodiscard]] FrameWatch watch_of(const FrameFolderOptions& options,
                                   const std::optional<SavedFrames>& saved);
+
+/// The views that a robot was asked for, and which frames may be its answer: those that were not
+/// in the folder when it was asked. Names are those of depth images, identities as frame_identity()
+/// has them.
+class AskedViews {
+ public:
+  explicit AskedViews(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// What an earlier call has left in next.json, whose map has these frames. A file of another hand
+  /// says nothing.
+  void recall(const std::filesystem::path& next_json, const std::set<std::string>& identities);
+
+  /// These are asked for now, best first; the map has these frames.
+  void ask(std::vector<Pose> views, const std::set<std::string>& identities);
+
+  /// A frame has come: the views that it may be the answer to, which are asked for no longer; none
+  /// for a frame that was there before.
+  [[nodiscard]] std::vector<Pose> answered_by(const std::string& name);
+
+  /// The frame is left out; false if that was known.
+  bool leave_out(const std::string& name) { return left_out_.insert(name).second; }
+  /// The frame is in the map after all.
+  void take(const std::string& name) { left_out_.erase(name); }
+
+  /// Keys of next.json: asked (no frame waited then), left_out (names).
+  [[nodiscard]] Json json() const {
+    return {{"asked", is_asked_},
+            {"left_out", std::vector<std::string>(left_out_.begin(), left_out_.end())}};
+  }
+
+ private:
+  [[nodiscard]] std::set<std::string> judged(const std::set<std::string>& identities) const;
+
+  std::filesystem::path folder_;
+  std::vector<Pose> asked_;
+  std::set<std::string> known_;     // images that were there
+  std::set<std::string> left_out_;  // of bad frames
+  bool is_asked_ = false;
+};
 
 /// A map that frames are put into as they come, the next best views on it, and the file that keeps
 /// both.

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "program/cli/json.hpp"
-#include "program/cli/json_text.hpp"
 #include "viewgain/planner/register_frame.hpp"
 
 namespace viewgain::app {

@@ -14,7 +14,6 @@
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/json.hpp"
-#include "program/cli/json_text.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "program/cli/json_text.hpp"
+#include "program/cli/json.hpp"
 #include "program/commands/frames/registration_json.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/planner_mesh/mesh_area.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "program/cli/flags/scene_sources.hpp"
-#include "program/cli/json_text.hpp"
+#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -165,9 +165,8 @@ Json settings_json(const ReconstructOptions& o, const RunSetup& setup) {
             {"policy", o.policy},
             {"generators", generators},
             {"sphere_poses", o.count},
-            {"gain", setup.policy.classic ? classic_gain_name(setup.policy.classic->gain)
+            {"gain", setup.policy.classic ? classic_gain_name(*setup.policy.classic)
                                           : gain_model_name(setup.policy.model)},
-            {"semantics", or_null(o.semantics)},
             {"overlap", o.overlap},
             {"region_depth", o.region_depth},
             {"object_size", o.object_size},
@@ -223,9 +222,7 @@ PolicyConfig policy_config(const ReconstructOptions& options) {
   if (std::find(classic.begin(), classic.end(), options.gain) == classic.end()) {
     policy.model = parse_gain_model(options.gain);
   } else {
-    policy.classic = {
-        parse_classic_gain(options.gain),
-        parse_gain_semantics(options.semantics.empty() ? "paper" : options.semantics)};
+    policy.classic = parse_classic_gain(options.gain);
   }
   return policy;
 }

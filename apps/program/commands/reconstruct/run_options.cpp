@@ -8,7 +8,6 @@
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/values.hpp"
-#include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
 
@@ -70,11 +69,6 @@ void add_options(App& app, ReconstructOptions& o) {
          "of --policy gain: paper (entropy removed), surface (new surface to be expected) or "
          "combined (default); or a gain of the literature")
       ->check(one_of(all_gain_names(), "gain"));
-  app.add_option(
-         "--semantics", o.semantics,
-         "of a gain of the literature: as the papers define it (default) or as the code that "
-         "was shipped with them computes it")
-      ->check(one_of(gain_semantics_names(), "semantics"));
   app.add_option("--overlap", o.overlap, kOverlapHelp)->capture_default_str();
   app.add_option("--region-depth", o.region_depth, kRegionDepthHelp)->capture_default_str();
   app.add_option("--object-size", o.object_size, kObjectSizeHelp);
@@ -112,8 +106,7 @@ void add_options(App& app, ReconstructOptions& o) {
   app.add_option("--cost-per-metre", o.cost_per_metre,
                  "rank by gain - L * distance [nat/m, surface: m^2/m]")
       ->capture_default_str();
-  app.add_option("--plan", o.plan.plan, kPlanHelp)->capture_default_str()->check(counted(1, 1000));
-  app.add_option("--take", o.plan.take, kTakeHelp)->check(counted(1, 1000));
+  add_plan_options(app, o.plan);
   app.add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
   app.add_option("--obstacle", o.obstacles,
                  std::string(kObstacleHelp) + "; the object's box has its centre at the origin")
@@ -148,10 +141,6 @@ void check(const ReconstructOptions& options) {
   }
   const std::vector<std::string>& classic = classic_gain_names();
   const bool is_classic = std::find(classic.begin(), classic.end(), options.gain) != classic.end();
-  if (!options.semantics.empty() && !is_classic) {
-    refuse("--semantics " + options.semantics + " goes with a gain of the literature (--gain " +
-           classic.front() + ", ...)");
-  }
   check_positive("--tolerance", options.tolerance);
   check_at_least_0("--cost-per-metre", options.cost_per_metre);
   check(options.plan);

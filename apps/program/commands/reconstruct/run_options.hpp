@@ -46,7 +46,6 @@ struct ReconstructOptions {
   std::string generator;
   std::optional<std::size_t> count;
   std::string gain;
-  std::string semantics;
   double overlap = default_estimator(1.0).overlap;
   double region_depth = default_estimator(1.0).region_depth;
   std::optional<double> object_size;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/json_text.hpp"
+#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/frames/registration_json.hpp"
 
@@ -49,8 +49,8 @@ RunReport::RunReport(const PolicyConfig& policy, double tolerance)
   gain_unit_ = entropy_unit_;  // what a policy without a gain foretells is the paper's
   if (policy.policy != Policy::gain) return;
   if (policy.classic) {
-    ranked_by_ = classic_gain_name(policy.classic->gain);
-    gain_unit_ = classic_gain_unit(policy.classic->gain);
+    ranked_by_ = classic_gain_name(*policy.classic);
+    gain_unit_ = classic_gain_unit(*policy.classic);
   } else {
     ranked_by_ = gain_model_name(policy.model);
     gain_unit_ = gain_unit(policy.model, criterion_name(policy.criterion));

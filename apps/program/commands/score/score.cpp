@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,12 +22,9 @@
 #include "program/commands/score/score_classic.hpp"
 #include "program/commands/score/score_options.hpp"
 #include "program/commands/score/score_report.hpp"
-#include "program/commands/score/score_views.hpp"
 #include "show/pictures/map_picture.hpp"
 #include "show/report/page.hpp"
-#include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/reach_toml.hpp"
-#include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/planner/rank_views.hpp"
 #include "viewgain/planner/view_proposer.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -63,9 +62,6 @@ GainConfig gain_config(const Options& options) {
     check_at_least_0("--refinement-weight", *options.refinement_weight);
   if (config.model != GainModel::paper && options.criterion != "log_diagonal") {
     refuse("--criterion " + options.criterion + " goes with --gain paper, not " + options.gain);
-  }
-  if (options.semantics != "paper") {
-    refuse("--semantics " + options.semantics + " goes with classic gains");
   }
   config.refinement_weight = options.refinement_weight.value_or(config.refinement_weight);
   config.criterion = parse_criterion(options.criterion);
@@ -121,6 +117,80 @@ double timed(const Options& options, const Work& work) {
   const Stopwatch watch;
   work(control);
   return watch.seconds();
+}
+
+// The gains less the costs, where there are any.
+std::vector<std::size_t> best_by_worth(std::vector<ViewGain> gains,
+                                       const std::vector<double>& costs, std::size_t k) {
+  for (std::size_t i = 0; i < costs.size(); ++i) gains[i].gain -= costs[i];
+  return best_indices(gains, k);
+}
+
+Scores scored(const ScoreOptions& options, const GainEvaluator& evaluator,
+              const std::vector<Pose>& poses, const std::vector<double>& costs,
+              const BatchControl& control) {
+  Scores scores;
+  scores.scored.gains.resize(poses.size());
+  evaluator.evaluate(poses, scores.scored.gains, control);
+  scores.scored.indices.resize(poses.size());
+  std::iota(scores.scored.indices.begin(), scores.scored.indices.end(), std::size_t{0});
+  scores.best.indices = best_by_worth(scores.scored.gains, costs, options.top);
+  for (const std::size_t i : scores.best.indices) {
+    scores.best.gains.push_back(scores.scored.gains[i]);
+  }
+  for (const ViewGain& gain : scores.scored.gains) scores.rays_traced += gain.rays;
+  return scores;
+}
+
+Scores raced(const ScoreOptions& options, const GainEvaluator& evaluator,
+             const std::vector<Pose>& poses, const std::vector<double>& costs,
+             const BatchControl& control) {
+  BestConfig config{.costs = costs, .seed = options.seed};
+  config.deadline = options.deadline.value_or(config.deadline);
+  BestViews views = evaluator.race(poses, options.top, config, control);
+  return {.scored = {std::move(views.scored_indices), std::move(views.scored_gains)},
+          .best = {std::move(views.indices), std::move(views.gains)},
+          .rays_traced = views.rays_traced,
+          .estimated = views.estimated};
+}
+
+Scores chosen_together(const ScoreOptions& options, const GainEvaluator& evaluator,
+                       const std::vector<Pose>& poses, const BatchControl& control) {
+  ViewSet set = evaluator.best_set(poses, *options.set, control);
+  const ScoredViews views{std::move(set.indices), std::move(set.marginal)};
+  return {.scored = views,
+          .best = views,
+          .set_gain = set.gain,
+          .set_gain_by_best_alone = set.gain_by_best_alone,
+          .rays_traced = set.evaluations * evaluator.rays_per_pose()};
+}
+
+Scores estimated(const ScoreOptions& options, const GainEvaluator& evaluator,
+                 const std::vector<Pose>& poses, const std::vector<double>& costs,
+                 const BatchControl& control) {
+  const ApproximateConfig config{.share = *options.approximate, .seed = options.seed};
+  Scores scores{.estimates = Estimates{}, .estimated = poses.size()};
+  Estimates& estimates = *scores.estimates;
+  estimates.gains.resize(poses.size());
+  evaluator.approximate(poses, estimates.gains, config, control);
+  std::vector<ViewGain> ranked(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    ranked[i].gain = estimates.gains[i].gain;
+    scores.rays_traced += estimates.gains[i].rays;
+  }
+  estimates.best = best_by_worth(std::move(ranked), costs, options.top);
+  return scores;
+}
+
+/// Scores the poses in the way that the flags ask for. `costs`: one a pose, subtracted from the
+/// gains that rank; empty: none. Indices are those of `poses`.
+Scores make_scores(const ScoreOptions& options, const GainEvaluator& evaluator,
+                   const std::vector<Pose>& poses, const std::vector<double>& costs,
+                   const BatchControl& control) {
+  if (options.race) return raced(options, evaluator, poses, costs, control);
+  if (options.set) return chosen_together(options, evaluator, poses, control);
+  if (options.approximate) return estimated(options, evaluator, poses, costs, control);
+  return scored(options, evaluator, poses, costs, control);
 }
 
 // Numbers of the candidates become rows of the poses that were given.
@@ -245,11 +315,6 @@ Command add_score(App& program) {
                   "with commas, ranked by the first")
       ->capture_default_str()
       ->check(several_of(all_gain_names(), "gain"));
-  app->add_option("--semantics", options->semantics,
-                  "of the literature's gains: as the papers define them or as the code "
-                  "that was shipped with them computes them")
-      ->capture_default_str()
-      ->check(one_of(gain_semantics_names(), "semantics"));
   app->add_option("--refinement-weight", options->refinement_weight,
                   "combined: of refining known surface against finding new; default: 0.3");
   app->add_option("--object-size", options->object_size, kObjectSizeHelp);

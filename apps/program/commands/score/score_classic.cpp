@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/json_text.hpp"
+#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 
 namespace viewgain::app {
@@ -62,7 +62,6 @@ ClassicConfig classic_config(const ScoreOptions& options, std::vector<ClassicGai
   check_classic(options);
   ClassicConfig config;
   config.gains = std::move(gains);
-  config.semantics = parse_gain_semantics(options.semantics);
   config.pixel_stride = options.stride;
   config.min_range = options.min_range;
   config.max_range = options.max_range;
@@ -125,7 +124,6 @@ void ClassicScores::print_json(std::size_t top) const {
        {"sensor", sensor.name},
        {"gains", names},
        {"gain_units", units},
-       {"semantics", gain_semantics_name(evaluator.config().semantics)},
        {"orthonormalized_poses", source.orthonormalized},
        {"seconds", seconds},
        {"poses_per_second", poses / seconds},
@@ -135,9 +133,7 @@ void ClassicScores::print_json(std::size_t top) const {
 
 void ClassicScores::print_table(std::size_t top) const {
   const std::vector<ClassicGain>& asked = evaluator.config().gains;
-  std::printf("classic gains, semantics of the %s, sensor %s\n",
-              evaluator.config().semantics == GainSemantics::paper ? "papers" : "shipped code",
-              sensor.name.c_str());
+  std::printf("classic gains, sensor %s\n", sensor.name.c_str());
   if (!dropped.empty()) {
     std::printf("%zu of %zu poses; dropped: %s\n", numbers.size(), source.poses.size(),
                 counts_text(dropped).c_str());

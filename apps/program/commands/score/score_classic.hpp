@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "program/cli/flags/pose_source.hpp"
-#include "program/cli/json.hpp"
 #include "program/commands/score/score_options.hpp"
 #include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/support/columns/table.hpp"

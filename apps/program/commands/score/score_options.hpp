@@ -21,7 +21,6 @@ struct ScoreOptions {
   PoseOptions poses;
   std::string sensor;
   std::string gain = default_gain();
-  std::string semantics = "paper";
   std::optional<double> refinement_weight, object_size, support_plane;
   std::string hazard, reach, body;
   std::vector<std::string> obstacles;

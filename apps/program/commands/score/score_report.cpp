@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/json_text.hpp"
+#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 #include "show/report/score_page.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -216,10 +216,7 @@ void ScoreReport::print_table() const {
   std::printf("%s gain, %s, sensor %s, prior sigma %.4g m, gains in %s\n",
               std::string(gain_model_name(model)).c_str(), criterion.c_str(), sensor.name.c_str(),
               evaluator.prior_sigma(), std::string(gain_unit(model, criterion)).c_str());
-  if (source.orthonormalized > 0) {
-    std::printf("rotations that were off and were orthonormalised: %zu of %zu\n",
-                source.orthonormalized, source.poses.size());
-  }
+  print_mended(source.orthonormalized);
   if (!scores.dropped.empty()) {
     std::printf("%zu of %zu poses; dropped: %s\n", scores.candidates, source.poses.size(),
                 counts_text(scores.dropped).c_str());

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -194,55 +193,6 @@ std::string by_object(const Group& group) {
   return text;
 }
 
-// What a run's predictions say after so many views, or after any if `view` is 0.
-std::vector<double> prediction_figures(const ResultRow& row, const char* key, std::size_t view) {
-  std::vector<double> found;
-  for (const auto& entry : row.prediction) {
-    if (view != 0 && entry.at("view") != view) continue;
-    if (entry.at(key).is_number()) found.push_back(entry.at(key).get<double>());
-  }
-  return found;
-}
-
-std::string prediction(const Group& group) {
-  const StudySpec& spec = group.spec;
-  if (spec.prediction.views.empty()) return "";
-  const std::string whose = spec.prediction.maps
-                                ? "the maps of " + spec.policies[*spec.prediction.maps].name
-                                : "the maps of each policy's own runs";
-  std::string text =
-      "\nWhat scores say of candidates on " + whose + ", " +
-      std::to_string(spec.prediction.candidates) +
-      " each time: Spearman's rank correlation with the truly new samples after so many views, "
-      "the mean of these, that with the entropy truly removed, and the favourite's share of what "
-      "the best candidate brings, all ↑. Where all scores are equal there is no figure; the means "
-      "are over the others\n\n";
-  std::vector<std::string> names{"policy"};
-  for (const std::size_t view : spec.prediction.views) names.push_back(std::to_string(view));
-  names.insert(names.end(), {"all", "entropy", "favourite"});
-  text += head_of(names);
-  for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
-    const Rows rows = group.of(policy);
-    if (std::all_of(rows.begin(), rows.end(),
-                    [](const ResultRow* row) { return row->prediction.size() == 0; })) {
-      continue;
-    }
-    std::vector<std::string> cells{spec.policies[policy].name};
-    const auto add = [&](const char* key, std::size_t view) {  // view 0: all
-      std::vector<double> values;
-      for (const ResultRow* row : rows) {
-        // Views of one run are not independent: they count as one.
-        values.push_back(mean_of(prediction_figures(*row, key, view)).mean);
-      }
-      cells.push_back(with_error(values, objects_of(rows), 2));
-    };
-    for (const std::size_t view : spec.prediction.views) add("spearman_area", view);
-    for (const char* key : {"spearman_area", "spearman_entropy", "top1_share"}) add(key, 0);
-    text += line_of(cells);
-  }
-  return text;
-}
-
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text.append(text.empty() ? "" : ", ").append(word);
@@ -288,7 +238,7 @@ std::string results_markdown(const StudySpec& spec, const std::vector<ResultRow>
     }
     text += "\n## " + of.sensor + ", voxels of " + short_text(1e3 * of.voxel) + " mm";
     if (of.size) text += ", objects of " + short_text(*of.size) + " m";
-    text += "\n\n" + means(group) + pairs(group) + by_object(group) + prediction(group);
+    text += "\n\n" + means(group) + pairs(group) + by_object(group);
   }
   return text;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "program/commands/study/statistics.hpp"
 #include "viewgain/planner/rank_views.hpp"
@@ -19,22 +18,6 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // What is not finite is null in JSON.
 double number_of(const Json& value) { return value.is_number() ? value.get<double>() : kNone; }
 
-// The figures of a row that are numbers alike in results.csv and results.json, in their order.
-struct RowFigure {
-  const char* key;
-  double ResultRow::*value;
-};
-constexpr std::array kFigures{RowFigure{"auc", &ResultRow::auc},
-                              RowFigure{"coverage_visible", &ResultRow::coverage_visible},
-                              RowFigure{"coverage", &ResultRow::coverage},
-                              RowFigure{"rms_error", &ResultRow::rms_error},
-                              RowFigure{"consistency", &ResultRow::consistency},
-                              RowFigure{"outliers", &ResultRow::outliers},
-                              RowFigure{"travelled", &ResultRow::travelled}};
-constexpr std::array kViewsTo{"views_to_80", "views_to_90", "views_to_95"},
-    kMetresTo{"metres_to_80", "metres_to_90", "metres_to_95"};
-static_assert(kViewsTo.size() == kGoals.size() && kMetresTo.size() == kGoals.size());
-
 // Of a run's stages, by view.
 double deciding_seconds(const Json& json, std::size_t views) {
   double seconds = 0;
@@ -44,20 +27,22 @@ double deciding_seconds(const Json& json, std::size_t views) {
   return views > 1 ? seconds / static_cast<double>(views - 1) : kNone;
 }
 
-double mean_over_views(const Json& prediction, const char* key) {
-  std::vector<double> values;
-  for (const Json& view : prediction) values.push_back(number_of(view.at(key)));
-  return mean_of(values).mean;
-}
-
-}  // namespace
-
-std::string csv_text(const std::string& text) {
+// As CSV has it: with a comma, a quote or a line's end in quotes (RFC 4180); null: nothing.
+std::string csv_text(const Json& value) {
+  if (value.is_null()) return "";
+  if (value.is_number_float()) {
+    const double number = value.get<double>();
+    return std::isfinite(number) ? short_text(number) : "";
+  }
+  if (!value.is_string()) return value.dump();
+  const std::string text = value.get<std::string>();
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted.append(c == '"' ? "\"\"" : std::string(1, c));
   return quoted + "\"";
 }
+
+}  // namespace
 
 double ResultRow::counted_views_to(std::size_t goal) const {
   return static_cast<double>(views_to[goal].value_or(coverage_by_view.size() + 1));
@@ -96,84 +81,56 @@ ResultRow row_of(const StudyRun& run, const Json& json, std::size_t max_views) {
   return row;
 }
 
-Json prediction_of(const std::string& policy, const Json& maps) {
-  Json prediction = Json::array();
-  for (Json entry : maps.at("prediction")) {
-    if (entry.at("policy") != Json(policy)) continue;
-    entry.erase("policy");
-    prediction.push_back(std::move(entry));
-  }
-  return prediction;
-}
-
-std::string run_columns(const StudySpec& spec, const StudyRun& run) {
-  const StudyPolicy& policy = spec.policies[run.policy];
-  std::string columns = csv_text(spec.objects[run.object].name);
-  columns.append(",").append(policy.policy).append(",").append(policy.gain).append(",");
-  columns.append(policy.semantics).append(",").append(std::to_string(run.seed)).append(",");
-  columns.append(csv_text(run.sensor)).append(",").append(short_text(run.voxel)).append(",");
-  if (run.size) columns.append(short_text(*run.size));
-  return columns;
-}
-
-std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows) {
-  std::string csv =
-      std::string(kRunColumns) +
-      ",views,decisions,stop_reason,views_to_80,"
-      "views_to_90,views_to_95,metres_to_80,metres_to_90,metres_to_95,auc,coverage_visible,"
-      "coverage,"
-      "rms_error,consistency,outliers,travelled,spearman_area,spearman_entropy,top1_share,hash,isa,"
-      "deciding_seconds,seconds\n";
-  for (const ResultRow& row : rows) {
-    const StudyRun& run = *row.run;
-    csv.append(run_columns(spec, run));
-    csv.append(",").append(std::to_string(row.views));
-    csv.append(",").append(std::to_string(row.decisions)).append(",").append(row.stop_reason);
-    for (const auto& views : row.views_to) {
-      csv.append(",").append(views ? std::to_string(*views) : "nan");
-    }
-    for (const double metres : row.metres_to) csv.append(",").append(exact_text(metres));
-    for (const RowFigure& figure : kFigures) csv.append(",").append(exact_text(row.*figure.value));
-    for (const char* key : {"spearman_area", "spearman_entropy", "top1_share"}) {
-      csv.append(",").append(exact_text(mean_over_views(row.prediction, key)));
-    }
-    csv.append(",").append(run.hash).append(",").append(row.isa);
-    csv.append(",").append(exact_text(row.deciding_seconds));
-    csv.append(",").append(exact_text(row.seconds)).append("\n");
-  }
-  return csv;
-}
-
 Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows) {
   Json results = Json::array();
   for (const ResultRow& row : rows) {
     const StudyRun& run = *row.run;
     const StudyPolicy& policy = spec.policies[run.policy];
-    Json json{{"object", spec.objects[run.object].name},
-              {"policy", policy.policy},
-              {"gain", or_null(policy.gain)},
-              {"semantics", or_null(policy.semantics)},
-              {"seed", run.seed},
-              {"sensor", run.sensor},
-              {"voxel", run.voxel},
-              {"size", run.size},
-              {"views", row.views},
-              {"decisions", row.decisions},
-              {"stop_reason", row.stop_reason}};
-    for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
-      json[kViewsTo[goal]] = row.views_to[goal];
-      json[kMetresTo[goal]] = row.metres_to[goal];
-    }
-    for (const RowFigure& figure : kFigures) json[figure.key] = row.*figure.value;
-    json["coverage_by_view"] = row.coverage_by_view;
-    json["prediction"] = row.prediction;
-    json["hash"] = run.hash;
-    json["isa"] = row.isa;
-    json["deciding_seconds"] = row.deciding_seconds;
-    json["seconds"] = row.seconds;
-    results.push_back(std::move(json));
+    results.push_back({{"object", spec.objects[run.object].name},
+                       {"policy", policy.policy},
+                       {"gain", or_null(policy.gain)},
+                       {"seed", run.seed},
+                       {"sensor", run.sensor},
+                       {"voxel", run.voxel},
+                       {"size", run.size},
+                       {"views", row.views},
+                       {"decisions", row.decisions},
+                       {"stop_reason", row.stop_reason},
+                       {"views_to_80", row.views_to[0]},
+                       {"views_to_90", row.views_to[1]},
+                       {"views_to_95", row.views_to[2]},
+                       {"metres_to_80", row.metres_to[0]},
+                       {"metres_to_90", row.metres_to[1]},
+                       {"metres_to_95", row.metres_to[2]},
+                       {"auc", row.auc},
+                       {"coverage_visible", row.coverage_visible},
+                       {"coverage", row.coverage},
+                       {"rms_error", row.rms_error},
+                       {"consistency", row.consistency},
+                       {"outliers", row.outliers},
+                       {"travelled", row.travelled},
+                       {"coverage_by_view", row.coverage_by_view},
+                       {"hash", run.hash},
+                       {"isa", row.isa},
+                       {"deciding_seconds", row.deciding_seconds},
+                       {"seconds", row.seconds}});
   }
   return results;
+}
+
+std::string results_csv(const Json& results) {
+  std::string csv;
+  const auto add_line = [&](const Json& row, bool is_head) {
+    const std::size_t begin = csv.size();
+    for (const auto& [key, value] : row.items()) {
+      if (key == "coverage_by_view") continue;
+      csv.append(csv.size() == begin ? "" : ",").append(is_head ? key : csv_text(value));
+    }
+    csv += "\n";
+  };
+  add_line(results.at(0), true);
+  for (const Json& row : results) add_line(row, false);
+  return csv;
 }
 
 }  // namespace viewgain::app

@@ -37,34 +37,22 @@ struct ResultRow {
   double deciding_seconds = 0;  ///< candidates and choice, by view after the first [s]
   std::string isa;              ///< instruction set that the run was made with
   double seconds = 0;
-  Json prediction;  ///< as in results.json
 
   /// Views to a goal as means count them: one more than the budget where it was never reached.
   [[nodiscard]] double counted_views_to(std::size_t goal) const;
 };
 
-/// From a run's run.json, all but the prediction; `max_views`: the study's. Throws Json::exception
-/// where something is missing in it.
+/// From a run's run.json; `max_views`: the study's. Throws Json::exception where something is
+/// missing in it.
 [[nodiscard]] ResultRow row_of(const StudyRun& run, const Json& json, std::size_t max_views);
-/// What a policy's scores foretell, from the run.json of the run on whose maps they are looked at.
-/// Throws Json::exception where something is missing in it.
-[[nodiscard]] Json prediction_of(const std::string& policy, const Json& maps);
 
-/// A text as CSV has it: with a comma, a quote or a line's end in quotes (RFC 4180).
-[[nodiscard]] std::string csv_text(const std::string& text);
-
-/// What says in a line of CSV which run it is of: object, policy, gain, semantics, seed, sensor,
-/// voxel, size.
-inline constexpr const char* kRunColumns = "object,policy,gain,semantics,seed,sensor,voxel,size";
-[[nodiscard]] std::string run_columns(const StudySpec& spec, const StudyRun& run);
-
-/// The contents of results.csv and results.json, a row a run in the spec's order.
-[[nodiscard]] std::string results_csv(const StudySpec& spec, const std::vector<ResultRow>& rows);
+/// The contents of results.json, a row a run in the spec's order, and of results.csv, the same but
+/// for the lists.
 [[nodiscard]] Json results_json(const StudySpec& spec, const std::vector<ResultRow>& rows);
+[[nodiscard]] std::string results_csv(const Json& results);
 
 /// A study's results for people, as Markdown: for each sensor, voxel and size the policies' means,
-/// their paired differences to the spec's `against`, views by object, and how well their scores
-/// tell what candidates bring.
+/// their paired differences to the spec's `against`, and views by object.
 [[nodiscard]] std::string results_markdown(const StudySpec& spec,
                                            const std::vector<ResultRow>& rows);
 

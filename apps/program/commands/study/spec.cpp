@@ -3,10 +3,7 @@
 #include "program/commands/study/spec.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
-#include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "program/cli/flags/gain_names.hpp"
@@ -25,7 +22,7 @@ namespace viewgain::app {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kRunFormat = 3;  // of run.json and prediction.csv; grows when one changes
+constexpr int kRunFormat = 4;  // of run.json; grows when that changes
 constexpr std::size_t kMostRuns = 1'000'000;
 constexpr std::int64_t kMostViews = 1000, kMostCandidates = 100'000;
 
@@ -89,7 +86,7 @@ bool is_count(const std::string& text) {
 
 // "tour:K:M": K views are planned, M of them taken before it is planned anew.
 StudyPolicy tour_of(TableReader& reader, const std::string& name) {
-  StudyPolicy policy{name, name, "", "", "", ""};
+  StudyPolicy policy{name, name, "", "", ""};
   const std::string counts = name.substr(name.find(':') + 1);
   const std::size_t between = counts.find(':');
   policy.plan = counts.substr(0, between);
@@ -103,18 +100,13 @@ StudyPolicy tour_of(TableReader& reader, const std::string& name) {
                               "taken before it is planned anew");
 }
 
-// "gain:GAIN:SEMANTICS", "gain:GAIN", "tour:K:M" or another policy. `reconstruct` knows which names
-// there are.
+// "gain:GAIN", "tour:K:M" or another policy. `reconstruct` knows which names there are.
 StudyPolicy policy_of(TableReader& reader, const std::string& name) {
   if (name == "tour" || name.starts_with("tour:")) return tour_of(reader, name);
-  StudyPolicy policy{name, name, "", "", "", ""};
+  StudyPolicy policy{name, name, "", "", ""};
   if (const std::size_t first = name.find(':'); first != std::string::npos) {
     policy.policy = name.substr(0, first);
     policy.gain = name.substr(first + 1);
-    if (const std::size_t second = policy.gain.find(':'); second != std::string::npos) {
-      policy.semantics = policy.gain.substr(second + 1);
-      policy.gain.resize(second);
-    }
   }
   const bool by_gain = policy.policy == "gain";
   const std::vector<std::string> gains = all_gain_names();
@@ -132,11 +124,6 @@ StudyPolicy policy_of(TableReader& reader, const std::string& name) {
     if (!fault.empty()) reader.fail("policies", "holds \"" + name + "\": " + fault);
   }
   return policy;
-}
-
-// Where nothing is said it is the first.
-std::string semantics_of(const StudyPolicy& policy) {
-  return policy.semantics.empty() ? gain_semantics_names().front() : policy.semantics;
 }
 
 std::vector<StudyObject> objects_of(TableReader& reader, const fs::path& folder) {
@@ -158,10 +145,9 @@ std::vector<StudyObject> objects_of(TableReader& reader, const fs::path& folder)
 // What a run is asked by the study itself.
 const std::set<std::string>& own_flags() {
   static const std::set<std::string> flags{
-      "--sensor", "--voxel",     "--size",   "--seed",        "--policy",
-      "--gain",   "--semantics", "--out",    "--max-views",   "--pictures",
-      "--report", "--save-maps", "--plan",   "--take",        "--threads",
-      "--json",   "--quiet",     "--config", "--save-config", "--tolerance"};
+      "--sensor",    "--voxel",    "--size",   "--seed",        "--policy",   "--gain", "--out",
+      "--max-views", "--pictures", "--report", "--save-maps",   "--plan",     "--take", "--threads",
+      "--json",      "--quiet",    "--config", "--save-config", "--tolerance"};
   return flags;
 }
 
@@ -208,30 +194,6 @@ std::size_t policy_at(TableReader& reader, const char* key, const StudySpec& spe
   return static_cast<std::size_t>(found - spec.policies.begin());
 }
 
-Json names_of(const StudySpec& spec, const std::vector<std::size_t>& policies) {
-  Json names = Json::array();
-  for (const std::size_t policy : policies) names.push_back(spec.policies[policy].name);
-  return names;
-}
-
-StudyPrediction prediction_of(TableReader& root, const StudySpec& spec) {
-  StudyPrediction prediction;
-  if (root.find("prediction") == nullptr) return prediction;
-  TableReader reader = root.table("prediction");
-  const auto most = static_cast<std::int64_t>(spec.max_views);
-  for (const std::int64_t view : whole_numbers(reader, "views", 1, most)) {
-    prediction.views.push_back(static_cast<std::size_t>(view));
-  }
-  std::sort(prediction.views.begin(), prediction.views.end());
-  if (reader.find("candidates") != nullptr) {
-    prediction.candidates = static_cast<std::size_t>(
-        whole_number(reader, reader.require("candidates"), "candidates", 3, kMostCandidates));
-  }
-  if (reader.find("maps") != nullptr) prediction.maps = policy_at(reader, "maps", spec);
-  reader.refuse_unknown_keys();
-  return prediction;
-}
-
 }  // namespace
 
 StudySpec read_study_spec(const fs::path& path) {
@@ -240,13 +202,8 @@ StudySpec read_study_spec(const fs::path& path) {
   const fs::path folder = path.parent_path();
   StudySpec spec;
   spec.objects = objects_of(reader, folder);
-  std::set<std::string> policies;
   for (const std::string& name : texts(reader, "policies")) {
     spec.policies.push_back(policy_of(reader, name));
-    const StudyPolicy& policy = spec.policies.back();
-    if (!policies.insert(policy.policy + ":" + policy.gain + ":" + semantics_of(policy)).second) {
-      reader.fail("policies", "holds \"" + name + "\" twice: paper is the semantics unless said");
-    }
   }
   const std::vector<std::int64_t> seeds = whole_numbers(reader, "seeds", 0, INT64_MAX);
   std::vector<std::string> sensors = texts(reader, "sensors");
@@ -279,7 +236,6 @@ StudySpec read_study_spec(const fs::path& path) {
         reader, reader.require("kept_candidates"), "kept_candidates", 1, kMostCandidates));
   }
   if (reader.find("against") != nullptr) spec.against = policy_at(reader, "against", spec);
-  spec.prediction = prediction_of(reader, spec);
   reader.refuse_unknown_keys();
 
   const std::size_t count = spec.objects.size() * spec.policies.size() * seeds.size() *
@@ -298,11 +254,8 @@ StudySpec read_study_spec(const fs::path& path) {
         for (std::size_t object = 0; object < spec.objects.size(); ++object) {
           for (const std::int64_t seed : seeds) {
             for (std::size_t policy = 0; policy < spec.policies.size(); ++policy) {
-              const std::size_t maps =
-                  spec.runs.size() - policy + spec.prediction.maps.value_or(policy);
-              StudyRun run{object, policy, static_cast<std::uint64_t>(seed),
-                           sensor, voxel,  size,
-                           maps,   {},     {}};
+              StudyRun run{object, policy, static_cast<std::uint64_t>(seed), sensor, voxel, size,
+                           {},     {}};
               run.configuration = {
                   {"version", VIEWGAIN_VERSION},
                   {"format", kRunFormat},
@@ -316,10 +269,7 @@ StudySpec read_study_spec(const fs::path& path) {
                   {"max_views", spec.max_views},
                   {"tolerance", spec.tolerance},
                   {"flags", flags},
-                  {"kept_candidates", spec.kept_candidates},
-                  {"prediction_views", spec.prediction.views},
-                  {"prediction_candidates", spec.prediction.candidates},
-                  {"prediction_policies", names_of(spec, scored_policies(spec, run))}};
+                  {"kept_candidates", spec.kept_candidates}};
               run.hash = hash_of(dumped(run.configuration));
               spec.runs.push_back(std::move(run));
             }
@@ -329,14 +279,6 @@ StudySpec read_study_spec(const fs::path& path) {
     }
   }
   return spec;
-}
-
-std::vector<std::size_t> scored_policies(const StudySpec& spec, const StudyRun& run) {
-  if (spec.prediction.views.empty()) return {};
-  if (!spec.prediction.maps) return {run.policy};
-  std::vector<std::size_t> all(*spec.prediction.maps == run.policy ? spec.policies.size() : 0);
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return all;
 }
 
 std::vector<std::string> reconstruct_words(const StudySpec& spec, const StudyRun& run) {
@@ -353,7 +295,6 @@ std::vector<std::string> reconstruct_words(const StudySpec& spec, const StudyRun
     words.push_back("--plan=" + policy.plan);
     words.push_back("--take=" + policy.take);
   }
-  if (!policy.semantics.empty()) words.push_back("--semantics=" + policy.semantics);
   if (run.size) words.push_back("--size=" + short_text(*run.size));
   // Every policy has the whole budget, unless the spec says otherwise.
   for (const char* rule : {"--stop-gain", "--stop-area", "--stop-idle", "--stop-promises"}) {

@@ -14,21 +14,11 @@
 namespace viewgain::app {
 
 /// How a study's run chooses its views: a policy of `reconstruct`, for the policy gain with the
-/// gain that it ranks by and, where that has several, its semantics; or plans by the default gain.
+/// gain that it ranks by; or plans by the default gain.
 struct StudyPolicy {
-  std::string
-      name;  ///< as in the spec: "frontier", "gain:combined", "gain:rear_side_voxel:shipped"
-  std::string policy, gain, semantics;  ///< the last two may be empty
-  std::string plan, take;               ///< of "tour:K:M"; else empty
-};
-
-/// Where candidates are held against what they truly bring.
-struct StudyPrediction {
-  std::vector<std::size_t> views;  ///< after so many views, rising; empty: nowhere
-  std::size_t candidates = 100;    ///< at most so many each time
-  /// Index of the policy on whose runs' maps all policies' scores are held against that; none: each
-  /// on those of its own runs.
-  std::optional<std::size_t> maps;
+  std::string name;          ///< as in the spec: "frontier", "gain:combined"
+  std::string policy, gain;  ///< the last may be empty
+  std::string plan, take;    ///< of "tour:K:M"; else empty
 };
 
 /// One run of a study.
@@ -38,7 +28,6 @@ struct StudyRun {
   std::string sensor;          ///< preset or file, as in the spec
   double voxel = 0;            ///< [m]
   std::optional<double> size;  ///< longest side [m]; none: the file's own
-  std::size_t maps = 0;        ///< index of the run on whose maps its scores are looked at
   Json configuration;          ///< all that can change its result
   std::string hash;            ///< of that: the name of the run's folder
 };
@@ -59,16 +48,12 @@ struct StudySpec {
   std::size_t against = 0;          ///< index of the policy that the others are paired with
   std::vector<std::string> flags;   ///< further ones of `reconstruct`, for all runs
   std::size_t kept_candidates = 0;  ///< at most so many of each view's are left in candidates.txt
-  StudyPrediction prediction;
-  std::vector<StudyRun> runs;  ///< by sensor, voxel, size, object, seed, policy
+  std::vector<StudyRun> runs;       ///< by sensor, voxel, size, object, seed, policy
 };
 
 /// Reads a spec; paths in it are relative to its folder. Throws Error(io) for files that cannot be
 /// read, Error(format), naming file, line and key, for whatever is not as it should be.
 [[nodiscard]] StudySpec read_study_spec(const std::filesystem::path& path);
-
-/// Indices of the policies whose scores are looked at on a run's maps.
-[[nodiscard]] std::vector<std::size_t> scored_policies(const StudySpec& spec, const StudyRun& run);
 
 /// The command line of a run, after `reconstruct`.
 [[nodiscard]] std::vector<std::string> reconstruct_words(const StudySpec& spec,

@@ -12,6 +12,21 @@
 namespace viewgain::app {
 namespace {
 
+// Places from 1 on by rising value; equal values share the mean of theirs.
+std::vector<double> ranks(std::span<const double> values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<double> places(values.size());
+  for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+    while (last < order.size() && !(values[order[first]] < values[order[last]])) ++last;
+    const double place = 0.5 * static_cast<double>(first + 1 + last);
+    for (std::size_t i = first; i < last; ++i) places[order[i]] = place;
+  }
+  return places;
+}
+
 // Two-sided p of the sum of weights of the positive differences, where either sign is as likely:
 // the weights are 1, or twice the places by size, so that those of ties are whole.
 double flip_test(std::span<const double> differences, bool by_size) {
@@ -50,38 +65,6 @@ double flip_test(std::span<const double> differences, bool by_size) {
 }
 
 }  // namespace
-
-std::vector<double> ranks(std::span<const double> values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-  std::vector<double> places(values.size());
-  for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
-    while (last < order.size() && !(values[order[first]] < values[order[last]])) ++last;
-    const double place = 0.5 * static_cast<double>(first + 1 + last);
-    for (std::size_t i = first; i < last; ++i) places[order[i]] = place;
-  }
-  return places;
-}
-
-double spearman(std::span<const double> a, std::span<const double> b) {
-  std::vector<double> x, y;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (!std::isfinite(a[i]) || !std::isfinite(b[i])) continue;
-    x.push_back(a[i]);
-    y.push_back(b[i]);
-  }
-  x = ranks(x), y = ranks(y);
-  const double middle = 0.5 * static_cast<double>(x.size() + 1);
-  double xx = 0, yy = 0, xy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double dx = x[i] - middle, dy = y[i] - middle;
-    xx += dx * dx, yy += dy * dy, xy += dx * dy;
-  }
-  if (!(xx > 0 && yy > 0)) return std::numeric_limits<double>::quiet_NaN();
-  return xy / std::sqrt(xx * yy);
-}
 
 MeanWithError mean_of(std::span<const double> values, std::span<const std::size_t> clusters) {
   constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();

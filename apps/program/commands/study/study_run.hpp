@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <stop_token>
-#include <string>
 #include <vector>
 
 #include "program/cli/json.hpp"
@@ -16,15 +15,9 @@ namespace viewgain::app {
 /// What a run leaves in the study's folder.
 struct StudyResult {
   Json run;                      ///< run.json: configuration, figures, those of each view, seconds
-  std::string prediction_rows;   ///< prediction.csv without its head: a row a score of a candidate
   std::vector<Pose> candidates;  ///< T_world_camera, evenly taken from the proposals
   std::vector<double> candidate_views;  ///< after how many views each was proposed
 };
-
-/// The columns of prediction.csv after `policy`, whose score it is.
-inline constexpr const char* kPredictionColumns =
-    "view,candidate,score,predicted_area,new_samples,new_area,entropy_removed,"
-    "generator,tx,ty,tz,qx,qy,qz,qw";
 
 /// Checks a run's flags and files without running it. Throws Error, naming the run.
 void check_run(const StudySpec& spec, const StudyRun& run);

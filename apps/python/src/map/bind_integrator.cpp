@@ -211,9 +211,8 @@ support_plane : float, optional
 Returns
 -------
 ndarray, (2, 3), float64, or None)");
-  module.def(
-      "load_cloud", &load, py::arg("path"),
-      R"(Reads the points of a .pcd (ascii, binary, binary_compressed) or .ply (ascii, binary).
+  module.def("load_cloud", &load, py::arg("path"),
+             R"(Reads the points of a .pcd (ascii, binary) or .ply (ascii, binary).
 
 Runs without the GIL. Cost: linear in the file.
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -157,35 +156,6 @@ SurfaceMesh surface_of_grid(const Given<SharedGrid>& grid, std::uint32_t min_hit
   });
 }
 
-// What a pickle is of.
-constexpr const char* kKind = "viewgain surface 1\n";
-
-py::bytes bytes_of(const SurfaceMesh& surface) {
-  SealedWriter writer(kKind);
-  writer.add(surface.vertices);
-  writer.add(surface.normals);
-  writer.add(surface.triangles);
-  writer.add(surface.source);
-  return writer.seal();
-}
-
-SurfaceMesh from_bytes(const py::bytes& data) {
-  const auto bytes = data.cast<std::string>();
-  SealedReader reader(kKind, bytes, "surface");
-  SurfaceMesh surface;
-  surface.vertices = reader.next<std::array<double, 3>>();
-  surface.normals = reader.next<std::array<double, 3>>();
-  surface.triangles = reader.next<std::array<std::uint32_t, 3>>();
-  surface.source = reader.next<std::uint32_t>();
-  reader.require_end();
-  const std::size_t count = surface.vertices.size();
-  if (surface.normals.size() != count || surface.source.size() != count) reader.refuse();
-  for (const auto& triangle : surface.triangles) {
-    if (*std::max_element(triangle.begin(), triangle.end()) >= count) reader.refuse();
-  }
-  return surface;
-}
-
 // A Python package that viewgain can do without.
 py::module_ other_package(const char* name, const char* wanted_by) {
   try {
@@ -229,13 +199,13 @@ void bind_surface(py::module_& module) {
 ``surface_of_grid`` and ``reconstruct``.
 
 Faces turn counter-clockwise seen from free space. Lengths are [m], in the frame of the points that
-it was made of: the world's, of a map. Surfaces are equal by value and can be pickled.
+it was made of: the world's, of a map. Surfaces are equal by value.
 
 Notes
 -----
 Cost: linear in vertices and triangles: each property is a copy, 30 µs for 20,000 vertices. ``save``
 leaves the GIL, the rest holds it.)");
-  pickle_as_bytes(type, "surface", ".", &bytes_of, &from_bytes);
+  refuse_pickling(type);
   type.def_property_readonly(
           "vertices", [](const SurfaceMesh& s) { return to_array_3(s.vertices); },
           "ndarray, (n, 3), float64: in the surface's frame, of a map the world's [m]")

@@ -3,7 +3,6 @@
 
 // Poses and gains in columns (.npy) are those of text.
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>

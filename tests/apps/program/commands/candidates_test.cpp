@@ -4,7 +4,6 @@
 // `viewgain candidates` as a user would run it, on the map of a short run.
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <map>
 #include <set>
 #include <string>

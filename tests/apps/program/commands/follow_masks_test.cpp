@@ -4,10 +4,8 @@
 // `follow` beside a program that writes masks of the robot's arm, or confidences, with its frames.
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "apps/program/commands/pose_file_text.hpp"
 #include "apps/program_runner.hpp"

@@ -158,8 +158,7 @@ TEST_F(Reconstruct, LeavesAConsistentFolder) {
 TEST_F(Reconstruct, RanksByAGainOfTheLiterature) {
   const json result =
       reconstruct("cube.off", {"--max-views", "3", "--pictures", "off", "--size", "0.2", "--gain",
-                               "unknown_count", "--semantics", "shipped", "--generator", "sphere",
-                               "--count", "60"});
+                               "unknown_count", "--generator", "sphere", "--count", "60"});
   EXPECT_EQ(result["gain_model"], "unknown_count");
   ASSERT_EQ(result["per_view"].size(), 3U);
   for (std::size_t i = 1; i < 3; ++i) {
@@ -170,7 +169,6 @@ TEST_F(Reconstruct, RanksByAGainOfTheLiterature) {
   }
   const json settings = json::parse(read("run/run.json"))["settings"];
   EXPECT_EQ(settings["gain"], "unknown_count");
-  EXPECT_EQ(settings["semantics"], "shipped");
   EXPECT_EQ(settings["stop_area"], 0.0);
   expect_refused(arguments("cube.off", {"--policy", "random", "--gain", "unknown_count"}),
                  "--policy gain");

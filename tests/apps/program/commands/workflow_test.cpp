@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdlib>
 #include <sstream>
 #include <string>
 #include <vector>

@@ -21,14 +21,13 @@ struct VIEWGAIN_EXPORT PointCloud {
   std::optional<Pose> viewpoint;
 };
 
-/// Reads a .pcd (ascii, binary, binary_compressed) or .ply (ascii, binary of either byte order),
+/// Reads a .pcd (ascii, binary) or .ply (ascii, binary of either byte order),
 /// chosen by the name's ending; PLY's points are the element "vertex". Fields other than x, y, z
 /// are left out. Throws Error(io) if the file cannot be opened and Error(format), naming the file
 /// and, in text, the line, if a field is missing, a count contradicts the file's length, a word is
 /// no number, the viewpoint's quaternion is off by more than 1e-2, or the name ends otherwise.
-/// Points need not be finite. Throws Error(capacity) for a file over 16 GiB, and for compressed
-/// points that take more than 256 MiB in memory and 64 times their length in the file. Cost:
-/// O(points); the file is read once.
+/// Points need not be finite. Throws Error(capacity) for a file over 16 GiB. Cost: O(points); the
+/// file is read once.
 [[nodiscard]] VIEWGAIN_EXPORT PointCloud load_cloud(const std::filesystem::path& path);
 
 }  // namespace viewgain

@@ -56,28 +56,13 @@ enum class ClassicGain : std::uint8_t {
 /// throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool needs_occlusion(ClassicGain gain);
 
-/// Whose words a gain follows where papers and the code that was published with them differ.
-enum class GainSemantics : std::uint8_t {
-  paper,    ///< visibility is Π (1 - p); a voxel is unknown if no reading told of it
-  shipped,  ///< as ig_active_reconstruction computes it: Π p; unknown, occupied, free by p
-};
-/// "paper", "shipped", in this order.
-[[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& gain_semantics_names();
-/// The name of one. Throws std::out_of_range for a number that is none of them.
-[[nodiscard]] VIEWGAIN_EXPORT std::string_view gain_semantics_name(GainSemantics semantics);
-/// Throws Error(invalid_argument) that lists the valid names.
-[[nodiscard]] VIEWGAIN_EXPORT GainSemantics parse_gain_semantics(std::string_view name);
-
 /// What changes the answer.
 struct VIEWGAIN_EXPORT ClassicConfig {
-  std::vector<ClassicGain> gains;                  ///< results are in this order
-  GainSemantics semantics = GainSemantics::paper;  ///< whose words the gains follow
+  std::vector<ClassicGain> gains;     ///< results are in this order
   int pixel_stride = 1;               ///< every s-th pixel of every s-th row, from pixel (0,0)
   std::optional<double> min_range{};  ///< along the ray [m]; the sensor's unless given
   std::optional<double> max_range{};  ///< along the ray [m]; the sensor's unless given
   double unknown_prior = 0.5;         ///< probability p of a voxel that no reading told of
-  double free_below = 0.2;      ///< shipped: a voxel is free if its probability p is below this,
-  double occupied_above = 0.8;  ///< occupied if it is above this probability, else unknown
 };
 
 /// The sensor that a map's readings came from, and how far behind surfaces what it hid counts.
@@ -141,8 +126,7 @@ class VIEWGAIN_EXPORT ClassicMap {
 class VIEWGAIN_EXPORT ClassicGainEvaluator {
  public:
   /// Throws Error(invalid_argument), naming the value: no gain, one twice, a null map, a sensor
-  /// that is not valid, a stride below 1, ranges as GainConfig's, an unknown_prior outside 0..1,
-  /// thresholds that are not 0 <= free_below <= unknown_prior <= occupied_above <= 1 (shipped), a
+  /// that is not valid, a stride below 1, ranges as GainConfig's, an unknown_prior outside 0..1, a
   /// gain that needs occlusion distances of a map that was built without.
   ClassicGainEvaluator(std::shared_ptr<const ClassicMap> map, const Sensor& sensor,
                        const ClassicConfig& config, const ExecConfig& exec = {});

@@ -13,12 +13,6 @@
 
 namespace viewgain {
 
-/// A gain of the literature that candidates are ranked by.
-struct VIEWGAIN_EXPORT ClassicRanking {
-  ClassicGain gain = ClassicGain::occlusion_aware;  ///< that ranks
-  GainSemantics semantics = GainSemantics::paper;   ///< whose words it follows
-};
-
 /// Candidates by a gain of the literature, on the map as it is at each call.
 ///
 /// Thread safety: one call at a time. Deterministic, for any number of threads. Cost:
@@ -29,7 +23,7 @@ class VIEWGAIN_EXPORT ClassicChoice {
   static constexpr std::size_t kInFull = 32;
 
   /// The model must outlive it.
-  ClassicChoice(const SurfaceModel& model, const Sensor& sensor, const ClassicRanking& ranking,
+  ClassicChoice(const SurfaceModel& model, const Sensor& sensor, ClassicGain gain,
                 const ExecConfig& exec);
 
   /// The gain of each pose, in the gain's unit, in their order. Unless `all` are asked for, those
@@ -40,7 +34,7 @@ class VIEWGAIN_EXPORT ClassicChoice {
  private:
   const SurfaceModel& model_;
   Sensor sensor_;
-  ClassicRanking ranking_;
+  ClassicGain gain_;
   ExecConfig exec_;
   std::optional<ClassicGainEvaluator> full_, coarse_;  ///< of the last call's map
 };

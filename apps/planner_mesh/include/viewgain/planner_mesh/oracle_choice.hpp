@@ -23,12 +23,6 @@ struct VIEWGAIN_EXPORT KnownObject {
   SimulationConfig simulation{};             ///< of its surroundings; noise is left out
 };
 
-/// What a view really brings, without noise.
-struct VIEWGAIN_EXPORT TrueOutcome {
-  std::size_t covered = 0;     ///< samples of the mesh that the map's points cover afterwards
-  double entropy_removed = 0;  ///< of the whole map afterwards [nat, m² for trace]
-};
-
 /// The choice of one who knows the object: an upper reference for planners, and no planner. Looks
 /// one view ahead, so that a sequence of views may still be better.
 ///
@@ -47,22 +41,18 @@ class VIEWGAIN_EXPORT OracleChoice {
   /// that the surface does not cover yet, unoccluded and at under 72°, are simulated without noise,
   /// one frame each into a copy of the map; the index of the one after which the map's points cover
   /// most samples. Ties go to the lower index, in the ranking too. There must be a candidate, which
-  /// is not checked; throws as outcome_of(). Takes some seconds for a thousand candidates.
+  /// is not checked; throws as covered_after(). Takes some seconds for a thousand candidates.
   [[nodiscard]] std::size_t next(std::span<const Candidate> candidates) const;
 
   /// How many of the samples that the surface does not cover yet each candidate sees, in their
   /// order. Costs up to two rays a sample and candidate.
   [[nodiscard]] std::vector<std::size_t> uncovered_in_view(
       std::span<const Candidate> candidates) const;
-  /// How many samples the map's points cover, and what the map would know, after a frame from
-  /// there. Throws as SimulatedSensor::acquire(). Costs a simulated frame and a copy of the map.
-  [[nodiscard]] TrueOutcome outcome_of(const Pose& T_world_camera) const;
-  /// How many samples the map's points cover as it stands.
-  [[nodiscard]] std::size_t covered() const;
+  /// How many samples the map's points cover after a frame from there. Throws as
+  /// SimulatedSensor::acquire(). Costs a simulated frame and a copy of the map.
+  [[nodiscard]] std::size_t covered_after(const Pose& T_world_camera) const;
 
  private:
-  [[nodiscard]] std::size_t covered_by(const std::vector<FusedPoint>& points) const;
-
   const SurfaceModel& model_;
   Sensor sensor_;
   KnownObject object_;

@@ -40,21 +40,12 @@ enum class Policy : std::uint8_t {
 struct VIEWGAIN_EXPORT PolicyConfig {
   Policy policy = Policy::gain;                   ///< which one
   GainModel model = kDefaultGain;                 ///< of Policy::gain
-  std::optional<ClassicRanking> classic{};        ///< of Policy::gain, instead of `model`
+  std::optional<ClassicGain> classic{};           ///< of Policy::gain, instead of `model`
   Criterion criterion = Criterion::log_diagonal;  ///< of the paper's gain
   double cost_per_metre = 0;                      ///< gain - this * way [the gain's unit per m]
   PlanAhead ahead{};                              ///< of Policy::gain by `model`
   KnownObject object{};                           ///< of Policy::oracle
   std::uint64_t seed = 1;                         ///< of random choices
-};
-
-/// What a policy ranks candidates by, one entry a candidate.
-struct VIEWGAIN_EXPORT CandidateScores {
-  /// One a candidate, in the unit of the policy's gain; a count for frontier.
-  std::vector<double> score;
-  /// One a candidate: the new surface to be expected [m²]; NaN where the policy's gain does not
-  /// say.
-  std::vector<double> area;
 };
 
 /// set_stop_rules() of the policy: that of its gain, and where it does not choose by a gain, or by
@@ -84,11 +75,6 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
   /// kriegel if none of them is left to try.
   std::optional<Decision> decide(const Pose& T_world_camera,
                                  std::span<const Candidate> candidates) override;
-
-  /// What the policy ranks these candidates by, in their order, on the model as it stands, all of
-  /// them by all rays and the way there left out. Nothing for the policies that
-  /// rank by no figure of a view: kriegel, sequence, random, fibonacci, oracle.
-  [[nodiscard]] std::optional<CandidateScores> scores(std::span<const Candidate> candidates);
 
  private:
   /// The evaluator by the policy's gain of the model's scene.

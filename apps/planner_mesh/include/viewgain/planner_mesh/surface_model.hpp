@@ -35,12 +35,6 @@ struct VIEWGAIN_EXPORT SurfaceModelConfig {
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<double> surface_sigmas(
     const SurfaceMesh& surface, const std::vector<FusedPoint>& points);
 
-/// What a model would hold after measurements that do not change it.
-struct VIEWGAIN_EXPORT ModelOutlook {
-  std::vector<FusedPoint> points;  ///< of the surface, in the order of fused_points()
-  double entropy_removed = 0;      ///< of the whole map, by its criterion [nat, m² for trace]
-};
-
 /// The two representations of the scene, the belief grid and the surface seen so far
 /// (UPDATEREPRESENTATIONS of Algorithm 1), and what is derived from them after each view.
 ///
@@ -67,9 +61,9 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   /// Throws as update(); what was there is lost then.
   ModelProgress rebuild(std::span<const Measurements> measurements);
 
-  /// What the model would hold after these measurements, which do not change it. Throws as
-  /// MapModel::update(). Costs a copy of the map beside what update() costs without a surface.
-  [[nodiscard]] ModelOutlook after(const Measurements& measurements) const;
+  /// The points that the model would have after these measurements, which do not change it. Throws
+  /// as MapModel::update(). Costs a copy of the map beside what update() costs without a surface.
+  [[nodiscard]] std::vector<FusedPoint> points_after(const Measurements& measurements) const;
 
   /// The map behind the surface.
   [[nodiscard]] const MapModel& map() const noexcept { return map_; }

@@ -74,8 +74,6 @@ class VIEWGAIN_EXPORT Truth {
   [[nodiscard]] QualityFigures figures(const SurfaceMesh& surface,
                                        std::span<const FusedPoint> points) const;
 
-  /// What a sample stands for [m²].
-  [[nodiscard]] double area_per_sample() const noexcept { return area_per_sample_; }
   /// A sample is covered by a point that is within this of it [m].
   [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
   /// The samples, 10,000 of them.

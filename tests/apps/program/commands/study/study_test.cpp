@@ -7,10 +7,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <map>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -18,7 +16,6 @@
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
-#include "program/commands/study/statistics.hpp"
 #include "viewgain/core/pose_io.hpp"
 
 namespace viewgain {
@@ -37,34 +34,11 @@ voxels = [0.0125]
 sizes = [0.15]
 max_views = 3
 tolerance = 0.0125
-[prediction]
-views = [1, 3]
-candidates = 8
 )");
   }
 
   static Strings study(const std::string& out, const Strings& more = {}) {
     return test::joined({"study", "spec.toml", "--out", out, "--quiet"}, more);
-  }
-
-  // The cells of predictions.csv by policy, seed and view: "frontier1/3".
-  [[nodiscard]] std::map<std::string, std::vector<Strings>> predictions(
-      const std::string& out) const {
-    std::map<std::string, std::vector<Strings>> found;
-    std::istringstream lines(read(out + "/predictions.csv"));
-    std::string line;
-    std::getline(lines, line);
-    EXPECT_EQ(line,
-              "object,policy,gain,semantics,seed,sensor,voxel,size,view,candidate,score,"
-              "predicted_area,new_samples,new_area,entropy_removed,generator,tx,ty,tz,qx,qy,qz,qw");
-    while (std::getline(lines, line)) {
-      std::istringstream in(line);
-      Strings cells;
-      for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
-      EXPECT_EQ(cells.size(), 23U);
-      found[cells.at(1) + cells.at(4) + "/" + cells.at(8)].push_back(cells);
-    }
-    return found;
   }
 
   // The lines without their last columns, seconds.
@@ -90,8 +64,7 @@ candidates = 8
 TEST_F(Study, LeavesWhatItSays) {
   const json printed = json::parse(run_well(study("out", {"--json", "--plots", "off"})));
   EXPECT_EQ(printed, json::parse(read("out/results.json")));
-  EXPECT_EQ(list("out"), (Strings{"plots.py", "predictions.csv", "results.csv", "results.json",
-                                  "runs", "table.md"}));
+  EXPECT_EQ(list("out"), (Strings{"plots.py", "results.csv", "results.json", "runs", "table.md"}));
   EXPECT_EQ(list("out/runs").size(), 6U);
   ASSERT_EQ(printed.size(), 6U);
   for (const json& run : printed) {
@@ -100,7 +73,6 @@ TEST_F(Study, LeavesWhatItSays) {
     EXPECT_EQ(run["views"], 3);  // the whole budget
     EXPECT_EQ(run["coverage_by_view"].size(), 3U);
     EXPECT_EQ(run["coverage_by_view"][2], run["coverage_visible"]);
-    EXPECT_EQ(run["prediction"].size(), run["policy"] == "random" ? 0U : 2U);
   }
   // A run by itself is the same run.
   const json alone = json::parse(
@@ -119,8 +91,7 @@ TEST_F(Study, LeavesWhatItSays) {
 }
 
 TEST_F(Study, KeepsCandidatesOfEachView) {
-  const std::string spec = read("spec.toml");
-  write("spec.toml", "kept_candidates = 7\n" + spec.substr(0, spec.find("[prediction]")));
+  write("spec.toml", "kept_candidates = 7\n" + read("spec.toml"));
   run_well(study("out", {"--plots", "off"}));
   std::size_t cases = 0;
   for (const std::string& hash : list("out/runs")) {
@@ -140,99 +111,10 @@ TEST_F(Study, KeepsCandidatesOfEachView) {
   EXPECT_FALSE(fs::exists(dir / "out" / "candidates.txt"));
 }
 
-TEST_F(Study, PredictionIsThatOfItsRows) {
-  const json results = json::parse(run_well(study("out", {"--json", "--plots", "off"})));
-  // By policy, seed and view: score, new samples, entropy.
-  std::map<std::string, std::vector<std::vector<double>>> columns;
-  for (const auto& [key, rows] : predictions("out")) {
-    auto& column = columns[key];
-    column.resize(3);
-    for (const Strings& cells : rows) {
-      column[0].push_back(std::stod(cells[10]));
-      column[1].push_back(std::stod(cells[12]));
-      column[2].push_back(std::stod(cells[14]));
-      EXPECT_EQ(cells[11] == "nan", cells[1] == "frontier");
-      EXPECT_GE(std::stod(cells[13]) * std::stod(cells[12]), 0);
-    }
-  }
-  std::size_t cases = 0;
-  for (const json& run : results) {
-    for (const json& entry : run["prediction"]) {
-      const auto& column =
-          columns.at(run["policy"].get<std::string>() + std::to_string(run["seed"].get<int>()) +
-                     "/" + std::to_string(entry["view"].get<int>()));
-      EXPECT_EQ(entry["candidates"], column[0].size());
-      EXPECT_GE(column[0].size(), 4U);
-      const std::vector<std::pair<const char*, double>> expected{
-          {"spearman_area", app::spearman(column[0], column[1])},
-          {"spearman_entropy", app::spearman(column[0], column[2])}};
-      for (const auto& [key, value] : expected) {
-        if (std::isnan(value)) {
-          EXPECT_TRUE(entry[key].is_null());
-        } else {
-          EXPECT_EQ(entry[key].get<double>(), value) << key;
-        }
-      }
-      const auto best = std::max_element(column[0].begin(), column[0].end()) - column[0].begin();
-      const double most = *std::max_element(column[1].begin(), column[1].end());
-      if (most > 0) {
-        EXPECT_EQ(entry["top1_share"].get<double>(),
-                  column[1][static_cast<std::size_t>(best)] / most);
-      }
-      ++cases;
-    }
-  }
-  EXPECT_EQ(cases, 8U);
-  // Early on the expected new surface says where there is some.
-  EXPECT_GT(results[0]["prediction"][0]["spearman_area"].get<double>(), 0.4);
-}
-
-TEST_F(Study, ScoresAreHeldAgainstTheMapsOfOnePolicy) {
-  run_well(study("own", {"--plots", "off"}));
-  write("spec.toml", read("spec.toml") + "maps = \"frontier\"\n");
-  const json results = json::parse(run_well(study("out", {"--json", "--plots", "off"})));
-  EXPECT_NE(read("out/table.md").find("on the maps of frontier"), std::string::npos);
-  const auto of_own = predictions("own"), same = predictions("out");
-  EXPECT_EQ(same.size(), 8U);
-  for (const char* seed : {"1", "2"}) {
-    const auto at = [&](const auto& rows, const char* policy, const char* view) {
-      return rows.at(std::string(policy) + seed + "/" + view);
-    };
-    // All runs begin alike, and those of frontier are what they were.
-    EXPECT_EQ(at(same, "gain", "1"), at(of_own, "gain", "1"));
-    EXPECT_EQ(at(same, "frontier", "1"), at(of_own, "frontier", "1"));
-    EXPECT_EQ(at(same, "frontier", "3"), at(of_own, "frontier", "3"));
-    // Other scores of the same candidates.
-    const auto gain = at(same, "gain", "3"), frontier = at(same, "frontier", "3");
-    ASSERT_EQ(gain.size(), frontier.size());
-    for (std::size_t i = 0; i < gain.size(); ++i) {
-      EXPECT_NE(gain[i][10], frontier[i][10]);
-      EXPECT_TRUE(std::equal(gain[i].begin() + 12, gain[i].end(), frontier[i].begin() + 12));
-    }
-  }
-  for (const json& run : results) {
-    EXPECT_EQ(run["prediction"].size(), run["policy"] == "random" ? 0U : 2U);
-  }
-  // A run of frontier that says nothing of predictions is itself to blame.
-  std::string damaged;
-  for (const std::string& hash : list("out/runs")) {
-    const std::string file = "out/runs/" + hash + "/run.json";
-    if (!damaged.empty() || !fs::exists(dir / file)) continue;
-    json one = json::parse(read(file));
-    if (one["prediction"].size() == 0) continue;
-    damaged = file;
-    one.erase("prediction");
-    write(file, one.dump());
-  }
-  const test::ProgramResult result = run(study("out", {"--plots", "off"}));
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find(damaged + ": "), std::string::npos) << damaged << " " << result.err;
-}
-
 TEST_F(Study, VoxelsLargerThanTheToleranceAreSaid) {
   std::string spec = read("spec.toml");
   spec.replace(spec.find("tolerance = 0.0125"), 18, "tolerance = 0.005");
-  write("spec.toml", spec.substr(0, spec.find("[prediction]")));
+  write("spec.toml", spec);
   const test::ProgramResult result = run(study("out", {"--plots", "off"}));
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_NE(result.err.find("warning: coverage is counted to 5 mm, finer than voxels of 12.5 mm"),
@@ -258,7 +140,6 @@ TEST_F(Study, KilledItGoesOn) {
   EXPECT_GE(there, 4U);
   run_well(study("killed", {"--plots", "off"}));
   EXPECT_EQ(rows("killed"), rows("whole"));
-  EXPECT_EQ(read("killed/predictions.csv"), read("whole/predictions.csv"));
   EXPECT_EQ(list("killed/runs"), list("whole/runs"));  // no claim is left
   // All there: nothing is made again.
   const auto before = contents("killed/runs");
@@ -303,22 +184,17 @@ TEST_F(Study, DamagedRunsAreNamedAndNothingIsLeft) {
   run_well(study("out", {"--plots", "off"}));
   const std::string hash = json::parse(read("out/results.json"))[0]["hash"];
   const std::string folder = "out/runs/" + hash + "/";
-  for (const auto& [name, from] :
-       std::vector<std::pair<std::string, std::string>>{{"run.json", "\"per_view\""},
-                                                        {"run.json", "\"stop_reason\""},
-                                                        {"prediction.csv", "\n"}}) {
-    for (const char* of_before : {"results.csv", "results.json", "predictions.csv"}) {
+  const std::string whole = read(folder + "run.json");
+  for (const std::string from : {"\"per_view\"", "\"stop_reason\""}) {
+    for (const char* of_before : {"results.csv", "results.json"})
       fs::remove(dir / "out" / of_before);
-    }
-    const std::string whole = read(folder + name);
     std::string text = whole;
-    text.replace(text.rfind(from), from.size(), name == "run.json" ? "\"other\"" : "");
-    write(folder + name, text);
+    text.replace(text.rfind(from), from.size(), "\"other\"");
+    write(folder + "run.json", text);
     const test::ProgramResult result = run(study("out", {"--plots", "off"}));
     EXPECT_EQ(result.exit_code, 2) << from;
-    EXPECT_NE(result.err.find(hash + "/" + name), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(hash + "/run.json"), std::string::npos) << result.err;
     EXPECT_FALSE(fs::exists(dir / "out/results.csv")) << from;
-    write(folder + name, whole);
   }
 }
 
@@ -353,9 +229,7 @@ TEST_F(Study, PlotsAreDrawnByTheScriptItLeaves) {
     GTEST_SKIP() << "no matplotlib";
   }
   run_well(study("out"));
-  for (const char* name : {"coverage.png", "prediction.png", "calibration.png"}) {
-    EXPECT_TRUE(read(std::string("out/") + name).starts_with("\x89PNG")) << name;
-  }
+  EXPECT_TRUE(read("out/coverage.png").starts_with("\x89PNG"));
 }
 
 }  // namespace
