@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "program/cli/json.hpp"
+#include "program/cli/values.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/toml_table.hpp"
 

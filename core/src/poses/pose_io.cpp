@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr double kMendable = 1e-2;   // rotations off by more are refused
 constexpr double kUnnoticed = 1e-9;  // rotations off by less are taken as they are
+constexpr double kTold = 1e-5;       // six decimals are as good as none
 constexpr double kLastRow = 1e-6;    // how far a matrix's last row may be from 0 0 0 1
 constexpr std::uint64_t kMaxFileSize = std::uint64_t{1} << 30U;  // [bytes]
 
@@ -42,7 +43,7 @@ Pose pose_of_numbers(std::span<const double> numbers, bool& mended,
     if (!(std::abs(norm - 1.0) <= kMendable)) {
       fail("the quaternion's norm is " + short_text(norm) + ", not 1");
     }
-    mended = std::abs(norm - 1.0) > kUnnoticed;
+    mended = std::abs(norm - 1.0) > kTold;
     q.normalize();
     return {q.toRotationMatrix(), Eigen::Vector3d(numbers[0], numbers[1], numbers[2])};
   }
@@ -55,8 +56,8 @@ Pose pose_of_numbers(std::span<const double> numbers, bool& mended,
   std::copy_n(numbers.begin(), pose.m.size(), pose.m.begin());
   const double error = orthonormality_error(pose);
   if (!(error <= kMendable)) fail("the matrix is not a rigid transform");
-  mended = error > kUnnoticed;
-  return mended ? orthonormalized(pose) : pose;
+  mended = error > kTold;
+  return error > kUnnoticed ? orthonormalized(pose) : pose;
 }
 
 Pose tum_line_pose(const LineReader& line, bool* orthonormalized) {

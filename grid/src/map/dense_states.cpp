@@ -64,8 +64,9 @@ void for_each_row(const BlockLattice& lattice, Index3 origin, std::int32_t size,
 
 }  // namespace
 
-BeliefGrid BeliefGrid::from_states(const GridConfig& config, std::span<const std::uint8_t> states) {
-  BeliefGrid grid(config);
+BeliefGrid BeliefGrid::from_states(const GridConfig& config, std::span<const std::uint8_t> states,
+                                   const Sensor& sensor) {
+  BeliefGrid grid(config, sensor);
   check_size(grid, states.size());
   check_states(states);
   const BlockLattice lattice(grid.min_index(), grid.dims());

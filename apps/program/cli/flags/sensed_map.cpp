@@ -57,8 +57,8 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
   if (asked) warn_of_other_sensor(path, map, *asked);
   if (is_octomap(path)) {
     std::fprintf(stderr,
-                 "viewgain: note: %s has states alone: its surface counts as never measured, and "
-                 "the views that were taken are not known\n",
+                 "viewgain: note: %s has states alone: known surface counts as never measured "
+                 "(--gain surface leaves that out), and views that were taken are not known\n",
                  path.c_str());
   }
   return {std::move(map.grid), asked ? std::move(*asked) : std::move(*map.sensor)};

@@ -22,7 +22,7 @@ class LineReader;
 struct VIEWGAIN_EXPORT PoseList {
   std::vector<Pose> poses;         ///< T_world_camera, in file order
   std::vector<double> timestamps;  ///< [s], one per pose
-  /// Poses whose rotation (quaternion's norm) was off by more than 1e-9 and was mended.
+  /// Poses whose rotation (quaternion's norm) was off by more than 1e-5 and was mended.
   std::size_t orthonormalized = 0;
 };
 
@@ -34,7 +34,7 @@ struct VIEWGAIN_EXPORT PoseList {
 [[nodiscard]] VIEWGAIN_EXPORT PoseList read_tum(const std::filesystem::path& path);
 
 /// The pose of the line of that format that the reader stands at, for files of which not all lines
-/// are there yet or right. *orthonormalized says whether the quaternion was off by more than 1e-9.
+/// are there yet or right. *orthonormalized says whether the quaternion was off by more than 1e-5.
 /// Throws Error(format) as read_tum() does for this line.
 [[nodiscard]] VIEWGAIN_EXPORT Pose tum_line_pose(const LineReader& line,
                                                  bool* orthonormalized = nullptr);
@@ -50,7 +50,7 @@ VIEWGAIN_EXPORT void write_tum(const std::filesystem::path& path, std::span<cons
                                std::span<const double> timestamps);
 
 /// Reads one 4x4 row-major matrix of T_world_camera [m] (16 numbers, as RGB-D data sets have it). A
-/// rotation that is off by 1e-9 to 1e-2 is orthonormalised; *orthonormalized says whether. A larger
+/// rotation that is off by 1e-9 to 1e-2 is orthonormalised; *orthonormalized says whether by over 1e-5. A larger
 /// error, a last row that is not 0 0 0 1 (1e-6), another count of numbers or a word that is no
 /// finite number throws Error(format), naming the file. Throws Error(io) if it cannot be read,
 /// Error(capacity) beyond 1 GiB. A byte order mark is skipped.

@@ -87,10 +87,13 @@ class VIEWGAIN_EXPORT BeliefGrid {
   BeliefGrid& operator=(BeliefGrid&&) noexcept;
 
   /// From a dense array of states, [x][y][z] with z fastest, one per voxel of the workspace: 0
-  /// unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief yet). Throws
-  /// Error(invalid_argument) for another size or another state. Cost: a pass over the array.
+  /// unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief yet). As such a map
+  /// never learns what was measured, GainModel::surface suits it: the others would have known
+  /// surface measured again and again. Throws Error(invalid_argument) for another size or another
+  /// state, and as the constructor. Cost: a pass over the array.
   [[nodiscard]] static BeliefGrid from_states(const GridConfig& config,
-                                              std::span<const std::uint8_t> states);
+                                              std::span<const std::uint8_t> states,
+                                              const Sensor& sensor = {});
 
   /// A deep copy, in which beliefs are shared until one of both changes. Costs a copy of the tree.
   [[nodiscard]] BeliefGrid clone() const;
