@@ -64,7 +64,7 @@ TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
   EXPECT_EQ(run_json({"info", "tree.ot"}).at("occupied"), map.at("occupied"));
   const auto scored = [&](Strings call) {
     call.emplace_back("--json");
-    const ProgramResult result = run(call);
+    const auto result = run(call);
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_NE(result.err.find("tree.ot has states alone"), std::string::npos) << result.err;
     return json::parse(result.out);
