@@ -383,14 +383,12 @@ Suspicion suspect_poses(const std::shared_ptr<const VoxelScene>& scene, const Se
   if (poses.empty()) return {};
   const double now = share_seeing({});
   if (now >= 0.5) return {};
+  // What is some metres off is not in millimetres.
+  const bool is_far = poses[0].translation().norm() > 10 * sensor.max_range;
   const std::string text = percent(1 - now) + " of the poses see no voxel of the map";
   std::vector<Fit> fits;
   for (const Reading& reading : other_readings()) {
-    if (reading.pose == nullptr) continue;
-    // What is some metres off is not in millimetres.
-    if (reading.pose == in_metres && !(poses[0].translation().norm() > 10 * sensor.max_range)) {
-      continue;
-    }
+    if (reading.pose == nullptr || (reading.pose == in_metres && !is_far)) continue;
     if (const double share = share_seeing(reading); share > 0.8) fits.push_back({reading, share});
   }
   fits = best_of(std::move(fits), kAlike);
