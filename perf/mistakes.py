@@ -91,11 +91,23 @@ def scale(folder, value):
     (folder / "depth-scale.txt").write_text(f"{value}\n")
 
 
-def halved_intrinsics(folder, s):
+def scaled_intrinsics(factor):
+    def apply(folder, _):
+        text = (folder / "sensor.toml").read_text()
+        for key in ("fx", "fy", "cx", "cy"):
+            text = re.sub(rf"^{key} = (.*)$", lambda m: f"{key} = {float(m[1].split('#')[0]) * factor}", text, flags=re.M)
+        (folder / "sensor.toml").write_text(text)
+    return apply
+
+
+def longer_focus(folder, _):
     text = (folder / "sensor.toml").read_text()
-    for key in ("fx", "fy", "cx", "cy"):
-        text = re.sub(rf"^{key} = (.*)$", lambda m: f"{key} = {float(m[1].split('#')[0]) / 2}", text, flags=re.M)
+    text = re.sub(r"^(f[xy]) = ([\d.]+)", lambda m: f"{m[1]} = {float(m[2]) * 1.1}", text, flags=re.M)
     (folder / "sensor.toml").write_text(text)
+
+
+def other_scale(factor, words):
+    return lambda folder, s: scale(folder, 1e-4 * factor), rf"depth scale is {words}\b"
 
 
 def along_ray(folder, s):
@@ -142,12 +154,23 @@ def write_png(path, rows):
 
 
 MISTAKES = {
-    "millimetres for metres": (lambda folder, s: scale(folder, 1e-1), "depth scale|out of the sensor's range"),
-    "scale 10 times too large": (lambda folder, s: scale(folder, 1e-3), "depth scale"),
+    "millimetres for metres": other_scale(1000, "1000 times smaller"),
+    "scale 10 times too large": other_scale(10, "10 times smaller"),
+    "5 times too large": other_scale(5, "5 times smaller"),
+    "4 times too large": other_scale(4, "4 times smaller"),
+    "2.5 times too large": other_scale(2.5, "2.5 times smaller"),
+    "twice too large": other_scale(2, "2 times smaller"),
+    "half of what it should be": other_scale(1 / 2, "2 times larger"),
+    "a 2.5th": other_scale(1 / 2.5, "2.5 times larger"),
+    "a quarter": other_scale(1 / 4, "4 times larger"),
+    "a fifth": other_scale(1 / 5, "5 times larger"),
+    "a tenth": other_scale(1 / 10, "10 times larger"),
     "quaternion w first": (each_pose(lambda t, q: [*t, q[3], q[0], q[1], q[2]]), "w first"),
     "world to camera": (each_pose(inverse), "world to camera"),
     "body frame": (each_pose(lambda t, q: [*t, *product(q, [0.5, -0.5, 0.5, 0.5])]), "body frame"),
-    "half-resolution intrinsics": (halved_intrinsics, "principal point"),
+    "half-resolution intrinsics": (scaled_intrinsics(1 / 2), "principal point"),
+    "intrinsics of 424 pixels for 320": (scaled_intrinsics(424 / 320), "principal point"),
+    "focal length 10 % too large": (longer_focus, "."),
     "depth along the ray": (along_ray, "along the ray"),
     "poses in millimetres": (each_pose(lambda t, q: [1000 * c for c in t] + q), "poses are in millimetres"),
 }

@@ -31,6 +31,7 @@ _Path = Union[str, bytes, "os.PathLike[str]"]
 WORDS = {
     "path-like": "_Path", "path": "_Path", "array_like": "ArrayLike", "callable": "Callable[..., Any]", "dict": "dict[str, float]",
     "iterable of (vertices, triangles)": "Iterable[tuple[ArrayLike, ArrayLike]]", "iterable of (box, weight)": "Iterable[tuple[ArrayLike, float]]",
+    "sequence of frames": "FrameSequence | Sequence[tuple[ArrayLike, ArrayLike]]",
     "(float, float)": "tuple[float, float]", "tuple of 3 int": "tuple[int, int, int]", "trimesh.Trimesh": "Any", "open3d.geometry.TriangleMesh": "Any",
 }
 # What is called, by what it is called.

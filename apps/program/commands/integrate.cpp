@@ -47,7 +47,9 @@ BeliefGrid new_map(ReadingSource& source, const Options& options) {
   config.workspace = options.workspace.empty()
                          ? source.seen_workspace(config.voxel_size, options.common.quiet)
                          : parse_box("--workspace", options.workspace);
-  return BeliefGrid(config, source.sensor());
+  BeliefGrid grid(config, source.sensor());
+  warn_of_few_voxels(grid);
+  return grid;
 }
 
 // The map that grows, the sensor of its readings so far and the frames that it has, as far as its

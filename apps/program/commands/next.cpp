@@ -63,6 +63,7 @@ void next(const Options& options) {
   const GenerationConfig config = generation_config(options.proposal, sensor, grid, options.source,
                                                     frames ? frames->tried : std::vector<Pose>());
   const SurfaceModel model = model_of(std::move(grid), sensor, options.proposal, exec);
+  warn_of_set_up(options.proposal, model, sensor);
   CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});
   const GainEvaluator evaluator = evaluator_of(options.proposal, model, sensor, exec);

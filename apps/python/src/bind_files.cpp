@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -12,11 +13,13 @@
 #include "arrays.hpp"
 #include "classes.hpp"
 #include "gil.hpp"
+#include "given.hpp"
 #include "map/depth_images.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/planner/suspect_frames.hpp"
 
 namespace viewgain::python {
 namespace {
@@ -65,6 +68,26 @@ py::object read_poses(const py::object& path, bool return_timestamps) {
   py::object poses = pose_array(list.poses);
   if (!return_timestamps) return poses;
   return named("TimedPoses", poses, to_array_1d<double>(list.timestamps));
+}
+
+py::list suspicions(const Given<Sensor>& sensor, const py::sequence& frames) {
+  constexpr std::size_t kFrames = 12;
+  std::vector<DepthFrame> images;
+  std::vector<Pose> poses;
+  const std::size_t step = std::max<std::size_t>(1, frames.size() / kFrames);
+  for (std::size_t i = 0; i < frames.size() && images.size() < kFrames; i += step) {
+    const py::sequence frame = frames[i];
+    if (frame.size() < 2) throw py::value_error("frames must be of (depth, T_world_camera)");
+    const Pose pose =
+        pose_batch(doubles(frame[1], "T_world_camera", {4, 4}), "T_world_camera", false).poses[0];
+    if (!rigid_pose(pose)) continue;  // it is lost
+    images.push_back(depth_frame_of_any_unit(*sensor, frame[0]));
+    poses.push_back(pose);
+  }
+  const Suspicion found = outside_gil([&] { return suspect_frames(*sensor, images, poses); });
+  py::list all;
+  if (!found.kind.empty()) all.append(named("Suspicion", found.kind, found.what));
+  return all;
 }
 
 void write_poses(const py::object& path, const py::object& T_world_camera,
@@ -228,6 +251,25 @@ out_of_range : {"carve", "invalid"}, optional
 Returns
 -------
 FrameSequence)");
+
+  module.def(
+      "suspect_frames", &suspicions, py::arg("sensor"), py::arg("frames"),
+      R"(What is probably wrong with the units, conventions or intrinsics of frames of one scene.
+
+Readings of a dozen of them are looked for in the others, as they are and under each mistake that is often
+made. Says nothing of frames that do not overlap. Runs without the GIL. Cost: 0.1 s.
+
+Parameters
+----------
+sensor : Sensor
+    ``frames.sensor`` of what ``read_frames`` opens.
+frames : sequence of frames
+    A FrameSequence, or pairs (depth, T_world_camera) as ``ViewPlanner.add`` takes them, depths in any unit. Frames without a rigid pose are left out.
+
+Returns
+-------
+list of Suspicion
+    Empty: nothing is suspected.)");
 }
 
 }  // namespace

@@ -30,5 +30,5 @@ from ._viewgain import *
 from ._viewgain import __version__
 from .codes import HitKind, Infeasibility, ViewStatus, VoxelState
 from .results import (AddedView, ChosenViews, Cloud, Frame, FrameRegistration, GridStatistics, IntegrationReport, Proposal,
-                      RacedViews, Ranking, RayOutcomes, Sigmas, SimulatedFrame, TimedPoses, ViewTour)
+                      RacedViews, Ranking, RayOutcomes, Sigmas, SimulatedFrame, Suspicion, TimedPoses, ViewTour)
 from . import plot

@@ -57,6 +57,14 @@ class IntegrationReport(NamedTuple):
 
 
 @named("viewgain")
+class Suspicion(NamedTuple):
+    """What is probably wrong with frames, of ``suspect_frames``."""
+
+    kind: Annotated[str, "The mistake, such as depth_scale, world_to_camera or quaternion_order."]
+    what: Annotated[str, "A sentence with the figure that made it suspicious."]
+
+
+@named("viewgain")
 class RayOutcomes(NamedTuple):
     """What becomes of a view's rays, of ``GainEvaluator.outcomes`` and ``ViewPlanner.outcomes``."""
 

@@ -19,8 +19,10 @@
 #include "core/expect_error.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/planner/pose_noise.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain {
 namespace {
@@ -51,6 +53,7 @@ class SuspectFrames : public testing::Test {
     for (const Pose& pose : poses) frames_.push_back(camera.acquire(pose, frames_.size()));
   }
 
+  [[nodiscard]] std::string what() const { return suspect_frames(sensor_, frames_, poses_).what; }
   [[nodiscard]] std::string kind(const std::function<Pose(const Pose&)>& change = {}) const {
     std::vector<Pose> poses = poses_;
     if (change) {
@@ -91,10 +94,27 @@ TEST_F(SuspectFrames, PosesOfOtherConventions) {
 }
 
 TEST_F(SuspectFrames, DepthsInOtherUnits) {
-  scale(1000, 0);
-  EXPECT_EQ(kind(), "depth_scale");
-  scale(1e-2, 0);
-  EXPECT_EQ(kind(), "depth_scale");
+  for (const std::string factor : {"2", "2.5", "4", "5", "10", "1000"}) {
+    const std::vector<DepthFrame> right = frames_;
+    scale(std::stod(factor), 0);
+    EXPECT_NE(what().find("if the depth scale is " + factor + " times smaller"), std::string::npos)
+        << factor << what();
+    frames_ = right;
+    scale(1 / std::stod(factor), 0);
+    EXPECT_NE(what().find("if the depth scale is " + factor + " times larger"), std::string::npos)
+        << factor << what();
+    frames_ = right;
+  }
+}
+
+// Only frames that meet can tell which of the scales is meant that bring depths into range.
+TEST_F(SuspectFrames, WhatFitsAlikeIsNamed) {
+  see(orbit_poses(1, 0.5, 0.6));
+  scale(20, 0);
+  for (const std::string factor : {"2", "4", "5", "10"}) {
+    EXPECT_NE(what().find("if the depth scale is " + factor + " times smaller"), std::string::npos)
+        << factor << what();
+  }
 }
 
 TEST_F(SuspectFrames, DepthsAlongTheRay) {
@@ -104,6 +124,8 @@ TEST_F(SuspectFrames, DepthsAlongTheRay) {
 
 TEST_F(SuspectFrames, IntrinsicsOfHalfTheResolution) {
   sensor_.camera.cx /= 2, sensor_.camera.cy /= 2;
+  EXPECT_EQ(kind(), "principal_point");
+  sensor_.camera.cx *= 2 * 424 / 320.0, sensor_.camera.cy *= 2 * 424 / 320.0;
   EXPECT_EQ(kind(), "principal_point");
 }
 
@@ -128,6 +150,32 @@ TEST_F(SuspectFrames, OnePoseAFrame) {
   test::expect_error(ErrorCode::invalid_argument, "", [&] { (void)kind(); });
   poses_.pop_back();
   test::expect_error(ErrorCode::invalid_argument, "one pose a frame", [&] { (void)kind(); });
+}
+
+TEST(SuspectPoses, WhatSeesNoVoxelOfTheMap) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera = {64, 48, 60, 60, 31.5, 23.5};
+  const BeliefGrid grid({0.02, {{-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}}, {}, 0.02});
+  const auto scene = VoxelScene::build(grid);
+  const auto kind = [&](const std::function<Pose(const Pose&)>& change) {
+    std::vector<Pose> poses = sphere_poses(150, 0.5);
+    for (Pose& pose : poses) pose = change(pose);
+    return suspect_poses(scene, sensor, poses).kind;
+  };
+  EXPECT_EQ(kind([](const Pose& T) { return T; }), "");
+  EXPECT_EQ(kind([](const Pose& T) { return T.inverse(); }), "world_to_camera");
+  EXPECT_EQ(kind(w_first), "quaternion_order");
+  EXPECT_EQ(kind([](const Pose& T) { return turned(T, {0.5, 0.5, -0.5, 0.5}); }), "body_frame");
+  EXPECT_EQ(kind([](const Pose& T) { return turned(T, {0, 1, 0, 0}); }), "upward_camera");
+  EXPECT_EQ(kind([](const Pose& T) {
+              return Pose{T.rotation(), 1000 * T.translation()};
+            }),
+            "pose_millimetres");
+  EXPECT_EQ(kind([](const Pose& T) {
+              return Pose{T.rotation(), T.translation() + 9 * Eigen::Vector3d::UnitX()};
+            }),
+            "no_voxel");
+  EXPECT_EQ(suspect_poses(scene, sensor, {}).kind, "");
 }
 
 const Pose kPose = look_at({0.3, -0.4, 0.2}, {0, 0, 0});

@@ -5,7 +5,7 @@ import copy
 
 import numpy as np
 import pytest
-from conftest import gray_png
+from conftest import box_mesh, gray_png
 
 import viewgain
 
@@ -113,6 +113,22 @@ def test_frames(tmp_path):
             frames[index]
     with pytest.raises(TypeError):
         copy.copy(frames)
+
+
+def test_frames_are_suspected():
+    sensor = viewgain.sensor_preset("sr4000")
+    poses = viewgain.orbit_poses(6, 0.6, 0.5)
+    camera = viewgain.SimulatedSensor(*box_mesh([-0.1, -0.05, -0.15], [0.12, 0.1, 0.05]), sensor, background_radius=1.5)
+    frames = [(camera.acquire(pose).depth, pose) for pose in poses]
+    assert viewgain.suspect_frames(sensor, frames) == []
+    for factor, words in ((4, "4 times smaller"), (1000, "1000 times smaller")):
+        (suspicion,) = viewgain.suspect_frames(sensor, [(factor * depth, pose) for depth, pose in frames])
+        assert suspicion.kind == "depth_scale" and words in suspicion.what
+    (suspicion,) = viewgain.suspect_frames(sensor, [(depth, np.linalg.inv(pose)) for depth, pose in frames])
+    assert suspicion.kind == "world_to_camera"
+    assert viewgain.suspect_frames(sensor, [(depth, np.full((4, 4), np.nan)) for depth, _ in frames]) == []
+    with pytest.raises(ValueError, match="T_world_camera"):
+        viewgain.suspect_frames(sensor, [frames[0][:1]])
 
 
 def test_recorded_frames(tmp_path):

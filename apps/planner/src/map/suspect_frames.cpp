@@ -8,11 +8,15 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -20,13 +24,14 @@ namespace {
 constexpr std::size_t kPoints = 500;  // of a frame that are looked for in the others
 constexpr double kGate = 0.04;        // of the range: farther off is another surface
 constexpr double kParallax = 0.05;    // of the range: frames that are nearer tell nothing of poses
-constexpr double kOffCentre = 0.2;    // of the image's side
+constexpr double kOffCentre = 0.12;   // of the image's side
+constexpr double kAlike = 0.1;        // what fits less well than the best by this is named, too
 constexpr std::size_t kLeastMeetings = 100;
 
 // A way in which frames may have been meant.
 struct Reading {
-  const char* kind;
-  const char* what;  // "... if WHAT"
+  const char* kind = "";
+  std::string what{};  // "... if WHAT"
   double depth_factor = 1;
   bool is_along_ray = false;
   Pose (*pose)(const Pose&) = nullptr;
@@ -47,9 +52,11 @@ Pose w_first(const Pose& T) {
   return {Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()).toRotationMatrix(), T.translation()};
 }
 
-const std::vector<Reading>& readings() {
-  static const std::vector<Reading> all{
-      {"", ""},
+constexpr const char* kScale = "depth_scale";
+
+// What may be meant instead: poses first, then scales.
+std::vector<Reading> other_readings() {
+  std::vector<Reading> all{
       {"world_to_camera", "the poses are world to camera, not camera to world", 1, false,
        inverse_of},
       {"quaternion_order", "the quaternions have w first, not last", 1, false, w_first},
@@ -58,13 +65,13 @@ const std::vector<Reading>& readings() {
       {"upward_camera", "the poses' camera looks along -z with y up, not along z with y down", 1,
        false, optical_of_upward},
       {"pose_millimetres", "the poses are in millimetres", 1, false, in_metres},
-      {"depth_scale", "the depth scale is 1000 times larger", 1000},
-      {"depth_scale", "the depth scale is 10 times larger", 10},
-      {"depth_scale", "the depth scale is 5 times larger", 5},
-      {"depth_scale", "the depth scale is 5 times smaller", 0.2},
-      {"depth_scale", "the depth scale is 10 times smaller", 0.1},
-      {"depth_scale", "the depth scale is 1000 times smaller", 1e-3},
   };
+  // Cameras have units of 0.1, 0.2, 0.25, 0.5 and 1 mm.
+  for (const double factor : {2.0, 2.5, 4.0, 5.0, 10.0, 1000.0}) {
+    const std::string times = "the depth scale is " + short_text(factor) + " times ";
+    all.push_back({kScale, times + "larger", factor});
+    all.push_back({kScale, times + "smaller", 1 / factor});
+  }
   return all;
 }
 
@@ -138,7 +145,7 @@ class Meeting {
   // Of pairs that fit either way and not equally well, where the surface is not steep, the share
   // that fits better if depths are along the ray; nothing for too few pairs.
   [[nodiscard]] std::optional<double> share_along_ray() const {
-    const Reading along_z{"", ""}, along_ray{"", "", 1, true};
+    const Reading along_z, along_ray{.is_along_ray = true};
     std::vector<Pose> T_camera;
     for (const Pose& pose : poses_) T_camera.push_back(pose.inverse());
     std::size_t better = 0, all = 0;
@@ -258,31 +265,68 @@ double share_in_range(const Sensor& sensor, std::span<const DepthFrame> frames, 
   return all == 0 ? 0 : static_cast<double>(in_range) / static_cast<double>(all);
 }
 
-Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames) {
-  const double now = share_in_range(sensor, frames, 1);
-  if (now > 0.1) return {};
-  const Reading* suspected = nullptr;
-  double best = 0.8;
-  for (const Reading& reading : readings()) {
-    const double share = share_in_range(sensor, frames, reading.depth_factor);
-    if (share > best) best = share, suspected = &reading;
-  }
-  if (suspected == nullptr) return {};
-  return {suspected->kind, percent(1 - now) + " of the depths are out of the sensor's range, " +
-                               percent(1 - best) + " if " + suspected->what};
-}
-
-// Do frames meet that did not, or contradict each other less and lie closer? Where fewer readings
-// would be in range, or few would meet, that says nothing. Right frames contradict each other in up
-// to 7 % of what they have in common, at edges.
+// Do many more readings meet, or do frames contradict each other less and lie closer? Where
+// fewer readings would be in range, or few would meet, that says nothing. Right frames contradict
+// each other in up to 7 % of what they have in common, at edges.
 bool is_better(const Meetings& other, const Meetings& as_said) {
   if (20 * other.points < 19 * as_said.points || !other.has_overlap() ||
       other.share_past() > 0.15) {
     return false;
   }
-  if (10 * as_said.met < other.met) return true;
+  if (4 * as_said.met < other.met) return true;
   return as_said.share_past() > 0.015 && other.share_past() < 0.6 * as_said.share_past() &&
          other.share_close() > as_said.share_close();
+}
+
+struct Fit {
+  Reading reading;
+  double agreement = 0;  // how much of the readings, in any unit
+};
+
+// The readings that fit best, and as well as that within `slack` of it.
+std::vector<Fit> best_of(std::vector<Fit> fits, double slack) {
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const Fit& a, const Fit& b) { return a.agreement > b.agreement; });
+  const double least = fits.empty() ? 0 : (1 - slack) * fits[0].agreement;
+  std::erase_if(fits, [least](const Fit& fit) { return fit.agreement < least; });
+  return fits;
+}
+
+std::vector<Fit> fits_by_meetings(const Meeting& meeting, const Meetings& as_said,
+                                  const std::vector<Reading>& readings) {
+  std::vector<Fit> fits;
+  for (const Reading& reading : readings) {
+    const Meetings other = meeting.under(reading);
+    if (is_better(other, as_said)) fits.push_back({reading, static_cast<double>(other.close)});
+  }
+  return best_of(std::move(fits), kAlike);
+}
+
+// "A, or if B"
+std::string words_of(const std::vector<Fit>& fits) {
+  std::string text;
+  for (const Fit& fit : fits) text += (text.empty() ? "" : ", or if ") + fit.reading.what;
+  return text;
+}
+
+// Several scales may bring the depths into range: the frames tell which, if they meet.
+Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames,
+                        const Meeting& meeting) {
+  const double now = share_in_range(sensor, frames, 1);
+  if (now > 0.1) return {};
+  std::vector<Fit> fits;
+  for (const Reading& reading : other_readings()) {
+    const double share = share_in_range(sensor, frames, reading.depth_factor);
+    if (share > 0.8) fits.push_back({reading, share});
+  }
+  fits = best_of(std::move(fits), 0.01);
+  if (fits.empty()) return {};
+  const std::string text = percent(1 - now) + " of the depths are out of the sensor's range, " +
+                           percent(1 - fits[0].agreement) + " if ";
+  std::vector<Reading> scales;
+  for (const Fit& fit : fits) scales.push_back(fit.reading);
+  if (auto met = fits_by_meetings(meeting, {}, scales); !met.empty()) fits = std::move(met);
+  return {kScale, text + words_of(fits)};
 }
 
 }  // namespace
@@ -294,36 +338,62 @@ Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frame
   }
   for (const DepthFrame& frame : frames) check_frame_size(frame, sensor.camera);
   if (Suspicion camera = suspect_camera(sensor.camera); !camera.kind.empty()) return camera;
-  if (Suspicion range = suspect_range(sensor, frames); !range.kind.empty()) return range;
   const Meeting meeting(sensor, frames, T_world_camera);
-  const Meetings as_said = meeting.under(readings().front());
-  const Reading* suspected = nullptr;
-  Meetings best;
-  for (const Reading& reading : std::span(readings()).subspan(1)) {
-    const Meetings other = meeting.under(reading);
-    if (!is_better(other, as_said)) continue;
-    if (suspected != nullptr && other.share_close() <= best.share_close()) continue;
-    suspected = &reading;
-    best = other;
-  }
+  if (Suspicion range = suspect_range(sensor, frames, meeting); !range.kind.empty()) return range;
+  const Meetings as_said = meeting.under({});
+  const std::vector<Fit> fits = fits_by_meetings(meeting, as_said, other_readings());
+  const Meetings best = fits.empty() ? Meetings{} : meeting.under(fits[0].reading);
+  const Meetings by_ray = meeting.under({.is_along_ray = true});
   const std::optional<double> along_ray = meeting.share_along_ray();
   if (along_ray && *along_ray >= 0.45 && as_said.has_overlap() && as_said.share_past() < 0.15 &&
-      meeting.under({"", "", 1, true}).share_close() > best.share_close()) {
+      by_ray.close > best.close && by_ray.share_close() > best.share_close()) {
     return {"depth_along_ray", "of the readings for which it matters " + percent(*along_ray) +
                                    " fit the other frames better if depths are along the ray, not "
                                    "along z"};
   }
-  if (suspected != nullptr) {
-    const bool is_apart = as_said.met + as_said.seen_past < kLeastMeetings;
-    const std::string now = is_apart
-                                ? "frames from different places have nothing in common; they"
-                                : percent(as_said.share_past()) +
-                                      " of the readings that frames have in common lie in the free "
-                                      "space of others; " +
-                                      percent(best.share_past());
-    return {suspected->kind, now + " would if " + suspected->what};
+  if (fits.empty()) return {};
+  const bool is_apart = as_said.met + as_said.seen_past < kLeastMeetings;
+  const std::string now =
+      is_apart ? "frames from different places have nothing in common; they"
+               : percent(as_said.share_past()) +
+                     " of the readings that frames have in common lie in the free space of "
+                     "others; " +
+                     percent(best.share_past());
+  return {fits[0].reading.kind, now + " would if " + words_of(fits)};
+}
+
+Suspicion suspect_poses(const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor,
+                        std::span<const Pose> T_world_camera) {
+  constexpr std::size_t kPoses = 100, kRays = 400;
+  std::vector<Pose> poses;
+  const std::size_t step = (T_world_camera.size() + kPoses - 1) / kPoses;
+  for (std::size_t i = 0; i < T_world_camera.size(); i += step) poses.push_back(T_world_camera[i]);
+  const double pixels = static_cast<double>(sensor.camera.width) * sensor.camera.height;
+  const auto stride = static_cast<int>(std::max(1.0, std::sqrt(pixels / kRays)));
+  const GainEvaluator evaluator(scene, sensor, {.model = GainModel::paper, .pixel_stride = stride});
+  const auto share_seeing = [&](const Reading& reading) {
+    std::size_t seeing = 0;
+    for (const Pose& pose : poses) {
+      const Pose& meant = reading.pose == nullptr ? pose : reading.pose(pose);
+      seeing += evaluator.evaluate(meant).hits > 0 ? 1 : 0;
+    }
+    return static_cast<double>(seeing) / static_cast<double>(poses.size());
+  };
+  if (poses.empty()) return {};
+  const double now = share_seeing({});
+  if (now >= 0.5) return {};
+  // What is some metres off is not in millimetres.
+  const bool is_far = poses[0].translation().norm() > 10 * sensor.max_range;
+  const std::string text = percent(1 - now) + " of the poses see no voxel of the map";
+  std::vector<Fit> fits;
+  for (const Reading& reading : other_readings()) {
+    if (reading.pose == nullptr || (reading.pose == in_metres && !is_far)) continue;
+    if (const double share = share_seeing(reading); share > 0.8) fits.push_back({reading, share});
   }
-  return {};
+  fits = best_of(std::move(fits), kAlike);
+  if (fits.empty()) return {"no_voxel", text};
+  return {fits[0].reading.kind,
+          text + "; " + percent(1 - fits[0].agreement) + " would if " + words_of(fits)};
 }
 
 }  // namespace viewgain

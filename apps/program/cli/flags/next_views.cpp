@@ -137,9 +137,10 @@ Json to_json(const NextViews& next) {
 
 std::string summary_of(const NextViews& next) {
   if (next.candidates == 0 && next.dropped.empty()) return "nothing is left to look at";
-  std::string text = next.candidates == 0
-                         ? "no view is possible"
-                         : "the best of " + with_commas(next.candidates) + " views";
+  const std::string count = with_commas(next.candidates);
+  std::string text = next.candidates == 0 ? "no view is possible"
+                     : next.views.empty() ? "none of " + count + " views gains"
+                                          : "the best of " + count + " views";
   if (!next.dropped.empty()) text += "; dropped: " + counts_text(next.dropped);
   if (next.candidates == 0 && next.dropped.contains("collision")) {
     text +=

@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/cli/flags/scene_sources.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <memory>
 
 #include "program/cli/values.hpp"
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/planner/suspect_frames.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::app {
@@ -55,6 +59,50 @@ Obstacles obstacles_of(const std::vector<std::string>& values) {
     }
   }
   return obstacles;
+}
+
+void warn_of_few_voxels(const BeliefGrid& grid) {
+  constexpr int kFew = 8;
+  const Index3 dims = grid.dims();
+  const int longest = std::max({dims.x, dims.y, dims.z});
+  if (longest >= kFew) return;
+  std::fprintf(stderr,
+               "viewgain: warning: --voxel %s m leaves %d voxel%s along the workspace's longest "
+               "side: voxels are in metres, not millimetres\n",
+               short_text(grid.voxel_size()).c_str(), longest, longest == 1 ? "" : "s");
+}
+
+void warn_of_far_obstacles(const std::vector<std::string>& values, const BeliefGrid& grid,
+                           const Sensor& sensor) {
+  constexpr double kHuge = 100;  // times the workspace
+  const Box map = grid.workspace();
+  double longest = 0;
+  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, map.max[a] - map.min[a]);
+  for (const std::string& value : values) {
+    if (is_obstacle_file(value)) continue;
+    const Box box = parse_box("--obstacle", value);
+    double side = 0, squared = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      side = std::max(side, box.max[a] - box.min[a]);
+      const double gap = std::max({0.0, box.min[a] - map.max[a], map.min[a] - box.max[a]});
+      squared += gap * gap;
+    }
+    const double distance = std::sqrt(squared);
+    // A view that sees the map to its range may look as far beyond.
+    if (distance <= 2 * sensor.max_range && side <= kHuge * longest) continue;
+    std::fprintf(stderr,
+                 "viewgain: warning: --obstacle %s is %s m long and %s m from the map, which is "
+                 "%s m long: is it in metres?\n",
+                 value.c_str(), short_text(side).c_str(), short_text(distance).c_str(),
+                 short_text(longest).c_str());
+  }
+}
+
+void warn_of_poses(const std::string& file, const std::vector<Pose>& poses,
+                   const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor) {
+  const std::string suspicion = suspect_poses(scene, sensor, poses).what;
+  if (suspicion.empty()) return;
+  std::fprintf(stderr, "viewgain: warning: %s: %s\n", file.c_str(), suspicion.c_str());
 }
 
 }  // namespace viewgain::app

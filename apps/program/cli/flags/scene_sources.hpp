@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/hazard.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
@@ -46,5 +49,16 @@ inline constexpr const char* kObjectSizeHelp =
 inline constexpr const char* kObstacleHelp =
     "mesh file, or x0,y0,z0,x1,y1,z1: a known obstacle in the world's frame [m], which blocks rays "
     "and gains nothing; may be repeated";
+
+// What is allowed and seldom meant: one line on the error output.
+
+/// Voxels so large that there are hardly any.
+void warn_of_few_voxels(const BeliefGrid& grid);
+/// Boxes of --obstacle out of the reach of views of the map, or 100 times its size.
+void warn_of_far_obstacles(const std::vector<std::string>& values, const BeliefGrid& grid,
+                           const Sensor& sensor);
+/// Poses of a file of which most see nothing of the map (suspect_poses()).
+void warn_of_poses(const std::string& file, const std::vector<Pose>& poses,
+                   const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor);
 
 }  // namespace viewgain::app

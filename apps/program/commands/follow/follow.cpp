@@ -212,7 +212,9 @@ class Following {
   void open_map() {
     const Sensor& sensor = watch_->folder()->sensor;
     config_.grid.prior_sigma = default_prior_sigma(options_.voxel, sensor);
-    config_.hazard = hazard_source(options_.hazard, options_.object_size, BeliefGrid(config_.grid));
+    const BeliefGrid empty(config_.grid);
+    if (!saved_) warn_of_few_voxels(empty);
+    config_.hazard = hazard_source(options_.hazard, options_.object_size, empty);
     map_.emplace(sensor, body_, config_, out_ / "state.vdb", saved_, sigma_,
                  exec_of(options_.common));
     // What was next may be missing or older than the state, which has not heard of it: a frame that

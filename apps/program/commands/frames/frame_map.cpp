@@ -9,6 +9,7 @@
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
+#include "viewgain/core/error.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/grid/integrate.hpp"
 
@@ -27,7 +28,9 @@ MapModelConfig config_of(const FrameFolder& folder, const FrameMapOptions& optio
   config.grid.workspace = options.workspace.empty()
                               ? seen_workspace(folder, config, options.voxel, quiet)
                               : parse_box("--workspace", options.workspace);
-  config.hazard = hazard_source(proposal.hazard, proposal.object_size, BeliefGrid(config.grid));
+  const BeliefGrid empty(config.grid);
+  warn_of_few_voxels(empty);
+  config.hazard = hazard_source(proposal.hazard, proposal.object_size, empty);
   return config;
 }
 
@@ -51,8 +54,15 @@ Box seen_workspace(const FrameFolder& folder, const MapModelConfig& config, doub
                           config.surroundings.support_plane);
   };
   const std::optional<Box> seen = workspace_around(folder.size(), voxel, bounds);
-  if (seen) return *seen;
-  refuse_without_readings(folder, tally);
+  if (!seen) refuse_without_readings(folder, tally);
+  try {
+    (void)BeliefGrid({.voxel_size = voxel, .workspace = *seen});
+  } catch (const Error& error) {  // too many voxels
+    const std::string suspicion = suspicion_of(folder);
+    throw Error(error.code(),
+                folder.name() + ": " + error.what() + (suspicion.empty() ? "" : "; " + suspicion));
+  }
+  return *seen;
 }
 
 void add_frame_map_options(App& app, FrameMapOptions& options) {

@@ -30,6 +30,14 @@ std::string frames_text(const FrameCounts& counts) {
   return frames_text(count_of(counts, FrameVerdict::carved), bad_frames(counts));
 }
 
+namespace {
+
+bool carve_most(const FrameCounts& counts) {
+  return count_of(counts, FrameVerdict::carved) > count_of(counts, FrameVerdict::used);
+}
+
+}  // namespace
+
 std::string suspicion_of(const FrameFolder& folder) {
   constexpr std::size_t kFrames = 12;
   std::vector<DepthFrame> frames;
@@ -82,6 +90,8 @@ void FrameTally::require_any(const FrameFolder& folder) const {
     if (count_of(counts_, FrameVerdict::used) == 0 && readings_ > 0) {
       warning = none_inside(folder) + (suspicion.empty() ? "" : "; " + suspicion);
       if (!suspicion.empty()) refuse(folder.name() + ": " + warning);
+    } else if (warning.empty() && carve_most(counts_)) {
+      warning = frames_text(counts_) + ": are scale, poses and workspace right?";
     }
     if (warning.empty()) return;
     std::fprintf(stderr, "viewgain: warning: %s: %s\n", folder.name().c_str(), warning.c_str());

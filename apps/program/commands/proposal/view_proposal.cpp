@@ -183,6 +183,13 @@ GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& m
   return {model.scene(), sensor, config, exec};
 }
 
+void warn_of_set_up(const ProposalOptions& options, const SurfaceModel& model,
+                    const Sensor& sensor) {
+  warn_of_far_obstacles(options.obstacles, model.grid(), sensor);
+  if (options.poses.empty()) return;
+  warn_of_poses(options.poses, poses_in(options.poses), model.scene(), sensor);
+}
+
 NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
                      const ProposalOptions& options, const BeliefGrid& grid, std::size_t top) {
   const std::vector<double> costs = costs_of(options, proposal);

@@ -73,6 +73,10 @@ void check(const ProposalOptions& options);
 [[nodiscard]] GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& model,
                                          const Sensor& sensor, const ExecConfig& exec);
 
+/// Warns of --obstacle and --poses that are far from the map (scene_sources.hpp).
+void warn_of_set_up(const ProposalOptions& options, const SurfaceModel& model,
+                    const Sensor& sensor);
+
 /// At most `top` candidates that go together (rank_views()), or the first views of a plan
 /// (plan_views()): each with what it adds to those chosen before it, and that less --costs and
 /// --cost-per-metre of the way from the map's last view. Those that add nothing are not among them.

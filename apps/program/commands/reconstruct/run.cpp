@@ -79,7 +79,9 @@ SurfaceModelConfig model_config(const ReconstructOptions& options, const Stage& 
   config.criterion = parse_criterion(options.criterion);
   config.refine = options.refine == "on";
   options.scales.set(config.integration);
-  config.hazard = hazard_source(options.hazard, options.object_size, BeliefGrid(config.grid));
+  const BeliefGrid empty(config.grid);
+  warn_of_few_voxels(empty);
+  config.hazard = hazard_source(options.hazard, options.object_size, empty);
   return model;
 }
 

@@ -81,6 +81,8 @@ GainConfig gain_config(const Options& options) {
 FeasiblePoses candidates_of(const Options& options, const PoseSource& source, const Sensor& sensor,
                             const BeliefGrid& grid, const std::shared_ptr<const VoxelScene>& scene,
                             const ExecConfig& exec) {
+  warn_of_far_obstacles(options.obstacles, grid, sensor);
+  if (!options.poses.file.empty()) warn_of_poses(options.poses.file, source.poses, scene, sensor);
   ReachRegion reach;
   if (!options.reach.empty()) reach = read_reach_toml(options.reach);
   if (options.feasible == "off") return reachable_poses(reach, source.poses);

@@ -27,22 +27,26 @@ std::vector<float> image(const py::object& value, const std::string& name, const
 
 }  // namespace
 
-DepthFrame depth_frame(const Sensor& sensor, const py::object& depth, const py::object& amplitude) {
+DepthFrame depth_frame_of_any_unit(const Sensor& sensor, const py::object& depth) {
   const int width = sensor.camera.width, height = sensor.camera.height;
   DepthFrame frame{width, height,
                    image(depth, "depth", "[m] (millimetres: depth.astype(numpy.float32) / 1000)",
                          height, width)};
-  MetresCheck metres(sensor);
   for (float& z : frame.depth) {
-    if (z > 0) {
-      metres.add(static_cast<double>(z));
-    } else {
-      z = DepthFrame::kInvalid;
-    }
+    if (!(z > 0)) z = DepthFrame::kInvalid;
+  }
+  return frame;
+}
+
+DepthFrame depth_frame(const Sensor& sensor, const py::object& depth, const py::object& amplitude) {
+  DepthFrame frame = depth_frame_of_any_unit(sensor, depth);
+  MetresCheck metres(sensor);
+  for (const float z : frame.depth) {
+    if (z > 0) metres.add(static_cast<double>(z));
   }
   metres.require("depth");
   if (!amplitude.is_none()) {
-    frame.amplitude = image(amplitude, "amplitude", "[1/m**2]", height, width);
+    frame.amplitude = image(amplitude, "amplitude", "[1/m**2]", frame.height, frame.width);
   }
   return frame;
 }

@@ -18,6 +18,9 @@ namespace viewgain::python {
 [[nodiscard]] DepthFrame depth_frame(const Sensor& sensor, const py::object& depth,
                                      const py::object& amplitude);
 
+/// The same in whatever unit: for what judges units itself.
+[[nodiscard]] DepthFrame depth_frame_of_any_unit(const Sensor& sensor, const py::object& depth);
+
 /// Are readings in metres? In millimetres, all would be out of range and carve the object away.
 class MetresCheck {
  public:

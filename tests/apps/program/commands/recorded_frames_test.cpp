@@ -72,6 +72,30 @@ TEST_F(RecordedFrames, ReconstructIsIntegrateSurfaceAndNextInOne) {
   EXPECT_EQ(again["skipped"], 3);
 }
 
+// Units that were mistaken for metres are named, whatever they make of the map.
+TEST_F(RecordedFrames, MillimetresAreToldOf) {
+  run_well({"simulate", "cube.off", "--orbit", "6,0.6,10", "--sensor", "tof.toml", "--size", "0.2",
+            "--recenter", "on", "--background", "0", "--out", "units"});
+  const auto said = [this](const Strings& more) {
+    return run(test::joined({"integrate", "units", "--out", "units.vdb"}, more)).err;
+  };
+  const auto expect = [](const std::string& text, const std::string& word) {
+    EXPECT_NE(text.find(word), std::string::npos) << text;
+  };
+  expect(said({"--voxel", "5"}), "--voxel 5 m leaves 2 voxels");
+  expect(said({"--voxel", "0.005", "--depth-scale", "1e-3"}),
+         "if the depth scale is 10 times smaller");
+  expect(said({"--voxel", "0.005", "--depth-scale", "2e-4"}),
+         "if the depth scale is 2 times smaller");
+  expect(said({"--voxel", "0.01", "--depth-scale", "4e-4", "--workspace",
+               "-0.2,-0.2,-0.2,0.2,0.2,0.2"}),
+         "if the depth scale is 4 times smaller");
+  PoseList list = read_tum(dir / "units/poses.txt");
+  for (Pose& pose : list.poses) pose = {pose.rotation(), 1000 * pose.translation()};
+  write_tum(dir / "units/poses.txt", list.poses);
+  expect(said({"--voxel", "0.01"}), "the poses are in millimetres");
+}
+
 // Where the workspace holds the cameras, and where it does not.
 TEST_F(RecordedFrames, NextStaysInTheRoomThatFramesWereTakenIn) {
   run_well({"simulate", "cube.off", "--orbit", "16,0.6,10,0,46", "--sensor", "tof.toml", "--size",

@@ -13,6 +13,7 @@
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -80,6 +81,39 @@ TEST_F(ScoreCandidates, ObstaclesBlockAsTheyDoInTheLibrary) {
   ASSERT_EQ(found.size(), poses.size());
   for (const auto& [index, gain] : found) EXPECT_EQ(gain, expected[index]) << index;
   EXPECT_NE(gains(score({})), found);
+}
+
+TEST_F(ScoreCandidates, ObstaclesFarFromTheMapAreNamed) {
+  for (const auto& [box, is_far] :
+       std::vector<std::pair<std::string, bool>>{{"-2,-2,-1,2,2,-0.9", false},
+                                                 {"900,0,0,950,50,50", true},
+                                                 {"-300,-300,-1,300,300,-0.9", true}}) {
+    const std::string said = run(arguments({"--obstacle", box})).err;
+    EXPECT_EQ(said.find("--obstacle " + box) != std::string::npos, is_far) << said;
+    EXPECT_EQ(said.find("is it in metres?") != std::string::npos, is_far) << said;
+  }
+}
+
+TEST_F(ScoreCandidates, PosesOfAFileThatSeeNothingAreExplained) {
+  for (const std::string call : {"score", "next"}) {
+    const auto said_of = [&](Pose (*change)(const Pose&)) {
+      std::vector<Pose> changed = poses;
+      for (Pose& pose : changed) pose = change(pose);
+      write_tum(dir / "poses.txt", changed);
+      return run({call, "map.vdb", "--sensor", "small.toml", "--poses", "poses.txt"});
+    };
+    EXPECT_EQ(said_of([](const Pose& T) { return T; }).err, "");
+    const test::ProgramResult inverse = said_of([](const Pose& T) { return T.inverse(); });
+    EXPECT_NE(inverse.err.find("the poses are world to camera"), std::string::npos) << inverse.err;
+    const test::ProgramResult away = said_of([](const Pose& T) {
+      return Pose{T.rotation(), T.translation() + Eigen::Vector3d(9, 0, 0)};
+    });
+    EXPECT_EQ(away.err,
+              "viewgain: warning: poses.txt: 100 % of the poses see no voxel of the map\n");
+    if (call == "next") {
+      EXPECT_NE(away.out.find("none of 40 views gains"), std::string::npos) << away.out;
+    }
+  }
 }
 
 TEST_F(ScoreCandidates, PosesOutOfReachAreDroppedAndTheOthersKeepTheirNumbers) {
