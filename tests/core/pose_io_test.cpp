@@ -60,7 +60,7 @@ TEST(Tum, RoundTripIsExactInPositionAndCloseInRotation) {
 TEST(Tum, ALineByItselfIsThatOfTheFile) {
   const TemporaryFolder folder;
   const std::string text =
-      "7 1 2 3 0.5 0.5 0.5 0.5\n8 0 0 0 0 0 -0.7071 0.7071\n9 nan 0 0 0 0 0 1\n";
+      "7 1 2 3 0.5 0.5 0.5 0.5\n8 0 0 0 0 0 -0.707 0.707\n9 nan 0 0 0 0 0 1\n";
   const PoseList list =
       read_tum(folder.file("poses.txt", text.substr(0, text.rfind('\n', text.size() - 2) + 1)));
   ASSERT_EQ(list.poses.size(), 2U);
@@ -86,7 +86,7 @@ TEST(Tum, ReadsWhatOthersWrite) {
                                 "1305031102.1758 1.5 -2 +3e-1 0 0 0 1\r\n"
                                 "   # indented comment, 1 2 3\n"
                                 "\t7\t1 2 3   0.5 0.5 0.5 0.5  \n"
-                                "8 0 0 0 0 0 -0.7071 0.7071");  // no line end, norm 0.99999
+                                "8 0 0 0 0 0 -0.707 0.707");  // no line end, norm 0.9998
   const PoseList list = read_tum(path);
   ASSERT_EQ(list.poses.size(), 3U);
   EXPECT_EQ(list.timestamps, (std::vector<double>{1305031102.1758, 7, 8}));

@@ -121,6 +121,7 @@ class Meeting {
       T_world.push_back(reading.pose == nullptr ? pose : reading.pose(pose));
       T_camera.push_back(T_world.back().inverse());
     }
+    const double parallax = kParallax * std::clamp(1 / reading.depth_factor, 1.0, 10.0);
     Meetings sum;
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       for (const std::size_t pixel : samples_[i]) {
@@ -129,9 +130,9 @@ class Meeting {
         ++sum.points;
         const Eigen::Vector3d p_world = T_world[i] * (*z * rays_[pixel]);
         for (std::size_t j = 0; j < frames_.size(); ++j) {
-          // Frames from one place agree however the poses are read.
+          // Frames from one place agree however poses and depths are read.
           const double baseline = (T_world[j].translation() - T_world[i].translation()).norm();
-          if (!(baseline > kParallax * *z)) continue;
+          if (!(baseline > parallax * *z)) continue;
           const std::optional<double> farther = beyond(reading, j, T_camera[j] * p_world);
           if (!farther || *farther < -1) continue;  // it looks elsewhere, or the point is hidden
           ++(*farther > 1 ? sum.seen_past : sum.met);
