@@ -97,7 +97,7 @@ TEST_F(ConfigFile, EverySubcommandIsRepeated) {
       {frames_call, "frames/frame-000001.depth.png"},
       {map_call, "map.vdb"},
       {{"integrate", "--cloud", "cloud.ply", "--cloud", "cloud.ply", "--origin", "0,0,0", "--voxel",
-        "0.003", "--sensor", "tof.toml", "--out", "clouds.vdb"},
+        "0.001", "--sensor", "tof.toml", "--out", "clouds.vdb"},
        "clouds.vdb"},
       {{"score", "map.vdb", "--shell", "20,0.5,0.7", "--center", "0,0,0.05", "--seed", "5",
         "--sensor", "tof.toml", "--weight", "0,0,0,1,1,1,2", "--weight", "0,0,0,0.1,1,1,0",
