@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The whole decision without the surface: frame in, best pose out.
+// The whole decision without the surface, frame in, best pose out; and all of its stages.
+#include <algorithm>
 #include <array>
 
 #include "bars.hpp"
+#include "decision_bench.hpp"
 #include "measure.hpp"
 #include "model_maps.hpp"
 #include "model_scene.hpp"
@@ -74,6 +76,15 @@ std::vector<Figure> decision_figures(const BarsOptions& options) {
   for (std::size_t i = 0; i < kCandidates.size(); ++i) {
     figures.push_back(
         {std::string("decision_ms_") + std::to_string(kCandidates[i]), 1e3 * median(seconds[i])});
+  }
+  DecisionOptions stages;
+  stages.num_threads = options.num_threads;
+  stages.repetitions = options.repetitions;
+  stages.mesh = options.mesh;
+  stages.candidates = {500};
+  for (auto& [stage, milliseconds] : stage_milliseconds(stages)) {
+    std::replace(stage.begin(), stage.end(), ' ', '_');
+    figures.push_back({"stage_ms_" + stage, milliseconds});
   }
   return figures;
 }

@@ -190,6 +190,18 @@ void time_octomap(const World& world, Seconds& seconds) {
                                               static_cast<double>(poses.size()));
 }
 
+Seconds measured(const World& world, const DecisionOptions& options, const ExecConfig& exec,
+                 std::size_t& boundary) {
+  const auto scene_before = VoxelScene::build(world.before, {}, exec);
+  (void)scene_before->hazard();
+  Seconds seconds;
+  for (int repetition = -1; repetition < options.repetitions; ++repetition) {
+    time_once(world, options, exec, scene_before, seconds, boundary);
+    if (repetition < 0) seconds.clear();  // that was to warm up
+  }
+  return seconds;
+}
+
 Json report(const World& world, const Seconds& seconds, std::size_t boundary, bool json) {
   Json result{{"map", world.name},
               {"voxel", world.before.voxel_size()},
@@ -212,6 +224,16 @@ Json report(const World& world, const Seconds& seconds, std::size_t boundary, bo
 
 }  // namespace
 
+std::vector<std::pair<std::string, double>> stage_milliseconds(const DecisionOptions& options) {
+  const ExecConfig exec{ThreadPool(options.num_threads).num_threads()};
+  std::size_t boundary = 0;
+  std::vector<std::pair<std::string, double>> medians;
+  for (auto& [stage, s] : measured(camel("camel-128", options, exec), options, exec, boundary)) {
+    medians.emplace_back(stage, 1e3 * median(s));
+  }
+  return medians;
+}
+
 int run_decision(const DecisionOptions& options) {
   const ExecConfig exec{ThreadPool(options.num_threads).num_threads()};
   Json all = Json::array();
@@ -223,14 +245,8 @@ int run_decision(const DecisionOptions& options) {
     const World world = name == "hall"   ? hall(exec)
                         : name == "room" ? room(options, exec)
                                          : camel(name, options, exec);
-    const auto scene_before = VoxelScene::build(world.before, {}, exec);
-    (void)scene_before->hazard();
-    Seconds seconds;
     std::size_t boundary = 0;
-    for (int repetition = -1; repetition < options.repetitions; ++repetition) {
-      time_once(world, options, exec, scene_before, seconds, boundary);
-      if (repetition < 0) seconds.clear();  // that was to warm up
-    }
+    Seconds seconds = measured(world, options, exec, boundary);
     if (name == "camel-128") time_octomap(world, seconds);
     all.push_back(report(world, seconds, boundary, options.json));
     add_environment(all.back(), exec.num_threads);

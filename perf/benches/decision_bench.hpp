@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace viewgain::bench {
@@ -25,5 +26,9 @@ struct DecisionOptions {
 /// number of candidates. Beside it the same two steps by OctoMap, for the camel's maps. Returns the
 /// exit code.
 int run_decision(const DecisionOptions& options);
+
+/// Of camel-128: medians [ms] of the stages, then of what choosing takes, in their order.
+[[nodiscard]] std::vector<std::pair<std::string, double>> stage_milliseconds(
+    const DecisionOptions& options);
 
 }  // namespace viewgain::bench
