@@ -56,7 +56,7 @@ using BarGroup = std::vector<Figure> (*)(const BarsOptions& options);
 [[nodiscard]] std::vector<Figure> memory_figures(const BarsOptions& options);
 /// decision_ms_100, decision_ms_500, decision_ms_2000; planner_over_decision: the same 500 poses by
 /// ViewPlanner, over the parts called one by one; stage_ms_*, as `decision` has them, by 500
-/// candidates.
+/// candidates, and turn_ms, from a frame to the default's best pose by two stages.
 [[nodiscard]] std::vector<Figure> decision_figures(const BarsOptions& options);
 /// surface_over_paper, combined_over_paper, hazard_ms_128, hazard_ms_512.
 [[nodiscard]] std::vector<Figure> surface_figures(const BarsOptions& options);

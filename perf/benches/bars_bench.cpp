@@ -62,6 +62,14 @@ constexpr std::array kRules{
     Rule{"decision_ms_100", {}, false},
     Rule{"decision_ms_500", {}, false},
     Rule{"decision_ms_2000", {}, false},
+    Rule{"stage_ms_integrate", {}, false},
+    Rule{"stage_ms_scene", {}, false},
+    Rule{"stage_ms_hazard", 10.0, false},
+    Rule{"stage_ms_surface", {}, false},
+    Rule{"stage_ms_candidates", {}, false},
+    Rule{"stage_ms_combined_500", {}, false},
+    Rule{"stage_ms_combined_500_two_stages", {}, false},
+    Rule{"turn_ms", 250.0, false},
 };
 
 constexpr std::array kGroups{
@@ -91,7 +99,7 @@ Json to_json(const Rule& rule, const Figure& figure, int threads, bool& is_misse
 
 void print_row(const Json& entry, const std::string& note) {
   const bool has_bar = !entry["bar"].is_null();
-  std::printf("%-26s %10.3f  ", entry["name"].get<std::string>().c_str(),
+  std::printf("%-33s %10.3f  ", entry["name"].get<std::string>().c_str(),
               entry["value"].get<double>());
   if (has_bar) {
     std::printf("%s %-8g %s", entry["better"] == "higher" ? ">=" : "<=", entry["bar"].get<double>(),

@@ -59,8 +59,7 @@ TEST(Tum, RoundTripIsExactInPositionAndCloseInRotation) {
 
 TEST(Tum, ALineByItselfIsThatOfTheFile) {
   const TemporaryFolder folder;
-  const std::string text =
-      "7 1 2 3 0.5 0.5 0.5 0.5\n8 0 0 0 0 0 -0.707 0.707\n9 nan 0 0 0 0 0 1\n";
+  const std::string text = "7 1 2 3 0.5 0.5 0.5 0.5\n8 0 0 0 0 0 -0.707 0.707\n9 nan 0 0 0 0 0 1\n";
   const PoseList list =
       read_tum(folder.file("poses.txt", text.substr(0, text.rfind('\n', text.size() - 2) + 1)));
   ASSERT_EQ(list.poses.size(), 2U);
