@@ -37,6 +37,21 @@ Pose w_first(const Pose& pose) {
 }
 
 // An orbit round a lumpy ball, of which all sides look alike from afar.
+using Change = std::function<Pose(const Pose&)>;
+
+// Of `kind`, what is suspected of poses that were changed so.
+template <typename Kind>
+void expect_other_conventions(const Kind& kind) {
+  EXPECT_EQ(kind([](const Pose& T) { return T.inverse(); }), "world_to_camera");
+  EXPECT_EQ(kind(w_first), "quaternion_order");
+  EXPECT_EQ(kind([](const Pose& T) { return turned(T, {0.5, 0.5, -0.5, 0.5}); }), "body_frame");
+  EXPECT_EQ(kind([](const Pose& T) { return turned(T, {0, 1, 0, 0}); }), "upward_camera");
+  EXPECT_EQ(kind([](const Pose& T) {
+              return Pose{T.rotation(), 1000 * T.translation()};
+            }),
+            "pose_millimetres");
+}
+
 class SuspectFrames : public testing::Test {
  protected:
   SuspectFrames() {
@@ -82,14 +97,7 @@ TEST_F(SuspectFrames, PosesOfOtherConventions) {
     see(orbit_poses(views, 0.5, 0.6));
     SCOPED_TRACE(views);
     EXPECT_EQ(kind(), "");
-    EXPECT_EQ(kind([](const Pose& T) { return T.inverse(); }), "world_to_camera");
-    EXPECT_EQ(kind(w_first), "quaternion_order");
-    EXPECT_EQ(kind([](const Pose& T) { return turned(T, {0.5, 0.5, -0.5, 0.5}); }), "body_frame");
-    EXPECT_EQ(kind([](const Pose& T) { return turned(T, {0, 1, 0, 0}); }), "upward_camera");
-    EXPECT_EQ(kind([](const Pose& T) {
-                return Pose{T.rotation(), 1000 * T.translation()};
-              }),
-              "pose_millimetres");
+    expect_other_conventions([&](const Change& change) { return kind(change); });
   }
 }
 
@@ -163,14 +171,7 @@ TEST(SuspectPoses, WhatSeesNoVoxelOfTheMap) {
     return suspect_poses(scene, sensor, poses).kind;
   };
   EXPECT_EQ(kind([](const Pose& T) { return T; }), "");
-  EXPECT_EQ(kind([](const Pose& T) { return T.inverse(); }), "world_to_camera");
-  EXPECT_EQ(kind(w_first), "quaternion_order");
-  EXPECT_EQ(kind([](const Pose& T) { return turned(T, {0.5, 0.5, -0.5, 0.5}); }), "body_frame");
-  EXPECT_EQ(kind([](const Pose& T) { return turned(T, {0, 1, 0, 0}); }), "upward_camera");
-  EXPECT_EQ(kind([](const Pose& T) {
-              return Pose{T.rotation(), 1000 * T.translation()};
-            }),
-            "pose_millimetres");
+  expect_other_conventions(kind);
   EXPECT_EQ(kind([](const Pose& T) {
               return Pose{T.rotation(), T.translation() + 9 * Eigen::Vector3d::UnitX()};
             }),
