@@ -65,13 +65,19 @@ std::vector<Figure> stages_figures(const BarsOptions& options) {
     // What each thread keeps from pose to pose, and what the scene makes once, is there beforehand.
     (void)paper.evaluate(few);
     const double all_by_paper = seconds_of([&] { (void)paper.evaluate(poses); });
+    // The combined gain of a view has the surface gain in it: one pass tells the best by both.
+    std::array<double, kModels.size()> best{};
+    const GainEvaluator combined(map.scene, sensor, {.model = GainModel::combined}, exec);
+    for (const ViewGain& gain : combined.evaluate(poses)) {
+      best[0] = std::max(best[0], gain.area);
+      best[1] = std::max(best[1], gain.gain);
+    }
     for (std::size_t i = 0; i < kModels.size(); ++i) {
       const GainEvaluator evaluator(map.scene, sensor, {.model = kModels[i]}, exec);
       (void)evaluator.evaluate(few);
       BestViews raced;
       const double in_stages = seconds_of([&] { raced = evaluator.race(poses, 1); });
-      choices[i].add(in_stages / all_by_paper, raced.gains.at(0).gain,
-                     evaluator.best(poses, 1).gains.at(0).gain);
+      choices[i].add(in_stages / all_by_paper, raced.gains.at(0).gain, best[i]);
     }
   });
   if (choices[0].regrets.empty()) return {};
