@@ -23,7 +23,7 @@ tests=(
   pkg-config python3 pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
   libgtest-dev liboctomap-dev libopenvdb-tools file locales
 )
-perf=(libbenchmark-dev python3-scipy)
+perf=(libbenchmark-dev libnanovdb-dev python3-scipy)
 browser=(chromium-headless-shell)
 fuzz=(clang-19 libclang-rt-19-dev)
 docs=(doxygen doxygen-awesome-css python3-sphinx python3-myst-parser furo libjs-mathjax)

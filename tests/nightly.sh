@@ -85,7 +85,11 @@ run_part() {
     vdb) build release; run_ctest --preset vdb ;;
     mutate) build release; ./tests/mutate.py build/release | tee build/mutate.log ;;
     fuzz) ./apps/install_dependencies.sh --fuzz; build fuzz; ./tests/fuzz/run.sh "$minutes" | tee build/fuzz.log ;;
-    long) build release; PYTHONPATH=build/release/python /usr/bin/python3 tests/long_run.py --csv build/long.csv | tee build/long.log ;;
+    long)
+      build release
+      PYTHONPATH=build/release/python /usr/bin/python3 tests/long_run.py --csv build/long.csv | tee build/long.log
+      ./tests/long_follow.py build/release/bin/viewgain build/release/meshes/camel.off --work build/long | tee -a build/long.log
+      ;;
   esac
 }
 
@@ -100,7 +104,7 @@ for part in "${parts[@]}"; do
   [ $? -eq 0 ] || result=FAILED failed=1
   set -e
   summary=$(grep -E 'tests passed|tests failed' build/ctest.log 2>/dev/null | tail -n 1 || true)
-  case "$part" in golden | packages | debian13 | arm64) summary= ;; kill | mutate | fuzz | long) summary=$(tail -n 1 "build/$part.log") ;; esac
+  case "$part" in golden | packages | debian13 | arm64) summary= ;; kill | mutate | fuzz) summary=$(tail -n 1 "build/$part.log") ;; long) summary=$(paste -sd ' ' build/long.log) ;; esac
   line="$(date -u +%F) $(git describe --always --dirty --exclude "*") $part: $result in $((SECONDS / 60)) min${summary:+, $summary}"
   echo "$line" | tee -a tests/nightly.log
 done

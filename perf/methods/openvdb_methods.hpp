@@ -9,10 +9,10 @@
 
 namespace viewgain::bench {
 
-/// Two walks over a MaskTree of the voxels that are not free, with a value accessor, from the ray's
+/// Three walks through a MaskTree of the voxels that are not free, by an accessor, from the ray's
 /// entry into the workspace. `openvdb_dda`: math::DDA, voxel by voxel. `openvdb_hdda`:
 /// math::VolumeHDDA through nodes and leaves to the next stretch of leaves and active tiles, there
-/// voxel by voxel.
+/// voxel by voxel. `nanovdb_hdda`: nanovdb::HDDA, whose step is as long as the node or the tile.
 [[nodiscard]] std::vector<std::unique_ptr<TraceMethod>> make_openvdb_methods(const TraceTask& task);
 
 }  // namespace viewgain::bench
