@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "convert.hpp"
-#include "viewgain/raycast/depth_image.hpp"
 #include "viewgain/support/text.hpp"
 #include "watcher.hpp"
 

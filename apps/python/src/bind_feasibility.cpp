@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <sstream>
@@ -60,19 +58,8 @@ ReachRegion region_of(const py::object& boxes, const py::object& shells,
 // By value; a predicate is the same as itself alone.
 bool is_same(const ReachRegion& a, const ReachRegion& b) {
   if (&a == &b) return true;
-  const auto same_shell = [](const ReachRegion::Shell& s, const ReachRegion::Shell& t) {
-    return s.center == t.center && s.min_radius == t.min_radius && s.max_radius == t.max_radius;
-  };
-  const auto same_half_space = [](const ReachRegion::HalfSpace& s,
-                                  const ReachRegion::HalfSpace& t) {
-    return s.normal == t.normal && s.offset == t.offset;
-  };
-  return !a.predicate && !b.predicate && a.boxes == b.boxes && a.poses == b.poses &&
-         a.tolerance.distance == b.tolerance.distance && a.tolerance.angle == b.tolerance.angle &&
-         std::equal(a.shells.begin(), a.shells.end(), b.shells.begin(), b.shells.end(),
-                    same_shell) &&
-         std::equal(a.half_spaces.begin(), a.half_spaces.end(), b.half_spaces.begin(),
-                    b.half_spaces.end(), same_half_space);
+  return !a.predicate && !b.predicate && a.boxes == b.boxes && a.shells == b.shells &&
+         a.half_spaces == b.half_spaces && a.poses == b.poses && a.tolerance == b.tolerance;
 }
 
 // Of the constructor. A predicate is a function, which may not be pickled.

@@ -51,9 +51,7 @@ py::object frame_at(const FrameSequence& self, py::ssize_t index) {
   const std::size_t i = frame_index(self.images.size(), index);
   const DepthFrame frame = outside_gil([&] { return load_frame(self, i); });
   py::object amplitude = py::none();
-  if (!frame.amplitude.empty()) {
-    amplitude = image_array(frame.amplitude, frame.height, frame.width);
-  }
+  if (!frame.amplitude.empty()) amplitude = image_array(frame.amplitude, frame.height, frame.width);
   return named("Frame", image_array(frame.depth, frame.height, frame.width),
                to_array(self.poses[i]), amplitude);
 }
@@ -230,7 +228,8 @@ Frame)")
 
   module.def("read_frames", &read_frames, py::arg("folder"), py::kw_only(),
              py::arg("sensor") = py::none(), py::arg("depth_scale") = py::none(),
-             py::arg("out_of_range") = py::none(), R"(Opens a folder of depth frames.
+             py::arg("out_of_range") = py::none(),
+             R"(Opens a folder of depth frames.
 
 Reads all poses and no image, without the GIL. Cost: linear in the number of frames.
 

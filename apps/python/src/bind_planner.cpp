@@ -136,9 +136,7 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
   config.stop_gain = stop_gain;
   config.stop_area = stop_area;
   const ExecConfig exec{num_threads, parse_tracer(tracer)};
-  if (state.is_none()) {
-    return std::make_unique<Planner>(sensor, ViewPlanner(sensor, config, exec));
-  }
+  if (state.is_none()) return std::make_unique<Planner>(sensor, ViewPlanner(sensor, config, exec));
   const std::string file = readable_file(state);
   return std::make_unique<Planner>(
       sensor, outside_gil([&] { return ViewPlanner::load(file, sensor, config, exec); }));

@@ -156,14 +156,6 @@ py::object to_object(const RangeCalibration& calibration) {
                              calibration.table.front().data());
 }
 
-bool is_same(const Sensor& a, const Sensor& b) {
-  return a.name == b.name && a.camera == b.camera && a.min_range == b.min_range &&
-         a.max_range == b.max_range && a.working_distance == b.working_distance &&
-         a.noise == b.noise && a.T_flange_camera == b.T_flange_camera &&
-         a.body_size == b.body_size && a.range_calibration == b.range_calibration &&
-         a.pose_sigma == b.pose_sigma && a.scale_sigma == b.scale_sigma;
-}
-
 }  // namespace
 
 void bind_sensors(py::module_& module) {
@@ -297,8 +289,7 @@ Returns
 -------
 Sigmas)")
       .def(
-          "__eq__", [](const Sensor& a, const Sensor& b) { return is_same(a, b); },
-          py::is_operator())
+          "__eq__", [](const Sensor& a, const Sensor& b) { return a == b; }, py::is_operator())
       .def("__hash__",
            [](const Sensor& s) {
              return py::hash(py::make_tuple(s.name, s.camera.width, s.camera.height, s.camera.fx,

@@ -14,7 +14,7 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
-#include "viewgain/raycast/depth_image.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::python {
 

@@ -15,11 +15,9 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "grid_class.hpp"
-#include "labels.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/fused_points.hpp"
-#include "viewgain/grid/pooling.hpp"
 
 namespace viewgain::python {
 

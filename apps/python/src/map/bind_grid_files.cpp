@@ -28,8 +28,7 @@ void refuse_octomap_name(const std::string& file) {
   std::string end = std::filesystem::path(file).extension().string();
   for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   if (end != ".ot" && end != ".bt") return;
-  throw Error(ErrorCode::invalid_argument,
-              file + ": save writes OpenVDB; for an OctoMap .ot call save_octomap");
+  refuse(file + ": save writes OpenVDB; for an OctoMap .ot call save_octomap");
 }
 
 /// A folder of this process alone, which goes with it.

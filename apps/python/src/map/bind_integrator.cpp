@@ -21,7 +21,6 @@
 #include "viewgain/formats/cloud_io.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/grid/integrate_cloud.hpp"
 
 namespace viewgain::python {
 namespace {
