@@ -22,6 +22,7 @@
 namespace viewgain::python {
 
 namespace py = pybind11;
+using namespace py::literals;
 
 // From Python's arrays to the library's types and back. All need the GIL. `name` is the argument's,
 // for messages; each throws py::value_error that names it and the shape or dtype that came.
