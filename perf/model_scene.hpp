@@ -9,7 +9,7 @@
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/planner_mesh/stage.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
 namespace viewgain::bench {

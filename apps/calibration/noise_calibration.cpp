@@ -28,9 +28,7 @@ constexpr double kStep = 1.05;             // of ranges in one step
 constexpr double kShapeSpan = 1.3;         // of ranges that tell how σ_ax grows
 constexpr int kTurns = 20;
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, "noise cannot be measured: " + what);
-}
+[[noreturn]] void fail(const std::string& what) { refuse("noise cannot be measured: " + what); }
 
 std::string percent(double share) { return short_text(std::round(1000 * share) / 10) + " %"; }
 
@@ -220,15 +218,15 @@ void NoiseCalibration::add(const DepthFrame& frame) {
   const PinholeCamera& camera = sensor_.camera;
   if (frame.width != camera.width || frame.height != camera.height ||
       frame.depth.size() != camera.ray_table().size()) {
-    throw Error(ErrorCode::invalid_argument, "a frame has not the size of its sensor");
+    fail("a frame has not the size of its sensor");
   }
   depths_.push_back(frame.depth);
 }
 
 NoiseCalibrationResult NoiseCalibration::solve() const {
   if (depths_.size() < kLeastFrames) {
-    refuse("it needs " + std::to_string(kLeastFrames) + " frames from one pose, not " +
-           std::to_string(depths_.size()));
+    fail("it needs " + std::to_string(kLeastFrames) + " frames from one pose, not " +
+         std::to_string(depths_.size()));
   }
   const std::vector<Eigen::Vector3d> rays = sensor_.camera.ray_table();
   const std::vector<PixelScatter> pixels = detail::scatter_of(depths_, rays);
@@ -239,31 +237,29 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
     variances.push_back(pixel.variance);
     moving += pixel.moves ? 1 : 0;
   }
-  if (variances.size() < kLeastSmooth)
-    refuse("hardly any pixel has readings in nine of ten frames");
+  if (variances.size() < kLeastSmooth) fail("hardly any pixel has readings in nine of ten frames");
   NoiseCalibrationResult result;
   const double readings = static_cast<double>(variances.size());
   const double sigma = std::sqrt(detail::median(std::move(variances)));
   result.moving_share = static_cast<double>(moving) / readings;
   if (result.moving_share > kMayMove) {
-    refuse("the scene or the camera moves, " + percent(result.moving_share) +
-           " of the pixels change with time");
+    fail("the scene or the camera moves, " + percent(result.moving_share) +
+         " of the pixels change with time");
   }
   if (!(sigma * sigma > unit_ * unit_ / 12)) {
-    refuse("readings scatter by no more than their rounding to " + short_text(unit_) +
-           " m, are they filtered?");
+    fail("readings scatter by no more than their rounding to " + short_text(unit_) +
+         " m, are they filtered?");
   }
   const auto smooth = smooth_pixels(sensor_.camera, rays, pixels, sigma, unit_);
   if (smooth.size() < kLeastSmooth) {
-    refuse("only " + std::to_string(smooth.size()) +
-           " pixels lie on smooth surfaces seen at less " + "than 30 degrees, " +
-           std::to_string(kLeastSmooth) + " are needed");
+    fail("only " + std::to_string(smooth.size()) + " pixels lie on smooth surfaces seen at less " +
+         "than 30 degrees, " + std::to_string(kLeastSmooth) + " are needed");
   }
   const auto edges = detail::edge_scatter(sensor_.camera, depths_, rays, pixels, sigma);
   if (edges.length < kLeastEdge) {
-    refuse("too few jumps of depth for sigma_lateral, " + short_text(std::round(edges.length)) +
-           " px of straight edges where " + short_text(kLeastEdge) +
-           " are needed; put a box before a wall");
+    fail("too few jumps of depth for sigma_lateral, " + short_text(std::round(edges.length)) +
+         " px of straight edges where " + short_text(kLeastEdge) +
+         " are needed; put a box before a wall");
   }
 
   result.sensor = sensor_;
@@ -274,7 +270,7 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
   for (int turn = 0; turn < kTurns; ++turn) {
     result.steps = steps_of(smooth, result.sensor, depths_.size());
     if (result.steps.empty() || factor_of(result.steps) < 1e-3) {
-      refuse("readings of smooth surfaces hardly scatter along the ray, are they filtered?");
+      fail("readings of smooth surfaces hardly scatter along the ray, are they filtered?");
     }
     std::visit(AxialFit{result.steps}, result.sensor.noise);
   }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/pixel_scatter.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "program/cli/app.hpp"
 #include "program/cli/call_files.hpp"
 #include "program/cli/config_file.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/values.hpp"
-#include "program/cli/words.hpp"
 #include "program/commands/commands.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
@@ -85,6 +85,7 @@ int run(int argc, char** argv) {
       "viewgain");
   program.set_version_flag("--version", std::string("viewgain ") + VIEWGAIN_VERSION);
   program.require_subcommand(1);
+  program.option_defaults()->always_capture_default();
   std::vector<Command> commands;
   for (const auto add : {add_reconstruct, add_simulate, add_import, add_calibrate, add_integrate,
                          add_score, add_candidates, add_next, add_info, add_surface, add_convert,
@@ -106,9 +107,7 @@ int run(int argc, char** argv) {
   check_call(*command->app);
   command->run();
   const Option* save = command->app->get_option("--save-config");
-  if (!save->empty()) {
-    write_file_atomically(save->results().back(), config_text(*command->app));
-  }
+  if (!save->empty()) write_file_atomically(save->results().back(), config_text(*command->app));
   wait_if_ended();
   return end_of_output();
 }

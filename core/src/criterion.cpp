@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "viewgain/support/nearest_name.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

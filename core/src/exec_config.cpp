@@ -3,20 +3,18 @@
 #include "viewgain/core/exec_config.hpp"
 
 #include <algorithm>
-#include <string>
 #include <thread>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/nearest_name.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 
 int thread_count(int num_threads) {
   constexpr int kMaxThreads = 1024;
   if (num_threads < 0 || num_threads > kMaxThreads) {
-    throw Error(ErrorCode::invalid_argument, "number of threads must be in 0.." +
-                                                 std::to_string(kMaxThreads) + ", not " +
-                                                 std::to_string(num_threads));
+    refuse("number of threads must be in 0.." + std::to_string(kMaxThreads) + ", not " +
+           std::to_string(num_threads));
   }
   if (num_threads > 0) return num_threads;
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads);

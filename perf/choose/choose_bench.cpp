@@ -16,7 +16,7 @@
 #include "viewgain/core/generators.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
-#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/hash64.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {

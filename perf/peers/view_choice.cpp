@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/hash64.hpp"
 
 namespace viewgain::bench {
 namespace {

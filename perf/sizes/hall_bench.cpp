@@ -16,7 +16,7 @@
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
-#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/hash64.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {

@@ -8,7 +8,7 @@
 #include <viewgain/core/generators.hpp>
 #include <viewgain/planner/view_planner.hpp>
 #ifdef WITH_SURFACES
-#include <viewgain/planner_mesh/boundary_generation.hpp>
+#include <viewgain/planner_mesh/candidate_generation.hpp>
 #endif
 
 int main(int, char** argv) {

@@ -12,7 +12,7 @@
 #include "support/meshes.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/mesh/surface.hpp"
-#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/hash64.hpp"
 
 namespace viewgain::test {
 

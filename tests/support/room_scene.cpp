@@ -9,7 +9,7 @@
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
-#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/hash64.hpp"
 
 namespace viewgain::test {
 namespace {

@@ -41,13 +41,13 @@ Pose rigid_pose_of(const double* matrix) {
     std::ostringstream text;
     text << "the lowest row of a pose is " << matrix[12] << ' ' << matrix[13] << ' ' << matrix[14]
          << ' ' << matrix[15] << "; it must be 0 0 0 1 (matrices are given row by row)";
-    reject(text.str());
+    refuse(text.str());
   }
   return pose_of(matrix);
 }
 
 std::vector<Pose> poses_of(const double* matrices, std::size_t count) {
-  require_array(matrices, count, "poses");
+  require("poses", {sized(matrices, count)});
   std::vector<Pose> poses(count);
   for (std::size_t i = 0; i < count; ++i) poses[i] = pose_of(matrices + 16 * i);
   return poses;
@@ -55,10 +55,10 @@ std::vector<Pose> poses_of(const double* matrices, std::size_t count) {
 
 void write_outcomes(const GainEvaluator& evaluator, const double* T_world_camera,
                     vg_ray_outcomes* outcomes) {
-  require("T_world_camera", T_world_camera);
+  require("T_world_camera", {T_world_camera});
   require_struct(outcomes, "vg_ray_outcomes");
   const GainEvaluator::RayOutcomes of = evaluator.outcomes(rigid_pose_of(T_world_camera));
-  if (of.rays == 0) reject("the pose is not a rigid transform of finite numbers");
+  if (of.rays == 0) refuse("the pose is not a rigid transform of finite numbers");
   write_struct(outcomes, {.struct_size = 0,
                           .rays = of.rays,
                           .too_near = of.too_near,
@@ -85,22 +85,17 @@ using namespace viewgain;
 using namespace viewgain::c_api;
 
 vg_status vg_sphere_poses(size_t count, double radius, const double center[3], double* poses) {
-  return guarded([&] {
-    require("center poses", center, poses);
-    write_poses(sphere_poses(count, radius, vector_of(center)), poses);
-  });
+  return guarded("center poses", {center, poses},
+                 [&] { write_poses(sphere_poses(count, radius, vector_of(center)), poses); });
 }
 
 vg_status vg_dome_poses(size_t count, double radius, const double center[3], double* poses) {
-  return guarded([&] {
-    require("center poses", center, poses);
-    write_poses(dome_poses(count, radius, vector_of(center)), poses);
-  });
+  return guarded("center poses", {center, poses},
+                 [&] { write_poses(dome_poses(count, radius, vector_of(center)), poses); });
 }
 
 vg_status vg_order_stops(const double* costs, size_t count, size_t* stops, double* cost) {
-  return guarded([&] {
-    if (count > 0) require("costs stops", costs, stops);
+  return guarded("costs stops", {sized(costs, count), sized(stops, count)}, [&] {
     const Tour tour = order_stops(count, [&](std::size_t from, std::size_t to) {
       return costs[std::min(from, count) * count + to];
     });
@@ -111,8 +106,7 @@ vg_status vg_order_stops(const double* costs, size_t count, size_t* stops, doubl
 
 vg_status vg_look_at(const double eye[3], const double target[3], const double up[3],
                      double T_world_camera[16]) {
-  return guarded([&] {
-    require("eye target T_world_camera", eye, target, T_world_camera);
+  return guarded("eye target T_world_camera", {eye, target, T_world_camera}, [&] {
     const Eigen::Vector3d upwards = up != nullptr ? vector_of(up) : Eigen::Vector3d::UnitZ();
     write_pose(look_at(vector_of(eye), vector_of(target), upwards), T_world_camera);
   });

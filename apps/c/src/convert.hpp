@@ -76,7 +76,7 @@ template <typename Config>
 void set_scales(const Config& given, IntegrationConfig& settings) {
   settings.coarsest = given.coarsest;
   settings.finest = given.finest;
-  require_array(given.fine, given.fine_count, "fine");
+  require("fine", {sized(given.fine, given.fine_count)});
   for (const double* b = given.fine; settings.fine.size() < given.fine_count; b += 6) {
     settings.fine.push_back({{b[0], b[1], b[2]}, {b[3], b[4], b[5]}});
   }
@@ -86,7 +86,7 @@ void set_scales(const Config& given, IntegrationConfig& settings) {
 template <typename Enum>
 [[nodiscard]] Enum enum_of(std::int32_t value, std::int32_t last, const std::string& name) {
   if (value >= 0 && value <= last) return static_cast<Enum>(value);
-  reject(name + " is " + std::to_string(value) + "; it must be in 0.." + std::to_string(last));
+  refuse(name + " is " + std::to_string(value) + "; it must be in 0.." + std::to_string(last));
 }
 
 [[nodiscard]] inline ExecConfig exec_of(std::int32_t num_threads, std::int32_t tracer) {
@@ -135,9 +135,9 @@ VIEWGAIN_EXPORT void write_sensor(const Sensor& sensor, vg_sensor* out);
 /// The surroundings of a struct with the fields of vg_scene_config.
 template <typename Config>
 [[nodiscard]] Surroundings surroundings_of(const Config& config) {
-  require_array(config.boxes, config.box_count, "boxes");
-  require_array(config.vertices, config.vertex_count, "vertices");
-  require_array(config.triangles, config.triangle_count, "triangles");
+  require("boxes vertices triangles",
+          {sized(config.boxes, config.box_count), sized(config.vertices, config.vertex_count),
+           sized(config.triangles, config.triangle_count)});
   Surroundings surroundings{{}, given(config.support_plane)};
   for (std::size_t i = 0; i < config.box_count; ++i) {
     const double* box = config.boxes + 6 * i;

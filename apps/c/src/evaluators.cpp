@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "convert.hpp"
-#include "viewgain/raycast/depth_image.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/text.hpp"
 #include "watcher.hpp"
 
@@ -23,7 +23,7 @@ static_assert(VG_VIEW_CAMERA_IN_OCCUPIED == static_cast<int>(ViewGain::Status::c
 static_assert(VG_HIT_OBSTACLE == static_cast<int>(RayHit::Kind::obstacle));
 
 GainConfig settings_of(const vg_evaluator_config& config) {
-  require_array(config.weights, config.weight_count, "weights");
+  require("weights", {sized(config.weights, config.weight_count)});
   GainConfig settings{.model = enum_of<GainModel>(config.gain, VG_GAIN_COMBINED, "gain"),
                       .criterion = enum_of<Criterion>(config.criterion, VG_TRACE, "criterion"),
                       .pixel_stride = config.pixel_stride,
@@ -71,10 +71,7 @@ template <typename Choose>
 vg_status choice(const vg_evaluator* evaluator, const double* poses, std::size_t count,
                  std::size_t k, std::size_t total, std::size_t* indices, double* gains,
                  std::size_t* found, const vg_watch* watch, const Choose& choose) {
-  return guarded([&] {
-    require("evaluator", evaluator);
-    require_array(indices, k, "indices");
-    require("found", found);
+  return guarded("evaluator indices found", {evaluator, sized(indices, k), found}, [&] {
     *found = 0;
     Watcher watcher(watch, total);
     const auto chosen = choose(poses_of(poses, count), watcher.control());
@@ -103,8 +100,7 @@ VG_DEFINE_INIT(vg_evaluator_config)
 
 vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
                               const vg_evaluator_config* config, vg_evaluator** evaluator) {
-  return make_handle(evaluator, "evaluator", [&] {
-    require("scene", scene);
+  return make_handle(evaluator, "evaluator scene", {scene}, [&] {
     const vg_evaluator_config chosen = read_config(config, "vg_evaluator_config");
     return GainEvaluator(scene->scene, sensor_of(sensor), settings_of(chosen),
                          exec_of(chosen.num_threads, chosen.tracer));
@@ -113,10 +109,8 @@ vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
 
 vg_status vg_evaluator_with_scene(const vg_evaluator* evaluator, const vg_scene* scene,
                                   vg_evaluator** following) {
-  return make_handle(following, "following", [&] {
-    require("evaluator scene", evaluator, scene);
-    return evaluator->evaluator.with_scene(scene->scene);
-  });
+  return make_handle(following, "following evaluator scene", {evaluator, scene},
+                     [&] { return evaluator->evaluator.with_scene(scene->scene); });
 }
 
 void vg_evaluator_release(vg_evaluator* evaluator) { delete evaluator; }
@@ -124,8 +118,7 @@ void vg_evaluator_release(vg_evaluator* evaluator) { delete evaluator; }
 VG_DEFINE_INIT(vg_evaluator_info)
 
 vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info* info) {
-  return guarded([&] {
-    require("evaluator", evaluator);
+  return guarded("evaluator", {evaluator}, [&] {
     require_struct(info, "vg_evaluator_info");
     const GainEvaluator& own = evaluator->evaluator;
     const PinholeCamera& camera = own.camera();
@@ -141,9 +134,7 @@ vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluator_info
 
 vg_status vg_evaluate(const vg_evaluator* evaluator, const double* poses, size_t count,
                       double* gains, const vg_watch* watch) {
-  return guarded([&] {
-    require("evaluator", evaluator);
-    require_array(gains, count, "gains");
+  return guarded("evaluator gains", {evaluator, sized(gains, count)}, [&] {
     Watcher watcher(watch, count);
     const std::vector<Pose> candidates = poses_of(poses, count);
     std::vector<ViewGain> views(count);
@@ -156,9 +147,7 @@ vg_status vg_evaluate(const vg_evaluator* evaluator, const double* poses, size_t
 
 vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* poses, size_t count,
                             vg_view_gain* views, size_t view_size, const vg_watch* watch) {
-  return guarded([&] {
-    require("evaluator", evaluator);
-    require_array(views, count, "views");
+  return guarded("evaluator views", {evaluator, sized(views, count)}, [&] {
     require_size<vg_view_gain>(view_size, "vg_view_gain (view_size)");
     Watcher watcher(watch, count);
     const std::vector<Pose> candidates = poses_of(poses, count);
@@ -210,11 +199,10 @@ vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses, size_t
 
 vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_world_camera[16],
                          float* depth, uint8_t* labels, size_t count) {
-  return guarded([&] {
-    require("evaluator T_world_camera depth", evaluator, T_world_camera, depth);
+  return guarded("evaluator T_world_camera depth", {evaluator, T_world_camera, depth}, [&] {
     const std::size_t pixels = evaluator->evaluator.rays_per_pose();
     if (count != pixels) {
-      reject("room for " + std::to_string(count) + " pixels, but the image has " +
+      refuse("room for " + std::to_string(count) + " pixels, but the image has " +
              std::to_string(pixels));
     }
     std::vector<RayHit::Kind> kinds;
@@ -231,34 +219,33 @@ VG_DEFINE_INIT(vg_ray_outcomes)
 
 vg_status vg_outcomes(const vg_evaluator* evaluator, const double T_world_camera[16],
                       vg_ray_outcomes* outcomes) {
-  return guarded([&] {
-    require("evaluator", evaluator);
-    write_outcomes(evaluator->evaluator, T_world_camera, outcomes);
-  });
+  return guarded("evaluator", {evaluator},
+                 [&] { write_outcomes(evaluator->evaluator, T_world_camera, outcomes); });
 }
 
 vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_camera[16],
                            vg_contribution* contributions, size_t contribution_size,
                            size_t capacity, size_t* found) {
-  return guarded([&] {
-    require("evaluator T_world_camera", evaluator, T_world_camera);
-    require_array(contributions, capacity, "contributions");
-    require("found", found);
-    require_size<vg_contribution>(contribution_size, "vg_contribution (contribution_size)");
-    const Pose pose = rigid_pose_of(T_world_camera);
-    const std::vector<VoxelContribution> own = evaluator->evaluator.contributions(pose);
-    if (own.empty() && evaluator->evaluator.evaluate(pose).status == ViewGain::Status::bad_pose) {
-      reject("the pose is off from a rigid transform by " + short_text(orthonormality_error(pose)) +
-             "; 1e-3 is allowed");
-    }
-    *found = own.size();
-    const std::span<const VoxelContribution> wanted(own.data(), std::min(capacity, own.size()));
-    std::transform(wanted.begin(), wanted.end(), contributions, [](const VoxelContribution& part) {
-      return vg_contribution{.voxel = {part.voxel.x, part.voxel.y, part.voxel.z},
-                             .state = static_cast<std::int32_t>(part.state),
-                             .rays = part.rays,
-                             .gain = part.gain,
-                             .expected_rays = part.expected_rays};
-    });
-  });
+  return guarded(
+      "evaluator T_world_camera contributions found",
+      {evaluator, T_world_camera, sized(contributions, capacity), found}, [&] {
+        require_size<vg_contribution>(contribution_size, "vg_contribution (contribution_size)");
+        const Pose pose = rigid_pose_of(T_world_camera);
+        const std::vector<VoxelContribution> own = evaluator->evaluator.contributions(pose);
+        if (own.empty() &&
+            evaluator->evaluator.evaluate(pose).status == ViewGain::Status::bad_pose) {
+          refuse("the pose is off from a rigid transform by " +
+                 short_text(orthonormality_error(pose)) + "; 1e-3 is allowed");
+        }
+        *found = own.size();
+        const std::span<const VoxelContribution> wanted(own.data(), std::min(capacity, own.size()));
+        std::transform(wanted.begin(), wanted.end(), contributions,
+                       [](const VoxelContribution& part) {
+                         return vg_contribution{.voxel = {part.voxel.x, part.voxel.y, part.voxel.z},
+                                                .state = static_cast<std::int32_t>(part.state),
+                                                .rays = part.rays,
+                                                .gain = part.gain,
+                                                .expected_rays = part.expected_rays};
+                       });
+      });
 }

@@ -14,24 +14,19 @@ using namespace viewgain;
 using namespace viewgain::c_api;
 
 vg_status vg_sensor_load(const char* preset_or_file, vg_sensor* sensor) {
-  return guarded([&] {
-    require("preset_or_file", preset_or_file);
+  return guarded("preset_or_file", {preset_or_file}, [&] {
     require_struct(sensor, "vg_sensor");
     write_sensor(load_sensor(preset_or_file), sensor);
   });
 }
 
 vg_status vg_sensor_save(const vg_sensor* sensor, const char* path) {
-  return guarded([&] {
-    require("path", path);
-    write_sensor_toml(path, sensor_of(sensor));
-  });
+  return guarded("path", {path}, [&] { write_sensor_toml(path, sensor_of(sensor)); });
 }
 
 vg_status vg_range_calibration_load(const char* preset_or_file,
                                     vg_range_calibration** calibration) {
-  return make_handle(calibration, "calibration", [&] {
-    require("preset_or_file", preset_or_file);
+  return make_handle(calibration, "calibration preset_or_file", {preset_or_file}, [&] {
     const Sensor sensor = load_sensor(preset_or_file);
     return RangeCorrector(sensor.camera, sensor.range_calibration);
   });
@@ -39,13 +34,10 @@ vg_status vg_range_calibration_load(const char* preset_or_file,
 
 vg_status vg_poses_load(const char* path, double* T_world_camera, double* timestamps,
                         size_t capacity, size_t* found) {
-  return guarded([&] {
-    require("path found", path, found);
+  return guarded("path found", {path, found}, [&] {
     const PoseList list = read_tum(path);
     const std::size_t count = std::min(capacity, list.poses.size());
-    if (T_world_camera != nullptr) {
-      write_poses(std::span(list.poses).first(count), T_world_camera);
-    }
+    if (T_world_camera != nullptr) write_poses(std::span(list.poses).first(count), T_world_camera);
     if (timestamps != nullptr) std::copy_n(list.timestamps.begin(), count, timestamps);
     *found = list.poses.size();
   });
@@ -53,9 +45,8 @@ vg_status vg_poses_load(const char* path, double* T_world_camera, double* timest
 
 vg_status vg_poses_save(const char* path, const double* T_world_camera, const double* timestamps,
                         size_t count) {
-  return guarded([&] {
-    require("path", path);
-    if (count == 0) reject("count is 0: a file of poses has at least one");
+  return guarded("path", {path}, [&] {
+    if (count == 0) refuse("count is 0: a file of poses has at least one");
     const std::vector<Pose> poses = poses_of(T_world_camera, count);
     if (timestamps == nullptr) {
       write_tum(path, poses);
@@ -66,8 +57,7 @@ vg_status vg_poses_save(const char* path, const double* T_world_camera, const do
 }
 
 vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid) {
-  return make_handle(grid, "grid", [&] {
-    require("path", path);
+  return make_handle(grid, "grid path", {path}, [&] {
     OctomapConfig config;
     if (prior_sigma != 0) config.prior_sigma = prior_sigma;
     return load_octomap(path, config);
@@ -75,8 +65,5 @@ vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** g
 }
 
 vg_status vg_grid_save_octomap(const vg_grid* grid, const char* path) {
-  return guarded([&] {
-    require("grid path", grid, path);
-    save_octomap(grid->grid, path);
-  });
+  return guarded("grid path", {grid, path}, [&] { save_octomap(grid->grid, path); });
 }

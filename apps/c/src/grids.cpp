@@ -30,7 +30,7 @@ vg_integrator_config viewgain::c_api::defaults() noexcept {
 VG_DEFINE_INIT(vg_grid_config)
 
 vg_status vg_grid_create(const vg_grid_config* config, vg_grid** grid) {
-  return make_handle(grid, "grid", [&] {
+  return make_handle(grid, "grid", {}, [&] {
     const vg_grid_config chosen = read_struct(config, "vg_grid_config");
     return BeliefGrid({.voxel_size = chosen.voxel_size,
                        .workspace = {std::to_array(chosen.box_min), std::to_array(chosen.box_max)},
@@ -41,8 +41,7 @@ vg_status vg_grid_create(const vg_grid_config* config, vg_grid** grid) {
 
 vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3], const double origin[3],
                               double voxel_size, double prior_sigma, vg_grid** grid) {
-  return make_handle(grid, "grid", [&] {
-    require("labels dims origin", labels, dims, origin);
+  return make_handle(grid, "grid labels dims origin", {labels, dims, origin}, [&] {
     GridConfig config{.voxel_size = voxel_size,
                       .workspace = {},
                       .T_world_grid = {Eigen::Matrix3d::Identity(), vector_of(origin)},
@@ -52,7 +51,7 @@ vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3], cons
     std::size_t count = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (dims[axis] < 1 || dims[axis] > kMaxEdge) {
-        reject("dims are " + std::to_string(dims[0]) + " x " + std::to_string(dims[1]) + " x " +
+        refuse("dims are " + std::to_string(dims[0]) + " x " + std::to_string(dims[1]) + " x " +
                std::to_string(dims[2]) + "; each must be in 1..65536");
       }
       count *= static_cast<std::size_t>(dims[axis]);
@@ -63,24 +62,15 @@ vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3], cons
 }
 
 vg_status vg_grid_load(const char* path, vg_grid** grid) {
-  return make_handle(grid, "grid", [&] {
-    require("path", path);
-    return load_vdb(path);
-  });
+  return make_handle(grid, "grid path", {path}, [&] { return load_vdb(path); });
 }
 
 vg_status vg_grid_save(const vg_grid* grid, const char* path) {
-  return guarded([&] {
-    require("grid path", grid, path);
-    save_vdb(grid->grid, path);
-  });
+  return guarded("grid path", {grid, path}, [&] { save_vdb(grid->grid, path); });
 }
 
 vg_status vg_grid_clone(const vg_grid* grid, vg_grid** copy) {
-  return make_handle(copy, "copy", [&] {
-    require("grid", grid);
-    return grid->grid.clone();
-  });
+  return make_handle(copy, "copy grid", {grid}, [&] { return grid->grid.clone(); });
 }
 
 void vg_grid_release(vg_grid* grid) { delete grid; }
@@ -88,8 +78,7 @@ void vg_grid_release(vg_grid* grid) { delete grid; }
 VG_DEFINE_INIT(vg_grid_info)
 
 vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info) {
-  return guarded([&] {
-    require("grid", grid);
+  return guarded("grid", {grid}, [&] {
     require_struct(info, "vg_grid_info");
     const BeliefGrid& map = grid->grid;
     const BeliefGrid::Statistics statistics = map.statistics();
@@ -117,10 +106,9 @@ vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info) {
 }
 
 vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count) {
-  return guarded([&] {
-    require("grid states", grid, states);
+  return guarded("grid states", {grid, states}, [&] {
     if (count != grid->grid.voxel_count()) {
-      reject("room for " + std::to_string(count) + " states, but the grid has " +
+      refuse("room for " + std::to_string(count) + " states, but the grid has " +
              std::to_string(grid->grid.voxel_count()) + " voxels");
     }
     grid->grid.copy_states({states, count});
@@ -129,10 +117,7 @@ vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count) {
 
 vg_status vg_grid_index_of(const vg_grid* grid, const double* points, size_t count,
                            int32_t* voxels) {
-  return guarded([&] {
-    require("grid", grid);
-    require_array(points, count, "points");
-    require_array(voxels, count, "voxels");
+  return guarded("grid points voxels", {grid, sized(points, count), sized(voxels, count)}, [&] {
     for (std::size_t i = 0; i < 3 * count; i += 3) {
       const std::optional<Index3> voxel = grid->grid.index_of(vector_of(points + i));
       const Index3 at = voxel.value_or(Index3{VG_NO_VOXEL, VG_NO_VOXEL, VG_NO_VOXEL});
@@ -143,10 +128,7 @@ vg_status vg_grid_index_of(const vg_grid* grid, const double* points, size_t cou
 
 vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t count,
                          double* centers) {
-  return guarded([&] {
-    require("grid", grid);
-    require_array(voxels, count, "voxels");
-    require_array(centers, count, "centers");
+  return guarded("grid voxels centers", {grid, sized(voxels, count), sized(centers, count)}, [&] {
     for (std::size_t i = 0; i < 3 * count; i += 3) {
       const Eigen::Vector3d center = grid->grid.center({voxels[i], voxels[i + 1], voxels[i + 2]});
       std::copy_n(center.data(), 3, centers + i);
@@ -155,10 +137,7 @@ vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t coun
 }
 
 vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* log_odds, size_t count) {
-  return guarded([&] {
-    require("grid", grid);
-    require_array(voxels, count, "voxels");
-    require_array(log_odds, count, "log_odds");
+  return guarded("grid voxels log_odds", {grid, sized(voxels, count), sized(log_odds, count)}, [&] {
     std::vector<BeliefGrid::VoxelValue> changes(count);
     for (std::size_t i = 0; i < count; ++i) {
       const std::int32_t* at = voxels + 3 * i;
@@ -170,8 +149,7 @@ vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* log_odd
 
 vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double max[3],
                          uint64_t* forgotten) {
-  return guarded([&] {
-    require("grid min max", grid, min, max);
+  return guarded("grid min max", {grid, min, max}, [&] {
     const std::uint64_t count =
         grid->grid.forget({{min[0], min[1], min[2]}, {max[0], max[1], max[2]}});
     if (forgotten != nullptr) *forgotten = count;
@@ -180,8 +158,7 @@ vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double max[3]
 
 vg_status vg_grid_update_box(vg_grid* grid, const int32_t first[3], const int32_t dims[3],
                              const uint8_t* labels, uint64_t* changed) {
-  return guarded([&] {
-    require("grid first dims labels", grid, first, dims, labels);
+  return guarded("grid first dims labels", {grid, first, dims, labels}, [&] {
     const Index3 low{first[0], first[1], first[2]}, size{dims[0], dims[1], dims[2]};
     // Before the array is looked at, which must have as many as the box.
     const Index3 min = grid->grid.min_index(), whole = grid->grid.dims();
@@ -191,7 +168,7 @@ vg_status vg_grid_update_box(vg_grid* grid, const int32_t first[3], const int32_
     };
     if (!is_inside(low.x, size.x, min.x, whole.x) || !is_inside(low.y, size.y, min.y, whole.y) ||
         !is_inside(low.z, size.z, min.z, whole.z)) {
-      reject("the box is not inside the workspace");
+      refuse("the box is not inside the workspace");
     }
     const VoxelBox box = VoxelBox::from_dims(low, size);
     const std::uint64_t count = grid->grid.update_box(box, {labels, box.volume()});
@@ -200,10 +177,7 @@ vg_status vg_grid_update_box(vg_grid* grid, const int32_t first[3], const int32_
 }
 
 vg_status vg_grid_scale(const vg_grid* grid, const int32_t* voxels, size_t count, uint8_t* scales) {
-  return guarded([&] {
-    require("grid", grid);
-    require_array(voxels, count, "voxels");
-    require_array(scales, count, "scales");
+  return guarded("grid voxels scales", {grid, sized(voxels, count), sized(scales, count)}, [&] {
     for (std::size_t i = 0; i < count; ++i) {
       const std::int32_t* at = voxels + 3 * i;
       scales[i] = static_cast<std::uint8_t>(grid->grid.scale({at[0], at[1], at[2]}));
@@ -213,8 +187,7 @@ vg_status vg_grid_scale(const vg_grid* grid, const int32_t* voxels, size_t count
 
 vg_status vg_grid_resample(vg_grid* grid, const double min[3], const double max[3], int32_t scale,
                            uint64_t* changed) {
-  return guarded([&] {
-    require("grid min max", grid, min, max);
+  return guarded("grid min max", {grid, min, max}, [&] {
     const std::uint64_t count =
         grid->grid.resample({{min[0], min[1], min[2]}, {max[0], max[1], max[2]}}, scale);
     if (changed != nullptr) *changed = count;
@@ -223,10 +196,7 @@ vg_status vg_grid_resample(vg_grid* grid, const double min[3], const double max[
 
 vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds, size_t capacity,
                            size_t* found) {
-  return guarded([&] {
-    require("grid", grid);
-    require_array(voxels, capacity, "voxels");
-    require("found", found);
+  return guarded("grid voxels found", {grid, sized(voxels, capacity), found}, [&] {
     std::size_t count = 0;
     grid->grid.for_each_occupied([&](const BeliefGrid::VoxelValue& one) {
       const std::size_t i = count++;
@@ -239,8 +209,7 @@ vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds
 }
 
 vg_status vg_grid_hash(const vg_grid* grid, char hash[17]) {
-  return guarded([&] {
-    require("grid hash", grid, hash);
+  return guarded("grid hash", {grid, hash}, [&] {
     const std::string digits = grid->grid.content_hash();
     std::copy_n(digits.c_str(), 17, hash);
   });
@@ -251,7 +220,7 @@ VG_DEFINE_INIT(vg_integration_report)
 
 vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_config* config,
                                vg_integrator** integrator) {
-  return make_handle(integrator, "integrator", [&] {
+  return make_handle(integrator, "integrator", {}, [&] {
     const Sensor camera = sensor_of(sensor);
     const vg_integrator_config chosen = read_config(config, "vg_integrator_config");
     IntegrationConfig settings{
@@ -267,22 +236,22 @@ vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_conf
 vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* depth,
                        const float* amplitude, const double T_world_camera[16],
                        const double pose_sigma[2], vg_integration_report* report) {
-  return guarded([&] {
-    require("integrator grid depth T_world_camera", integrator, grid, depth, T_world_camera);
-    if (report != nullptr) require_struct(report, "vg_integration_report");
-    const DepthFrame frame = frame_of(integrator->camera, depth, amplitude);
-    const IntegrationReport counts = integrator->integrator.integrate(
-        grid->grid, frame, rigid_pose_of(T_world_camera), pose_sigma_of(pose_sigma));
-    if (report == nullptr) return;
-    write_struct(report, {.struct_size = 0,
-                          .readings = counts.readings,
-                          .plane_readings = counts.plane_readings,
-                          .out_of_range = counts.out_of_range,
-                          .invalid = counts.invalid,
-                          .readings_inside = counts.readings_inside,
-                          .voxels_hit = counts.voxels_hit,
-                          .voxels_crossed = counts.voxels_crossed});
-  });
+  return guarded("integrator grid depth T_world_camera", {integrator, grid, depth, T_world_camera},
+                 [&] {
+                   if (report != nullptr) require_struct(report, "vg_integration_report");
+                   const DepthFrame frame = frame_of(integrator->camera, depth, amplitude);
+                   const IntegrationReport counts = integrator->integrator.integrate(
+                       grid->grid, frame, rigid_pose_of(T_world_camera), pose_sigma_of(pose_sigma));
+                   if (report == nullptr) return;
+                   write_struct(report, {.struct_size = 0,
+                                         .readings = counts.readings,
+                                         .plane_readings = counts.plane_readings,
+                                         .out_of_range = counts.out_of_range,
+                                         .invalid = counts.invalid,
+                                         .readings_inside = counts.readings_inside,
+                                         .voxels_hit = counts.voxels_hit,
+                                         .voxels_crossed = counts.voxels_crossed});
+                 });
 }
 
 void vg_integrator_release(vg_integrator* integrator) { delete integrator; }

@@ -27,15 +27,6 @@ struct vg_planner {
 
 namespace {
 
-ViewPlanner& of(vg_planner* planner) {
-  require("planner", planner);
-  return planner->planner;
-}
-const ViewPlanner& of(const vg_planner* planner) {
-  require("planner", planner);
-  return planner->planner;
-}
-
 Sensor sensor_with_body(const vg_sensor* given_sensor, const vg_planner_config& config) {
   Sensor sensor = sensor_of(given_sensor);
   sensor.body_size = std::to_array(config.body_size);
@@ -107,9 +98,7 @@ struct RankCall {
   const vg_watch* watch;
 
   void check() const {
-    require_array(costs, cost_count, "costs");
-    require_array(views, k, "views");
-    require("found", found);
+    require("costs views found", {sized(costs, cost_count), sized(views, k), found});
     require_size<vg_ranked_view>(view_size, "vg_ranked_view (view_size)");
     *found = 0;
   }
@@ -156,7 +145,7 @@ VG_DEFINE_INIT(vg_registration)
 
 vg_status vg_planner_create(const vg_sensor* sensor, const vg_planner_config* config,
                             vg_planner** planner) {
-  return make_handle(planner, "planner", [&] {
+  return make_handle(planner, "planner", {}, [&] {
     const vg_planner_config chosen = read_struct(config, "vg_planner_config");
     return ViewPlanner(sensor_with_body(sensor, chosen), settings_of(chosen),
                        exec_of(chosen.num_threads, chosen.tracer));
@@ -166,15 +155,16 @@ vg_status vg_planner_create(const vg_sensor* sensor, const vg_planner_config* co
 void vg_planner_release(vg_planner* planner) { delete planner; }
 
 vg_status vg_planner_add_poses(vg_planner* planner, const double* poses, size_t count) {
-  return guarded([&] { of(planner).add_poses({"poses", poses_of(poses, count)}); });
+  return guarded("planner", {planner}, [&] {
+    planner->planner.add_poses({"poses", poses_of(poses, count)});
+  });
 }
 
 vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* amplitude,
                          const double T_world_camera[16], const double pose_sigma[2],
                          vg_planner_view* added) {
-  return guarded([&] {
-    ViewPlanner& own = of(planner);
-    require("depth T_world_camera", depth, T_world_camera);
+  return guarded("planner depth T_world_camera", {planner, depth, T_world_camera}, [&] {
+    ViewPlanner& own = planner->planner;
     if (added != nullptr) require_struct(added, "vg_planner_view");
     const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
     const AddedView view = own.add(frame, pose_of(T_world_camera), pose_sigma_of(pose_sigma));
@@ -195,23 +185,20 @@ vg_status vg_planner_add(vg_planner* planner, const float* depth, const float* a
 }
 
 vg_status vg_planner_drop(vg_planner* planner, int32_t verdict, const double T_world_camera[16]) {
-  return guarded([&] {
-    ViewPlanner& own = of(planner);
+  return guarded("planner", {planner}, [&] {
     if (verdict < VG_FRAME_LOST_POSE || verdict >= VG_FRAME_VERDICTS) {
-      reject("verdict is " + std::to_string(verdict) + "; those of frames left out are 2 to 12");
+      refuse("verdict is " + std::to_string(verdict) + "; those of frames left out are 2 to 12");
     }
     std::optional<Pose> pose;
     if (T_world_camera != nullptr) pose = pose_of(T_world_camera);
-    (void)own.drop(static_cast<FrameVerdict>(verdict), pose);
+    (void)planner->planner.drop(static_cast<FrameVerdict>(verdict), pose);
   });
 }
 
 vg_status vg_planner_frames(const vg_planner* planner, size_t* counts, size_t verdicts) {
-  return guarded([&] {
-    const ViewPlanner& own = of(planner);
-    require_array(counts, verdicts, "counts");
+  return guarded("planner counts", {planner, sized(counts, verdicts)}, [&] {
     for (std::size_t i = 0; i < verdicts; ++i) {
-      counts[i] = count_of(own.frames(), static_cast<FrameVerdict>(i));
+      counts[i] = count_of(planner->planner.frames(), static_cast<FrameVerdict>(i));
     }
   });
 }
@@ -219,38 +206,34 @@ vg_status vg_planner_frames(const vg_planner* planner, size_t* counts, size_t ve
 vg_status vg_planner_register(vg_planner* planner, const float* depth, const float* amplitude,
                               const double T_reported[16], double sigma_translation,
                               double sigma_rotation, vg_registration* found) {
-  return guarded([&] {
-    const ViewPlanner& own = of(planner);
-    require("depth T_reported found", depth, T_reported, found);
+  return guarded("planner depth T_reported found", {planner, depth, T_reported, found}, [&] {
+    const ViewPlanner& own = planner->planner;
     require_struct(found, "vg_registration");
     const DepthFrame frame = frame_of(own.map().sensor().camera, depth, amplitude);
-    const FrameRegistration own_found =
+    const FrameRegistration moved =
         own.register_frame(frame, rigid_pose_of(T_reported), {sigma_translation, sigma_rotation});
     vg_registration result{};
-    result.status = static_cast<int32_t>(own_found.status);
-    result.free_directions = static_cast<int32_t>(own_found.free_directions.size());
-    write_pose(own_found.T_world_camera, result.T_world_camera);
-    std::copy(own_found.covariance.begin(), own_found.covariance.end(), result.covariance);
-    const PoseSigma left = own_found.pose_sigma();
+    result.status = static_cast<int32_t>(moved.status);
+    result.free_directions = static_cast<int32_t>(moved.free_directions.size());
+    write_pose(moved.T_world_camera, result.T_world_camera);
+    std::copy(moved.covariance.begin(), moved.covariance.end(), result.covariance);
+    const PoseSigma left = moved.pose_sigma();
     result.pose_sigma[0] = left.translation;
     result.pose_sigma[1] = left.rotation;
-    result.translation = own_found.translation;
-    result.rotation = own_found.rotation;
-    result.residual_before = own_found.residual_before;
-    result.residual_after = own_found.residual_after;
-    result.overlap = own_found.overlap;
-    result.contradiction = own_found.contradiction;
+    result.translation = moved.translation;
+    result.rotation = moved.rotation;
+    result.residual_before = moved.residual_before;
+    result.residual_after = moved.residual_after;
+    result.overlap = moved.overlap;
+    result.contradiction = moved.contradiction;
     write_struct(found, result);
   });
 }
 
 vg_status vg_planner_propose(vg_planner* planner, size_t* candidates, size_t* dropped,
                              size_t reasons) {
-  return guarded([&] {
-    ViewPlanner& own = of(planner);
-    require("candidates", candidates);
-    require_array(dropped, reasons, "dropped");
-    const Proposal& proposal = own.propose();
+  return guarded("planner candidates dropped", {planner, candidates, sized(dropped, reasons)}, [&] {
+    const Proposal& proposal = planner->planner.propose();
     *candidates = proposal.candidates.size();
     for (std::size_t reason = 0; reason < reasons; ++reason) {
       const auto found = proposal.dropped.find(std::string(reason_name(reason)));
@@ -262,8 +245,8 @@ vg_status vg_planner_propose(vg_planner* planner, size_t* candidates, size_t* dr
 vg_status vg_planner_rank(vg_planner* planner, size_t k, const double* costs, size_t cost_count,
                           double cost_per_metre, vg_ranked_view* views, size_t view_size,
                           size_t* found, const vg_watch* watch) {
-  return guarded([&] {
-    ViewPlanner& own = of(planner);
+  return guarded("planner", {planner}, [&] {
+    ViewPlanner& own = planner->planner;
     const RankCall call{k, costs, cost_count, cost_per_metre, views, view_size, found, watch};
     call.check();
     call.run(own.candidate_count(), [&](const RankConfig& config, const BatchControl& control) {
@@ -276,8 +259,8 @@ vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses, size_t
                                 const double* costs, size_t cost_count, double cost_per_metre,
                                 vg_ranked_view* views, size_t view_size, size_t* found,
                                 const vg_watch* watch) {
-  return guarded([&] {
-    ViewPlanner& own = of(planner);
+  return guarded("planner", {planner}, [&] {
+    ViewPlanner& own = planner->planner;
     const RankCall call{k, costs, cost_count, cost_per_metre, views, view_size, found, watch};
     call.check();
     const std::vector<Pose> given_poses = poses_of(poses, count);
@@ -289,37 +272,27 @@ vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses, size_t
 
 vg_status vg_planner_outcomes(vg_planner* planner, const double T_world_camera[16],
                               vg_ray_outcomes* outcomes) {
-  return guarded([&] { write_outcomes(of(planner).evaluator(), T_world_camera, outcomes); });
+  return guarded("planner", {planner},
+                 [&] { write_outcomes(planner->planner.evaluator(), T_world_camera, outcomes); });
 }
 
 vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16], int32_t reached) {
-  return guarded([&] {
-    ViewPlanner& own = of(planner);
-    require("T_world_camera", T_world_camera);
-    own.tried(rigid_pose_of(T_world_camera), reached != 0);
-  });
+  return guarded("planner T_world_camera", {planner, T_world_camera},
+                 [&] { planner->planner.tried(rigid_pose_of(T_world_camera), reached != 0); });
 }
 
 vg_status vg_planner_should_stop(const vg_planner* planner, int32_t* reason) {
-  return guarded([&] {
-    const ViewPlanner& own = of(planner);
-    require("reason", reason);
-    *reason = code_of(own.should_stop());
-  });
+  return guarded("planner reason", {planner, reason},
+                 [&] { *reason = code_of(planner->planner.should_stop()); });
 }
 
 vg_status vg_planner_save(const vg_planner* planner, const char* path) {
-  return guarded([&] {
-    const ViewPlanner& own = of(planner);
-    require("path", path);
-    own.save(path);
-  });
+  return guarded("planner path", {planner, path}, [&] { planner->planner.save(path); });
 }
 
 vg_status vg_planner_load(const char* path, const vg_sensor* sensor,
                           const vg_planner_config* config, vg_planner** planner) {
-  return make_handle(planner, "planner", [&] {
-    require("path", path);
+  return make_handle(planner, "planner path", {path}, [&] {
     const vg_planner_config chosen = read_struct(config, "vg_planner_config");
     return ViewPlanner::load(path, sensor_with_body(sensor, chosen), settings_of(chosen),
                              exec_of(chosen.num_threads, chosen.tracer));
@@ -327,5 +300,6 @@ vg_status vg_planner_load(const char* path, const vg_sensor* sensor,
 }
 
 vg_status vg_planner_grid(const vg_planner* planner, vg_grid** grid) {
-  return make_handle(grid, "grid", [&] { return of(planner).grid().clone(); });
+  return make_handle(grid, "grid planner", {planner},
+                     [&] { return planner->planner.grid().clone(); });
 }

@@ -19,11 +19,11 @@ static_assert(VG_INFEASIBLE_TOO_NEAR == static_cast<int>(Infeasibility::too_near
 HazardConfig hazard_of(const vg_scene_config& config, const BeliefGrid& grid) {
   HazardConfig hazard;
   hazard.object_size = given(config.object_size);
-  require_array(config.hazard_rates, config.hazard_count, "hazard_rates");
+  require("hazard_rates", {sized(config.hazard_rates, config.hazard_count)});
   const auto rate = given(config.hazard_rate);
   const bool by_voxel = config.hazard_rates != nullptr, by_file = config.hazard_file != nullptr;
   if ((rate ? 1 : 0) + (by_voxel ? 1 : 0) + (by_file ? 1 : 0) > 1) {
-    reject("give one of hazard_rate, hazard_rates and hazard_file");
+    refuse("give one of hazard_rate, hazard_rates and hazard_file");
   }
   if (by_file) {
     hazard.volume =
@@ -41,9 +41,7 @@ HazardConfig hazard_of(const vg_scene_config& config, const BeliefGrid& grid) {
 FeasibilityConfig settings_of(const vg_feasibility_config& config) {
   FeasibilityConfig settings;
   settings.body.size = std::to_array(config.body_size);
-  if (config.has_flange != 0) {
-    settings.body.T_flange_camera = rigid_pose_of(config.T_flange_camera);
-  }
+  if (config.has_flange != 0) settings.body.T_flange_camera = rigid_pose_of(config.T_flange_camera);
   settings.clearance = config.clearance;
   settings.taken_tolerance = {config.taken_distance, config.taken_angle};
   if (config.sensor != nullptr) {
@@ -80,8 +78,7 @@ vg_feasibility_config viewgain::c_api::defaults() noexcept {
 VG_DEFINE_INIT(vg_scene_config)
 
 vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config, vg_scene** scene) {
-  return make_handle(scene, "scene", [&] {
-    require("grid", grid);
+  return make_handle(scene, "scene grid", {grid}, [&] {
     const vg_scene_config chosen = read_config(config, "vg_scene_config");
     return VoxelScene::build(grid->grid, surroundings_of(chosen),
                              {.num_threads = chosen.num_threads}, hazard_of(chosen, grid->grid));
@@ -90,8 +87,7 @@ vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config, vg_
 
 vg_status vg_scene_update(const vg_scene* before, const vg_grid* grid, int32_t num_threads,
                           vg_scene** scene) {
-  return make_handle(scene, "scene", [&] {
-    require("before grid", before, grid);
+  return make_handle(scene, "scene before grid", {before, grid}, [&] {
     return VoxelScene::update(before->scene, grid->grid, {.num_threads = num_threads});
   });
 }
@@ -100,21 +96,19 @@ void vg_scene_release(vg_scene* scene) { delete scene; }
 
 vg_status vg_calibrate_hazard(const vg_integrator* integrator, vg_grid* grid, const vg_scene* scene,
                               const float* depth, const double T_world_camera[16]) {
-  return guarded([&] {
-    require("integrator grid scene depth T_world_camera", integrator, grid, scene, depth,
-            T_world_camera);
-    integrator->calibration.count(grid->grid, scene->scene->hazard(),
-                                  frame_of(integrator->camera, depth, nullptr),
-                                  rigid_pose_of(T_world_camera));
-  });
+  return guarded("integrator grid scene depth T_world_camera",
+                 {integrator, grid, scene, depth, T_world_camera}, [&] {
+                   integrator->calibration.count(grid->grid, scene->scene->hazard(),
+                                                 frame_of(integrator->camera, depth, nullptr),
+                                                 rigid_pose_of(T_world_camera));
+                 });
 }
 
 VG_DEFINE_INIT(vg_feasibility_config)
 
 vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibility_config* config,
                                 vg_feasibility** feasibility) {
-  return make_handle(feasibility, "feasibility", [&] {
-    require("scene", scene);
+  return make_handle(feasibility, "feasibility scene", {scene}, [&] {
     const vg_feasibility_config chosen = read_config(config, "vg_feasibility_config");
     return FeasibilityChecker(scene->scene, settings_of(chosen),
                               {.num_threads = chosen.num_threads});
@@ -123,23 +117,20 @@ vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibility_conf
 
 vg_status vg_feasibility_check(const vg_feasibility* feasibility, const double* poses, size_t count,
                                const double* taken, size_t taken_count, int32_t* reasons) {
-  return guarded([&] {
-    require("feasibility", feasibility);
-    require_array(reasons, count, "reasons");
-    require_array(taken, taken_count, "taken");
-    const std::vector<Pose> views = poses_of(taken, taken_count);
-    const std::vector<Infeasibility> answers =
-        feasibility->checker.check(poses_of(poses, count), views);
-    for (std::size_t i = 0; i < count; ++i) reasons[i] = static_cast<std::int32_t>(answers[i]);
-  });
+  return guarded("feasibility reasons taken",
+                 {feasibility, sized(reasons, count), sized(taken, taken_count)}, [&] {
+                   const std::vector<Pose> views = poses_of(taken, taken_count);
+                   const std::vector<Infeasibility> answers =
+                       feasibility->checker.check(poses_of(poses, count), views);
+                   for (std::size_t i = 0; i < count; ++i)
+                     reasons[i] = static_cast<std::int32_t>(answers[i]);
+                 });
 }
 
 vg_status vg_feasibility_with_scene(const vg_feasibility* feasibility, const vg_scene* scene,
                                     vg_feasibility** following) {
-  return make_handle(following, "following", [&] {
-    require("feasibility scene", feasibility, scene);
-    return feasibility->checker.with_scene(scene->scene);
-  });
+  return make_handle(following, "following feasibility scene", {feasibility, scene},
+                     [&] { return feasibility->checker.with_scene(scene->scene); });
 }
 
 void vg_feasibility_release(vg_feasibility* feasibility) { delete feasibility; }

@@ -20,7 +20,7 @@ NoiseModel noise_of(const vg_sensor& sensor) {
   for_each_parameter(noise, [&](double& value, const auto&) { value = sensor.noise[used++]; });
   for (std::size_t i = used; i < std::size(sensor.noise); ++i) {
     if (sensor.noise[i] == 0) continue;
-    reject("noise[" + std::to_string(i) + "] is " + short_text(sensor.noise[i]) +
+    refuse("noise[" + std::to_string(i) + "] is " + short_text(sensor.noise[i]) +
            "; the noise model " + std::to_string(model) + " has " + std::to_string(used) +
            " parameters and the rest must be 0");
   }
@@ -80,15 +80,11 @@ using namespace viewgain::c_api;
 VG_DEFINE_INIT(vg_sensor)
 
 vg_status vg_sensor_preset(const char* name, vg_sensor* sensor) {
-  return guarded([&] {
-    require("name", name);
-    write_sensor(sensor_preset(name), sensor);
-  });
+  return guarded("name", {name}, [&] { write_sensor(sensor_preset(name), sensor); });
 }
 
 vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sensor, double* sigma) {
-  return guarded([&] {
-    require("sigma", sigma);
+  return guarded("sigma", {sigma}, [&] {
     const Sensor camera = sensor_of(sensor);
     camera.validate();
     *sigma = default_prior_sigma(voxel_size, camera);
@@ -97,9 +93,9 @@ vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sensor, dou
 
 vg_status vg_range_calibration_create(const vg_sensor* sensor, const double* table, size_t rows,
                                       vg_range_calibration** calibration) {
-  return make_handle(calibration, "calibration", [&] {
-    if (rows == 0) reject("rows is 0: a table of ranges has at least one");
-    require("table", table);
+  return make_handle(calibration, "calibration", {}, [&] {
+    if (rows == 0) refuse("rows is 0: a table of ranges has at least one");
+    require("table", {table});
     Sensor calibrated = sensor_of(sensor);
     for (std::size_t i = 0; i < rows; ++i) {
       calibrated.range_calibration.table.push_back({table[2 * i], table[2 * i + 1]});
@@ -110,8 +106,7 @@ vg_status vg_range_calibration_create(const vg_sensor* sensor, const double* tab
 }
 
 vg_status vg_range_calibration_correct(const vg_range_calibration* calibration, float* depth) {
-  return guarded([&] {
-    require("calibration depth", calibration, depth);
+  return guarded("calibration depth", {calibration, depth}, [&] {
     const PinholeCamera& camera = calibration->corrector.camera();
     const auto pixels =
         static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);

@@ -6,8 +6,6 @@
 #include <cstdio>
 #include <new>
 
-#include "viewgain/version.hpp"
-
 namespace viewgain::c_api {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -25,34 +26,31 @@ class VIEWGAIN_EXPORT Stopped : public std::runtime_error {
 /// Status of the exception in flight; keeps its message for vg_last_error().
 VIEWGAIN_EXPORT vg_status status_of_exception() noexcept;
 
-/// Runs the body of a function of the C interface; nothing it throws gets out.
+/// Throws Error(invalid_argument) for the first that is null; `names` has theirs, with blanks.
+inline void require(std::string_view names, std::initializer_list<const void*> pointers) {
+  for (const void* pointer : pointers) {
+    const std::string_view name = names.substr(0, names.find(' '));
+    if (pointer == nullptr) refuse(std::string(name) + " is null");
+    names.remove_prefix(std::min(names.size(), name.size() + 1));
+  }
+}
+
+/// An array among these, which may be null where it is empty.
+[[nodiscard]] inline const void* sized(const void* pointer, std::size_t count) {
+  return count > 0 ? pointer : "";
+}
+
+/// Runs the body of a function of the C interface, after require(); nothing it throws gets out.
 template <typename Body>
-vg_status guarded(const Body& body) noexcept {
+vg_status guarded(std::string_view names, std::initializer_list<const void*> pointers,
+                  const Body& body) noexcept {
   try {
+    require(names, pointers);
     body();
     return VG_OK;
   } catch (...) {
     return status_of_exception();
   }
-}
-
-[[noreturn]] inline void reject(const std::string& message) {
-  throw Error(ErrorCode::invalid_argument, message);
-}
-
-/// Throws Error(invalid_argument) for the first that is null; `names` has theirs, with blanks.
-template <typename... Pointers>
-void require(std::string_view names, const Pointers*... pointers) {
-  for (const bool is_null : {(pointers == nullptr)...}) {
-    const std::string_view name = names.substr(0, names.find(' '));
-    if (is_null) reject(std::string(name) + " is null");
-    names.remove_prefix(std::min(names.size(), name.size() + 1));
-  }
-}
-
-/// For arrays, which may be null where they are empty.
-inline void require_array(const void* pointer, std::size_t count, const char* name) {
-  if (count > 0) require(name, pointer);
 }
 
 /// What a struct's _init sets; zeros unless specialised.
@@ -65,14 +63,14 @@ template <typename Struct>
 template <typename Struct>
 void require_size(std::size_t size, const std::string& name) {
   if (size == sizeof(Struct)) return;
-  reject("the size of " + name + " is " + std::to_string(size) +
+  refuse("the size of " + name + " is " + std::to_string(size) +
          " bytes; in this library, " VIEWGAIN_VERSION ", it is " + std::to_string(sizeof(Struct)));
 }
 
 /// A struct that the caller has initialised, or for the library to fill.
 template <typename Struct>
 void require_struct(const Struct* value, const std::string& name) {
-  require(name, value);
+  require(name, {value});
   require_size<Struct>(value->struct_size, name + " (struct_size, set by its _init)");
 }
 
@@ -112,12 +110,13 @@ void initialise(Struct* value, std::size_t struct_size) noexcept {
     viewgain::c_api::initialise(value, struct_size);       \
   }
 
-/// Makes a handle with what `make` returns; null if it throws.
+/// Makes a handle with what `make` returns; null if it throws. The first name is the handle's.
 template <typename Handle, typename Make>
-vg_status make_handle(Handle** handle, const char* name, const Make& make) noexcept {
+vg_status make_handle(Handle** handle, std::string_view names,
+                      std::initializer_list<const void*> pointers, const Make& make) noexcept {
   if (handle != nullptr) *handle = nullptr;
-  return guarded([&] {
-    require(name, handle);
+  return guarded(names, {handle}, [&] {
+    require(names.substr(std::min(names.size(), names.find(' ') + 1)), pointers);
     *handle = new Handle{make()};
   });
 }

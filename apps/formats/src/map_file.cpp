@@ -80,13 +80,9 @@ VdbWriteConfig noting_frames(const std::set<std::string>& frames, VdbWriteConfig
 
 void check_map_name(const std::filesystem::path& path) {
   const std::string end = small_ending(path);
-  if (end == ".bt") {
-    throw Error(ErrorCode::invalid_argument,
-                path.string() + ": .bt files are read but not written; .ot ones are");
-  }
+  if (end == ".bt") refuse(path.string() + ": .bt files are read but not written; .ot ones are");
   if (end == ".vdb" || end == ".ot" || is_special_file(path)) return;
-  throw Error(ErrorCode::invalid_argument,
-              path.string() + ": the name of a map to write must end in .vdb or .ot");
+  refuse(path.string() + ": the name of a map to write must end in .vdb or .ot");
 }
 
 LostInTree save_map(const BeliefGrid& grid, const std::filesystem::path& path,

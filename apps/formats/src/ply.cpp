@@ -23,7 +23,7 @@ void append(std::string& bytes, Value value) {
 void write_ply(const std::filesystem::path& path, const PlyArrays& arrays) {
   const auto& [points, normals, sigma, triangles] = arrays;
   const auto refuse = [&](const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, path.string() + ": " + what);
+    viewgain::refuse(path.string() + ": " + what);
   };
   const auto check_count = [&](std::size_t count, const char* what) {
     if (count == 0 || count == points.size()) return;

@@ -124,9 +124,8 @@ std::string encoded(int width, int height, int color_type, const std::vector<Val
   constexpr int bit_depth = 8 * sizeof(Value);
   const std::size_t row = channels * static_cast<std::size_t>(std::max(width, 0));
   if (width <= 0 || height <= 0 || pixels.size() != row * static_cast<std::size_t>(height)) {
-    throw Error(ErrorCode::invalid_argument, "an image of " + std::to_string(width) + " x " +
-                                                 std::to_string(height) + " px with " +
-                                                 std::to_string(pixels.size()) + " values");
+    refuse("an image of " + std::to_string(width) + " x " + std::to_string(height) + " px with " +
+           std::to_string(pixels.size()) + " values");
   }
   PngState state;
   // libpng takes rows that it does not write to as non-const.

@@ -104,18 +104,14 @@ ReachRegion read_reach_toml(const std::filesystem::path& path) {
 
 void write_reach_toml(const std::filesystem::path& path, const ReachRegion& region) {
   region.validate();
-  if (region.predicate) {
-    throw Error(ErrorCode::invalid_argument,
-                path.string() + ": a region with a predicate cannot be written");
-  }
+  if (region.predicate) refuse(path.string() + ": a region with a predicate cannot be written");
   const auto xyz = [](const auto& v) { return toml::array{v[0], v[1], v[2]}; };
   toml::table root{{"format", kTomlFormat}};
   std::filesystem::path poses = path;
   poses.replace_extension(".poses.txt");
   if (!region.poses.empty()) {
     if (small_ending(path) != ".toml" || is_special_file(path)) {
-      throw Error(ErrorCode::invalid_argument,
-                  path.string() + ": the name of a region with poses must end in .toml");
+      refuse(path.string() + ": the name of a region with poses must end in .toml");
     }
     root.insert("poses", poses.filename().string());
   }
@@ -141,8 +137,7 @@ void write_reach_toml(const std::filesystem::path& path, const ReachRegion& regi
   text << root << "\n";
   if (!region.poses.empty()) {
     if (toml::parse(text.str())["poses"].value<std::string>() != poses.filename().string()) {
-      throw Error(ErrorCode::invalid_argument,
-                  path.string() + ": a TOML file cannot name " + poses.filename().string());
+      refuse(path.string() + ": a TOML file cannot name " + poses.filename().string());
     }
     const AtomicFile writable(path);  // known before the poses change
     write_tum(poses, region.poses);

@@ -3,9 +3,7 @@
 #include "viewgain/formats/recordings.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <set>
 #include <sstream>
 #include <string>
@@ -15,7 +13,6 @@
 #include "frames/frame_names.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
-#include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/formats/staged_folder.hpp"
 #include "viewgain/support/atomic_file.hpp"
@@ -161,9 +158,8 @@ std::vector<fs::path> imported_files(const fs::path& dir) {
   }
   for (const fs::path& file : files) {
     if (own.contains(file.string())) continue;
-    throw Error(ErrorCode::invalid_argument, (dir / file).string() + ": no file of import (" +
-                                                 kImported +
-                                                 " says which are); choose another folder");
+    refuse((dir / file).string() + ": no file of import (" + kImported +
+           " says which are); choose another folder");
   }
   return files;
 }
@@ -212,9 +208,6 @@ class RecordedFolder {
 };
 
 void check(const fs::path& source, const ImportConfig& config) {
-  const auto refuse = [](const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, what);
-  };
   if (!(config.max_time_gap >= 0)) {
     refuse("the gap of time " + short_text(config.max_time_gap) + " must not be negative");
   }

@@ -12,8 +12,8 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/support/atomic_file.hpp"
-#include "viewgain/support/nearest_name.hpp"
 #include "viewgain/support/noise_fields.hpp"
+#include "viewgain/support/text.hpp"
 #include "viewgain/support/toml_table.hpp"
 
 namespace viewgain {
@@ -236,9 +236,8 @@ Sensor load_sensor(const std::string& preset_or_file) {
   if (is_sensor_file(preset_or_file)) return read_sensor_toml(preset_or_file);
   const std::vector<std::string>& names = sensor_preset_names();
   if (std::find(names.begin(), names.end(), preset_or_file) == names.end()) {
-    throw Error(ErrorCode::invalid_argument,
-                "sensor \"" + preset_or_file + "\": no such preset, and no .toml file" +
-                    did_you_mean(preset_or_file, names) + " (there are " + listed(names) + ")");
+    refuse("sensor \"" + preset_or_file + "\": no such preset, and no .toml file" +
+           did_you_mean(preset_or_file, names) + " (there are " + listed(names) + ")");
   }
   return sensor_preset(preset_or_file);
 }

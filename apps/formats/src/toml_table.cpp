@@ -11,7 +11,6 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/file_bytes.hpp"
-#include "viewgain/support/nearest_name.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {

@@ -8,11 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "classic_map_data.hpp"
+#include "classic_table.hpp"
 #include "gain_sums.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/literature/classic_gains.hpp"
-#include "viewgain/support/nearest_name.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/view_rays.hpp"
 
@@ -82,17 +81,13 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-[[noreturn]] void reject(const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, what);
-}
-
 void check_gains(const std::vector<ClassicGain>& gains) {
-  if (gains.empty()) reject("no classic gain is asked for");
+  if (gains.empty()) refuse("no classic gain is asked for");
   for (std::size_t i = 0; i < gains.size(); ++i) {
     if (std::find(gains.begin(), gains.begin() + static_cast<std::ptrdiff_t>(i), gains[i]) !=
         gains.begin() + static_cast<std::ptrdiff_t>(i)) {
       std::string text("the classic gain ");
-      reject(text.append(classic_gain_name(gains[i])).append(" is asked for twice"));
+      refuse(text.append(classic_gain_name(gains[i])).append(" is asked for twice"));
     }
   }
 }
@@ -101,20 +96,20 @@ const ClassicConfig& checked(const ClassicConfig& config) {
   check_gains(config.gains);
   const double prior = config.unknown_prior;
   if (!(prior >= 0 && prior <= 1)) {
-    reject("the unknown voxels' prior is " + short_text(prior) + "; it must be in 0..1");
+    refuse("the unknown voxels' prior is " + short_text(prior) + "; it must be in 0..1");
   }
   return config;
 }
 
 std::shared_ptr<const ClassicMap> checked(std::shared_ptr<const ClassicMap> map,
                                           const ClassicConfig& config) {
-  if (!map) reject("the classic gains have no map");
+  if (!map) refuse("the classic gains have no map");
   const OcclusionKnown known = ClassicAccess::data(*map).occlusion;
   for (const ClassicGain gain : config.gains) {
     if (!needs_occlusion(gain) || known == OcclusionKnown::yes) continue;
     std::string text(classic_gain_name(gain));
     text.append(" needs to know what earlier views have left behind surfaces: ");
-    reject(text.append(known == OcclusionKnown::no_views
+    refuse(text.append(known == OcclusionKnown::no_views
                            ? "the map remembers no views"
                            : "the sensor that the map's readings came from is not given"));
   }
@@ -264,11 +259,11 @@ std::size_t ClassicGainEvaluator::evaluate(std::span<const Pose> T_world_camera,
                                            const BatchControl& control) const {
   const std::size_t poses = T_world_camera.size(), gains = config().gains.size();
   if (results.size() != poses * gains) {
-    reject(std::to_string(poses) + " poses of " + std::to_string(gains) + " gains but room for " +
+    refuse(std::to_string(poses) + " poses of " + std::to_string(gains) + " gains but room for " +
            std::to_string(results.size()) + " results");
   }
   if (!statuses.empty() && statuses.size() != poses) {
-    reject(std::to_string(poses) + " poses but room for " + std::to_string(statuses.size()) +
+    refuse(std::to_string(poses) + " poses but room for " + std::to_string(statuses.size()) +
            " statuses");
   }
   std::fill(results.begin(), results.end(), kNaN);

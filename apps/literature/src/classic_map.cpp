@@ -5,10 +5,9 @@
 // surfaces.
 #include <cmath>
 #include <mutex>
-#include <string>
 #include <utility>
 
-#include "classic_map_data.hpp"
+#include "classic_table.hpp"
 #include "gain_sums.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/text.hpp"
@@ -22,23 +21,19 @@ using namespace detail;
 // A ray enters at most √3 voxels a voxel's length, and steps are kept in a byte.
 constexpr double kMostDepth = 140;  // [voxels]
 
-[[noreturn]] void reject(const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, what);
-}
-
 void check(const VoxelScene* scene, const BeliefGrid& grid,
            const std::optional<Acquisition>& acquisition) {
-  if (scene == nullptr) reject("the classic gains have no scene");
+  if (scene == nullptr) refuse("the classic gains have no scene");
   const GridSnapshot& snapshot = scene->snapshot();
   if (!(snapshot.min_index == grid.min_index() && snapshot.dims == grid.dims() &&
         snapshot.voxel_size == grid.voxel_size() && snapshot.T_world_grid == grid.T_world_grid())) {
-    reject("the scene is not of this map: their workspaces differ");
+    refuse("the scene is not of this map: their workspaces differ");
   }
   if (!acquisition) return;
   acquisition->sensor.validate();
   const double depth = acquisition->occlusion_depth;
   if (!std::isfinite(depth) || depth < 0 || depth > kMostDepth * grid.voxel_size()) {
-    reject("the occlusion depth is " + short_text(depth) + " m; it must be in 0.." +
+    refuse("the occlusion depth is " + short_text(depth) + " m; it must be in 0.." +
            short_text(kMostDepth * grid.voxel_size()) + " m, " + short_text(kMostDepth) +
            " voxels of this map");
   }

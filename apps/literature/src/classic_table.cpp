@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "viewgain/support/grid_blocks.hpp"
+#include "viewgain/support/block_lattice.hpp"
 
 namespace viewgain::detail {
 namespace {

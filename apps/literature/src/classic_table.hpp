@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/support/brick_index.hpp"
 #include "viewgain/support/log_odds_code.hpp"
 
@@ -114,6 +116,25 @@ struct ClassicTable : BrickIndex {
   void find_frontiers(const std::vector<Index3>& with_occupied);
   void mark_frontiers(Index3 brick);
   void find_cubes();
+};
+
+/// Whether occlusion distances are known, or what is missing.
+enum class OcclusionKnown : std::uint8_t { yes, no_sensor, no_views };
+
+/// What ClassicMap owns.
+struct ClassicMapData {
+  std::shared_ptr<const VoxelScene> scene;
+  ClassicTable table;
+  OcclusionKnown occlusion = OcclusionKnown::no_sensor;
+  double occlusion_depth = 0;  ///< [voxels]
+
+  ClassicMapData(std::shared_ptr<const VoxelScene> s, const BeliefGrid& grid)
+      : scene(std::move(s)), table(grid) {}
+};
+
+/// The way into a map for this library.
+struct ClassicAccess {
+  [[nodiscard]] static const ClassicMapData& data(const ClassicMap& map) { return *map.data_; }
 };
 
 }  // namespace viewgain::detail

@@ -5,16 +5,190 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <numbers>
+#include <numeric>
+#include <tuple>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/planner/hazard_views.hpp"
+#include "viewgain/planner/point_arrays.hpp"
 #include "viewgain/planner/stop_settings.hpp"
 #include "viewgain/planner_mesh/mesh_area.hpp"
-#include "viewgain/support/mix64.hpp"
-#include "viewgain/support/nearest_name.hpp"
+#include "viewgain/support/hash64.hpp"
+#include "viewgain/support/text.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
+namespace {
+
+// How far each patch is from the middle of its run, in patches.
+std::vector<double> distances_from_the_middle(const EstimatedViews& estimated) {
+  const std::vector<std::uint32_t>& run_of_patch = estimated.run_of_patch;
+  std::vector<double> distances(run_of_patch.size());
+  for (std::size_t first = 0; first < run_of_patch.size();) {
+    std::size_t end = first;
+    while (end < run_of_patch.size() && run_of_patch[end] == run_of_patch[first]) ++end;
+    const double middle = 0.5 * static_cast<double>(first + end - 1);
+    for (; first < end; ++first) distances[first] = std::abs(static_cast<double>(first) - middle);
+  }
+  return distances;
+}
+
+// At which a view has about 400 rays, which rank views nearly as well as all.
+int coarse_stride(const PinholeCamera& camera) {
+  const double pixels = static_cast<double>(camera.width) * camera.height;
+  return std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / 400))));
+}
+
+const double kLeastCosine = std::cos(72.0 * std::numbers::pi / 180);
+
+const KnownObject& checked(const KnownObject& object) {
+  if (!object.mesh || !object.truth) {
+    refuse("policy \"oracle\" needs the object's mesh, which only a simulation knows");
+  }
+  return object;
+}
+
+SimulationConfig without_noise(SimulationConfig config) {
+  config.noise = config.lateral_noise = false;
+  config.scale_error = 0;
+  config.sub_rays = 1;
+  return config;
+}
+
+}  // namespace
+
+std::vector<bool> BoundaryOrder::tried_runs(const EstimatedViews& estimated) const {
+  std::vector<bool> tried(estimated.runs.size());
+  for (std::size_t patch = 0; patch < estimated.patches.size(); ++patch) {
+    const std::uint32_t run = estimated.run_of_patch[patch];
+    for (const Try& before : tried_) {
+      if (before.boundary_class == estimated.runs[run].boundary_class &&
+          (before.place - estimated.patches[patch].origin).norm() <= same_place_) {
+        tried[run] = true;
+      }
+    }
+  }
+  return tried;
+}
+
+std::optional<std::size_t> BoundaryOrder::next(std::span<const Candidate> candidates,
+                                               const EstimatedViews& estimated) {
+  const std::vector<bool> tried = tried_runs(estimated);
+  const std::vector<double> off_middle = distances_from_the_middle(estimated);
+  const auto proposed = [&](std::size_t i) -> const BoundaryCandidate& {
+    return estimated.candidates[candidates[i].number.value()];
+  };
+  const auto rank = [&](const BoundaryCandidate& c) {
+    return std::tuple(c.boundary_class, -estimated.runs[c.run].length, c.run, off_middle[c.patch],
+                      c.patch);
+  };
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!candidates[i].boundary_class) continue;  // a pose of the reachable list
+    if (!proposed(i).nominal || tried[proposed(i).run]) continue;
+    if (!first || rank(proposed(i)) < rank(proposed(*first))) first = i;
+  }
+  if (first) {
+    const BoundaryCandidate& c = proposed(*first);
+    tried_.push_back({c.boundary_class, estimated.patches[c.patch].origin});
+  }
+  return first;
+}
+
+ClassicChoice::ClassicChoice(const SurfaceModel& model, const Sensor& sensor, ClassicGain gain,
+                             const ExecConfig& exec)
+    : model_(model), sensor_(sensor), gain_(gain), exec_(exec) {}
+
+std::vector<double> ClassicChoice::gains(std::span<const Pose> T_world_camera, bool all) {
+  const auto acquisition =
+      needs_occlusion(gain_) ? std::optional(Acquisition{sensor_}) : std::nullopt;
+  const auto map = ClassicMap::build(model_.scene(), model_.grid(), acquisition, exec_);
+  const auto follow = [&](std::optional<ClassicGainEvaluator>& evaluator, int stride) {
+    if (evaluator) {
+      evaluator = evaluator->with_map(map);
+      return;
+    }
+    ClassicConfig config;
+    config.gains = {gain_};
+    config.pixel_stride = stride;
+    evaluator.emplace(map, sensor_, config, exec_);
+  };
+  follow(full_, 1);
+  if (all || T_world_camera.size() <= kInFull) return full_->evaluate(T_world_camera);
+
+  follow(coarse_, coarse_stride(sensor_.camera));
+  std::vector<double> few = coarse_->evaluate(T_world_camera);
+  for (double& gain : few) {
+    if (std::isnan(gain)) gain = -std::numeric_limits<double>::infinity();
+  }
+  std::vector<std::size_t> order(few.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return few[a] > few[b]; });
+  order.resize(kInFull);
+  std::vector<Pose> best;
+  for (const std::size_t i : order) best.push_back(T_world_camera[i]);
+  const std::vector<double> exact = full_->evaluate(best);
+  std::vector<double> gains(few.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = 0; k < order.size(); ++k) gains[order[k]] = exact[k];
+  return gains;
+}
+
+OracleChoice::OracleChoice(const SurfaceModel& model, const Sensor& sensor,
+                           const KnownObject& object, const ExecConfig& exec)
+    : model_(model),
+      sensor_(sensor),
+      object_(checked(object)),
+      exec_(exec),
+      camera_(object.mesh, sensor, without_noise(object.simulation), exec) {}
+
+std::vector<std::size_t> OracleChoice::uncovered_in_view(
+    std::span<const Candidate> candidates) const {
+  const GroundTruth& truth = object_.truth->ground_truth();
+  const std::vector<double> distances = truth.distances_to(model_.surface().vertices);
+  std::vector<SurfaceSample> uncovered;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if (!(distances[i] <= object_.truth->tolerance())) uncovered.push_back(truth.samples()[i]);
+  }
+  std::vector<std::size_t> counts(candidates.size());
+  ThreadPool pool(exec_.num_threads);
+  pool.for_each_chunk(candidates.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::vector<std::uint8_t> seen(uncovered.size());
+      mark_seen(*object_.mesh, object_.simulation.surroundings.get(), sensor_,
+                candidates[i].T_world_camera, kLeastCosine, uncovered, seen);
+      counts[i] = static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 1));
+    }
+  });
+  return counts;
+}
+
+std::size_t OracleChoice::covered_after(const Pose& T_world_camera) const {
+  const auto points = model_.points_after({T_world_camera, {camera_.acquire(T_world_camera)}});
+  const std::vector<double> distances =
+      object_.truth->ground_truth().distances_to(arrays_of(points).positions);
+  return static_cast<std::size_t>(std::count_if(distances.begin(), distances.end(), [&](double d) {
+    return d <= object_.truth->tolerance();
+  }));
+}
+
+std::size_t OracleChoice::next(std::span<const Candidate> candidates) const {
+  const std::vector<std::size_t> counts = uncovered_in_view(candidates);
+  std::vector<std::size_t> ranking(candidates.size());
+  std::iota(ranking.begin(), ranking.end(), std::size_t{0});
+  std::stable_sort(ranking.begin(), ranking.end(),
+                   [&](std::size_t a, std::size_t b) { return counts[a] > counts[b]; });
+  ranking.resize(std::min(ranking.size(), kSimulated));
+  std::sort(ranking.begin(), ranking.end());
+  std::size_t best = ranking.front(), most = 0;
+  for (const std::size_t i : ranking) {
+    const std::size_t covered = covered_after(candidates[i].T_world_camera);
+    if (covered > most) most = covered, best = i;
+  }
+  return best;
+}
+
 const std::vector<std::string>& policy_names() {
   static const std::vector<std::string> names{"gain",     "kriegel",   "sequence", "random",
                                               "frontier", "fibonacci", "oracle"};
@@ -29,11 +203,10 @@ void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                     std::optional<double> stop_gain, std::optional<double> stop_area) {
   const bool by_gain = policy.policy == Policy::gain && !policy.classic;
   if (!by_gain && stop_area.value_or(0) > 0) {
-    throw Error(ErrorCode::invalid_argument,
-                "stop_area goes with policy gain by the gains surface and combined");
+    refuse("stop_area goes with policy gain by the gains surface and combined");
   }
   if (!by_gain && stop_gain.value_or(0) > 0) {
-    throw Error(ErrorCode::invalid_argument, "stop_gain goes with policy gain by the gain paper");
+    refuse("stop_gain goes with policy gain by the gain paper");
   }
   // A policy without a gain per voxel never asks for the rule of the paper's.
   set_stop_rules(planning, by_gain ? policy.model : GainModel::paper, policy.criterion, stop_gain,
@@ -51,8 +224,7 @@ PolicyDecision::PolicyDecision(const SurfaceModel& model, CandidateGeneration& g
       order_(0.5 * generation.config().boundary.estimator.patch_length) {
   config.ahead.check();
   if (config.ahead.is_on() && !is_by_gain()) {
-    throw Error(ErrorCode::invalid_argument,
-                "views are planned ahead by policy gain by the gains paper, surface and combined");
+    refuse("views are planned ahead by policy gain by the gains paper, surface and combined");
   }
   if (config.policy == Policy::oracle) oracle_.emplace(model, sensor, config.object, exec);
   if (config.policy == Policy::gain && config.classic) {

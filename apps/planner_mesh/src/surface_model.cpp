@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/ply.hpp"
+#include "viewgain/planner/point_arrays.hpp"
 #include "viewgain/planner_mesh/mesh_area.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
@@ -17,6 +19,16 @@ namespace {
 SurfaceModelConfig with_scale(SurfaceModelConfig config, const Sensor& sensor) {
   config.points.scale_sigma = sensor.scale_sigma;
   return config;
+}
+
+std::vector<float> point_sigmas(const PointArrays& points) {
+  std::vector<float> sigmas;
+  sigmas.reserve(points.normals.size());
+  for (std::size_t i = 0; i < points.normals.size(); ++i) {
+    const Eigen::Vector3d n(points.normals[i].data());
+    sigmas.push_back(static_cast<float>(std::sqrt(n.dot(points.covariances[i] * n))));
+  }
+  return sigmas;
 }
 
 }  // namespace
@@ -109,6 +121,49 @@ std::vector<FusedPoint> SurfaceModel::points_after(const Measurements& measureme
 void SurfaceModel::derive_surface() {
   points_ = fused_points(grid(), config_.points, exec_);
   surface_ = surface_of(points_, exec_);
+}
+
+RegisteredModel::RegisteredModel(SurfaceModel& model, const MapModelConfig& map,
+                                 const PoseSigma& sigma, const ExecConfig& exec)
+    : model_(model), sigma_(sigma), alignment_(model.map().sensor(), map, exec) {}
+
+ModelProgress RegisteredModel::update(const Measurements& measurements) {
+  if (measurements.frames.empty()) refuse("a view without a frame cannot be registered");
+  const Stopwatch watch;
+  alignment_.add(measurements.frames.front(), measurements.T_world_camera, sigma_);
+  views_.push_back(measurements);
+  std::vector<Measurements> kept;
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    const FrameRegistration& registration = registrations()[i];
+    if (registration.status == RegistrationStatus::refused) continue;
+    kept.push_back(views_[i]);
+    kept.back().T_world_camera = registration.T_world_camera;
+    kept.back().pose_sigma = registration.pose_sigma();
+  }
+  const double seconds = watch.seconds();
+  ModelProgress progress = views_.size() == 1 ? model_.update(kept.front()) : model_.rebuild(kept);
+  // What the last view brought, not the last that was kept.
+  if (registrations().back().status == RegistrationStatus::refused) progress.new_area = 0;
+  progress.seconds["register"] = seconds;
+  return progress;
+}
+
+void write_surfaces(const SurfaceMesh& surface, const std::vector<FusedPoint>& points,
+                    const std::filesystem::path& surface_file,
+                    const std::filesystem::path& points_file) {
+  if (!surface_file.empty()) {
+    const std::vector<double> sigmas = surface_sigmas(surface, points);
+    write_ply(surface_file, {surface.vertices, surface.normals,
+                             std::vector<float>(sigmas.begin(), sigmas.end()), surface.triangles});
+  }
+  if (points_file.empty()) return;
+  const PointArrays arrays = arrays_of(points);
+  write_ply(points_file, {arrays.positions, arrays.normals, point_sigmas(arrays)});
+}
+
+void write_surfaces(const SurfaceModel& model, const std::filesystem::path& surface_file,
+                    const std::filesystem::path& points_file) {
+  write_surfaces(model.surface(), model.points(), surface_file, points_file);
 }
 
 }  // namespace viewgain

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,5 +48,22 @@ void add_switch(App& app, const std::string& name, std::string& value, const std
 [[nodiscard]] inline bool is_bare(const Option& option) {
   return option.get_items_expected_max() == 0;
 }
+
+/// What is given on the command line of a subcommand itself.
+struct GivenWords {
+  std::set<const Option*> options;
+  std::vector<std::string> positionals;
+  bool has_mark = false;  ///< a bare --, after which all words are positionals
+};
+
+/// A subcommand and, where it has one, its other form, which takes flags of its own.
+using Forms = std::vector<App*>;
+
+/// Sorts the words after the subcommand, which may name these options. Throws
+/// Error(invalid_argument) for another flag, naming the one of `forms` that it goes with or the
+/// nearest, and for one whose value is missing.
+[[nodiscard]] GivenWords sort_words(const App& subcommand, const Forms& forms,
+                                    const std::vector<const Option*>& options,
+                                    const std::vector<std::string>& words);
 
 }  // namespace viewgain::app

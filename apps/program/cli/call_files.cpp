@@ -19,8 +19,8 @@
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/reach_toml.hpp"
-#include "viewgain/formats/run_folder.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/formats/staged_folder.hpp"
 #include "viewgain/support/atomic_file.hpp"
 
 namespace viewgain::app {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "program/cli/app.hpp"
-#include "program/cli/words.hpp"
 
 namespace viewgain::app {
 

@@ -4,14 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
-
-#include "viewgain/core/error.hpp"
-#include "viewgain/support/nearest_name.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -31,8 +27,6 @@ std::string general_text(double value, int digits) {
 }
 
 }  // namespace
-
-void refuse(const std::string& what) { throw Error(ErrorCode::invalid_argument, what); }
 
 void refuse(std::string_view flag, std::string_view value, const std::string& what) {
   refuse(std::string(flag) + " " + std::string(value) + ": " + what);

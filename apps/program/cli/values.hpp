@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "viewgain/core/box.hpp"
+#include "viewgain/core/error.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::app {
 
-/// Throws Error(invalid_argument).
-[[noreturn]] void refuse(const std::string& what);
-/// Likewise: "FLAG VALUE: what".
+using viewgain::refuse;
+/// Of "FLAG VALUE: what".
 [[noreturn]] void refuse(std::string_view flag, std::string_view value, const std::string& what);
 
 /// Numbers separated by commas; each must be finite and their count in [min_count, max_count].

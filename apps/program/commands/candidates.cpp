@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/flags/sensed_map.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
@@ -96,9 +96,7 @@ void candidates(const Options& options) {
   const Proposal proposal = generation.generate({});
   const Order ranking = rank(options.proposal, model, sensor, exec, proposal.candidates);
   std::vector<Pose> poses;
-  for (const std::size_t i : ranking.order) {
-    poses.push_back(proposal.candidates[i].T_world_camera);
-  }
+  for (const std::size_t i : ranking.order) poses.push_back(proposal.candidates[i].T_world_camera);
   if (!poses.empty()) write_tum(options.out, poses);
 
   const EstimatedViews& estimated = generation.estimated();

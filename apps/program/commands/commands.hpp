@@ -26,7 +26,9 @@ struct Command {
 /// The other form of a subcommand.
 [[nodiscard]] inline std::shared_ptr<App> app_of_frames(const std::string& subcommand,
                                                         const std::string& description) {
-  return std::make_shared<App>(description, "viewgain " + subcommand);
+  auto app = std::make_shared<App>(description, "viewgain " + subcommand);
+  app->option_defaults()->always_capture_default();
+  return app;
 }
 
 /// Thrown by a command that a signal stopped before it was done: one line, exit code 130.

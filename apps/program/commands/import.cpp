@@ -104,8 +104,7 @@ Command add_import(App& program) {
                       "without --intrinsics");
   app->add_option("--intrinsics", options->intrinsics, "fx,fy,cx,cy [px]; default: the sensor's");
   app->add_option("--max-time-gap", options->max_time_gap,
-                  "between an image and its pose [s]; nothing is interpolated")
-      ->capture_default_str();
+                  "between an image and its pose [s]; nothing is interpolated");
   add_mask_options(*app, options->mask, options->confidence, options->least_confidence);
   app->add_option(
          "--out", options->out,

@@ -146,7 +146,6 @@ Command add_info(App& program) {
                 "print only the hash of grids and metadata: equal maps have equal ones");
   app->add_option("--criterion", options->criterion,
                   "of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
-      ->capture_default_str()
       ->check(one_of(criterion_names(), "criterion"));
   app->add_option("--region", options->region,
                   "x0,y0,z0,x1,y1,z1: also how well this part is known, grid frame [m]");

@@ -5,25 +5,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <initializer_list>
-#include <memory>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "program/cli/flags/scene_sources.hpp"
-#include "program/cli/flags/sensed_map.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "program/commands/frames/reading_source.hpp"
-#include "program/commands/frames/registration_json.hpp"
 #include "program/commands/map_json.hpp"
 #include "viewgain/formats/map_file.hpp"
-#include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -143,13 +137,7 @@ Totals integrate_all(ReadingSource& source, const Options& options, std::set<std
         totals.masked_pixels += source.masked_pixels();
       }
       totals.jump_edge_removed += update.flying_pixels;
-      const IntegrationReport& report = update.counts;
-      totals.sum.readings += report.readings;
-      totals.sum.readings_inside += report.readings_inside;
-      totals.sum.plane_readings += report.plane_readings;
-      totals.sum.out_of_range += report.out_of_range;
-      totals.sum.invalid += report.invalid;
-      totals.sum.voxels_crossed += report.voxels_crossed;
+      totals.sum += update.counts;
     }
     totals.tally.add(source.file(i), fault);
     if (!is_in_map(fault.verdict)) frames.erase(identity);  // it may be mended
@@ -312,8 +300,7 @@ Command add_integrate(App& program) {
       ->allow_extra_args(false);
   app->add_option("--origin", options->origin,
                   "x,y,z of the clouds' sensor [m], their points being in the world; or viewpoint: "
-                  "what each .pcd's VIEWPOINT says")
-      ->capture_default_str();
+                  "what each .pcd's VIEWPOINT says");
   app->add_option("--poses", options->poses,
                   "TUM file, line i for the i-th cloud, sensor to world; the clouds' points are "
                   "then in the sensor's frame, a VIEWPOINT does not count");
@@ -328,13 +315,10 @@ Command add_integrate(App& program) {
   add_frame_folder_options(*app, options->frames);
   app->add_option("--carve", options->carve,
                   "voxels that a pixel crosses: those in its pyramid, or on its ray")
-      ->capture_default_str()
       ->check(one_of({"cones", "lines"}, "way of carving"));
   app->add_option("--occupancy", options->occupancy, "log-odds, or the paper's literal rule")
-      ->capture_default_str()
       ->check(one_of({"probabilistic", "literal"}, "rule"));
-  app->add_option("--jump-edge-filter", options->jump_edge_filter, kJumpEdgeHelp)
-      ->capture_default_str();
+  app->add_option("--jump-edge-filter", options->jump_edge_filter, kJumpEdgeHelp);
   add_scale_options(*app, options->scales);
   app->add_option("--support-plane", options->support_plane,
                   "height z of the table [m]: its readings carve but do not hit; default: none");

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "program/cli/flags/next_views.hpp"
-#include "program/cli/flags/sensed_map.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
 #include "program/commands/commands.hpp"

@@ -13,7 +13,7 @@
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "show/pictures/map_picture.hpp"
-#include "show/pictures/surface_picture.hpp"
+#include "show/pictures/view_picture.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
@@ -117,12 +117,9 @@ Command add_render(App& program) {
       app->add_option("--what", o.what, "map (its voxels), surface or sigma (how well it is known)")
           ->required();
   what->check(one_of({"map", "surface", "sigma"}, "kind of picture"));
-  app->add_option("--width", o.width, "of the picture [px]")
-      ->check(CLI::Range(64, 8192, "width"))
-      ->capture_default_str();
-  app->add_option("--azimuth", o.azimuth, "of the viewer, from +x to +y [deg]")
-      ->capture_default_str();
-  app->add_option("--elevation", o.elevation, "of the viewer [deg]")->capture_default_str();
+  app->add_option("--width", o.width, "of the picture [px]")->check(CLI::Range(64, 8192, "width"));
+  app->add_option("--azimuth", o.azimuth, "of the viewer, from +x to +y [deg]");
+  app->add_option("--elevation", o.elevation, "of the viewer [deg]");
   app->add_option("--out", o.out, "PNG file to write")->required();
   add_common_options(*app, o.common);
   add_help(*app, kLookGroup, "render run --what sigma --out sigma.png");

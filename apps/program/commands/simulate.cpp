@@ -21,7 +21,7 @@
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
-#include "viewgain/planner/pose_noise.hpp"
+#include "viewgain/planner/simulated_acquisition.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -201,7 +201,6 @@ Command add_simulate(App& program) {
                   "the file's own size, in metres");
   add_switch(*app, "--recenter", options->recenter, "move the bounding box's centre to the origin");
   app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
-      ->capture_default_str()
       ->check(one_of({"x", "y", "z"}, "axis"));
   app->add_option(
       "--place", options->place,
@@ -211,8 +210,7 @@ Command add_simulate(App& program) {
   add_sensing_options(*app, options->sensing);
   app->add_option("--frames-per-view", options->frames_per_view,
                   "frames from each pose, numbered on; poses.txt repeats the pose")
-      ->check(counted(1, 1000))
-      ->capture_default_str();
+      ->check(counted(1, 1000));
   app->add_option("--amplitude", options->amplitude,
                   "write amplitude images; default: on for sensors with shot noise")
       ->check(on_or_off());

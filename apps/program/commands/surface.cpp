@@ -9,21 +9,18 @@
 #include <memory>
 #include <numbers>
 #include <optional>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/reconstruct/run_report.hpp"
+#include "program/commands/reconstruct/run_outputs.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/mesh/quality.hpp"
 #include "viewgain/planner/point_arrays.hpp"
 #include "viewgain/planner_mesh/mesh_area.hpp"
-#include "viewgain/planner_mesh/surface_files.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -177,7 +174,6 @@ Command add_surface(App& program) {
   add_switch(*app, "--recenter", options->recenter,
              "the middle of the truth's bounding box becomes the origin");
   app->add_option("--up", options->up, "axis of the truth that is turned to +z")
-      ->capture_default_str()
       ->check(one_of({"x", "y", "z"}, "axis"));
   add_common_options(*app, options->common);
   add_help(*app, kLookGroup, "surface map.vdb --out surface.ply --points points.ply");

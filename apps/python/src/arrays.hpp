@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,6 +22,7 @@
 namespace viewgain::python {
 
 namespace py = pybind11;
+using namespace py::literals;
 
 // From Python's arrays to the library's types and back. All need the GIL. `name` is the argument's,
 // for messages; each throws py::value_error that names it and the shape or dtype that came.
@@ -126,5 +128,13 @@ template <typename... Values>
 [[nodiscard]] std::string readable_file(const py::handle& value);
 /// The same where a file can be made; does not look whether a disk is full.
 [[nodiscard]] std::string writable_file(const py::handle& value);
+
+using Labels =
+    pybind11::array_t<std::uint8_t, pybind11::array::c_style | pybind11::array::forcecast>;
+
+/// Whole numbers of the shape (nx, ny, nz), not yet looked at. Raises ValueError.
+[[nodiscard]] pybind11::array any_labels(const pybind11::object& labels);
+/// Raises ValueError, naming the labels that are no states.
+void require_states(const pybind11::array& labels);
 
 }  // namespace viewgain::python

@@ -134,7 +134,7 @@ A control that was stopped stays so: make one for each call. Ctrl-C is honoured 
              control->progress = std::move(progress);
              return control;
            }),
-           py::arg("progress") = py::none())
+           "progress"_a = py::none())
       .def(
           "stop", [](Control& control) { control.stop.request_stop(); },
           "Ask the running call to return early, with what it has. Any thread may call it.")

@@ -12,6 +12,7 @@
 namespace viewgain::python {
 
 namespace py = pybind11;
+using namespace py::literals;
 
 /// Watches or ends long calls from Python: a callable that is told how far a call is, and stop(),
 /// which any thread may call.

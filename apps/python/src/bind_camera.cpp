@@ -84,12 +84,11 @@ made; a frame is linear in pixels and sub_rays**2, 2 ms for 176x144 pixels on tw
              return std::unique_ptr<Simulation>(
                  new Simulation{sensor, SimulatedSensor(std::move(scene), sensor, config, exec)});
            }),
-           py::arg("vertices"), py::arg("triangles"), py::arg("sensor"), py::kw_only(),
-           py::arg("background_radius") = defaults.background_radius,
-           py::arg("noise") = defaults.noise, py::arg("lateral_noise") = defaults.lateral_noise,
-           py::arg("scale_error") = defaults.scale_error, py::arg("sub_rays") = defaults.sub_rays,
-           py::arg("seed") = defaults.seed, py::arg("support_plane") = py::none(),
-           py::arg("num_threads") = 0)
+           "vertices"_a, "triangles"_a, "sensor"_a, py::kw_only(),
+           "background_radius"_a = defaults.background_radius, "noise"_a = defaults.noise,
+           "lateral_noise"_a = defaults.lateral_noise, "scale_error"_a = defaults.scale_error,
+           "sub_rays"_a = defaults.sub_rays, "seed"_a = defaults.seed,
+           "support_plane"_a = py::none(), "num_threads"_a = 0)
       .def(
           "acquire",
           [](const Simulation& self, const py::object& T_world_camera, std::uint64_t frame_index) {
@@ -99,7 +98,7 @@ made; a frame is linear in pixels and sub_rays**2, 2 ms for 176x144 pixels on tw
             return named("SimulatedFrame", image_array(frame.depth, frame.height, frame.width),
                          image_array(frame.amplitude, frame.height, frame.width));
           },
-          py::arg("T_world_camera"), py::arg("frame_index") = 0,
+          "T_world_camera"_a, "frame_index"_a = 0,
           R"(The frame seen from a pose. Equal seed, index and pose give equal frames.
 
 Parameters
@@ -173,10 +172,10 @@ distortion : sequence of float, (5,), optional
              camera.validate();
              return camera;
            }),
-           py::arg("width"), py::arg("height"), py::kw_only(), py::arg("fx"), py::arg("fy"),
-           py::arg("cx"), py::arg("cy"), py::arg("distortion") = std::array<double, 5>{})
-      .def_static("from_matrix", &camera_of_matrix, py::arg("K"), py::arg("width"),
-                  py::arg("height"), py::kw_only(), py::arg("distortion") = std::array<double, 5>{},
+           "width"_a, "height"_a, py::kw_only(), "fx"_a, "fy"_a, "cx"_a, "cy"_a,
+           "distortion"_a = std::array<double, 5>{})
+      .def_static("from_matrix", &camera_of_matrix, "K"_a, "width"_a, "height"_a, py::kw_only(),
+                  "distortion"_a = std::array<double, 5>{},
                   R"(A camera from its intrinsic matrix, as OpenCV and ROS have it.
 
 Parameters
@@ -236,7 +235,7 @@ ndarray, (height, width, 3), float64
             }
             return pixels;
           },
-          py::arg("points"), R"(Pixel coordinates of points in the camera frame.
+          "points"_a, R"(Pixel coordinates of points in the camera frame.
 
 Cost: linear in the points, some 10 ns each.
 

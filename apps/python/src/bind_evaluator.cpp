@@ -292,39 +292,33 @@ void bind_evaluator(py::module_& module) {
   auto evaluator = bound_class<Evaluator>(module, "GainEvaluator", kEvaluatorDoc);
   refuse_pickling(evaluator);
   evaluator
-      .def(py::init(&make_evaluator), py::arg("scene"), py::arg("sensor"), py::kw_only(),
-           py::arg("gain") = gain_model_name(kDefaultGain), py::arg("criterion") = "log_diagonal",
-           py::arg("pixel_stride") = 1, py::arg("prior_sigma") = py::none(),
-           py::arg("min_range") = py::none(), py::arg("max_range") = py::none(),
-           py::arg("weights") = py::tuple(), py::arg("refinement_weight") = py::none(),
-           py::arg("posterior_entropy") = false, py::arg("tracer") = "automatic",
-           py::arg("num_threads") = 0)
-      .def("with_scene", &with_scene, py::arg("scene"), kWithSceneDoc)
-      .def("evaluate", &evaluate, py::arg("T_world_camera"), py::kw_only(),
-           py::arg("strict") = false, py::arg("control") = py::none(), kEvaluateDoc)
-      .def("evaluate_detailed", &evaluate_detailed, py::arg("T_world_camera"), py::kw_only(),
-           py::arg("strict") = false, py::arg("control") = py::none(), kEvaluateDetailedDoc)
-      .def("best", &best, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
-           py::arg("costs") = py::none(), py::arg("measure") = py::none(),
-           py::arg("return_gains") = false, py::arg("control") = py::none(), kBestDoc)
-      .def("race", &race, py::arg("T_world_camera"), py::arg("k") = 1, py::kw_only(),
-           py::arg("seed") = race_defaults.seed, py::arg("costs") = py::none(),
-           py::arg("measure") = py::none(), py::arg("return_gains") = false,
-           py::arg("control") = py::none(), kRaceDoc)
-      .def("race_until", &race_until, py::arg("T_world_camera"), py::arg("seconds"),
-           py::arg("k") = 1, py::kw_only(), py::arg("seed") = race_defaults.seed,
-           py::arg("control") = py::none(), kRaceUntilDoc)
-      .def("best_set", &best_set, py::arg("T_world_camera"), py::arg("k"), py::kw_only(),
-           py::arg("return_gains") = false, py::arg("control") = py::none(), kBestSetDoc)
-      .def("plan_tour", &tour, py::arg("T_world_camera"), py::arg("way") = py::none(),
-           py::kw_only(), py::arg("max_stops") = py::none(), py::arg("first") = py::none(),
-           py::arg("cost_per_way") = 0.0, py::arg("budget") = py::none(),
-           py::arg("per_way") = false, py::arg("costs") = py::none(), py::arg("least_area") = 0.0,
-           py::arg("control") = py::none(), kPlanTourDoc)
-      .def("approximate", &approximate, py::arg("T_world_camera"), py::kw_only(),
-           py::arg("share") = approximate_defaults.share,
-           py::arg("seed") = approximate_defaults.seed, py::arg("control") = py::none(),
-           kApproximateDoc)
+      .def(py::init(&make_evaluator), "scene"_a, "sensor"_a, py::kw_only(),
+           "gain"_a = gain_model_name(kDefaultGain), "criterion"_a = "log_diagonal",
+           "pixel_stride"_a = 1, "prior_sigma"_a = py::none(), "min_range"_a = py::none(),
+           "max_range"_a = py::none(), "weights"_a = py::tuple(),
+           "refinement_weight"_a = py::none(), "posterior_entropy"_a = false,
+           "tracer"_a = "automatic", "num_threads"_a = 0)
+      .def("with_scene", &with_scene, "scene"_a, kWithSceneDoc)
+      .def("evaluate", &evaluate, "T_world_camera"_a, py::kw_only(), "strict"_a = false,
+           "control"_a = py::none(), kEvaluateDoc)
+      .def("evaluate_detailed", &evaluate_detailed, "T_world_camera"_a, py::kw_only(),
+           "strict"_a = false, "control"_a = py::none(), kEvaluateDetailedDoc)
+      .def("best", &best, "T_world_camera"_a, "k"_a = 1, py::kw_only(), "costs"_a = py::none(),
+           "measure"_a = py::none(), "return_gains"_a = false, "control"_a = py::none(), kBestDoc)
+      .def("race", &race, "T_world_camera"_a, "k"_a = 1, py::kw_only(),
+           "seed"_a = race_defaults.seed, "costs"_a = py::none(), "measure"_a = py::none(),
+           "return_gains"_a = false, "control"_a = py::none(), kRaceDoc)
+      .def("race_until", &race_until, "T_world_camera"_a, "seconds"_a, "k"_a = 1, py::kw_only(),
+           "seed"_a = race_defaults.seed, "control"_a = py::none(), kRaceUntilDoc)
+      .def("best_set", &best_set, "T_world_camera"_a, "k"_a, py::kw_only(),
+           "return_gains"_a = false, "control"_a = py::none(), kBestSetDoc)
+      .def("plan_tour", &tour, "T_world_camera"_a, "way"_a = py::none(), py::kw_only(),
+           "max_stops"_a = py::none(), "first"_a = py::none(), "cost_per_way"_a = 0.0,
+           "budget"_a = py::none(), "per_way"_a = false, "costs"_a = py::none(),
+           "least_area"_a = 0.0, "control"_a = py::none(), kPlanTourDoc)
+      .def("approximate", &approximate, "T_world_camera"_a, py::kw_only(),
+           "share"_a = approximate_defaults.share, "seed"_a = approximate_defaults.seed,
+           "control"_a = py::none(), kApproximateDoc)
       .def_property_readonly(
           "rays_per_pose", [](const Evaluator& self) { return self.evaluator.rays_per_pose(); },
           "int: one for each pixel of every pixel_stride-th row")

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <sstream>
@@ -60,19 +58,8 @@ ReachRegion region_of(const py::object& boxes, const py::object& shells,
 // By value; a predicate is the same as itself alone.
 bool is_same(const ReachRegion& a, const ReachRegion& b) {
   if (&a == &b) return true;
-  const auto same_shell = [](const ReachRegion::Shell& s, const ReachRegion::Shell& t) {
-    return s.center == t.center && s.min_radius == t.min_radius && s.max_radius == t.max_radius;
-  };
-  const auto same_half_space = [](const ReachRegion::HalfSpace& s,
-                                  const ReachRegion::HalfSpace& t) {
-    return s.normal == t.normal && s.offset == t.offset;
-  };
-  return !a.predicate && !b.predicate && a.boxes == b.boxes && a.poses == b.poses &&
-         a.tolerance.distance == b.tolerance.distance && a.tolerance.angle == b.tolerance.angle &&
-         std::equal(a.shells.begin(), a.shells.end(), b.shells.begin(), b.shells.end(),
-                    same_shell) &&
-         std::equal(a.half_spaces.begin(), a.half_spaces.end(), b.half_spaces.begin(),
-                    b.half_spaces.end(), same_half_space);
+  return !a.predicate && !b.predicate && a.boxes == b.boxes && a.shells == b.shells &&
+         a.half_spaces == b.half_spaces && a.poses == b.poses && a.tolerance == b.tolerance;
 }
 
 // Of the constructor. A predicate is a function, which may not be pickled.
@@ -90,10 +77,9 @@ py::dict keywords_of(const py::object& self) {
   }
   const py::array_t<double> poses =
       to_array(region.poses, {static_cast<py::ssize_t>(region.poses.size())});
-  return py::dict(py::arg("boxes") = boxes, py::arg("shells") = shells,
-                  py::arg("half_spaces") = half_spaces, py::arg("poses") = poses,
-                  py::arg("distance") = region.tolerance.distance,
-                  py::arg("angle") = region.tolerance.angle);
+  return py::dict("boxes"_a = boxes, "shells"_a = shells, "half_spaces"_a = half_spaces,
+                  "poses"_a = poses, "distance"_a = region.tolerance.distance,
+                  "angle"_a = region.tolerance.angle);
 }
 
 }  // namespace
@@ -128,10 +114,9 @@ Regions without a predicate are equal by value and can be pickled; one with a pr
 itself alone. Holds the GIL, but not for files. Cost: linear in the parts, and in the poses that are asked
 about: some 10 ns for each of both.)");
   pickle_as_call(type, &keywords_of);
-  type.def(py::init(&region_of), py::kw_only(), py::arg("boxes") = py::none(),
-           py::arg("shells") = py::none(), py::arg("half_spaces") = py::none(),
-           py::arg("poses") = py::none(), py::arg("distance") = tolerance.distance,
-           py::arg("angle") = tolerance.angle, py::arg("predicate") = py::none())
+  type.def(py::init(&region_of), py::kw_only(), "boxes"_a = py::none(), "shells"_a = py::none(),
+           "half_spaces"_a = py::none(), "poses"_a = py::none(), "distance"_a = tolerance.distance,
+           "angle"_a = tolerance.angle, "predicate"_a = py::none())
       .def(
           "contains",
           [](const ReachRegion& region, const py::object& T_world_camera) {
@@ -143,7 +128,7 @@ about: some 10 ns for each of both.)");
             }
             return scalar_or_array(inside);
           },
-          py::arg("T_world_camera"), R"(Which poses are reachable. A bad pose is not.
+          "T_world_camera"_a, R"(Which poses are reachable. A bad pose is not.
 
 Parameters
 ----------
@@ -235,17 +220,17 @@ Methods may run in many threads at once and leave the GIL while they work. Cost:
              config.max_near_share = max_near_share;
              return FeasibilityChecker(scene->scene, config, ExecConfig{num_threads});
            }),
-           py::arg("scene"), py::kw_only(), py::arg("body_size") = defaults.body.size,
-           py::arg("T_flange_camera") = py::none(), py::arg("clearance") = defaults.clearance,
-           py::arg("reach") = py::none(), py::arg("sensor") = py::none(),
-           py::arg("max_near_share") = defaults.max_near_share, py::arg("num_threads") = 0)
+           "scene"_a, py::kw_only(), "body_size"_a = defaults.body.size,
+           "T_flange_camera"_a = py::none(), "clearance"_a = defaults.clearance,
+           "reach"_a = py::none(), "sensor"_a = py::none(),
+           "max_near_share"_a = defaults.max_near_share, "num_threads"_a = 0)
       .def(
           "with_scene",
           [](const FeasibilityChecker& self, const Given<Scene>& scene) {
             const WithoutGil without_gil;
             return self.with_scene(scene->scene);
           },
-          py::arg("scene"), R"(The same checker of another scene, for following a map as it grows.
+          "scene"_a, R"(The same checker of another scene, for following a map as it grows.
 
 This one stays as it is. Cost: some microseconds.
 
@@ -268,7 +253,7 @@ FeasibilityChecker)")
             }
             return scalar_or_array(good);
           },
-          py::arg("T_world_camera"), py::arg("taken") = py::none(), R"(Which poses are possible.
+          "T_world_camera"_a, "taken"_a = py::none(), R"(Which poses are possible.
 
 Parameters
 ----------
@@ -286,7 +271,7 @@ ndarray, (...), bool
              const py::object& taken) {
             return scalar_or_array(codes_of(self, T_world_camera, taken));
           },
-          py::arg("T_world_camera"), py::arg("taken") = py::none(),
+          "T_world_camera"_a, "taken"_a = py::none(),
           R"(Why poses are not possible: the first reason that applies.
 
 Parameters

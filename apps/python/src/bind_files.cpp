@@ -51,9 +51,7 @@ py::object frame_at(const FrameSequence& self, py::ssize_t index) {
   const std::size_t i = frame_index(self.images.size(), index);
   const DepthFrame frame = outside_gil([&] { return load_frame(self, i); });
   py::object amplitude = py::none();
-  if (!frame.amplitude.empty()) {
-    amplitude = image_array(frame.amplitude, frame.height, frame.width);
-  }
+  if (!frame.amplitude.empty()) amplitude = image_array(frame.amplitude, frame.height, frame.width);
   return named("Frame", image_array(frame.depth, frame.height, frame.width),
                to_array(self.poses[i]), amplitude);
 }
@@ -121,7 +119,7 @@ void bind_toml(py::module_& module) {
           [](const py::object& given) {
             return outside_gil([file = preset_or_file(given)] { return load_sensor(file); });
           },
-          py::arg("preset_or_file"), R"(A sensor from a .toml file, or a preset by its name.
+          "preset_or_file"_a, R"(A sensor from a .toml file, or a preset by its name.
 
 Runs without the GIL. Cost: one read of a file of some lines, 0.1 ms.
 
@@ -138,7 +136,7 @@ Sensor)")
           [](const Sensor& self, const py::object& path) {
             outside_gil([&, file = writable_file(path)] { write_sensor_toml(file, self); });
           },
-          py::arg("path"), R"(Writes a .toml file, whole or not at all.
+          "path"_a, R"(Writes a .toml file, whole or not at all.
 
 Runs without the GIL. Cost: a file of some lines, 1 ms.
 
@@ -152,7 +150,7 @@ path : path-like
           [](const py::object& path) {
             return outside_gil([file = readable_file(path)] { return read_reach_toml(file); });
           },
-          py::arg("path"), R"(A region from a .toml file: boxes, shells, half-spaces, poses.
+          "path"_a, R"(A region from a .toml file: boxes, shells, half-spaces, poses.
 
 Runs without the GIL. Cost: linear in the poses, 1 µs each, and 0.1 ms.
 
@@ -168,7 +166,7 @@ ReachRegion)")
           [](const ReachRegion& self, const py::object& path) {
             outside_gil([&, file = writable_file(path)] { write_reach_toml(file, self); });
           },
-          py::arg("path"),
+          "path"_a,
           R"(Writes a .toml file; poses go into NAME.poses.txt beside it, replacing one of that name.
 
 A region with a predicate is refused, and one with poses under a name that does not end in .toml.
@@ -204,7 +202,7 @@ frame's pixels; ``poses`` is a copy.)");
             return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
           },
           "The frames in their order.\n\nReturns\n-------\niterator")
-      .def("__getitem__", &frame_at, py::arg("index"),
+      .def("__getitem__", &frame_at, "index"_a,
            R"(Reads a frame.
 
 Parameters
@@ -228,9 +226,9 @@ Frame)")
         return text.str();
       });
 
-  module.def("read_frames", &read_frames, py::arg("folder"), py::kw_only(),
-             py::arg("sensor") = py::none(), py::arg("depth_scale") = py::none(),
-             py::arg("out_of_range") = py::none(), R"(Opens a folder of depth frames.
+  module.def("read_frames", &read_frames, "folder"_a, py::kw_only(), "sensor"_a = py::none(),
+             "depth_scale"_a = py::none(), "out_of_range"_a = py::none(),
+             R"(Opens a folder of depth frames.
 
 Reads all poses and no image, without the GIL. Cost: linear in the number of frames.
 
@@ -253,7 +251,7 @@ Returns
 FrameSequence)");
 
   module.def(
-      "suspect_frames", &suspicions, py::arg("sensor"), py::arg("frames"),
+      "suspect_frames", &suspicions, "sensor"_a, "frames"_a,
       R"(What is probably wrong with the units, conventions or intrinsics of frames of one scene.
 
 Readings of a dozen of them are looked for in the others, as they are and under each mistake that is often
@@ -277,8 +275,7 @@ list of Suspicion
 void bind_files(py::module_& module) {
   bind_toml(module);
   bind_frames(module);
-  module.def("read_poses", &read_poses, py::arg("path"), py::kw_only(),
-             py::arg("return_timestamps") = false,
+  module.def("read_poses", &read_poses, "path"_a, py::kw_only(), "return_timestamps"_a = false,
              R"(Poses of a file in the TUM format: time tx ty tz qx qy qz qw.
 
 Runs without the GIL. Cost: linear in the poses, 1 µs each.
@@ -293,8 +290,7 @@ Returns
 T_world_camera : ndarray, (n, 4, 4), float64
 timestamps : ndarray, (n,), float64
     [s]; only if return_timestamps: a named tuple ``TimedPoses`` of the two then.)");
-  module.def("write_poses", &write_poses, py::arg("path"), py::arg("T_world_camera"),
-             py::arg("timestamps") = py::none(),
+  module.def("write_poses", &write_poses, "path"_a, "T_world_camera"_a, "timestamps"_a = py::none(),
              R"(Writes poses in the TUM format, whole or not at all.
 
 Runs without the GIL. Cost: linear in the poses, 2 µs each.

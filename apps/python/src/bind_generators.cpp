@@ -76,15 +76,14 @@ void def_lattice(py::module_& module, const char* name, const char* summary) {
       [](std::size_t count, double radius, const py::object& center) {
         return pose_array(poses(count, radius, vector3(center, "center")));
       },
-      py::arg("count"), py::arg("radius"), py::kw_only(), py::arg("center") = kOrigin,
+      "count"_a, "radius"_a, py::kw_only(), "center"_a = kOrigin,
       doc_of(summary, "count : int\nradius : float\n    [m]\n").c_str());
 }
 
 }  // namespace
 
 void bind_generators(py::module_& module) {
-  module.def("look_at", &look_at_all, py::arg("eyes"), py::arg("target"),
-             py::arg("up") = std::array<double, 3>{0, 0, 1},
+  module.def("look_at", &look_at_all, "eyes"_a, "target"_a, "up"_a = std::array<double, 3>{0, 0, 1},
              R"(Poses of cameras that look at a point.
 
 Holds the GIL. Cost: linear in the eyes, some 0.1 µs each.
@@ -102,7 +101,7 @@ Returns
 -------
 ndarray, (..., 4, 4), float64
     T_world_camera.)");
-  module.def("order_stops", &order_stops_of, py::arg("costs"),
+  module.def("order_stops", &order_stops_of, "costs"_a,
              R"(The order of k stops in which the way through all of them costs least.
 
 Exact up to 12 stops; beyond, pieces are turned and moved for as long as that costs less. The same
@@ -134,8 +133,8 @@ cost : float
         return pose_array(
             orbit_poses(count, radius, elevation, start, step, vector3(center, "center")));
       },
-      py::arg("count"), py::arg("radius"), py::arg("elevation"), py::kw_only(),
-      py::arg("start") = 0.0, py::arg("step") = py::none(), py::arg("center") = kOrigin,
+      "count"_a, "radius"_a, "elevation"_a, py::kw_only(), "start"_a = 0.0, "step"_a = py::none(),
+      "center"_a = kOrigin,
       doc_of("Views on a circle of latitude, looking at the centre.",
              R"(count : int
 radius : float
@@ -155,8 +154,8 @@ step : float, optional
         return pose_array(
             ring_poses(count, radius, height, tilt, start, vector3(center, "center")));
       },
-      py::arg("count"), py::arg("radius"), py::arg("height"), py::arg("tilt"), py::kw_only(),
-      py::arg("start") = 0.0, py::arg("center") = kOrigin,
+      "count"_a, "radius"_a, "height"_a, "tilt"_a, py::kw_only(), "start"_a = 0.0,
+      "center"_a = kOrigin,
       doc_of("Views on a circle round the vertical axis, looking down towards it.",
              R"(count : int
 radius : float
@@ -174,7 +173,7 @@ start : float
       [](std::size_t total, double radius, const py::object& center) {
         return pose_array(literature_ring_poses(total, radius, vector3(center, "center")));
       },
-      py::arg("total"), py::arg("radius"), py::kw_only(), py::arg("center") = kOrigin,
+      "total"_a, "radius"_a, py::kw_only(), "center"_a = kOrigin,
       doc_of("The view sets of Isler et al. 2016, scaled to a radius.",
              R"(total : int
     48, 80, 288 or 864; another raises ValueError.
@@ -189,8 +188,7 @@ radius : float
         return pose_array(
             shell_poses(count, min_radius, max_radius, seed, vector3(center, "center")));
       },
-      py::arg("count"), py::arg("min_radius"), py::arg("max_radius"), py::kw_only(),
-      py::arg("seed") = 1, py::arg("center") = kOrigin,
+      "count"_a, "min_radius"_a, "max_radius"_a, py::kw_only(), "seed"_a = 1, "center"_a = kOrigin,
       doc_of("Uniform in the volume between two spheres, looking at the centre.",
              R"(count : int
 min_radius, max_radius : float

@@ -136,9 +136,7 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
   config.stop_gain = stop_gain;
   config.stop_area = stop_area;
   const ExecConfig exec{num_threads, parse_tracer(tracer)};
-  if (state.is_none()) {
-    return std::make_unique<Planner>(sensor, ViewPlanner(sensor, config, exec));
-  }
+  if (state.is_none()) return std::make_unique<Planner>(sensor, ViewPlanner(sensor, config, exec));
   const std::string file = readable_file(state);
   return std::make_unique<Planner>(
       sensor, outside_gil([&] { return ViewPlanner::load(file, sensor, config, exec); }));
@@ -264,42 +262,38 @@ void bind_planner(py::module_& module) {
   const PlannerConfig defaults;
   auto type = bound_class<Planner>(module, "ViewPlanner", kPlannerDoc);
   refuse_pickling(type);
-  type.def(py::init(&make), py::arg("sensor"), py::kw_only(), py::arg("voxel_size"),
-           py::arg("workspace"), py::arg("T_world_grid") = py::none(),
-           py::arg("prior_sigma") = py::none(), py::arg("support_plane") = py::none(),
-           py::arg("boxes") = py::none(), py::arg("meshes") = py::tuple(),
-           py::arg("gain") = gain_model_name(defaults.gain.model),
-           py::arg("criterion") = criterion_name(defaults.gain.criterion),
-           py::arg("object_size") = py::none(), py::arg("reach") = py::none(),
-           py::arg("body_size") = py::none(), py::arg("clearance") = defaults.clearance,
-           py::arg("jump_edges") = true, py::arg("check_feasibility") = true,
-           py::arg("max_views") = defaults.max_views, py::arg("idle_views") = defaults.idle_views,
-           py::arg("broken_promises") = defaults.broken_promises,
-           py::arg("plan") = defaults.ahead.plan, py::arg("take") = defaults.ahead.take,
-           py::arg("stop_gain") = py::none(), py::arg("stop_area") = py::none(),
-           py::arg("coarsest") = 0, py::arg("fine") = py::none(), py::arg("finest") = 0,
-           py::arg("state") = py::none(), py::arg("tracer") = "automatic",
-           py::arg("num_threads") = 0)
+  type.def(py::init(&make), "sensor"_a, py::kw_only(), "voxel_size"_a, "workspace"_a,
+           "T_world_grid"_a = py::none(), "prior_sigma"_a = py::none(),
+           "support_plane"_a = py::none(), "boxes"_a = py::none(), "meshes"_a = py::tuple(),
+           "gain"_a = gain_model_name(defaults.gain.model),
+           "criterion"_a = criterion_name(defaults.gain.criterion), "object_size"_a = py::none(),
+           "reach"_a = py::none(), "body_size"_a = py::none(), "clearance"_a = defaults.clearance,
+           "jump_edges"_a = true, "check_feasibility"_a = true, "max_views"_a = defaults.max_views,
+           "idle_views"_a = defaults.idle_views, "broken_promises"_a = defaults.broken_promises,
+           "plan"_a = defaults.ahead.plan, "take"_a = defaults.ahead.take,
+           "stop_gain"_a = py::none(), "stop_area"_a = py::none(), "coarsest"_a = 0,
+           "fine"_a = py::none(), "finest"_a = 0, "state"_a = py::none(), "tracer"_a = "automatic",
+           "num_threads"_a = 0)
       .def_static(
           "load",
           [](const py::object& path, const py::args& args, const py::kwargs& settings) {
-            return py::type::of<Planner>()(*args, **settings, py::arg("state") = path);
+            return py::type::of<Planner>()(*args, **settings, "state"_a = path);
           },
-          py::arg("path"), kLoadDoc)
+          "path"_a, kLoadDoc)
       .def(
           "save",
           [](Planner& self, const py::object& path) {
             const std::string file = writable_file(path);
             self.run([&](ViewPlanner& planner) { planner.save(file); });
           },
-          py::arg("path"), kSaveDoc)
+          "path"_a, kSaveDoc)
       .def(
           "add_poses",
           [](Planner& self, const py::object& T_world_camera, const std::string& name) {
             PoseSet set{name, pose_list(T_world_camera, "T_world_camera")};
             self.use([&](ViewPlanner& planner) { planner.add_poses(std::move(set)); });
           },
-          py::arg("T_world_camera"), py::arg("name") = "poses", kAddPosesDoc)
+          "T_world_camera"_a, "name"_a = "poses", kAddPosesDoc)
       .def(
           "add_generator",
           [](Planner& self, const py::object& generator, const std::string& name) {
@@ -311,12 +305,11 @@ void bind_planner(py::module_& module) {
                   std::make_shared<PythonGeneration>(generator, name, planner.map()));
             });
           },
-          py::arg("generator"), py::arg("name") = "generator", kAddGeneratorDoc)
-      .def("add", &add, py::arg("depth"), py::arg("T_world_camera"), py::kw_only(),
-           py::arg("pose_sigma") = std::array<double, 2>{0, 0}, py::arg("amplitude") = py::none(),
-           kAddDoc)
-      .def("add_frame", &add_frame, py::arg("frames"), py::arg("index"), kAddFrameDoc)
-      .def("drop", &drop, py::arg("verdict"), py::arg("T_world_camera") = py::none(), kDropDoc)
+          "generator"_a, "name"_a = "generator", kAddGeneratorDoc)
+      .def("add", &add, "depth"_a, "T_world_camera"_a, py::kw_only(),
+           "pose_sigma"_a = std::array<double, 2>{0, 0}, "amplitude"_a = py::none(), kAddDoc)
+      .def("add_frame", &add_frame, "frames"_a, "index"_a, kAddFrameDoc)
+      .def("drop", &drop, "verdict"_a, "T_world_camera"_a = py::none(), kDropDoc)
       .def_property_readonly(
           "frames",
           [](Planner& self) {
@@ -329,15 +322,14 @@ void bind_planner(py::module_& module) {
             });
           },
           "dict: how many frames had each verdict so far, by its name; no entry: none")
-      .def("register_frame", &register_frame, py::arg("depth"), py::arg("T_world_camera"),
-           py::kw_only(), py::arg("sigma_translation") = kUsualPoseSigma.translation,
-           py::arg("sigma_rotation") = kUsualPoseSigma.rotation, py::arg("amplitude") = py::none(),
+      .def("register_frame", &register_frame, "depth"_a, "T_world_camera"_a, py::kw_only(),
+           "sigma_translation"_a = kUsualPoseSigma.translation,
+           "sigma_rotation"_a = kUsualPoseSigma.rotation, "amplitude"_a = py::none(),
            kRegisterFrameDoc)
       .def("propose", &propose, kProposeDoc)
-      .def("rank", &rank, py::arg("k") = 1, py::kw_only(), py::arg("poses") = py::none(),
-           py::arg("costs") = py::none(), py::arg("cost_per_metre") = 0.0,
-           py::arg("together") = false, py::arg("exact") = false, py::arg("measure") = py::none(),
-           py::arg("control") = py::none(), kRankDoc)
+      .def("rank", &rank, "k"_a = 1, py::kw_only(), "poses"_a = py::none(), "costs"_a = py::none(),
+           "cost_per_metre"_a = 0.0, "together"_a = false, "exact"_a = false,
+           "measure"_a = py::none(), "control"_a = py::none(), kRankDoc)
       .def(
           "outcomes",
           [](Planner& self, const py::object& T_world_camera) {
@@ -345,7 +337,7 @@ void bind_planner(py::module_& module) {
             return named_outcomes(
                 self.run([&](ViewPlanner& planner) { return planner.evaluator().outcomes(pose); }));
           },
-          py::arg("T_world_camera"),
+          "T_world_camera"_a,
           R"(Why a pose's gain is what it is on the map as it stands: what becomes of its rays.
 
 Cost: two traces of the pose.
@@ -363,7 +355,7 @@ RayOutcomes)")
             const Pose pose = one_pose(T_world_camera, "T_world_camera");
             self.use([&](ViewPlanner& planner) { planner.tried(pose, reached); });
           },
-          py::arg("T_world_camera"), py::arg("reached"), kTriedDoc)
+          "T_world_camera"_a, "reached"_a, kTriedDoc)
       .def(
           "should_stop",
           [](Planner& self) -> py::object {

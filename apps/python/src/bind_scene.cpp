@@ -108,10 +108,9 @@ The GIL is left while a scene is made, of at most 2**23 blocks of voxels. Cost: 
                return Scene{VoxelScene::build(g, surroundings, ExecConfig{num_threads}, rates)};
              });
            }),
-           py::arg("grid"), py::kw_only(), py::arg("boxes") = py::none(),
-           py::arg("meshes") = py::tuple(), py::arg("support_plane") = py::none(),
-           py::arg("object_size") = py::none(), py::arg("hazard") = py::none(),
-           py::arg("num_threads") = 0)
+           "grid"_a, py::kw_only(), "boxes"_a = py::none(), "meshes"_a = py::tuple(),
+           "support_plane"_a = py::none(), "object_size"_a = py::none(), "hazard"_a = py::none(),
+           "num_threads"_a = 0)
       .def(
           "update",
           [](const Scene& self, const Given<SharedGrid>& grid, int num_threads) {
@@ -119,7 +118,7 @@ The GIL is left while a scene is made, of at most 2**23 blocks of voxels. Cost: 
               return Scene{VoxelScene::update(self.scene, g, ExecConfig{num_threads})};
             });
           },
-          py::arg("grid"), py::kw_only(), py::arg("num_threads") = 0,
+          "grid"_a, py::kw_only(), "num_threads"_a = 0,
           R"(The scene of what the grid is now, with the same surroundings; this one stays as it is.
 
 What has not changed since is taken over: regions of 32**3 voxels.

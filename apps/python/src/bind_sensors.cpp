@@ -156,14 +156,6 @@ py::object to_object(const RangeCalibration& calibration) {
                              calibration.table.front().data());
 }
 
-bool is_same(const Sensor& a, const Sensor& b) {
-  return a.name == b.name && a.camera == b.camera && a.min_range == b.min_range &&
-         a.max_range == b.max_range && a.working_distance == b.working_distance &&
-         a.noise == b.noise && a.T_flange_camera == b.T_flange_camera &&
-         a.body_size == b.body_size && a.range_calibration == b.range_calibration &&
-         a.pose_sigma == b.pose_sigma && a.scale_sigma == b.scale_sigma;
-}
-
 }  // namespace
 
 void bind_sensors(py::module_& module) {
@@ -221,11 +213,10 @@ range_calibration.)");
              sensor.validate();
              return sensor;
            }),
-           py::arg("camera"), py::kw_only(), py::arg("min_range"), py::arg("max_range"),
-           py::arg("working_distance"), py::arg("noise"), py::arg("name") = "custom",
-           py::arg("T_flange_camera") = py::none(), py::arg("body_size") = py::none(),
-           py::arg("range_calibration") = py::none(),
-           py::arg("pose_sigma") = std::array<double, 2>{0, 0}, py::arg("scale_sigma") = 0.0)
+           "camera"_a, py::kw_only(), "min_range"_a, "max_range"_a, "working_distance"_a, "noise"_a,
+           "name"_a = "custom", "T_flange_camera"_a = py::none(), "body_size"_a = py::none(),
+           "range_calibration"_a = py::none(), "pose_sigma"_a = std::array<double, 2>{0, 0},
+           "scale_sigma"_a = 0.0)
       .def_readonly("name", &Sensor::name, "str")
       .def_readonly("camera", &Sensor::camera, "PinholeCamera")
       .def_readonly("min_range", &Sensor::min_range, "float: along the ray [m]")
@@ -263,7 +254,7 @@ range_calibration.)");
             sensor.range_calibration.correct(sensor.camera, frame);
             return image_array(frame.depth, frame.height, frame.width);
           },
-          py::arg("depth"),
+          "depth"_a,
           R"(A depth image without the error of range_calibration, as ``read_frames`` gives them.
 
 Cost: linear in the pixels, 30 ns each, with distortion 0.5 µs.
@@ -283,7 +274,7 @@ ndarray, (height, width), float32
             const MeasurementSigmas sigmas = sensor.sigmas(t, cos_incidence);
             return named("Sigmas", sigmas.axial, sigmas.lateral);
           },
-          py::arg("t"), py::arg("cos_incidence") = 1.0,
+          "t"_a, "cos_incidence"_a = 1.0,
           R"(Standard deviations of a reading at range t along the ray.
 
 Parameters
@@ -297,8 +288,7 @@ Returns
 -------
 Sigmas)")
       .def(
-          "__eq__", [](const Sensor& a, const Sensor& b) { return is_same(a, b); },
-          py::is_operator())
+          "__eq__", [](const Sensor& a, const Sensor& b) { return a == b; }, py::is_operator())
       .def("__hash__",
            [](const Sensor& s) {
              return py::hash(py::make_tuple(s.name, s.camera.width, s.camera.height, s.camera.fx,
@@ -311,7 +301,7 @@ Sigmas)")
       });
 
   module.def(
-      "sensor_preset", [](const std::string& name) { return sensor_preset(name); }, py::arg("name"),
+      "sensor_preset", [](const std::string& name) { return sensor_preset(name); }, "name"_a,
       R"(A sensor with a published noise model.
 
 Parameters
@@ -330,7 +320,7 @@ Sensor)");
       [](double voxel_size, const Given<Sensor>& sensor) {
         return default_prior_sigma(voxel_size, *sensor);
       },
-      py::arg("voxel_size"), py::arg("sensor"),
+      "voxel_size"_a, "sensor"_a,
       R"(Standard deviation of an unknown voxel's position, when the map does not say [m].
 
 ``max(voxel_size / 2, 2 * axial sigma at the working distance)``: unknown is never surer than one

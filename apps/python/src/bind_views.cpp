@@ -14,7 +14,7 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
-#include "viewgain/raycast/depth_image.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::python {
 
@@ -93,7 +93,7 @@ void bind_views(py::module_& module, py::class_<Evaluator>& evaluator) {
   PYBIND11_NUMPY_DTYPE(OwnHitRow, voxel, state, readings, information, ray, range, direction);
   module.attr("HIT_KIND_NAMES") = py::make_tuple("none", "unknown", "occupied", "obstacle");
   evaluator
-      .def("trace", &trace_array, py::arg("T_world_camera"),
+      .def("trace", &trace_array, "T_world_camera"_a,
            R"(Where the rays of a view end. Cost: linear in the rays, 0.7 ms for 176x144 pixels.
 
 Parameters
@@ -105,7 +105,7 @@ Returns
 ndarray, (height', width'), structured
     One a ray, image size divided by the stride, rounded up: kind (index into ``HIT_KIND_NAMES``),
     voxel (int32, 3; on the lattice), range along the ray [m], inf: nothing.)")
-      .def("depth", &depth, py::arg("T_world_camera"),
+      .def("depth", &depth, "T_world_camera"_a,
            R"(The depth image of a view of the map: of the first voxel on each ray that is not free.
 
 One that is unknown ends a ray as well. Cost: that of ``trace``, with distortion its undoing for every
@@ -119,7 +119,7 @@ Returns
 -------
 ndarray, (height', width'), float32
     Along the optical axis [m], inf: nothing; size as for ``trace``.)")
-      .def("contributions", &contributions, py::arg("T_world_camera"),
+      .def("contributions", &contributions, "T_world_camera"_a,
            R"(Why a view is good: what each voxel adds to its gain.
 
 On the calling thread alone. Cost: 3 times that of ``evaluate`` for this pose.
@@ -135,7 +135,7 @@ ndarray, (n,), structured
     in it, expected_rays (by the surface and the combined gain: the sum of their chances to end there),
     gain, in the unit of ``evaluate``. Largest gain first; the gains add up to that of the view.)")
       .def(
-          "outcomes", &outcomes, py::arg("T_world_camera"),
+          "outcomes", &outcomes, "T_world_camera"_a,
           R"(Why a view's gain is what it is: what becomes of its rays. Cost: twice that of ``trace``.
 
 Parameters
@@ -146,8 +146,8 @@ Returns
 -------
 RayOutcomes
     Counts that add up to its ``rays``.)")
-      .def("evaluate_own", &evaluate_own, py::arg("T_world_camera"), py::arg("measure"),
-           py::kw_only(), py::arg("control") = py::none(),
+      .def("evaluate_own", &evaluate_own, "T_world_camera"_a, "measure"_a, py::kw_only(),
+           "control"_a = py::none(),
            R"(A gain of your own: a number for what a view would see.
 
 Slow: the function is called for one view after the other, under the GIL; the C++ interface

@@ -3,14 +3,29 @@
 #include "show/pictures/map_picture.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdint>
+#include <tuple>
 
-#include "show/pictures/map_cubes.hpp"
 #include "show/pictures/ray_tracer.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {
 namespace {
+
+// Leaf by leaf.
+std::vector<Index3> occupied_voxels(const GridSnapshot& snapshot) {
+  std::vector<Index3> voxels;
+  for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
+    for (unsigned offset = 0; offset < 512; ++offset) {
+      if (!test_bit(leaf.occupied, offset)) continue;
+      voxels.push_back({leaf.origin.x + static_cast<std::int32_t>(offset >> 6U),
+                        leaf.origin.y + static_cast<std::int32_t>(offset >> 3U & 7U),
+                        leaf.origin.z + static_cast<std::int32_t>(offset & 7U)});
+    }
+  }
+  return voxels;
+}
 
 using Eigen::Vector3d;
 
@@ -34,6 +49,22 @@ RgbImage rendered(const PaintedMesh& scene, const std::vector<Vector3d>& in_sigh
 
 }  // namespace
 
+LatticeCubes occupied_cubes(const GridSnapshot& snapshot, std::size_t most) {
+  LatticeCubes cubes{occupied_voxels(snapshot), snapshot.voxel_size};
+  const auto sort_and_merge = [&] {
+    std::sort(cubes.at.begin(), cubes.at.end(), [](const Index3& a, const Index3& b) {
+      return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+    });
+    cubes.at.erase(std::unique(cubes.at.begin(), cubes.at.end()), cubes.at.end());
+  };
+  sort_and_merge();
+  for (; cubes.at.size() > most; cubes.side *= 2) {
+    for (Index3& at : cubes.at) at = {at.x >> 1, at.y >> 1, at.z >> 1};
+    sort_and_merge();
+  }
+  return cubes;
+}
+
 RgbImage map_picture(const GridSnapshot& snapshot, const Viewer& viewer, const ExecConfig& exec) {
   PaintedMesh scene;
   add_map(scene, snapshot);
@@ -44,9 +75,7 @@ RgbImage map_picture(const GridSnapshot& snapshot, const Viewer& viewer, const E
 
 RgbImage score_picture(const GainEvaluator& evaluator, const Sensor& sensor,
                        const Pose& T_world_camera, const ExecConfig& exec) {
-  if (!is_rigid(T_world_camera)) {
-    throw Error(ErrorCode::invalid_argument, "the pose to draw is no rigid transform");
-  }
+  if (!is_rigid(T_world_camera)) refuse("the pose to draw is no rigid transform");
   const GridSnapshot& snapshot = evaluator.scene().snapshot();
   const std::vector<RayHit> hits = evaluator.trace(T_world_camera);
   const auto workspace = workspace_corners(snapshot);

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "show/pictures/picture_parts.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/pose.hpp"
@@ -11,6 +14,20 @@
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::app {
+
+/// As many cubes as a picture has room for.
+inline constexpr std::size_t kMaxCubes = 400'000;
+
+/// Cubes of one lattice in the grid's frame; cube i reaches from side * at[i] to side * (at[i] + 1)
+/// [m].
+struct LatticeCubes {
+  std::vector<Index3> at;  ///< rising
+  double side = 0;         ///< [m]
+};
+
+/// The occupied voxels as at most `most` cubes: two by two by two become one until they are few
+/// enough.
+[[nodiscard]] LatticeCubes occupied_cubes(const GridSnapshot& snapshot, std::size_t most);
 
 /// A map's occupied voxels as little grey cubes in the outline of its workspace. The same picture
 /// for any number of threads.

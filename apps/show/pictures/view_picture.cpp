@@ -3,19 +3,15 @@
 #include "show/pictures/view_picture.hpp"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "show/pictures/picture_parts.hpp"
 #include "show/pictures/ray_tracer.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/formats/png.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -128,11 +124,17 @@ void add_rays(PaintedMesh& scene, const Paints& paints, const VoxelPaints& voxel
   }
 }
 
+using Eigen::Vector3d;
+
+double share_of(double sigma, const std::array<double, 2>& range) {
+  return range[1] > range[0] ? (sigma - range[0]) / (range[1] - range[0]) : 0.5;
+}
+
 }  // namespace
 
 RgbImage view_picture(const ViewPicture& picture, const ExecConfig& exec) {
   if (!is_rigid(picture.T_world_camera) || (picture.chosen && !is_rigid(*picture.chosen))) {
-    throw Error(ErrorCode::invalid_argument, "a view to draw is no rigid transform");
+    refuse("a view to draw is no rigid transform");
   }
   const GridSnapshot& snapshot = picture.evaluator.scene().snapshot();
   const auto workspace = workspace_corners(snapshot);
@@ -207,10 +209,8 @@ void write_amplitude_picture(const std::filesystem::path& path, const DepthFrame
   const auto columns = static_cast<std::size_t>(std::max(frame.width, 0));
   const auto rows = static_cast<std::size_t>(std::max(frame.height, 0));
   if (frame.amplitude.empty() || frame.amplitude.size() != columns * rows) {
-    throw Error(ErrorCode::invalid_argument, path.string() + ": the frame has " +
-                                                 std::to_string(frame.amplitude.size()) +
-                                                 " amplitudes for " + std::to_string(columns) +
-                                                 "x" + std::to_string(rows) + " pixels");
+    refuse(path.string() + ": the frame has " + std::to_string(frame.amplitude.size()) +
+           " amplitudes for " + std::to_string(columns) + "x" + std::to_string(rows) + " pixels");
   }
   std::vector<float> sorted;
   for (const float a : frame.amplitude) {
@@ -236,6 +236,42 @@ void write_amplitude_picture(const std::filesystem::path& path, const DepthFrame
     }
   }
   write_png(path, image);
+}
+
+RgbImage draw(const SurfacePicture& picture, const Viewer& viewer, const ExecConfig& exec) {
+  PaintedMesh scene;
+  const HeatPaints paints(scene);
+  const SurfaceMesh& surface = picture.surface;
+  if (surface.triangles.empty()) refuse("the map has no surface to draw yet");
+  if (picture.sigmas.empty()) {
+    scene.add_surface(surface.vertices, surface.normals, surface.triangles,
+                      scene.add_paint({.color = {0.58, 0.58, 0.56}, .back_side = 0.55}));
+  } else {
+    std::vector<std::uint8_t> paint_of_triangle;
+    for (const auto& t : surface.triangles) {
+      const double sigma = (picture.sigmas[t[0]] + picture.sigmas[t[1]] + picture.sigmas[t[2]]) / 3;
+      paint_of_triangle.push_back(paints.at(share_of(sigma, picture.sigma_range)));
+    }
+    scene.add_surface(surface.vertices, surface.normals, surface.triangles, paint_of_triangle);
+  }
+  PinholeCamera camera = picture_camera(viewer.width);
+  std::vector<Vector3d> in_sight;
+  Eigen::AlignedBox3d box;
+  for (const auto& p : surface.vertices) {
+    in_sight.emplace_back(p.data());
+    box.extend(in_sight.back());
+  }
+  const Pose T_world_viewer = place_viewer(in_sight, viewer.direction(), camera);
+  return render(scene, camera, T_world_viewer, 0.25 * box.diagonal().norm(), exec);
+}
+
+std::array<double, 2> usual_range(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double share) {
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+  };
+  return {at(0.02), at(0.98)};
 }
 
 }  // namespace viewgain::app

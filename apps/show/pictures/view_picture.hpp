@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "show/pictures/picture_parts.hpp"
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/planning.hpp"
@@ -44,5 +47,21 @@ struct ViewPicture {
 /// at least 480 px in width; brightness ∝ the square root of the amplitude, the 99th percentile is
 /// white. Atomic. Throws Error(io); Error(invalid_argument) if the frame has no amplitude.
 void write_amplitude_picture(const std::filesystem::path& path, const DepthFrame& frame);
+
+/// What of a surface is drawn.
+struct SurfacePicture {
+  const SurfaceMesh& surface;
+  /// One a vertex [m]: the surface from dark to bright by them; none: grey.
+  std::vector<double> sigmas{};
+  std::array<double, 2> sigma_range{};  ///< what is darkest and brightest [m]
+};
+
+/// The picture, which the surface fills. Throws Error(invalid_argument) for one without a triangle.
+/// The same for any number of threads.
+[[nodiscard]] RgbImage draw(const SurfacePicture& picture, const Viewer& viewer,
+                            const ExecConfig& exec);
+
+/// The 2nd and the 98th percentile, for colours. Zeros without a value.
+[[nodiscard]] std::array<double, 2> usual_range(std::vector<double> values);
 
 }  // namespace viewgain::app

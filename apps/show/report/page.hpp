@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "program/cli/json.hpp"
 
@@ -22,5 +27,20 @@ void check_report_page(std::string_view flag);
 
 /// Atomic: a temporary file is renamed. Throws Error(io).
 void write_report(const std::filesystem::path& path, const Json& data);
+
+// Numbers as the report's page reads them; README.md, "Data", says how a block is stored. Rows one
+// after the other; throws Error(backend) if zlib fails.
+
+[[nodiscard]] Json float_block(const std::vector<float>& values, std::size_t columns);
+[[nodiscard]] Json index_block(const std::vector<std::uint32_t>& values, std::size_t columns);
+[[nodiscard]] Json byte_block(const std::vector<std::uint8_t>& values);
+
+/// Points [m], each coordinate to 1/65,534 of their bounding box.
+[[nodiscard]] Json point_block(std::span<const Eigen::Vector3d> points);
+
+/// One number a row, to 1/254 of their range; not finite is NaN. For colours.
+[[nodiscard]] Json shade_block(const std::vector<double>& values);
+
+[[nodiscard]] std::string base64(std::string_view bytes);
 
 }  // namespace viewgain::app

@@ -6,10 +6,8 @@
 #include <optional>
 #include <tuple>
 #include <utility>
-#include <vector>
 
-#include "show/report/blocks.hpp"
-#include "show/report/shown_mesh.hpp"
+#include "show/report/page.hpp"
 #include "show/report/view_parts.hpp"
 
 namespace viewgain::app {
@@ -161,9 +159,7 @@ void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
                        const CandidateGeneration& generation, const EstimatedViews& estimated,
                        const GainEvaluator& evaluator,
                        std::vector<VoxelContribution> contributions) {
-  if (views_.empty()) {
-    head_ = page_head("reconstruct", title_, evaluator, sensor_, criterion_);
-  }
+  if (views_.empty()) head_ = page_head("reconstruct", title_, evaluator, sensor_, criterion_);
   Json view{{"pose", pose_rows(record.T_world_camera)},
             {"surface", to_json(shown_surface(model, truth_.get()))},
             {"points", points_json(model.points())}};

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "show/pictures/map_cubes.hpp"
-#include "show/report/blocks.hpp"
+#include "show/pictures/map_picture.hpp"
+#include "show/report/page.hpp"
 #include "show/report/view_parts.hpp"
 
 namespace viewgain::app {

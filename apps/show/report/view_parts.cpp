@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/report/view_parts.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
 
 #include "program/cli/flags/gain_names.hpp"
 #include "show/pictures/picture_parts.hpp"
-#include "show/report/blocks.hpp"
+#include "show/report/page.hpp"
 #include "viewgain/version.hpp"
 
 namespace viewgain::app {
@@ -37,6 +40,46 @@ Json column_of(const std::vector<double>& values, std::size_t rows) {
   std::vector<float> column(rows, std::numeric_limits<float>::quiet_NaN());
   std::copy_n(values.begin(), std::min(rows, values.size()), column.begin());
   return float_block(column, 1);
+}
+
+using Eigen::Vector3d;
+
+// The cell of each vertex, numbered in the order in which they come.
+std::vector<std::uint32_t> cells_of(const std::vector<Vector3d>& vertices, double side,
+                                    std::size_t& count) {
+  std::map<std::array<std::int64_t, 3>, std::uint32_t> numbers;
+  std::vector<std::uint32_t> cells;
+  cells.reserve(vertices.size());
+  for (const Vector3d& p : vertices) {
+    const std::array<std::int64_t, 3> at{std::llround(p.x() / side), std::llround(p.y() / side),
+                                         std::llround(p.z() / side)};
+    cells.push_back(
+        numbers.try_emplace(at, static_cast<std::uint32_t>(numbers.size())).first->second);
+  }
+  count = numbers.size();
+  return cells;
+}
+
+ShownMesh merged(const ShownMesh& mesh, const std::vector<std::uint32_t>& cells,
+                 std::size_t count) {
+  ShownMesh result;
+  result.vertices.assign(count, Vector3d::Zero());
+  result.sigma.assign(mesh.sigma.empty() ? 0 : count, 0.0);
+  result.error.assign(mesh.error.empty() ? 0 : count, 0.0);
+  std::vector<double> members(count, 0.0);
+  for (const std::uint32_t cell : cells) ++members[cell];
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double share = 1 / members[cells[i]];
+    result.vertices[cells[i]] += share * mesh.vertices[i];
+    if (!mesh.sigma.empty()) result.sigma[cells[i]] += share * mesh.sigma[i];
+    if (!mesh.error.empty()) result.error[cells[i]] += share * mesh.error[i];
+  }
+  for (const auto& t : mesh.triangles) {
+    const std::array<std::uint32_t, 3> moved{cells[t[0]], cells[t[1]], cells[t[2]]};
+    if (moved[0] == moved[1] || moved[1] == moved[2] || moved[2] == moved[0]) continue;
+    result.triangles.push_back(moved);
+  }
+  return result;
 }
 
 }  // namespace
@@ -109,6 +152,28 @@ Json contributions_json(const GridSnapshot& snapshot, const std::vector<VoxelCon
           {"value", float_block(values, 1)},
           {"unit", unit},
           {"size", snapshot.voxel_size}};
+}
+
+ShownMesh thinned(ShownMesh mesh, std::size_t most) {
+  if (mesh.vertices.size() <= most) return mesh;
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : mesh.vertices) box.extend(p);
+  // Vertices of a surface are about as many as the squares of its box's diagonal.
+  double side = box.diagonal().norm() / std::sqrt(static_cast<double>(most));
+  std::size_t count = 0;
+  std::vector<std::uint32_t> cells = cells_of(mesh.vertices, side, count);
+  while (count > most) cells = cells_of(mesh.vertices, side *= 1.15, count);
+  return merged(mesh, cells, count);
+}
+
+Json to_json(const ShownMesh& mesh) {
+  std::vector<std::uint32_t> indices;
+  indices.reserve(3 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
+  Json json{{"vertices", point_block(mesh.vertices)}, {"triangles", index_block(indices, 3)}};
+  if (!mesh.sigma.empty()) json["sigma"] = shade_block(mesh.sigma);
+  if (!mesh.error.empty()) json["error"] = shade_block(mesh.error);
+  return json;
 }
 
 }  // namespace viewgain::app

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/core/planning.hpp"
 
-#include <optional>
-#include <string>
 #include <utility>
 
 #include "viewgain/core/error.hpp"
@@ -66,9 +64,8 @@ class Planner {
     const std::optional<DecisionMaking::Decision> decision =
         timed(record, "score", [&] { return decision_.decide(record.T_world_camera, candidates); });
     if (decision && decision->candidate >= candidates.size()) {
-      throw Error(ErrorCode::invalid_argument, "planning: the decision is candidate " +
-                                                   std::to_string(decision->candidate) + " of " +
-                                                   std::to_string(candidates.size()));
+      refuse("planning: the decision is candidate " + std::to_string(decision->candidate) + " of " +
+             std::to_string(candidates.size()));
     }
     record.decision = decision;
     if (interrupted()) return StopReason::interrupted;

@@ -12,9 +12,7 @@ namespace viewgain {
 namespace {
 
 void check(const PlanningConfig& config) {
-  const auto fail = [](const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, "planning: " + what);
-  };
+  const auto fail = [](const std::string& what) { refuse("planning: " + what); };
   const auto check_finite = [&fail](const char* name, double value) {
     if (!std::isfinite(value)) {
       fail(std::string(name) + " must be finite, not " + short_text(value));

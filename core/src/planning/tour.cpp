@@ -26,9 +26,8 @@ class Costs {
         if (from == to) continue;
         const double value = cost(from == count ? kTourStart : from, to);
         if (!(value >= 0)) {
-          throw Error(ErrorCode::invalid_argument,
-                      "the way from " + (from == count ? "the start" : std::to_string(from)) +
-                          " to " + std::to_string(to) + " costs " + std::to_string(value));
+          refuse("the way from " + (from == count ? "the start" : std::to_string(from)) + " to " +
+                 std::to_string(to) + " costs " + std::to_string(value));
         }
         costs_[from * count + to] = value;
       }

@@ -47,16 +47,12 @@ std::optional<Pose> rigid_pose(const Pose& pose) {
 
 Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up) {
   if (!eye.allFinite() || !target.allFinite() || !up.allFinite()) {
-    throw Error(ErrorCode::invalid_argument, "look_at: a number is not finite");
+    refuse("look_at: a number is not finite");
   }
   const Eigen::Vector3d direction = target - eye;
-  if (!direction.allFinite()) {
-    throw Error(ErrorCode::invalid_argument, "look_at: eye and target are too far apart");
-  }
-  if (direction.isZero(0)) {
-    throw Error(ErrorCode::invalid_argument, "look_at: eye and target are the same point");
-  }
-  if (up.isZero(0)) throw Error(ErrorCode::invalid_argument, "look_at: up is zero");
+  if (!direction.allFinite()) refuse("look_at: eye and target are too far apart");
+  if (direction.isZero(0)) refuse("look_at: eye and target are the same point");
+  if (up.isZero(0)) refuse("look_at: up is zero");
 
   const Eigen::Vector3d z = direction.stableNormalized();
   Eigen::Vector3d x = z.cross(up.stableNormalized());

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numeric>
 #include <string>
-#include <vector>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
@@ -89,9 +88,7 @@ PoseList read_tum(const fs::path& path) {
     list.timestamps.push_back(line.number(0));
     list.orthonormalized += mended ? 1 : 0;
   }
-  if (list.poses.empty()) {
-    throw Error(ErrorCode::format, path.string() + ": holds no pose");
-  }
+  if (list.poses.empty()) throw Error(ErrorCode::format, path.string() + ": holds no pose");
   return list;
 }
 
@@ -104,19 +101,16 @@ void write_tum(const fs::path& path, std::span<const Pose> poses) {
 void write_tum(const fs::path& path, std::span<const Pose> poses,
                std::span<const double> timestamps) {
   if (timestamps.size() != poses.size()) {
-    throw Error(ErrorCode::invalid_argument, path.string() + ": " + std::to_string(poses.size()) +
-                                                 " poses but " + std::to_string(timestamps.size()) +
-                                                 " timestamps");
+    refuse(path.string() + ": " + std::to_string(poses.size()) + " poses but " +
+           std::to_string(timestamps.size()) + " timestamps");
   }
   std::string text = "# timestamp tx ty tz qx qy qz qw\n";
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!(orthonormality_error(poses[i]) <= kMendable)) {
-      throw Error(ErrorCode::invalid_argument,
-                  path.string() + ": pose " + std::to_string(i) + " is not a rigid transform");
+      refuse(path.string() + ": pose " + std::to_string(i) + " is not a rigid transform");
     }
     if (!std::isfinite(timestamps[i])) {
-      throw Error(ErrorCode::invalid_argument,
-                  path.string() + ": timestamp " + std::to_string(i) + " is not finite");
+      refuse(path.string() + ": timestamp " + std::to_string(i) + " is not finite");
     }
     text += exact_text(timestamps[i]);
     for (const double value : numbers_of_pose(poses[i])) text += ' ' + exact_text(value);

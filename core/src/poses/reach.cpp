@@ -13,8 +13,7 @@ namespace viewgain {
 namespace {
 
 [[noreturn]] void fail(const char* part, std::size_t index, const std::string& what) {
-  throw Error(ErrorCode::invalid_argument,
-              std::string("reach: ") + part + " " + std::to_string(index) + " " + what);
+  refuse(std::string("reach: ") + part + " " + std::to_string(index) + " " + what);
 }
 
 /// Unlike Box::contains, faces included: a camera may stand on the limit.
@@ -74,9 +73,7 @@ void ReachRegion::validate() const {
         !std::isfinite(shell.max_radius)) {
       fail("shell", i, "is not finite");
     }
-    if (shell.min_radius < 0) {
-      fail("shell", i, "has the radius " + short_text(shell.min_radius));
-    }
+    if (shell.min_radius < 0) fail("shell", i, "has the radius " + short_text(shell.min_radius));
     if (shell.min_radius > shell.max_radius) {
       fail("shell", i,
            "is inside out: " + short_text(shell.min_radius) + " > " + short_text(shell.max_radius));
@@ -95,9 +92,8 @@ void ReachRegion::validate() const {
   for (const auto& [name, value] :
        {std::pair("distance", tolerance.distance), std::pair("angle", tolerance.angle)}) {
     if (!(std::isfinite(value) && value >= 0)) {
-      throw Error(ErrorCode::invalid_argument, std::string("reach: the tolerance's ") + name +
-                                                   " must be finite and not negative, not " +
-                                                   short_text(value));
+      refuse(std::string("reach: the tolerance's ") + name +
+             " must be finite and not negative, not " + short_text(value));
     }
   }
 }

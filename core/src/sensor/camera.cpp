@@ -81,9 +81,7 @@ Eigen::Vector2d undistort(const std::array<double, 5>& d, const Eigen::Vector2d&
   return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
 }
 
-[[noreturn]] void fail(const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, "camera: " + what);
-}
+[[noreturn]] void fail(const std::string& what) { refuse("camera: " + what); }
 
 }  // namespace
 

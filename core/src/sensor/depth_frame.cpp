@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/core/depth_frame.hpp"
 
-#include <cstddef>
 #include <string>
 
 #include "viewgain/core/error.hpp"
@@ -14,21 +13,17 @@ void check_frame_size(const DepthFrame& frame, const PinholeCamera& camera) {
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   if (frame.width != camera.width || frame.height != camera.height ||
       frame.depth.size() != pixels) {
-    throw Error(ErrorCode::invalid_argument,
-                "depth frame is " + std::to_string(frame.width) + " x " +
-                    std::to_string(frame.height) + " px with " +
-                    std::to_string(frame.depth.size()) + " values, the sensor has " +
-                    std::to_string(camera.width) + " x " + std::to_string(camera.height));
+    refuse("depth frame is " + std::to_string(frame.width) + " x " + std::to_string(frame.height) +
+           " px with " + std::to_string(frame.depth.size()) + " values, the sensor has " +
+           std::to_string(camera.width) + " x " + std::to_string(camera.height));
   }
   if (!frame.amplitude.empty() && frame.amplitude.size() != pixels) {
-    throw Error(ErrorCode::invalid_argument,
-                "depth frame has " + std::to_string(frame.amplitude.size()) + " amplitudes for " +
-                    std::to_string(pixels) + " pixels");
+    refuse("depth frame has " + std::to_string(frame.amplitude.size()) + " amplitudes for " +
+           std::to_string(pixels) + " pixels");
   }
   if (!frame.known_depth.empty() && frame.known_depth.size() != pixels) {
-    throw Error(ErrorCode::invalid_argument,
-                "depth frame has " + std::to_string(frame.known_depth.size()) +
-                    " known depths for " + std::to_string(pixels) + " pixels");
+    refuse("depth frame has " + std::to_string(frame.known_depth.size()) + " known depths for " +
+           std::to_string(pixels) + " pixels");
   }
 }
 

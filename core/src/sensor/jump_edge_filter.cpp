@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/text.hpp"
@@ -58,8 +57,7 @@ JumpEdgeFilter::JumpEdgeFilter(const PinholeCamera& camera, const JumpEdgeFilter
     : camera_(camera), config_(config) {
   camera_.validate();
   if (!(config_.angle >= kMinAngle - kAngleSlack && config_.angle <= kMaxAngle + kAngleSlack)) {
-    throw Error(ErrorCode::invalid_argument, "jump-edge angle must be in 1..10 degrees, not " +
-                                                 short_text(config_.angle / kDegree));
+    refuse("jump-edge angle must be in 1..10 degrees, not " + short_text(config_.angle / kDegree));
   }
   rays_ = camera_.ray_table();
   const double sin_angle = std::sin(config_.angle);

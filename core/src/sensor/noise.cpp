@@ -16,9 +16,7 @@ double clamped_cos(double cos_incidence) {
 
 double clamped_range(double t) { return std::max(t, kMinNoiseRange); }
 
-}  // namespace
-
-MeasurementSigmas sigmas(const ShotNoise& noise, double t, double fx, double cos_incidence) {
+MeasurementSigmas sigmas_of(const ShotNoise& noise, double t, double fx, double cos_incidence) {
   t = clamped_range(t);
   const double axial = noise.reference_sigma * (t / noise.reference_range) *
                        std::sqrt(noise.reference_integration_time / noise.integration_time) /
@@ -26,8 +24,8 @@ MeasurementSigmas sigmas(const ShotNoise& noise, double t, double fx, double cos
   return {axial, t / fx};
 }
 
-MeasurementSigmas sigmas(const StructuredLightNoise& noise, double t, double fx,
-                         double cos_incidence) {
+MeasurementSigmas sigmas_of(const StructuredLightNoise& noise, double t, double fx,
+                            double cos_incidence) {
   t = clamped_range(t);
   const double theta = std::acos(clamped_cos(cos_incidence));
   const double rest = std::numbers::pi / 2.0 - theta;
@@ -39,24 +37,28 @@ MeasurementSigmas sigmas(const StructuredLightNoise& noise, double t, double fx,
   return {axial, (noise.lateral_px + noise.lateral_grazing_px * theta / rest) * t / fx};
 }
 
-MeasurementSigmas sigmas(const StereoNoise& noise, double t, double fx, double /*cos_incidence*/) {
+MeasurementSigmas sigmas_of(const StereoNoise& noise, double t, double fx,
+                            double /*cos_incidence*/) {
   t = clamped_range(t);
   return {t * t * noise.subpixel / (noise.focal_with(fx) * noise.baseline), t / fx};
 }
 
-MeasurementSigmas sigmas(const QuadraticNoise& noise, double t, double fx,
-                         double /*cos_incidence*/) {
+MeasurementSigmas sigmas_of(const QuadraticNoise& noise, double t, double fx,
+                            double /*cos_incidence*/) {
   t = clamped_range(t);
   return {noise.offset + (noise.linear + noise.quadratic * t) * t, t / fx};
 }
 
-MeasurementSigmas sigmas(const ConstantNoise& noise, double /*t*/, double /*fx*/,
-                         double /*cos_incidence*/) {
+MeasurementSigmas sigmas_of(const ConstantNoise& noise, double /*t*/, double /*fx*/,
+                            double /*cos_incidence*/) {
   return {noise.sigma_axial, noise.sigma_lateral};
 }
 
+}  // namespace
+
 MeasurementSigmas sigmas(const NoiseModel& noise, double t, double fx, double cos_incidence) {
-  return std::visit([&](const auto& model) { return sigmas(model, t, fx, cos_incidence); }, noise);
+  return std::visit([&](const auto& model) { return sigmas_of(model, t, fx, cos_incidence); },
+                    noise);
 }
 
 double sigma_along_normal(const MeasurementSigmas& sigmas, double cos_incidence) {

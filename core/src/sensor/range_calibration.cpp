@@ -18,14 +18,12 @@ void RangeCalibration::validate() const {
   for (std::size_t i = 0; i < table.size(); ++i) {
     const auto& [measured, error] = table[i];
     if (!std::isfinite(measured) || !std::isfinite(error)) {
-      throw Error(ErrorCode::invalid_argument, "range calibration: entry " + std::to_string(i) +
-                                                   " is not finite: " + short_text(measured) +
-                                                   ", " + short_text(error));
+      refuse("range calibration: entry " + std::to_string(i) +
+             " is not finite: " + short_text(measured) + ", " + short_text(error));
     }
     if (i > 0 && !(measured > table[i - 1][0])) {
-      throw Error(ErrorCode::invalid_argument,
-                  "range calibration: measured ranges must rise, but " + short_text(measured) +
-                      " m follows " + short_text(table[i - 1][0]) + " m");
+      refuse("range calibration: measured ranges must rise, but " + short_text(measured) +
+             " m follows " + short_text(table[i - 1][0]) + " m");
     }
   }
 }
@@ -56,9 +54,7 @@ RangeCorrector::RangeCorrector(const PinholeCamera& camera, RangeCalibration cal
   range_per_depth_.reserve(static_cast<std::size_t>(camera_.width) *
                            static_cast<std::size_t>(camera_.height));
   for (int v = 0; v < camera_.height; ++v) {
-    for (int u = 0; u < camera_.width; ++u) {
-      range_per_depth_.push_back(camera_.ray(u, v).norm());
-    }
+    for (int u = 0; u < camera_.width; ++u) range_per_depth_.push_back(camera_.ray(u, v).norm());
   }
 }
 
@@ -71,9 +67,8 @@ void RangeCorrector::correct(std::span<float> depth) const {
   const std::size_t pixels =
       static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
   if (depth.size() != pixels) {
-    throw Error(ErrorCode::invalid_argument, std::to_string(depth.size()) + " depths for " +
-                                                 std::to_string(camera_.width) + " x " +
-                                                 std::to_string(camera_.height) + " pixels");
+    refuse(std::to_string(depth.size()) + " depths for " + std::to_string(camera_.width) + " x " +
+           std::to_string(camera_.height) + " pixels");
   }
   if (calibration_.table.empty()) return;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {

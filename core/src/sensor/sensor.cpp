@@ -3,63 +3,13 @@
 #include "viewgain/core/sensor.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <initializer_list>
-#include <utility>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/nearest_name.hpp"
+#include "viewgain/support/noise_fields.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {
-
-using NamedValues = std::initializer_list<std::pair<const char*, double>>;
-
-[[noreturn]] void refuse(const char* name, const char* rule, double value) {
-  throw Error(ErrorCode::invalid_argument, std::string("noise: ") + name + " must be " + rule +
-                                               " and finite, not " + short_text(value));
-}
-
-void check_positive(NamedValues values) {
-  for (const auto& [name, value] : values) {
-    if (!(std::isfinite(value) && value > 0)) refuse(name, "positive", value);
-  }
-}
-
-void check_not_negative(NamedValues values) {
-  for (const auto& [name, value] : values) {
-    if (!(std::isfinite(value) && value >= 0)) refuse(name, "not negative", value);
-  }
-}
-
-void validate_noise(const ShotNoise& n) {
-  check_positive({{"reference_sigma", n.reference_sigma},
-                  {"reference_range", n.reference_range},
-                  {"reference_integration_time", n.reference_integration_time},
-                  {"integration_time", n.integration_time}});
-  check_not_negative(
-      {{"modulation_frequency", n.modulation_frequency}, {"min_amplitude", n.min_amplitude}});
-}
-void validate_noise(const StructuredLightNoise& n) {
-  check_positive({{"offset", n.offset},
-                  {"quadratic", n.quadratic},
-                  {"vertex", n.vertex},
-                  {"grazing", n.grazing},
-                  {"lateral_px", n.lateral_px},
-                  {"lateral_grazing_px", n.lateral_grazing_px}});
-}
-void validate_noise(const StereoNoise& n) {
-  check_positive({{"subpixel", n.subpixel}, {"baseline", n.baseline}});
-  check_not_negative({{"focal", n.focal}});
-}
-void validate_noise(const QuadraticNoise& n) {
-  check_positive({{"offset", n.offset}});
-  check_not_negative({{"quadratic", n.quadratic}, {"linear", n.linear}});
-}
-void validate_noise(const ConstantNoise& n) {
-  check_positive({{"sigma_axial", n.sigma_axial}, {"sigma_lateral", n.sigma_lateral}});
-}
 
 Sensor make_sensor(std::string_view name, const PinholeCamera& camera, double min_range,
                    double max_range, double working_distance, const NoiseModel& noise) {
@@ -106,9 +56,7 @@ const std::vector<Sensor>& presets() {
 }  // namespace
 
 void Sensor::validate() const {
-  const auto fail = [](const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, "sensor: " + what);
-  };
+  const auto fail = [](const std::string& what) { refuse("sensor: " + what); };
   camera.validate();
   if (!(std::isfinite(min_range) && min_range >= 0)) {
     fail("min_range must be finite and not negative, not " + short_text(min_range));
@@ -120,7 +68,13 @@ void Sensor::validate() const {
     fail("working_distance must be positive and within min_range and max_range, not " +
          short_text(working_distance));
   }
-  std::visit([](const auto& model) { validate_noise(model); }, noise);
+  NoiseModel parameters = noise;
+  for_each_parameter(parameters, [&](double value, const auto& field) {
+    if (std::isfinite(value) && (field.may_be_0 ? value >= 0 : value > 0)) return;
+    refuse(std::string("noise: ") + field.name + " must be " +
+           (field.may_be_0 ? "not negative" : "positive") + " and finite, not " +
+           short_text(value));
+  });
   if (T_flange_camera && !rigid_pose(*T_flange_camera)) {
     fail("T_flange_camera is not a rigid transform");
   }
@@ -162,8 +116,7 @@ Sensor sensor_preset(std::string_view name) {
 
 double default_prior_sigma(double voxel_size, const Sensor& sensor) {
   if (!(voxel_size > 0 && std::isfinite(voxel_size))) {
-    throw Error(ErrorCode::invalid_argument,
-                "voxel_size is " + short_text(voxel_size) + " m; it must be positive and finite");
+    refuse("voxel_size is " + short_text(voxel_size) + " m; it must be positive and finite");
   }
   return std::max(voxel_size / 2.0, 2.0 * sensor.sigmas(sensor.working_distance).axial);
 }

@@ -14,7 +14,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -134,14 +133,14 @@ int create_new(const fs::path& path) {
 /// The names of temporary files that remove_temporary_files() is to remove; files beyond these are
 /// not listed. A handler and a destructor may look for the same name at once: the one that takes it
 /// out of the list, in one step, has it to itself.
-std::array<std::atomic<char*>, 64> listed{};
+std::array<std::atomic<char*>, 64> temporaries{};
 static_assert(std::atomic<char*>::is_always_lock_free);  // else no handler could use it
 
 /// The name as it was listed, or null.
 char* list_temporary(const fs::path& path) {
   char* name = ::strdup(path.c_str());
   if (name == nullptr) return nullptr;
-  for (std::atomic<char*>& place : listed) {
+  for (std::atomic<char*>& place : temporaries) {
     char* nothing = nullptr;
     if (place.compare_exchange_strong(nothing, name)) return name;
   }
@@ -151,7 +150,7 @@ char* list_temporary(const fs::path& path) {
 
 void unlist_temporary(char* name) {
   if (name == nullptr) return;
-  for (std::atomic<char*>& place : listed) {
+  for (std::atomic<char*>& place : temporaries) {
     char* expected = name;
     if (place.compare_exchange_strong(expected, nullptr)) {
       std::free(name);
@@ -233,7 +232,7 @@ void AtomicFile::commit() {
 
 void remove_temporary_files() noexcept {
   const int error = errno;
-  for (std::atomic<char*>& place : listed) {
+  for (std::atomic<char*>& place : temporaries) {
     char* const name = place.exchange(nullptr);
     if (name == nullptr) continue;
     ::unlink(name);

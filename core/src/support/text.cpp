@@ -7,8 +7,6 @@
 #include <cmath>
 #include <system_error>
 
-#include "viewgain/core/error.hpp"
-
 namespace viewgain {
 namespace {
 

@@ -20,7 +20,6 @@
 #include <string_view>
 #include <vector>
 
-#include "file_seal.hpp"
 #include "map/grid_storage.hpp"
 #include "vdb_layout.hpp"
 #include "vdb_outline.hpp"

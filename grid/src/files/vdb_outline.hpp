@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -12,5 +13,14 @@ namespace viewgain::detail {
 /// short nor cleans up after an exception, so a file that is cut is better found before it. The
 /// grids' contents are not looked at, nor those of files without positions (written to a pipe).
 [[nodiscard]] std::string fault_in_outline(std::string_view file);
+
+// A seal is 24 bytes behind the last grid, where OpenVDB does not look: a mark, the length of what
+// comes before, and its hash. OpenVDB's reader trusts sizes that it finds in a file; a seal that
+// fits means that the bytes are those that were written.
+
+[[nodiscard]] std::string make_seal(std::string_view bytes);
+
+enum class SealCheck : std::uint8_t { absent, intact, broken };
+[[nodiscard]] SealCheck check_seal(std::string_view file);
 
 }  // namespace viewgain::detail

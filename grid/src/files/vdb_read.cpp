@@ -15,12 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include "map/belief_check.hpp"
+#include "map/belief_blocks.hpp"
 #include "pose_text.hpp"
 #include "vdb_contents.hpp"
 #include "vdb_layout.hpp"
 #include "vdb_rates.hpp"
-#include "vdb_scales.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/belief_block.hpp"
@@ -186,9 +185,7 @@ class Loader {
   void load_states(const VdbContents& contents, GridStorage& s) {
     const auto& log_odds = tree<FloatGrid>(contents, s, "log_odds");
     const auto& state = tree<FloatGrid>(contents, s, "state");
-    if (log_odds.activeVoxelCount() != state.activeVoxelCount()) {
-      fail(kOtherVoxels);
-    }
+    if (log_odds.activeVoxelCount() != state.activeVoxelCount()) fail(kOtherVoxels);
     struct Made {
       std::unique_ptr<CodeLeaf> leaf;
       std::uint8_t first_code = kUnknownCode;

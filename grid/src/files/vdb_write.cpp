@@ -13,11 +13,10 @@
 #include <string>
 #include <utility>
 
-#include "file_seal.hpp"
 #include "map/code_mask.hpp"
 #include "pose_text.hpp"
 #include "vdb_layout.hpp"
-#include "vdb_scales.hpp"
+#include "vdb_outline.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/atomic_file.hpp"

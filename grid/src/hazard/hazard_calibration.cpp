@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/text.hpp"
@@ -74,13 +73,10 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
   const PinholeCamera& camera = sensor_.camera;
   check_frame_size(frame, camera);
   const std::optional<Pose> T_rigid = rigid_pose(T_world_camera);
-  if (!T_rigid) {
-    throw Error(ErrorCode::invalid_argument, "the frame's pose is not a rigid transform");
-  }
+  if (!T_rigid) refuse("the frame's pose is not a rigid transform");
   if (hazard.voxel_size() != grid.voxel_size()) {
-    throw Error(ErrorCode::invalid_argument,
-                "the hazard is of voxels of " + short_text(hazard.voxel_size()) +
-                    " m, the grid's are of " + short_text(grid.voxel_size()) + " m");
+    refuse("the hazard is of voxels of " + short_text(hazard.voxel_size()) +
+           " m, the grid's are of " + short_text(grid.voxel_size()) + " m");
   }
   if (!hazard.follows_counters() || hazard.near_box().volume() == 0) return;
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <string>
 
-#include "free_share.hpp"
 #include "nearest_cells.hpp"
 #include "open_directions.hpp"
 #include "viewgain/core/error.hpp"
@@ -22,10 +21,7 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kKnownDistance = 1.2;
 
 void check(bool ok, const char* name, double value) {
-  if (!ok) {
-    throw Error(ErrorCode::invalid_argument,
-                "hazard: " + std::string(name) + " " + short_text(value) + " is out of bounds");
-  }
+  if (!ok) refuse("hazard: " + std::string(name) + " " + short_text(value) + " is out of bounds");
 }
 
 // The voxels that are evidence of surface: those of a cube of 2^shift voxels an edge count
@@ -146,9 +142,8 @@ void HazardConfig::validate() const {
   }
   if (!volume) return;
   if (volume->rates.size() != volume->box.volume()) {
-    throw Error(ErrorCode::invalid_argument, "hazard: " + std::to_string(volume->rates.size()) +
-                                                 " rates for a box of " +
-                                                 std::to_string(volume->box.volume()) + " voxels");
+    refuse("hazard: " + std::to_string(volume->rates.size()) + " rates for a box of " +
+           std::to_string(volume->box.volume()) + " voxels");
   }
   check(is_rate(double{volume->outside}), "rate outside the volume", double{volume->outside});
   for (const float rate : volume->rates) check(is_rate(double{rate}), "rate", double{rate});

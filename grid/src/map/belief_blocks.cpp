@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "belief_blocks.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
-#include "viewgain/support/belief_block.hpp"
-#include "viewgain/support/block_lattice.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 
@@ -35,3 +37,65 @@ std::shared_ptr<BeliefBlock> detail::reshaped(const BeliefBlock* block, const Le
 }
 
 }  // namespace viewgain
+
+namespace viewgain::detail {
+namespace {
+
+std::string has(const char* what, const std::string& value) {
+  return std::string("has ") + what + value;
+}
+
+/// Bound on how far the sum of `hits` readings may be from positive semidefinite, its information
+/// scaled to a unit diagonal. Each sum was rounded to single precision `hits` times, by at most
+/// 2^-24 of itself, and |Λ_ij| <= √(Λ_ii Λ_jj): that is hits · 2^-24 an entry, three times as much
+/// for the matrix. Importers round once. From 2^24 readings on sums stand still, each within a
+/// factor of 2 of the others. Twice the bound, so that the matrix that is factored below is
+/// regular.
+double rounding(std::uint32_t hits) { return 6.0 * std::min((hits + 1.0) * 0x1p-24, 1.0); }
+
+}  // namespace
+
+std::string fault_of_belief(const Belief& belief, double voxel_size) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  bool is_clamped = false;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const float value = belief.information[i];
+    if (!std::isfinite(value) || (i < 3 && value < 0))
+      return has("an information of ", short_text(value));
+    is_clamped = is_clamped || std::abs(value) == kMost;
+  }
+  for (const float value : belief.information_vector) {
+    if (!std::isfinite(value)) return has("an information vector of ", short_text(value));
+    is_clamped = is_clamped || std::abs(value) == kMost;
+  }
+  if (belief.hits > static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max())) {
+    return has("more than 2147483647 hits: ", std::to_string(belief.hits));
+  }
+  // Sums that would overflow stay where they are; no more can be said of them.
+  if (is_clamped) return {};
+
+  // The smallest normal number: below it rounding is absolute.
+  const Eigen::Matrix3d information = belief.information_matrix().matrix();
+  const Eigen::Vector3d scale =
+      (information.diagonal().array() + double{std::numeric_limits<float>::min()}).rsqrt();
+  Eigen::Matrix3d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  scaled.diagonal().array() += rounding(belief.hits);
+  const Eigen::LLT<Eigen::Matrix3d> factors(scaled);
+  if (factors.info() != Eigen::Success) {
+    return "has an information that is not positive semidefinite";
+  }
+  // The mean of readings in a voxel, weighted by their matrices, is at most about twice as many
+  // voxels off its centre as a sensor's sigmas differ by a factor. Farther off than this, a place
+  // given in voxels would leave the range of 32 bits.
+  constexpr double kFarthest = 0x1p28;
+  const Eigen::Vector3d vector(belief.information_vector[0], belief.information_vector[1],
+                               belief.information_vector[2]);
+  const Eigen::Vector3d offset =
+      scale.cwiseProduct(factors.solve(scale.cwiseProduct(vector))) / voxel_size;
+  const double farthest = offset.cwiseAbs().maxCoeff();
+  if (!(farthest <= kFarthest))
+    return has("a place that many voxels off its own: ", short_text(farthest));
+  return {};
+}
+
+}  // namespace viewgain::detail

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <unordered_map>
 
 #include "viewgain/grid/belief.hpp"
@@ -39,5 +40,11 @@ inline constexpr int kMaxScale = 3;  // a cell is at most a leaf
 /// lacks; those that `mask` lacks are dropped. Blocks are never changed in place: snapshots may
 /// hold the old one.
 [[nodiscard]] std::shared_ptr<BeliefBlock> reshaped(const BeliefBlock* block, const LeafMask& mask);
+
+/// What is wrong with a belief that readings in a voxel cannot have made ("has an information of
+/// nan"); empty if it may be one. Its numbers must be finite, its information positive semidefinite
+/// but for the rounding of its sums, its place no more than 2^28 voxels off, its hits at most
+/// 2^31 - 1.
+[[nodiscard]] std::string fault_of_belief(const Belief& belief, double voxel_size);
 
 }  // namespace viewgain::detail

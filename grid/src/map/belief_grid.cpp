@@ -13,9 +13,8 @@
 #include "grid_layout.hpp"
 #include "grid_storage.hpp"
 #include "leaf_scales.hpp"
-#include "viewgain/core/error.hpp"
 #include "viewgain/support/belief_block.hpp"
-#include "viewgain/support/grid_blocks.hpp"
+#include "viewgain/support/block_lattice.hpp"
 
 namespace viewgain {
 namespace {

@@ -12,7 +12,7 @@
 #include "grid_storage.hpp"
 #include "leaf_scales.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/grid_blocks.hpp"
+#include "viewgain/support/block_lattice.hpp"
 #include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain {
@@ -26,17 +26,15 @@ void check_states(std::span<const std::uint8_t> states) {
   const auto wrong =
       std::find_if(states.begin(), states.end(), [](std::uint8_t s) { return s > 2; });
   if (wrong != states.end()) {
-    throw Error(ErrorCode::invalid_argument, "state " + std::to_string(*wrong) + " at position " +
-                                                 std::to_string(wrong - states.begin()) +
-                                                 "; valid are 0, 1, 2");
+    refuse("state " + std::to_string(*wrong) + " at position " +
+           std::to_string(wrong - states.begin()) + "; valid are 0, 1, 2");
   }
 }
 
 void check_size(const BeliefGrid& grid, std::size_t size) {
   if (size != grid.voxel_count()) {
-    throw Error(ErrorCode::invalid_argument, "array of " + std::to_string(size) +
-                                                 " states for a workspace of " +
-                                                 std::to_string(grid.voxel_count()) + " voxels");
+    refuse("array of " + std::to_string(size) + " states for a workspace of " +
+           std::to_string(grid.voxel_count()) + " voxels");
   }
 }
 
@@ -93,13 +91,10 @@ BeliefGrid BeliefGrid::from_states(const GridConfig& config, std::span<const std
 
 std::uint64_t BeliefGrid::update_box(const VoxelBox& box, std::span<const std::uint8_t> states) {
   GridStorage& s = *storage_;
-  if (box.intersection(s.lattice) != box) {
-    throw Error(ErrorCode::invalid_argument, "the box is not inside the workspace");
-  }
+  if (box.intersection(s.lattice) != box) refuse("the box is not inside the workspace");
   if (states.size() != box.volume()) {
-    throw Error(ErrorCode::invalid_argument, "array of " + std::to_string(states.size()) +
-                                                 " states for a box of " +
-                                                 std::to_string(box.volume()) + " voxels");
+    refuse("array of " + std::to_string(states.size()) + " states for a box of " +
+           std::to_string(box.volume()) + " voxels");
   }
   check_states(states);
   std::uint64_t changed = 0;

@@ -107,8 +107,7 @@ void check_counters(const HazardCounters& counters) {
   for (const HazardCounters::Class& c : counters.classes) {
     for (const std::int64_t count : {c.expected, c.met}) {
       if (count >= 0 && count <= kMost) continue;
-      throw Error(ErrorCode::invalid_argument,
-                  "hazard counter " + std::to_string(count) + " is negative or over 2^40");
+      refuse("hazard counter " + std::to_string(count) + " is negative or over 2^40");
     }
   }
 }
@@ -116,8 +115,7 @@ void check_counters(const HazardCounters& counters) {
 VoxelBox voxels_in(const BeliefGrid& grid, const Box& region) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (std::isnan(region.min[axis]) || std::isnan(region.max[axis])) {
-      throw Error(ErrorCode::invalid_argument,
-                  std::string("region: a bound along ") + "xyz"[axis] + " is not a number");
+      refuse(std::string("region: a bound along ") + "xyz"[axis] + " is not a number");
     }
   }
   const VoxelBox workspace = VoxelBox::from_dims(grid.min_index(), grid.dims());
@@ -137,8 +135,8 @@ VoxelBox voxels_in(const BeliefGrid& grid, const Box& region) {
 Pose rigid_view(const Pose& T_world_camera) {
   const std::optional<Pose> rigid = rigid_pose(T_world_camera);
   if (!rigid) {
-    throw Error(ErrorCode::invalid_argument, "camera pose is not rigid: its rotation is off by " +
-                                                 short_text(orthonormality_error(T_world_camera)));
+    refuse("camera pose is not rigid: its rotation is off by " +
+           short_text(orthonormality_error(T_world_camera)));
   }
   return *rigid;
 }

@@ -3,7 +3,6 @@
 #include "viewgain/grid/grid_snapshot.hpp"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <utility>
 

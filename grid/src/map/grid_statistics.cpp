@@ -7,7 +7,7 @@
 #include "code_mask.hpp"
 #include "grid_layout.hpp"
 #include "viewgain/support/belief_block.hpp"
-#include "viewgain/support/grid_blocks.hpp"
+#include "viewgain/support/block_lattice.hpp"
 
 namespace viewgain {
 namespace {

@@ -12,9 +12,8 @@
 #include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include "belief_check.hpp"
+#include "belief_blocks.hpp"
 #include "grid_layout.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -24,16 +23,15 @@ namespace {
 using namespace detail;
 
 void check_value(const GridStorage& s, const BeliefGrid::VoxelValue& value) {
-  const auto fail = [](const std::string& what) { throw Error(ErrorCode::invalid_argument, what); };
   const Index3& v = value.voxel;
   if (!s.lattice.contains(v)) {
-    fail("voxel (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) +
-         ") lies outside the workspace");
+    refuse("voxel (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
+           std::to_string(v.z) + ") lies outside the workspace");
   }
-  if (std::isnan(value.log_odds)) fail("log-odds is NaN");
+  if (std::isnan(value.log_odds)) refuse("log-odds is NaN");
   if (!value.belief) return;
   const std::string fault = fault_of_belief(*value.belief, s.voxel_size);
-  if (!fault.empty()) fail("belief " + fault);
+  if (!fault.empty()) refuse("belief " + fault);
 }
 
 /// A value and the key of its block.
@@ -286,8 +284,7 @@ std::uint64_t BeliefGrid::resample(const Box& region, int scale) {
   GridStorage& s = *storage_;
   const VoxelBox range = voxels_in(*this, region);
   if (scale < 0 || scale > kMaxScale) {
-    throw Error(ErrorCode::invalid_argument,
-                "scale " + std::to_string(scale) + " is not 0 to " + std::to_string(kMaxScale));
+    refuse("scale " + std::to_string(scale) + " is not 0 to " + std::to_string(kMaxScale));
   }
   std::uint64_t changed = 0;
   for (const std::uint64_t key : held_blocks(s)) {

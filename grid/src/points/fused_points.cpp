@@ -4,7 +4,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -12,10 +11,9 @@
 
 #include "belief_bricks.hpp"
 #include "hit_moments.hpp"
-#include "point_cells.hpp"
 #include "reading_sigma.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/grid/pooling.hpp"
+#include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
@@ -86,8 +84,7 @@ class PointThinning {
 void check(const FusedPointsConfig& config) {
   const auto need = [](bool ok, const char* name, double value) {
     if (!ok) {
-      throw Error(ErrorCode::invalid_argument, "fused points: " + std::string(name) + " " +
-                                                   short_text(value) + " is out of bounds");
+      refuse("fused points: " + std::string(name) + " " + short_text(value) + " is out of bounds");
     }
   };
   need(config.normal_radius >= 1 && config.normal_radius <= kMaxReach, "normal_radius",
@@ -313,6 +310,27 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
   return points;
 }
 
+constexpr int kMostShift = 3;  // cubes stay within a leaf
+
+// Median sigma of a reading across its ray [m]; 0 if nothing was read.
+double footprint_in(const GridSnapshot& snapshot, std::optional<int> scale) {
+  std::vector<float> variances;
+  for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
+    if (!leaf.beliefs || leaf.beliefs->scale != scale.value_or(leaf.beliefs->scale)) continue;
+    std::size_t rank = 0;
+    for_each_bit(leaf.beliefs->mask, [&](unsigned offset) {
+      const Belief& belief = leaf.beliefs->beliefs[rank++];
+      if (belief.hits == 0 || !test_bit(leaf.occupied, offset)) return;
+      variances.push_back(
+          static_cast<float>(detail::lateral_variance(belief.information_matrix(), belief.hits)));
+    });
+  }
+  if (variances.empty()) return 0;
+  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
+  std::nth_element(variances.begin(), middle, variances.end());
+  return std::sqrt(static_cast<double>(*middle));
+}
+
 }  // namespace
 
 std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsConfig& config,
@@ -329,6 +347,17 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
     points.insert(points.end(), part.begin(), part.end());
   }
   return points;
+}
+
+Pooling pooling_of(const GridSnapshot& snapshot, std::optional<int> scale) {
+  const double footprint = footprint_in(snapshot, scale);
+  Pooling pooling{scale.value_or(0), std::ldexp(snapshot.voxel_size, scale.value_or(0))};
+  while (pooling.shift < kMostShift && pooling.length * std::numbers::sqrt2 < footprint) {
+    ++pooling.shift;
+    pooling.length *= 2;
+  }
+  pooling.length = std::max(pooling.length, footprint);
+  return pooling;
 }
 
 }  // namespace viewgain

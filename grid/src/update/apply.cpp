@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "belief_merge.hpp"
 #include "map/grid_storage.hpp"
 #include "map/leaf_scales.hpp"
 
@@ -40,9 +39,7 @@ void list_regions(const BlockLattice& lattice, const E& evidence, FrameHits& hit
 }
 
 void put_mask(const LeafMask& mask, CodeLeaf& leaf) {
-  for (openvdb::Index i = 0; i < 8; ++i) {
-    leaf.getValueMask().getWord<std::uint64_t>(i) = mask[i];
-  }
+  for (openvdb::Index i = 0; i < 8; ++i) leaf.getValueMask().getWord<std::uint64_t>(i) = mask[i];
 }
 
 // A block before the frame: its leaf, else the code that all of its voxels have.
@@ -153,9 +150,7 @@ class RegionUpdate {
   void put_hits(const BlockPlace& place, const HitBlock& hit_block, std::int8_t* deltas,
                 RegionResult& result) const {
     LeafMask mask{};
-    for (const Hit& hit : hits_.of(hit_block)) {
-      set_bit(mask, hit.offset);
-    }
+    for (const Hit& hit : hits_.of(hit_block)) set_bit(mask, hit.offset);
     result.counts.hit += count_bits(mask);
     for_each_bit(mask, [&](unsigned lowest) {  // beats a crossing
       for_each_in_cell(lowest, place.scale, [&](unsigned offset) { deltas[offset] = kHitDelta; });
@@ -284,9 +279,7 @@ void FrameApply::Impl::put_results(GridStorage& s) {
     result.tiles.clear();
   }
   for (std::size_t i = 0; i < regions.size(); ++i) {
-    for (const auto& [key, scale] : results[i].scales) {
-      s.put_scale(key, scale);
-    }
+    for (const auto& [key, scale] : results[i].scales) s.put_scale(key, scale);
     results[i].scales.clear();
   }
   for (std::size_t i = 0; i < regions.size(); ++i) {

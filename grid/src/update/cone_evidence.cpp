@@ -2,7 +2,178 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cone_evidence.hpp"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
 namespace viewgain::detail {
+namespace {
+
+// Rounding in the projections here and in the kernel is some 1e-13 of a pixel and of a range.
+constexpr double kPixelMargin = 1e-6;
+constexpr double kRangeMargin = 1e-9;
+// Squares looked at along one side of a rectangle: more is tighter, less is quicker.
+constexpr std::int32_t kTexels = 4;
+
+struct Interval {
+  double low, high;
+};
+Interval operator+(Interval a, Interval b) { return {a.low + b.low, a.high + b.high}; }
+Interval operator+(double a, Interval b) { return {a + b.low, a + b.high}; }
+Interval operator*(Interval a, Interval b) {
+  const double p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
+  return {std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s))};
+}
+Interval operator*(double a, Interval b) { return Interval{a, a} * b; }
+Interval square(Interval a) {
+  const double p = a.low * a.low, q = a.high * a.high;
+  return {a.low <= 0 && a.high >= 0 ? 0.0 : std::min(p, q), std::max(p, q)};
+}
+
+}  // namespace
+
+void RangePyramid::build(std::span<const double> reach_taper, std::int32_t width,
+                         std::int32_t height) {
+  const auto count = [](std::int32_t w, std::int32_t h) {
+    return static_cast<std::size_t>(w) * static_cast<std::size_t>(h);
+  };
+  levels_.resize(static_cast<std::size_t>(
+      std::bit_width(static_cast<std::uint32_t>(std::max(width, height) - 1)) + 1));
+  levels_[0].width = width;
+  levels_[0].height = height;
+  levels_[0].texels.resize(count(width, height));
+  for (std::size_t i = 0; i < levels_[0].texels.size(); ++i) {
+    levels_[0].texels[i] = {reach_taper[2 * i] - reach_taper[2 * i + 1], reach_taper[2 * i]};
+  }
+  for (std::size_t l = 1; l < levels_.size(); ++l) {
+    const Level& fine = levels_[l - 1];
+    Level& coarse = levels_[l];
+    coarse.width = (fine.width + 1) / 2;
+    coarse.height = (fine.height + 1) / 2;
+    coarse.texels.resize(count(coarse.width, coarse.height));
+    for (std::int32_t v = 0; v < coarse.height; ++v) {
+      // At an odd border the last row or column counts twice.
+      const Bounds* row0 = fine.texels.data() + count(fine.width, 2 * v);
+      const Bounds* row1 =
+          fine.texels.data() + count(fine.width, std::min(2 * v + 1, fine.height - 1));
+      Bounds* out = coarse.texels.data() + count(coarse.width, v);
+      for (std::int32_t u = 0; u < coarse.width; ++u) {
+        const std::int32_t u0 = 2 * u, u1 = std::min(2 * u + 1, fine.width - 1);
+        out[u] = {std::min(std::min(row0[u0].clear, row0[u1].clear),
+                           std::min(row1[u0].clear, row1[u1].clear)),
+                  std::max(std::max(row0[u0].reach, row0[u1].reach),
+                           std::max(row1[u0].reach, row1[u1].reach))};
+      }
+    }
+  }
+}
+
+RangePyramid::Bounds RangePyramid::bounds(std::int32_t u0, std::int32_t v0, std::int32_t u1,
+                                          std::int32_t v1) const {
+  const std::int32_t span = std::max(u1 - u0, v1 - v0) + 1;
+  std::size_t l = 0;
+  while ((span >> l) > kTexels) ++l;
+  const Level& level = levels_[l];
+  Bounds result =
+      level.texels[static_cast<std::size_t>(v0 >> l) * static_cast<std::size_t>(level.width) +
+                   static_cast<std::size_t>(u0 >> l)];
+  for (std::int32_t v = v0 >> l; v <= v1 >> l; ++v) {
+    const Bounds* row =
+        level.texels.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(level.width);
+    for (std::int32_t u = u0 >> l; u <= u1 >> l; ++u) {
+      result.clear = std::min(result.clear, row[u].clear);
+      result.reach = std::max(result.reach, row[u].reach);
+    }
+  }
+  return result;
+}
+
+CubeClass ConeCull::classify(Index3 origin, int size) const {
+  const auto& T = camera_.T_camera_grid;
+  // The box of the voxel centres: its middle and, along each grid axis, half its extent.
+  const double middle[3] = {(origin.x + 0.5 * size) * voxel_size_,
+                            (origin.y + 0.5 * size) * voxel_size_,
+                            (origin.z + 0.5 * size) * voxel_size_};
+  const double half = 0.5 * (size - 1) * voxel_size_;
+  double p[3];
+  for (std::size_t r = 0; r < 3; ++r) {
+    p[r] =
+        T[4 * r] * middle[0] + T[4 * r + 1] * middle[1] + T[4 * r + 2] * middle[2] + T[4 * r + 3];
+  }
+
+  double z_low = p[2], z_high = p[2];
+  for (std::size_t a = 0; a < 3; ++a) {
+    z_low -= std::abs(T[8 + a]) * half;
+    z_high += std::abs(T[8 + a]) * half;
+  }
+  const double rounding = kRangeMargin * (std::abs(p[2]) + size * voxel_size_);
+  if (z_high < -rounding) return CubeClass::untouched;
+  if (z_low <= rounding) return CubeClass::mixed;  // straddles the camera's plane
+
+  Interval x{}, y{};
+  double farthest2 = 0;  // range is convex: a corner is the farthest
+  for (int corner = 0; corner < 8; ++corner) {
+    const double s[3] = {corner & 1 ? half : -half, corner & 2 ? half : -half,
+                         corner & 4 ? half : -half};
+    const double z = p[2] + T[8] * s[0] + T[9] * s[1] + T[10] * s[2];
+    const double px = p[0] + T[0] * s[0] + T[1] * s[1] + T[2] * s[2];
+    const double py = p[1] + T[4] * s[0] + T[5] * s[1] + T[6] * s[2];
+    const double cx = px / z, cy = py / z;
+    farthest2 = std::max(farthest2, px * px + py * py + z * z);
+    if (corner == 0) {
+      x = {cx, cx};
+      y = {cy, cy};
+    } else {
+      x = {std::min(x.low, cx), std::max(x.high, cx)};
+      y = {std::min(y.low, cy), std::max(y.high, cy)};
+    }
+  }
+
+  bool inside = true;  // all centres project into the image
+  if (camera_.distorted) {
+    const auto& d = camera_.distortion;
+    const Interval xx = square(x), yy = square(y), xy = x * y;
+    const Interval r2 = xx + yy;
+    if (r2.low > camera_.fold_r2 * (1.0 + kRangeMargin)) return CubeClass::untouched;
+    if (!(r2.high < camera_.fold_r2 * (1.0 - kRangeMargin))) inside = false;
+    const Interval radial = 1.0 + r2 * (d[0] + r2 * (d[1] + d[4] * r2));
+    const Interval x_distorted = x * radial + 2.0 * d[2] * xy + d[3] * (r2 + 2.0 * xx);
+    y = y * radial + d[2] * (r2 + 2.0 * yy) + 2.0 * d[3] * xy;
+    x = x_distorted;
+  }
+
+  // Pixel q holds the centres with coordinates in [q - 0.5, q + 0.5).
+  const double u_low = std::floor(camera_.fx * x.low + camera_.cx + 0.5 - kPixelMargin);
+  const double u_high = std::floor(camera_.fx * x.high + camera_.cx + 0.5 + kPixelMargin);
+  const double v_low = std::floor(camera_.fy * y.low + camera_.cy + 0.5 - kPixelMargin);
+  const double v_high = std::floor(camera_.fy * y.high + camera_.cy + 0.5 + kPixelMargin);
+  const double last_u = camera_.width - 1, last_v = camera_.height - 1;
+  if (u_high < 0 || u_low > last_u || v_high < 0 || v_low > last_v) return CubeClass::untouched;
+  if (!(u_low >= 0 && u_high <= last_u && v_low >= 0 && v_high <= last_v)) inside = false;
+  // Written so that a NaN, from an overflow, widens the rectangle to the image.
+  const auto lower = [](double value) {
+    return value > 0 ? static_cast<std::int32_t>(value) : std::int32_t{0};
+  };
+  const auto upper = [](double value, double last) {
+    return static_cast<std::int32_t>(value < last ? value : last);
+  };
+  const RangePyramid::Bounds bounds =
+      pyramid_.bounds(lower(u_low), lower(v_low), upper(u_high, last_u), upper(v_high, last_v));
+
+  // The nearest centre lies behind the plane that touches the box across the direction to its
+  // middle.
+  const double distance = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+  double nearest = distance;
+  for (std::size_t a = 0; a < 3; ++a) {
+    nearest -= half * std::abs(p[0] * T[a] + p[1] * T[4 + a] + p[2] * T[8 + a]) / distance;
+  }
+  const double margin = kRangeMargin * (distance + size * voxel_size_);
+  if (nearest - margin > bounds.reach) return CubeClass::untouched;
+  if (std::sqrt(farthest2) + margin < bounds.clear) {
+    return inside ? CubeClass::crossed : CubeClass::cut;
+  }
+  return CubeClass::mixed;
+}
 
 void ConeEvidence::gather(const Readings& readings, const ConeCamera& camera, double voxel_size) {
   readings_ = &readings;

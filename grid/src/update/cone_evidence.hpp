@@ -4,14 +4,51 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "block_kernels.hpp"
-#include "cone_cull.hpp"
 #include "evidence.hpp"
 #include "readings.hpp"
 
 namespace viewgain::detail {
+
+/// Minima and maxima over squares of 2^level pixels.
+class RangePyramid {
+ public:
+  void build(std::span<const double> reach_taper, std::int32_t width, std::int32_t height);
+
+  struct Bounds {
+    double clear = 0;  ///< nearer than this every pixel crosses at full weight
+    double reach = 0;  ///< at or beyond this no pixel crosses
+  };
+  /// Bounds that hold for the pixels [u0, u1] x [v0, v1], inside the image.
+  [[nodiscard]] Bounds bounds(std::int32_t u0, std::int32_t v0, std::int32_t u1,
+                              std::int32_t v1) const;
+
+ private:
+  struct Level {
+    std::int32_t width = 0, height = 0;
+    std::vector<Bounds> texels;
+  };
+  std::vector<Level> levels_;
+};
+
+/// Sorts cubes of voxels into classes, conservatively: exact decisions are left to the block
+/// kernel.
+class ConeCull {
+ public:
+  ConeCull(const ConeCamera& camera, const RangePyramid& pyramid, double voxel_size)
+      : camera_(camera), pyramid_(pyramid), voxel_size_(voxel_size) {}
+
+  /// The cube [origin, origin + size) of voxels.
+  [[nodiscard]] CubeClass classify(Index3 origin, int size) const;
+
+ private:
+  const ConeCamera& camera_;
+  const RangePyramid& pyramid_;
+  double voxel_size_;
+};
 
 /// Evidence by cones: a voxel is crossed if its centre projects into a pixel whose reading is
 /// farther away.

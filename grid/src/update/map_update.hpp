@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <memory>
+#include <optional>
 
 #include "block_kernels.hpp"
 #include "readings.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/support/text.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
@@ -31,5 +36,20 @@ class MapUpdate {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Throws Error(invalid_argument) unless the support plane, if there is one, is finite.
+inline void check_plane(std::optional<double> height) {
+  if (height && !std::isfinite(*height)) {
+    refuse("support plane " + short_text(*height) + " m is not finite");
+  }
+}
+
+/// Throws Error(invalid_argument) unless both sigmas are finite and not negative.
+inline void check_pose_sigma(const PoseSigma& pose_sigma) {
+  for (const double sigma : {pose_sigma.translation, pose_sigma.rotation}) {
+    if (std::isfinite(sigma) && sigma >= 0) continue;
+    refuse("the sigma " + short_text(sigma) + " of a pose is negative or not finite");
+  }
+}
 
 }  // namespace viewgain::detail

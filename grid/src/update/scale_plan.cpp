@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scale_plan.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -21,20 +20,19 @@ constexpr std::array<double, kMaxScale> kThresholds{1.5, 3, 6};
 
 ScalePlan::ScalePlan(const IntegrationConfig& config)
     : coarsest_(config.coarsest), finest_(config.finest), fine_(config.fine) {
-  const auto fail = [](const std::string& what) { throw Error(ErrorCode::invalid_argument, what); };
   if (coarsest_ < 0 || coarsest_ > kMaxScale) {
-    fail("coarsest scale " + std::to_string(coarsest_) + " is not 0 to " +
-         std::to_string(kMaxScale));
+    refuse("coarsest scale " + std::to_string(coarsest_) + " is not 0 to " +
+           std::to_string(kMaxScale));
   }
   if (finest_ < 0 || finest_ > coarsest_) {
-    fail("finest scale " + std::to_string(finest_) + " is not 0 to the coarsest, " +
-         std::to_string(coarsest_));
+    refuse("finest scale " + std::to_string(finest_) + " is not 0 to the coarsest, " +
+           std::to_string(coarsest_));
   }
   for (const Box& box : fine_) {
     for (std::size_t a = 0; a < 3; ++a) {
       if (box.min[a] < box.max[a]) continue;
-      fail(std::string("fine box is inside out or no box, axis ") + "xyz"[a] + " is " +
-           short_text(box.min[a]) + " .. " + short_text(box.max[a]));
+      refuse(std::string("fine box is inside out or no box, axis ") + "xyz"[a] + " is " +
+             short_text(box.min[a]) + " .. " + short_text(box.max[a]));
     }
   }
 }

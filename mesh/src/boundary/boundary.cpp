@@ -40,10 +40,7 @@ class EdgeClassifier {
       : sensor_(sensor), min_cosine_(std::cos(max_view_angle)), sees_(sees) {
     for (std::size_t i = 0; i < views.size(); ++i) {
       const std::optional<Pose> view = rigid_pose(views[i]);
-      if (!view) {
-        throw Error(ErrorCode::invalid_argument,
-                    "view " + std::to_string(i) + " is not a rigid transform");
-      }
+      if (!view) refuse("view " + std::to_string(i) + " is not a rigid transform");
       const Pose T_camera_world = view->inverse();
       axes_.push_back({T_camera_world, T_camera_world.rotation(), views[i].translation()});
     }
@@ -207,10 +204,7 @@ BoundaryRun make_run(const BoundaryLoop& loop, std::uint32_t loop_index, const S
 
 void check_config(const BoundaryConfig& config) {
   const auto check = [](const char* name, double value, bool valid) {
-    if (!valid) {
-      throw Error(ErrorCode::invalid_argument,
-                  std::string("boundary: ") + name + " must not be " + short_text(value));
-    }
+    if (!valid) refuse(std::string("boundary: ") + name + " must not be " + short_text(value));
   };
   check("max_view_angle", config.max_view_angle,
         config.max_view_angle > 0 && config.max_view_angle <= std::numbers::pi / 2);
@@ -228,7 +222,7 @@ std::vector<BoundaryRun> boundary_runs(
     const std::function<bool(std::size_t view, const Eigen::Vector3d& point)>& sees) {
   check_config(config);
   sensor.validate();
-  if (views.empty()) throw Error(ErrorCode::invalid_argument, "boundary: there are no views");
+  if (views.empty()) refuse("boundary: there are no views");
   const EdgeClassifier classifier(views, sensor, config.max_view_angle, sees);
 
   std::vector<BoundaryRun> runs;

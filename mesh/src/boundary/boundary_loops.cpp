@@ -16,20 +16,16 @@ std::vector<BoundaryEdge> boundary_edges(const SurfaceMesh& surface,
                                          std::span<const std::uint32_t> vertices,
                                          std::span<const std::uint32_t> triangles, bool closed) {
   if (vertices.size() != triangles.size() + (closed ? 0 : 1)) {
-    throw Error(ErrorCode::invalid_argument, "boundary: " + std::to_string(vertices.size()) +
-                                                 " vertices do not fit " +
-                                                 std::to_string(triangles.size()) + " edges");
+    refuse("boundary: " + std::to_string(vertices.size()) + " vertices do not fit " +
+           std::to_string(triangles.size()) + " edges");
   }
   for (const std::uint32_t v : vertices) {
-    if (v >= surface.vertices.size()) {
-      throw Error(ErrorCode::invalid_argument, "boundary: there is no vertex " + std::to_string(v));
-    }
+    if (v >= surface.vertices.size()) refuse("boundary: there is no vertex " + std::to_string(v));
   }
   std::vector<BoundaryEdge> edges(triangles.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (triangles[i] >= surface.triangles.size()) {
-      throw Error(ErrorCode::invalid_argument,
-                  "boundary: there is no triangle " + std::to_string(triangles[i]));
+      refuse("boundary: there is no triangle " + std::to_string(triangles[i]));
     }
     const Eigen::Vector3d from = position(surface, vertices[i]);
     const Eigen::Vector3d to = position(surface, vertices[(i + 1) % vertices.size()]);
@@ -95,10 +91,9 @@ std::vector<std::uint32_t> opposites(const SurfaceMesh& surface) {
       const std::uint32_t b = edges[end - 1].half_edge;
       if (end - i > 2 || edges[i].upper == v ||
           (a != b && start_of(surface, a) == start_of(surface, b))) {
-        throw Error(ErrorCode::invalid_argument,
-                    "surface: the edge of vertices " + std::to_string(v) + " and " +
-                        std::to_string(edges[i].upper) +
-                        " has one end, more than two faces, or two that turn differently");
+        refuse("surface: the edge of vertices " + std::to_string(v) + " and " +
+               std::to_string(edges[i].upper) +
+               " has one end, more than two faces, or two that turn differently");
       }
       if (a != b) {
         opposite[a] = b;

@@ -208,13 +208,12 @@ QuadraticPatch fit_patch(std::span<const Eigen::Vector3d> points, const Eigen::V
   const bool finite =
       origin.allFinite() && outward.allFinite() && normal.allFinite() &&
       std::all_of(points.begin(), points.end(), [](const auto& p) { return p.allFinite(); });
-  if (!finite) throw Error(ErrorCode::invalid_argument, "fit_patch: a number is not finite");
+  if (!finite) refuse("fit_patch: a number is not finite");
   const Eigen::Vector3d w = normal.stableNormalized();
   const Eigen::Vector3d direction = outward.stableNormalized();
   const Eigen::Vector3d across = direction - w * w.dot(direction);
   if (w.isZero(0) || !(across.norm() > kParallelSine)) {
-    throw Error(ErrorCode::invalid_argument,
-                "fit_patch: outward is parallel to the normal, or one of them is zero");
+    refuse("fit_patch: outward is parallel to the normal, or one of them is zero");
   }
   QuadraticPatch patch;
   patch.origin = origin;
@@ -248,8 +247,7 @@ std::vector<std::uint32_t> grow_region(const SurfaceMesh& surface,
   detail::check_surface(surface);
   for (const std::uint32_t v : seeds) {
     if (v >= surface.vertices.size()) {
-      throw Error(ErrorCode::invalid_argument,
-                  "grow_region: there is no vertex " + std::to_string(v));
+      refuse("grow_region: there is no vertex " + std::to_string(v));
     }
   }
   return detail::RegionGrower(surface).grow(seeds, depth, max_turn);

@@ -16,7 +16,6 @@
 #include "surface/surface_access.hpp"
 #include "viewgain/core/camera.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/mesh/patch.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::detail {
@@ -154,15 +153,13 @@ constexpr double kMaxRegionTurn = std::numbers::pi / 4;
 constexpr std::size_t kMinPiecesOfClosedRun = 3;
 
 [[noreturn]] void refuse(const std::string& name, double value) {
-  throw Error(ErrorCode::invalid_argument,
-              "viewpoint estimator: " + name + " must not be " + short_text(value));
+  viewgain::refuse("viewpoint estimator: " + name + " must not be " + short_text(value));
 }
 
 template <typename Valid>
 void check_list(const char* name, const std::vector<double>& values, Valid valid) {
   if (values.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                std::string("viewpoint estimator: the list of ") + name + " is empty");
+    viewgain::refuse(std::string("viewpoint estimator: the list of ") + name + " is empty");
   }
   for (const double value : values) {
     if (!valid(value)) refuse(name, value);
@@ -186,7 +183,7 @@ void check_config(const EstimatorConfig& config, double working_distance) {
   check_list("tilts", config.tilts, [](double x) { return std::abs(x) < std::numbers::pi / 2; });
   check_list("rolls", config.rolls, [](double x) { return std::isfinite(x); });
   if (!config.up.allFinite() || config.up.isZero(0)) {
-    throw Error(ErrorCode::invalid_argument, "viewpoint estimator: up is zero or not finite");
+    viewgain::refuse("viewpoint estimator: up is zero or not finite");
   }
 }
 

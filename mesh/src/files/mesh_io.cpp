@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "mesh_formats.hpp"
+#include "mesh_builder.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/text.hpp"
@@ -71,9 +71,8 @@ TriangleMesh read_mesh(const std::filesystem::path& path, const MeshPlacement& p
 
 TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement) {
   if (!std::isfinite(placement.longest_side) || placement.longest_side < 0) {
-    throw Error(ErrorCode::invalid_argument,
-                "the longest side must be finite and not negative, not " +
-                    short_text(placement.longest_side));
+    refuse("the longest side must be finite and not negative, not " +
+           short_text(placement.longest_side));
   }
   for (auto& v : mesh.vertices) {
     // Cyclic permutations keep the orientation of the faces.
@@ -85,9 +84,7 @@ TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement) {
     double extent = 0;
     for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, bounds.max[k] - bounds.min[k]);
     const double scale = placement.longest_side / extent;
-    if (!(extent > 0) || !std::isfinite(scale)) {
-      throw Error(ErrorCode::invalid_argument, "the mesh has no extent to scale");
-    }
+    if (!(extent > 0) || !std::isfinite(scale)) refuse("the mesh has no extent to scale");
     for (auto& v : mesh.vertices) {
       for (double& x : v) x *= scale;
     }

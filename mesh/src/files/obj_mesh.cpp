@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "mesh_builder.hpp"
-#include "mesh_formats.hpp"
 #include "word_reader.hpp"
 
 namespace viewgain::detail {

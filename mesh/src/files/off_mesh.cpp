@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "mesh_builder.hpp"
-#include "mesh_formats.hpp"
 #include "word_reader.hpp"
 
 namespace viewgain::detail {

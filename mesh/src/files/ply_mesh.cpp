@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "mesh_builder.hpp"
-#include "mesh_formats.hpp"
 #include "viewgain/support/ply_file.hpp"
 
 namespace viewgain::detail {

@@ -10,10 +10,9 @@
 #include <utility>
 
 #include "mesh_builder.hpp"
-#include "mesh_formats.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/mix64.hpp"
-#include "viewgain/support/scalar_type.hpp"
+#include "viewgain/support/hash64.hpp"
+#include "viewgain/support/ply_file.hpp"
 #include "word_reader.hpp"
 
 namespace viewgain::detail {

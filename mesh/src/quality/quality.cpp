@@ -6,15 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <string>
 #include <unsupported/Eigen/BVH>
-#include <vector>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/hash64.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
@@ -64,8 +62,7 @@ Vector3d nearest_on_triangle(const Vector3d& p, const Triangle& t) {
 std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (!vector_of(mesh.vertices[v]).allFinite()) {
-      throw Error(ErrorCode::invalid_argument,
-                  "a coordinate of vertex " + std::to_string(v) + " is not finite");
+      refuse("a coordinate of vertex " + std::to_string(v) + " is not finite");
     }
   }
   std::vector<Triangle> triangles;
@@ -73,9 +70,8 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     for (const std::uint32_t v : mesh.triangles[f]) {
       if (v >= mesh.vertices.size()) {
-        throw Error(ErrorCode::invalid_argument, "triangle " + std::to_string(f) + " has vertex " +
-                                                     std::to_string(v) + " of " +
-                                                     std::to_string(mesh.vertices.size()));
+        refuse("triangle " + std::to_string(f) + " has vertex " + std::to_string(v) + " of " +
+               std::to_string(mesh.vertices.size()));
       }
     }
     const auto corner = [&](std::size_t k) {
@@ -88,7 +84,7 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
     t.normal = cross.stableNormalized();
     triangles.push_back(t);
   }
-  if (triangles.empty()) throw Error(ErrorCode::invalid_argument, "the mesh has no area");
+  if (triangles.empty()) refuse("the mesh has no area");
   return triangles;
 }
 
@@ -168,8 +164,7 @@ std::vector<SurfaceSample> sample(const std::vector<Triangle>& triangles, std::s
 void check_finite(std::span<const std::array<double, 3>> points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!vector_of(points[i]).allFinite()) {
-      throw Error(ErrorCode::invalid_argument,
-                  "a coordinate of point " + std::to_string(i) + " is not finite");
+      refuse("a coordinate of point " + std::to_string(i) + " is not finite");
     }
   }
 }
@@ -271,9 +266,8 @@ ErrorStatistics GroundTruth::error(std::span<const std::array<double, 3>> points
 Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> points,
                                      std::span<const SymmetricMatrix3> covariances) const {
   if (points.size() != covariances.size()) {
-    throw Error(ErrorCode::invalid_argument, std::to_string(points.size()) + " points but " +
-                                                 std::to_string(covariances.size()) +
-                                                 " covariances");
+    refuse(std::to_string(points.size()) + " points but " + std::to_string(covariances.size()) +
+           " covariances");
   }
   Consistency result{kNaN, kNaN, kNaN, 0, 0};
   std::vector<double> z2;
@@ -289,9 +283,8 @@ Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> poin
     const Vector3d n = distance > 0 ? Vector3d(offsets[i].vector / distance) : offsets[i].normal;
     const double variance = n.dot(covariances[i] * n);
     if (!(variance > 0) || !std::isfinite(variance)) {
-      throw Error(ErrorCode::invalid_argument, "the covariance of point " + std::to_string(i) +
-                                                   " has the variance " + short_text(variance) +
-                                                   " along the normal");
+      refuse("the covariance of point " + std::to_string(i) + " has the variance " +
+             short_text(variance) + " along the normal");
     }
     z2.push_back(distance * distance / variance);
     clipped += std::min(z2.back(), kClip);
@@ -309,8 +302,8 @@ Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> poin
 double coverage(std::span<const double> distances, double radius,
                 std::span<const std::uint8_t> mask) {
   if (!mask.empty() && mask.size() != distances.size()) {
-    throw Error(ErrorCode::invalid_argument, std::to_string(distances.size()) + " distances but " +
-                                                 std::to_string(mask.size()) + " mask values");
+    refuse(std::to_string(distances.size()) + " distances but " + std::to_string(mask.size()) +
+           " mask values");
   }
   std::size_t counted = 0, covered = 0;
   for (std::size_t i = 0; i < distances.size(); ++i) {

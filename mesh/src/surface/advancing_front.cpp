@@ -18,7 +18,6 @@
 #include <iterator>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 namespace viewgain::detail {
 namespace {

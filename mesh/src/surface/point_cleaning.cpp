@@ -12,7 +12,6 @@
 #include <numeric>
 #include <utility>
 
-#include "point_grid.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {

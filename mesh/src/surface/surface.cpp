@@ -16,7 +16,7 @@
 #include "point_cleaning.hpp"
 #include "surface_access.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/hash64.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::detail {
@@ -24,22 +24,19 @@ namespace viewgain::detail {
 void check_surface(const SurfaceMesh& surface) {
   const std::size_t count = surface.vertices.size();
   if (surface.normals.size() != count) {
-    throw Error(ErrorCode::invalid_argument,
-                "surface: " + std::to_string(count) + " vertices but " +
-                    std::to_string(surface.normals.size()) + " normals");
+    refuse("surface: " + std::to_string(count) + " vertices but " +
+           std::to_string(surface.normals.size()) + " normals");
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (!vector(surface.vertices[i]).allFinite() || !vector(surface.normals[i]).allFinite()) {
-      throw Error(ErrorCode::invalid_argument,
-                  "surface: vertex " + std::to_string(i) + " is not finite");
+      refuse("surface: vertex " + std::to_string(i) + " is not finite");
     }
   }
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     for (const std::uint32_t v : surface.triangles[i]) {
       if (v >= count) {
-        throw Error(ErrorCode::invalid_argument, "surface: triangle " + std::to_string(i) +
-                                                     " names vertex " + std::to_string(v) + " of " +
-                                                     std::to_string(count));
+        refuse("surface: triangle " + std::to_string(i) + " names vertex " + std::to_string(v) +
+               " of " + std::to_string(count));
       }
     }
   }
@@ -164,7 +161,7 @@ constexpr double kMinDistance = 0.25;  // of vertices after smoothing [spacings]
 
 void check(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
   const auto refuse = [](const std::string& what, double value) {
-    throw Error(ErrorCode::invalid_argument, what + ", not " + short_text(value));
+    viewgain::refuse(what + ", not " + short_text(value));
   };
   if (!std::isfinite(config.spacing) || config.spacing <= 0) {
     refuse("the spacing must be positive and finite", config.spacing);
@@ -181,8 +178,7 @@ void check(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (const double x : points[i].position) {
       if (!std::isfinite(x)) {
-        throw Error(ErrorCode::invalid_argument,
-                    "a coordinate of point " + std::to_string(i) + " is not finite");
+        viewgain::refuse("a coordinate of point " + std::to_string(i) + " is not finite");
       }
     }
     const double spacing = points[i].spacing;

@@ -53,9 +53,7 @@ void ObstacleView::mark(DepthFrame& frame, const Pose& T_world_camera) const {
   frame.known_depth.clear();
   check_frame_size(frame, m.sensor.camera);
   const std::optional<Pose> T_rigid = rigid_pose(T_world_camera);
-  if (!T_rigid) {
-    throw Error(ErrorCode::invalid_argument, "the frame's pose is not a rigid transform");
-  }
+  if (!T_rigid) refuse("the frame's pose is not a rigid transform");
   if (!m.scene) return;
   frame.known_depth.assign(m.rays.size(), DepthFrame::kOutOfRange);
   const Eigen::Matrix3d R_world_camera = T_rigid->rotation();

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -29,9 +28,7 @@ constexpr std::size_t kRaysAtOnce = 256;  // or those of one pixel
 
 void check(const Sensor& sensor, const SimulationConfig& config) {
   sensor.validate();
-  const auto fail = [](const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, "simulated sensor: " + what);
-  };
+  const auto fail = [](const std::string& what) { refuse("simulated sensor: " + what); };
   if (!(config.background_radius >= 0) || !std::isfinite(config.background_radius)) {
     fail("background radius " + short_text(config.background_radius) + " m is not >= 0");
   }
@@ -224,10 +221,7 @@ struct SimulatedSensor::Impl {
   [[nodiscard]] DepthFrame acquire(const Pose& T_world_camera, std::uint64_t frame_index,
                                    SimulatedSensor::PixelTruth* truth) const {
     const std::optional<Pose> pose = rigid_pose(T_world_camera);
-    if (!pose) {
-      throw Error(ErrorCode::invalid_argument,
-                  "the simulated sensor's pose is not a rigid transform");
-    }
+    if (!pose) refuse("the simulated sensor's pose is not a rigid transform");
     const View view{pose->rotation(), pose->translation(), frame_index};
     DepthFrame frame{sensor.camera.width, sensor.camera.height,
                      std::vector<float>(pixels.size(), DepthFrame::kInvalid),
@@ -246,7 +240,7 @@ struct SimulatedSensor::Impl {
 
 SimulatedSensor::SimulatedSensor(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
                                  const SimulationConfig& config, const ExecConfig& exec) {
-  if (!scene) throw Error(ErrorCode::invalid_argument, "the simulated sensor has no scene");
+  if (!scene) refuse("the simulated sensor has no scene");
   check(sensor, config);
   impl_ = std::make_unique<Impl>(std::move(scene), sensor, config, exec.num_threads);
 }

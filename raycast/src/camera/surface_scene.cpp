@@ -26,18 +26,17 @@ Vector3d corner(const TriangleMesh& mesh, std::uint32_t index) {
 }
 
 void check(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) throw Error(ErrorCode::invalid_argument, "the mesh has no triangles");
+  if (mesh.triangles.empty()) refuse("the mesh has no triangles");
   for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
     if (!corner(mesh, i).cast<float>().allFinite()) {
-      throw Error(ErrorCode::invalid_argument, "the mesh has a vertex that is not finite");
+      refuse("the mesh has a vertex that is not finite");
     }
   }
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t index : triangle) {
       if (index < mesh.vertices.size()) continue;
-      throw Error(ErrorCode::invalid_argument, "a triangle refers to vertex " +
-                                                   std::to_string(index) + " of " +
-                                                   std::to_string(mesh.vertices.size()));
+      refuse("a triangle refers to vertex " + std::to_string(index) + " of " +
+             std::to_string(mesh.vertices.size()));
     }
   }
 }

@@ -2,14 +2,61 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
 #include <span>
 
-#include "random_normal.hpp"
-#include "simulated_room.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
+#include "viewgain/raycast/surface_scene.hpp"
+#include "viewgain/support/hash64.hpp"
 
 namespace viewgain::detail {
+
+/// Where a ray meets the first surface.
+struct RayReturn {
+  double range = std::numeric_limits<double>::infinity();  ///< [m]; infinity: nothing
+  double cos_incidence = 0;
+};
+
+/// The object and what stands round it.
+struct SimulatedRoom {
+  std::shared_ptr<const SurfaceScene> object;
+  double background_radius = 0;                      ///< of a sphere round the origin [m]; 0: none
+  std::optional<double> support_plane;               ///< height of a table without end [m]
+  std::shared_ptr<const SurfaceScene> surroundings;  ///< may be null
+
+  /// The first returns of rays, which go on for ever, world frame; as many as there are rays.
+  void first_returns(std::span<const SurfaceScene::Ray> rays, std::span<RayReturn> returns) const;
+};
+
+/// What a pixel needs random numbers for.
+enum class RandomStream : std::uint64_t { axial, lateral_x, lateral_y, amplitude };
+
+/// The random numbers of one pixel of one frame.
+class PixelRandom {
+ public:
+  PixelRandom(std::uint64_t seed, std::uint64_t frame, std::uint64_t pixel)
+      : base_(mix64(mix64(mix64(seed) ^ frame) ^ pixel)) {}
+
+  /// A standard normal number, by Box and Muller; independent for each stream.
+  [[nodiscard]] double normal(RandomStream stream) const {
+    const std::uint64_t a = stream == RandomStream::axial
+                                ? base_
+                                : mix64(base_ ^ mix64(static_cast<std::uint64_t>(stream)));
+    const std::uint64_t b = mix64(a);
+    const double u = (static_cast<double>(a >> 11U) + 0.5) * 0x1.0p-53;
+    const double v = static_cast<double>(b >> 11U) * 0x1.0p-53;
+    return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v);
+  }
+
+ private:
+  std::uint64_t base_;
+};
 
 /// What a pixel measures.
 struct PixelReading {

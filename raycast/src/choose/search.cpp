@@ -8,13 +8,13 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "choose/way_pricing.hpp"
-#include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
 #include "gain/sampled_views.hpp"
-#include "ray_lattices.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/stopwatch.hpp"
 #include "viewgain/support/text.hpp"
@@ -41,11 +41,10 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 void check(const BestConfig& config, std::size_t poses) {
   detail::check_costs(config.costs, poses);
   if (config.measure != nullptr && config.run_measure != nullptr) {
-    throw Error(ErrorCode::invalid_argument, "views are chosen by one measure, not by two");
+    refuse("views are chosen by one measure, not by two");
   }
   if (!(config.deadline >= 0)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the deadline is " + short_text(config.deadline) + " s; it must be >= 0");
+    refuse("the deadline is " + short_text(config.deadline) + " s; it must be >= 0");
   }
 }
 
@@ -266,6 +265,37 @@ BestViews GainEvaluator::race(std::span<const Pose> T_world_camera, std::size_t 
       (by_paper ? kInFullByPaper : kInFull) * static_cast<double>(T_world_camera.size());
   search.estimate(k, std::max({kFewPoses, 4 * k, static_cast<std::size_t>(std::ceil(share))}));
   return search.score(k);
+}
+
+std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
+                                       std::span<ApproximateGain> results,
+                                       const ApproximateConfig& config,
+                                       const BatchControl& control) const {
+  if (!(config.share > 0 && config.share <= 1)) {
+    throw Error(
+        ErrorCode::invalid_argument,
+        std::string("share of the rays is ") + short_text(config.share) + "; it must be in (0, 1]");
+  }
+  detail::check_room(T_world_camera.size(), results.size());
+  std::fill(results.begin(), results.end(), ApproximateGain{});
+  const detail::ViewDriver& driver = impl_->driver;
+  const detail::EvaluatorCore& core = *driver.core();
+  const int step = detail::step_for_share(core, config.share);
+  std::optional<detail::SampledViews> sample;
+  if (step > 1) {
+    sample.emplace(*impl_->scene, driver, detail::random_lattice(core, step, config.seed));
+  }
+  return detail::for_each_pose(
+      driver, results.size(), control, [&](std::size_t i, detail::ViewDriver::Lease& lease) {
+        if (sample) {
+          results[i] = sample->estimate(T_world_camera[i], lease);
+          results[i].rays = sample->rays();
+          return;
+        }
+        const ViewGain whole = driver.evaluate(T_world_camera[i], lease);
+        results[i] = {whole.gain, whole.status == ViewGain::Status::bad_pose ? whole.gain : 0.0,
+                      whole.rays};
+      });
 }
 
 }  // namespace viewgain

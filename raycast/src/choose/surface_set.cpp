@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
-#include "gain/task_weight.hpp"
+#include "gain/voxel_sums.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -150,9 +149,7 @@ ViewGain SurfaceSet::after(std::size_t i, const Pose& T_world_camera, ViewDriver
   result.gain = result.area;
   if (!refines()) return result;
   result.refinement_saturated = 0;
-  for (const Refined& entry : look.refines) {
-    result.refinement_saturated += refinement(entry);
-  }
+  for (const Refined& entry : look.refines) result.refinement_saturated += refinement(entry);
   result.gain = combined(result.area, result.refinement_saturated);
   return result;
 }

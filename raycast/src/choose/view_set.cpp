@@ -10,11 +10,10 @@
 #include <optional>
 #include <unordered_map>
 
-#include "choose/ray_lattices.hpp"
 #include "choose/surface_set.hpp"
 #include "choose/way_pricing.hpp"
-#include "gain/batch_loop.hpp"
 #include "gain/gain_evaluator_impl.hpp"
+#include "gain/sampled_views.hpp"
 #include "viewgain/core/criterion.hpp"
 #include "viewgain/raycast/view_tour.hpp"
 

@@ -16,33 +16,31 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-[[noreturn]] void fail(const std::string& what) { throw Error(ErrorCode::invalid_argument, what); }
-
 }  // namespace
 
 void check_costs(std::span<const double> costs, std::size_t poses) {
   if (!costs.empty() && costs.size() != poses) {
-    fail(std::to_string(costs.size()) + " costs for " + std::to_string(poses) + " poses");
+    refuse(std::to_string(costs.size()) + " costs for " + std::to_string(poses) + " poses");
   }
   for (const double cost : costs) {
-    if (!std::isfinite(cost)) fail("a cost is " + short_text(cost) + ", not finite");
+    if (!std::isfinite(cost)) refuse("a cost is " + short_text(cost) + ", not finite");
   }
 }
 
 void check_tour(const TourConfig& config, std::size_t poses) {
   check_costs(config.costs, poses);
   if (config.first && *config.first >= poses) {
-    fail("first is " + std::to_string(*config.first) + " of " + std::to_string(poses) + " poses");
+    refuse("first is " + std::to_string(*config.first) + " of " + std::to_string(poses) + " poses");
   }
   if (!(config.cost_per_way >= 0 && std::isfinite(config.cost_per_way))) {
-    fail("cost_per_way " + short_text(config.cost_per_way) + " must be at least 0 and finite");
+    refuse("cost_per_way " + short_text(config.cost_per_way) + " must be at least 0 and finite");
   }
-  if (!(config.budget >= 0)) fail("the budget is " + short_text(config.budget) + ", not >= 0");
+  if (!(config.budget >= 0)) refuse("the budget is " + short_text(config.budget) + ", not >= 0");
   if (!(config.least_area >= 0)) {
-    fail("least_area is " + short_text(config.least_area) + ", not >= 0");
+    refuse("least_area is " + short_text(config.least_area) + ", not >= 0");
   }
   if (!(config.share > 0 && config.share <= 1)) {
-    fail("share is " + short_text(config.share) + "; it must be in (0, 1]");
+    refuse("share is " + short_text(config.share) + "; it must be in (0, 1]");
   }
 }
 
@@ -57,8 +55,8 @@ WayPricing::WayPricing(const TourConfig& config, std::size_t poses)
 double WayPricing::way(std::size_t from, std::size_t to) const {
   const double value = config_.way(from, to);
   if (value >= 0) return value;
-  fail("the way from " + (from == kTourStart ? "the start" : std::to_string(from)) + " to " +
-       std::to_string(to) + " costs " + short_text(value));
+  refuse("the way from " + (from == kTourStart ? "the start" : std::to_string(from)) + " to " +
+         std::to_string(to) + " costs " + short_text(value));
 }
 
 double WayPricing::worth(std::size_t i, double gain) const {

@@ -4,18 +4,13 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <mutex>
 #include <numeric>
-#include <optional>
-#include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "non_free_voxels.hpp"
 #include "obstacle_check.hpp"
@@ -23,8 +18,6 @@
 #include "scene/scene_data.hpp"
 #include "trace/scene_tracing.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/pose.hpp"
-#include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/thread_pool.hpp"
@@ -106,9 +99,7 @@ SightCheck::SightCheck(const Sensor& sensor, double max_near_share)
           if (ray.allFinite()) rays_.push_back(ray);
         }
       }
-      if (rays_.size() > first) {
-        bundles_.push_back(bundle_of(rays_, first, rays_.size() - first));
-      }
+      if (rays_.size() > first) bundles_.push_back(bundle_of(rays_, first, rays_.size() - first));
     }
   }
   all_ = bundle_of(rays_, 0, rays_.size());
@@ -211,9 +202,7 @@ using detail::OrientedBox;
 constexpr double kTouch = 1e-9;           // smaller overlaps are touching [m]
 constexpr std::size_t kPosesAtOnce = 16;  // that a thread takes
 
-[[noreturn]] void fail(const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, "feasibility: " + what);
-}
+[[noreturn]] void fail(const std::string& what) { refuse("feasibility: " + what); }
 
 void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConfig& config) {
   if (scene == nullptr) fail("there is no scene");

@@ -106,9 +106,7 @@ NonFreeVoxels::NonFreeVoxels(const GridSnapshot& snapshot)
       snapshot.regions.empty() ? snapshot.tiles.size() : snapshot.tiles_of(0)[0];
   std::vector<Box> boxes;
   boxes.reserve(large);
-  for (std::size_t i = 0; i < large; ++i) {
-    boxes.push_back(box_of(snapshot.tiles[i]));
-  }
+  for (std::size_t i = 0; i < large; ++i) boxes.push_back(box_of(snapshot.tiles[i]));
   large_ = BoxHierarchy(std::move(boxes));
 
   // Regions' numbers rise; all but the low six bits are their node's.

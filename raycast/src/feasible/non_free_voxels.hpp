@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "box_hierarchy.hpp"
 #include "oriented_box.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
 

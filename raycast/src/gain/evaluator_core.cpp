@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "viewgain/core/error.hpp"
@@ -19,13 +20,9 @@ constexpr double kMaxPriorSigma = 1e3;
 // Determinants of Λ_r lose about the square of this ratio of a sensor's sigmas in digits.
 constexpr double kMaxSigmaRatio = 1e4;
 
-[[noreturn]] void reject(const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, what);
-}
-
 void check_range(const char* name, double value) {
   if (!std::isfinite(value) || value < 0) {
-    reject(std::string(name) + " is " + short_text(value) + " m; it must be >= 0 and finite");
+    refuse(std::string(name) + " is " + short_text(value) + " m; it must be >= 0 and finite");
   }
 }
 
@@ -33,37 +30,37 @@ void check(const GainConfig& config, const Sensor& sensor) {
   const double min_range = config.min_range.value_or(sensor.min_range);
   const double max_range = config.max_range.value_or(sensor.max_range);
   if (config.pixel_stride < 1) {
-    reject("pixel stride is " + std::to_string(config.pixel_stride) + "; it must be >= 1");
+    refuse("pixel stride is " + std::to_string(config.pixel_stride) + "; it must be >= 1");
   }
   check_range("min_range", min_range);
   check_range("max_range", max_range);
   if (min_range >= max_range) {
-    reject("min_range " + short_text(min_range) + " m is not below max_range " +
+    refuse("min_range " + short_text(min_range) + " m is not below max_range " +
            short_text(max_range) + " m");
   }
   if (config.model == GainModel::combined && config.criterion == Criterion::trace) {
-    reject("the combined gain is in nats and does not go with trace; the gain paper does");
+    refuse("the combined gain is in nats and does not go with trace; the gain paper does");
   }
   if (!std::isfinite(config.refinement_weight) || config.refinement_weight < 0) {
-    reject("refinement weight is " + short_text(config.refinement_weight) +
+    refuse("refinement weight is " + short_text(config.refinement_weight) +
            "; it must be >= 0 and finite");
   }
   for (const double t : {min_range, sensor.working_distance, max_range}) {
     const MeasurementSigmas sigma = sensor.sigmas(t);
     const double ratio = sigma.axial / sigma.lateral;
     if (!(ratio <= kMaxSigmaRatio && ratio >= 1 / kMaxSigmaRatio)) {
-      reject("the sensor's sigmas at " + short_text(t) + " m, " + short_text(sigma.axial) +
+      refuse("the sensor's sigmas at " + short_text(t) + " m, " + short_text(sigma.axial) +
              " m along the ray and " + short_text(sigma.lateral) +
              " m across, differ by more than a factor of " + short_text(kMaxSigmaRatio));
     }
   }
   for (const GainConfig::WeightRegion& region : config.weights) {
     if (!std::isfinite(region.weight) || region.weight < 0) {
-      reject("task weight is " + short_text(region.weight) + "; it must be >= 0 and finite");
+      refuse("task weight is " + short_text(region.weight) + "; it must be >= 0 and finite");
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!(region.box.min[axis] < region.box.max[axis]))
-        reject("a task weight's box is inside out");
+        refuse("a task weight's box is inside out");
     }
   }
 }
@@ -84,6 +81,55 @@ std::uint32_t rays_of(const SensorRays& rays) {
 }
 
 }  // namespace
+
+GainAccumulator::GainAccumulator(const SceneData& scene, const GainSettings& settings,
+                                 std::size_t max_rays)
+    : VoxelSums(scene, settings, max_rays) {
+  if (settings.criterion == Criterion::trace || !settings.weights.empty()) {
+    each_.resize(max_rays + 2 * kOverhang);
+  }
+}
+
+GainAccumulator::ClassGain GainAccumulator::explored() {
+  LogProduct ratios, posterior;
+  double* each = each_.empty() ? nullptr : each_.data();
+  finish_unknown(ratios, settings().posterior_entropy ? &posterior : nullptr, each);
+  return gain_of(unknown(), ratios, posterior, each);
+}
+
+GainAccumulator::ClassGain GainAccumulator::refined() {
+  look_up();
+  LogProduct ratios, posterior;
+  double* each = each_.empty() ? nullptr : each_.data() + unknown().size() + kOverhang;
+  finish_occupied(ratios, settings().posterior_entropy ? &posterior : nullptr, each);
+  return gain_of(occupied(), ratios, posterior, each);
+}
+
+GainAccumulator::ClassGain GainAccumulator::gain_of(std::span<const std::uint32_t> members,
+                                                    const LogProduct& ratios,
+                                                    const LogProduct& posterior,
+                                                    const double* each) const {
+  const double left =
+      settings().posterior_entropy ? posterior.log() : std::numeric_limits<double>::quiet_NaN();
+  if (each == nullptr) return {0.5 * ratios.log(), left};
+  const bool logarithmic = settings().criterion != Criterion::trace;
+  double sum = 0;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    sum += weight(members[i]) * (logarithmic ? 0.5 * std::log(each[i]) : each[i]);
+  }
+  return {sum, left};
+}
+
+void GainAccumulator::finish(const ClassGain& explored, const ClassGain& refined,
+                             ViewGain& result) const {
+  result.exploration = explored.gain;
+  result.refinement = refined.gain;
+  result.gain = result.exploration + result.refinement;
+  result.posterior_entropy = explored.posterior_entropy + refined.posterior_entropy;
+  result.hits = hit_count();
+  result.unknown_voxels = static_cast<std::uint32_t>(unknown().size());
+  result.occupied_voxels = static_cast<std::uint32_t>(occupied().size());
+}
 
 FrontalSigmas frontal_sigmas(const Sensor& sensor) {
   struct Visitor {
@@ -141,7 +187,7 @@ EvaluatorCore::EvaluatorCore(const EvaluatorCore& full, const RayLattice& lattic
 double EvaluatorCore::prior_sigma_in(const VoxelScene& scene) const {
   const double prior_sigma = config.prior_sigma.value_or(scene.snapshot().prior_sigma);
   if (!(prior_sigma >= kMinPriorSigma && prior_sigma <= kMaxPriorSigma)) {
-    reject("prior sigma is " + short_text(prior_sigma) + " m; it must be in " +
+    refuse("prior sigma is " + short_text(prior_sigma) + " m; it must be in " +
            short_text(kMinPriorSigma) + ".." + short_text(kMaxPriorSigma) + " m");
   }
   return prior_sigma;

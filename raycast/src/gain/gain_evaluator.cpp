@@ -6,10 +6,11 @@
 #include <array>
 #include <utility>
 
-#include "batch_loop.hpp"
 #include "gain_evaluator_impl.hpp"
+#include "trace/ray_tile.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/nearest_name.hpp"
+#include "viewgain/support/text.hpp"
+#include "viewgain/support/view_rays.hpp"
 
 namespace viewgain {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 using detail::ViewDriver;
 
 std::shared_ptr<const VoxelScene> checked(std::shared_ptr<const VoxelScene> scene) {
-  if (!scene) throw Error(ErrorCode::invalid_argument, "the gain evaluator has no scene");
+  if (!scene) refuse("the gain evaluator has no scene");
   return scene;
 }
 
@@ -121,5 +122,62 @@ int GainEvaluator::pixel_stride() const noexcept {
 int GainEvaluator::num_threads() const noexcept { return impl_->driver.core()->pool.num_threads(); }
 double GainEvaluator::prior_sigma() const noexcept { return impl_->driver.prior_sigma(); }
 const VoxelScene& GainEvaluator::scene() const noexcept { return *impl_->scene; }
+
+DepthFrame depth_image(const GainEvaluator& evaluator, const Pose& T_world_camera,
+                       std::vector<RayHit::Kind>* labels) {
+  const PinholeCamera& camera = evaluator.camera();
+  const int stride = evaluator.pixel_stride();
+  const std::vector<RayHit> hits = evaluator.trace(T_world_camera);
+  if (hits.empty()) {
+    refuse("the pose of a depth image is off from a rigid transform by " +
+           short_text(orthonormality_error(T_world_camera)) + "; 1e-3 is allowed");
+  }
+  DepthFrame image;
+  image.width = detail::strided(camera.width, stride);
+  image.height = detail::strided(camera.height, stride);
+  image.depth.assign(hits.size(), DepthFrame::kOutOfRange);
+  if (labels != nullptr) labels->resize(hits.size());
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (labels != nullptr) (*labels)[i] = hits[i].kind;
+    if (hits[i].kind == RayHit::Kind::none) continue;
+    const auto columns = static_cast<std::size_t>(image.width);
+    const Eigen::Vector3d ray = camera.ray(static_cast<double>(i % columns) * stride,
+                                           static_cast<double>(i / columns) * stride);
+    image.depth[i] = static_cast<float>(hits[i].range / ray.norm());
+  }
+  return image;
+}
+
+using namespace detail;
+
+ViewScratch::~ViewScratch() = default;
+RayConsumer::~RayConsumer() = default;
+
+std::size_t for_each_view_rays(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
+                               bool from_occupied, const RayConsumer& consumer,
+                               const BatchControl& control) {
+  const ViewDriver& driver = EvaluatorAccess::driver(evaluator);
+  const ViewDriver::From from =
+      from_occupied ? ViewDriver::From::anywhere : ViewDriver::From::outside_occupied;
+  return for_each_pose(
+      driver, T_world_camera.size(), control, [&](std::size_t i, ViewDriver::Lease& lease) {
+        std::unique_ptr<ViewScratch>& scratch = lease.workspace().scratch;
+        if (!scratch) scratch = consumer.make_scratch();
+        consumer.begin(*scratch);
+        ViewGain view;
+        if (const auto frame = driver.open(T_world_camera[i], view, from)) {
+          const WalkLimits limits = walk_limits(driver.scene(), *frame);
+          WalkTask task;
+          driver.tracer().place(*frame, [&](std::size_t number, const RayTile& rays) {
+            set_up(driver.tracer().table(), number, *frame, rays, task);
+            std::fill_n(task.near, kTileRays, 0.0F);
+            task.lanes = rays.valid;
+            consumer.add(limits, task, *scratch);
+          });
+          view.status = ViewGain::Status::ok;
+        }
+        consumer.finish(i, view, *scratch);
+      });
+}
 
 }  // namespace viewgain

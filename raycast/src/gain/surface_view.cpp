@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface_view.hpp"
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
-#include "task_weight.hpp"
 #include "trace/scene_tracing.hpp"
 #include "view_driver.hpp"
 #include "viewgain/support/belief_block.hpp"

@@ -71,9 +71,7 @@ std::optional<PoseFrame> ViewDriver::open(const Pose& T_world_camera, ViewGain& 
 
 ViewGain ViewDriver::evaluate(const Pose& T_world_camera, Lease& lease, const float* missed) const {
   const SurfaceView* surface = this->surface();
-  if (surface == nullptr) {
-    return view(T_world_camera, lease, GainConsumer{lease.accumulator()});
-  }
+  if (surface == nullptr) return view(T_world_camera, lease, GainConsumer{lease.accumulator()});
   ViewGain result;
   if (const auto frame = open(T_world_camera, result)) {
     surface->evaluate(*frame, lease.workspace(), result, missed);

@@ -9,7 +9,6 @@
 #include <limits>
 #include <vector>
 
-#include "batch_loop.hpp"
 #include "gain_evaluator_impl.hpp"
 #include "viewgain/support/belief_block.hpp"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "task_weight.hpp"
 #include "trace/scene_tracing.hpp"
 
 namespace viewgain::detail {

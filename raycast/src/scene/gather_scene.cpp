@@ -24,9 +24,7 @@ TriangleMesh mesh_of(const Box& box) {
   TriangleMesh mesh;
   for (unsigned corner = 0; corner < 8; ++corner) {
     auto& vertex = mesh.vertices.emplace_back();
-    for (unsigned a = 0; a < 3; ++a) {
-      vertex[a] = (corner >> a & 1U) != 0 ? box.max[a] : box.min[a];
-    }
+    for (unsigned a = 0; a < 3; ++a) vertex[a] = (corner >> a & 1U) != 0 ? box.max[a] : box.min[a];
   }
   mesh.triangles.assign(kBoxTriangles.begin(), kBoxTriangles.end());
   return mesh;
@@ -39,7 +37,7 @@ void check_obstacles(const Obstacles& obstacles) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis]) ||
           box.min[axis] >= box.max[axis]) {
-        throw Error(ErrorCode::invalid_argument, "an obstacle box is inside out or not finite");
+        refuse("an obstacle box is inside out or not finite");
       }
     }
   }
@@ -47,16 +45,15 @@ void check_obstacles(const Obstacles& obstacles) {
     for (const auto& vertex : mesh.vertices) {
       for (const double c : vertex) {
         if (!std::isfinite(static_cast<float>(c))) {
-          throw Error(ErrorCode::invalid_argument, "an obstacle has a vertex that is not finite");
+          refuse("an obstacle has a vertex that is not finite");
         }
       }
     }
     for (const auto& triangle : mesh.triangles) {
       for (const std::uint32_t index : triangle) {
         if (index >= mesh.vertices.size()) {
-          throw Error(ErrorCode::invalid_argument, "an obstacle's triangle refers to vertex " +
-                                                       std::to_string(index) + " of " +
-                                                       std::to_string(mesh.vertices.size()));
+          refuse("an obstacle's triangle refers to vertex " + std::to_string(index) + " of " +
+                 std::to_string(mesh.vertices.size()));
         }
       }
     }
@@ -66,7 +63,7 @@ void check_obstacles(const Obstacles& obstacles) {
 void check_surroundings(const Surroundings& surroundings) {
   check_obstacles(surroundings.obstacles);
   if (surroundings.support_plane && !std::isfinite(*surroundings.support_plane)) {
-    throw Error(ErrorCode::invalid_argument, "the support plane's height is not finite");
+    refuse("the support plane's height is not finite");
   }
 }
 

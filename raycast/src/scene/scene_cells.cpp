@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_cells.hpp"
 
-#include <algorithm>
-
 #include "scene_data.hpp"
 
 namespace viewgain::detail {

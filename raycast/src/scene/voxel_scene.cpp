@@ -51,7 +51,7 @@ std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
 std::shared_ptr<const VoxelScene> VoxelScene::update(
     const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
     const ExecConfig& exec) {
-  if (!before) throw Error(ErrorCode::invalid_argument, "there is no scene to update");
+  if (!before) refuse("there is no scene to update");
   (void)thread_count(exec.num_threads);
   const detail::SceneData& data = SceneAccess::data(*before);
   return make_traceable(

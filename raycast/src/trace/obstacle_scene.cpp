@@ -4,8 +4,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <utility>

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "strip_rays.hpp"
 
-#include <cstring>
-
 #include "scene/scene_data.hpp"
 
 namespace viewgain::detail {

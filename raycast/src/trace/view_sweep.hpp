@@ -3,16 +3,50 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "cell_sweep.hpp"
 #include "image_bounds.hpp"
-#include "obstacle_marks.hpp"
+#include "obstacle_scene.hpp"
+#include "ray_tile.hpp"
 #include "scene/scene_cells.hpp"
 #include "strip_rays.hpp"
 
 namespace viewgain::detail {
+
+/// Where in the image of a view obstacles may be.
+class ObstacleMarks {
+ public:
+  static constexpr float kNoObstacle = std::numeric_limits<float>::infinity();
+
+  /// There are none.
+  void clear() { near_.clear(); }
+  /// There may be some anywhere.
+  void expect(std::size_t tiles) {
+    near_.assign(tiles, 0.0F);
+    farthest_voxel_ = kNoObstacle;
+  }
+  /// Looks where they are; `image` counts rays from the camera on. What lies behind all voxels may
+  /// be left out.
+  void mark(const ImageBoundsKernels& kernels, const ObstacleScene& obstacles,
+            const PoseFrame& frame, const ImageScale& image, const TileTable& table,
+            bool only_before_voxels);
+
+  /// How far along the optical axis an obstacle may begin that a tile's rays meet [voxels]; no
+  /// obstacle: kNoObstacle.
+  [[nodiscard]] float near(std::size_t tile) const {
+    return near_.empty() ? kNoObstacle : near_[tile];
+  }
+  /// No voxel of the workspace is farther along the axis [voxels]; known where obstacles are.
+  [[nodiscard]] float farthest_voxel() const { return farthest_voxel_; }
+
+ private:
+  std::vector<float> near_;  // one a tile; empty: there are none
+  float farthest_voxel_ = 0;
+};
 
 /// What a thread needs to sweep views of any scene and sensor, one after another.
 struct ViewSweep {

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_tracer.hpp"
 
-#include <algorithm>
 #include <bit>
-#include <utility>
 
 #include "cell_sweep.hpp"
 #include "voxel_bvh.hpp"

@@ -14,7 +14,7 @@
 #include "raycast/scene_makers.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/vdb_io.hpp"
-#include "viewgain/raycast/depth_image.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/viewgain.h"
 
 namespace viewgain {

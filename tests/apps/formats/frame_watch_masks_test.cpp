@@ -21,7 +21,6 @@
 #include "core/temporary_folder.hpp"
 #include "viewgain/formats/frame_watch.hpp"
 #include "viewgain/formats/frames.hpp"
-#include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/png.hpp"
 
 namespace viewgain {

@@ -17,7 +17,6 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
-#include "viewgain/formats/masks.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/text.hpp"

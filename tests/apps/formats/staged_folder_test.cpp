@@ -10,7 +10,6 @@
 #include "apps/program_runner.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
-#include "viewgain/formats/run_folder.hpp"
 
 namespace viewgain {
 namespace {

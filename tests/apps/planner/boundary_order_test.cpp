@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Kriegel's choice among made-up proposals.
-#include "viewgain/planner_mesh/boundary_order.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <optional>
 #include <vector>
+
+#include "viewgain/planner_mesh/policies.hpp"
 
 namespace viewgain {
 namespace {

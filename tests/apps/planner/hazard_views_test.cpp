@@ -17,7 +17,7 @@
 #include "apps/planner/planner_scene.hpp"
 #include "core/expect_error.hpp"
 #include "support/meshes.hpp"
-#include "viewgain/planner_mesh/boundary_generation.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
 
 namespace viewgain {
 namespace {

@@ -3,8 +3,6 @@
 
 // What a frame shows of new surface: planes whose area is known, and a frame of random readings
 // against a count by hand.
-#include "viewgain/planner/realised_area.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,6 +12,7 @@
 
 #include "apps/planner/planner_scene.hpp"
 #include "core/expect_error.hpp"
+#include "viewgain/planner/map_model.hpp"
 
 namespace viewgain {
 namespace {

@@ -20,7 +20,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/grid/belief_grid.hpp"
-#include "viewgain/planner/pose_noise.hpp"
+#include "viewgain/planner/simulated_acquisition.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 

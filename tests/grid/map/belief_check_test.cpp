@@ -14,7 +14,6 @@
 #include "core/expect_error.hpp"
 #include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/grid/integrate_cloud.hpp"
 
 namespace viewgain {
 namespace {

@@ -17,7 +17,6 @@
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/grid/pooling.hpp"
 
 namespace viewgain {
 namespace {

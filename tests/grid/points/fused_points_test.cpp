@@ -20,7 +20,6 @@
 #include "core/random_values.hpp"
 #include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/grid/pooling.hpp"
 
 namespace viewgain {
 namespace {

@@ -16,7 +16,6 @@
 
 #include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/grid/integrate_cloud.hpp"
 #include "voxel_oracle.hpp"
 
 namespace viewgain {

@@ -12,7 +12,7 @@
 
 #include "core/expect_error.hpp"
 #include "grid/analytic_frames.hpp"
-#include "viewgain/grid/integrate_cloud.hpp"
+#include "viewgain/grid/integrate.hpp"
 #include "voxel_oracle.hpp"
 
 namespace viewgain {

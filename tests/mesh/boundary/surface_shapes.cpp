@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "viewgain/support/mix64.hpp"
+#include "viewgain/support/hash64.hpp"
 
 namespace viewgain::test {
 namespace {

@@ -18,7 +18,6 @@
 #include "oracle/rays.hpp"
 #include "raycast/scene_makers.hpp"
 #include "viewgain/core/pose.hpp"
-#include "viewgain/raycast/depth_image.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain {

@@ -2,9 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/support/columns/table.hpp"
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "viewgain/core/error.hpp"
 #include "viewgain/formats/file_names.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/pose_numbers.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
@@ -62,12 +71,131 @@ std::string csv_text(const Table& table) {
   return csv;
 }
 
+using nlohmann::json;
+
+constexpr std::uint64_t kMostFieldBytes = std::uint64_t{1} << 20U;
+
+class NpyFile {
+ public:
+  explicit NpyFile(const std::filesystem::path& path)
+      : name_(path.string()), bytes_(file_bytes(path)) {
+    try {
+      read_layout();
+    } catch (const json::exception&) {
+      fail(".npy header: is not one that is read here");
+    }
+    if (rows_ == 0) fail("holds no pose");
+    if (rows_ > (bytes_.size() - begin_) / row_bytes_) {
+      fail("is cut off: " + std::to_string(rows_) + " rows do not fit");
+    }
+  }
+
+  [[nodiscard]] std::size_t rows() const { return rows_; }
+
+  [[nodiscard]] Pose pose(std::size_t row, bool& mended) const {
+    const auto fail_row = [&](const std::string& what) {
+      fail("row " + std::to_string(row) + ": " + what);
+    };
+    std::vector<double> numbers;
+    for (const std::size_t offset : offsets_) {
+      double number = 0;
+      std::memcpy(&number, &bytes_[begin_ + row * row_bytes_ + offset], sizeof number);
+      if (!std::isfinite(number)) fail_row("holds a number that is not finite");
+      numbers.push_back(number);
+    }
+    return pose_of_numbers(numbers, mended, fail_row);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::format, name_ + ": " + what);
+  }
+
+  // The header is a dictionary in Python's words, which become JSON's.
+  [[nodiscard]] json header() {
+    const auto byte = [this](std::size_t i) {
+      return std::size_t{static_cast<unsigned char>(bytes_[i])};
+    };
+    if (bytes_.size() < 12 || !bytes_.starts_with("\x93NUMPY")) fail("is no .npy file");
+    const std::size_t first = byte(6) == 1 ? 10 : 12;
+    begin_ = first + (byte(8) | byte(9) << 8U);
+    if (byte(6) > 1) begin_ += byte(10) << 16U | byte(11) << 24U;
+    if (begin_ > bytes_.size()) fail("is cut off in its header");
+    std::string text;
+    for (const char c : std::string_view(bytes_).substr(first, begin_ - first)) {
+      if (c == ' ' || c == '\n') continue;
+      if ((c == ')' || c == ']' || c == '}') && text.ends_with(',')) text.pop_back();
+      text += c == '\'' ? '"' : c == '(' ? '[' : c == ')' ? ']' : c;
+      if (text.ends_with(":True")) text.replace(text.size() - 4, 4, "true");
+      if (text.ends_with(":False")) text.replace(text.size() - 5, 5, "false");
+    }
+    return json::parse(text);
+  }
+
+  void read_layout() {
+    const json said = header();
+    const json &type = said.at("descr"), &shape = said.at("shape");
+    if (said.at("fortran_order").get<bool>()) fail("is in Fortran's order");
+    rows_ = shape.at(0).get<std::size_t>();
+    if (type.is_array() && shape.size() == 1) {
+      find_columns(type);
+    } else if (type == "<f8" && shape.size() == 3 && shape[1] == 4 && shape[2] == 4) {
+      for (std::size_t i = 0; i < 16; ++i) offsets_.push_back(i * sizeof(double));
+      row_bytes_ = 16 * sizeof(double);
+    } else {
+      fail("is " + shape.dump() + " of " + type.dump() +
+           ", neither rows with tx, ty, tz, qx, qy, qz, qw nor (n, 4, 4) matrices of <f8");
+    }
+  }
+
+  void find_columns(const json& fields) {
+    std::vector<std::string> columns;  // name and type
+    std::vector<std::size_t> begins;
+    for (const json& field : fields) {
+      const auto type = field.at(1).get<std::string>();
+      columns.push_back(field.at(0).get<std::string>() + " of " + type);
+      begins.push_back(row_bytes_);
+      std::uint64_t bytes = 0;
+      const char* const digits = type.data() + std::min<std::size_t>(2, type.size());
+      std::from_chars(digits, type.data() + type.size(), bytes);
+      if (type.find('U') == 1) bytes *= 4;  // numpy counts characters
+      for (const json& count : field.size() > 2 ? field[2] : json(1)) {
+        bytes *= std::min(count.get<std::uint64_t>(), kMostFieldBytes);
+        if (bytes == 0 || bytes > kMostFieldBytes) fail(columns.back() + " is not read here");
+      }
+      row_bytes_ += bytes;
+    }
+    for (const std::string name : kPoseColumns) {
+      const auto column = std::find(columns.begin(), columns.end(), name + " of <f8");
+      if (column == columns.end()) fail("has no column " + name + " of <f8");
+      offsets_.push_back(begins[static_cast<std::size_t>(column - columns.begin())]);
+    }
+  }
+
+  std::string name_, bytes_;
+  std::size_t begin_ = 0;  // of the first row [bytes]
+  std::size_t rows_ = 0, row_bytes_ = 0;
+  std::vector<std::size_t> offsets_;  // of a pose's numbers in a row [bytes]
+};
+
 }  // namespace
 
 bool is_npy(const std::filesystem::path& path) { return small_ending(path) == ".npy"; }
 
 void write_table(const std::filesystem::path& path, const Table& table) {
   write_file_atomically(path, is_npy(path) ? npy_text(table) : csv_text(table));
+}
+
+PoseList read_npy_poses(const std::filesystem::path& path) {
+  const NpyFile file(path);
+  PoseList list;
+  list.poses.reserve(file.rows());
+  for (std::size_t row = 0; row < file.rows(); ++row) {
+    bool mended = false;
+    list.poses.push_back(file.pose(row, mended));
+    list.orthonormalized += mended ? 1 : 0;
+  }
+  return list;
 }
 
 }  // namespace viewgain

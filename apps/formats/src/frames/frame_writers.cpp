@@ -53,9 +53,8 @@ std::vector<fs::path> simulated_files(const fs::path& dir) {
       if (digits) is_own = is_own && std::stoull(*digits) < count;
     }
     if (is_own) continue;
-    throw Error(ErrorCode::invalid_argument, (dir / file).string() + ": no frames of simulate (" +
-                                                 kSimulated +
-                                                 " says which are); choose another folder");
+    refuse((dir / file).string() + ": no frames of simulate (" + kSimulated +
+           " says which are); choose another folder");
   }
   return files;
 }
@@ -66,7 +65,7 @@ FramesWriter::FramesWriter(const fs::path& dir) : earlier_(simulated_files(dir))
 
 void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
   const auto refuse = [&](const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, "frame " + std::to_string(index) + ": " + what);
+    viewgain::refuse("frame " + std::to_string(index) + ": " + what);
   };
   const std::size_t pixels =
       frame.width > 0 && frame.height > 0
@@ -100,15 +99,13 @@ void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
 
 void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) {
   if (poses.size() != written_ || written_ == 0) {
-    throw Error(ErrorCode::invalid_argument, std::to_string(poses.size()) + " poses for " +
-                                                 std::to_string(written_) + " frames");
+    refuse(std::to_string(poses.size()) + " poses for " + std::to_string(written_) + " frames");
   }
   const PinholeCamera& camera = sensor.camera;
   if (camera.width != width_ || camera.height != height_) {
-    throw Error(ErrorCode::invalid_argument, "frames of " + std::to_string(width_) + " x " +
-                                                 std::to_string(height_) + " px for a sensor of " +
-                                                 std::to_string(camera.width) + " x " +
-                                                 std::to_string(camera.height) + " px");
+    refuse("frames of " + std::to_string(width_) + " x " + std::to_string(height_) +
+           " px for a sensor of " + std::to_string(camera.width) + " x " +
+           std::to_string(camera.height) + " px");
   }
   write_tum(staged_.path() / kPoses, poses);
   write_sensor_toml(staged_.path() / kSensor, sensor);

@@ -12,7 +12,6 @@
 #include "frames/frame_names.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/formats/png.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/hash64.hpp"
@@ -21,14 +20,28 @@
 namespace viewgain {
 namespace {
 
+template <typename Value>
+std::uint64_t apply(const Gray8Image& mask, int width, int height, std::vector<Value>& depth) {
+  if (mask.width != width || mask.height != height || mask.pixels.size() != depth.size()) {
+    refuse("a mask of " + std::to_string(mask.width) + " x " + std::to_string(mask.height) +
+           " px for an image of " + std::to_string(width) + " x " + std::to_string(height) + " px");
+  }
+  std::uint64_t removed = 0;
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (mask.pixels[i] == 0) continue;
+    removed += depth[i] != Value{0} ? 1 : 0;
+    depth[i] = Value{0};
+  }
+  return removed;
+}
+
 namespace fs = std::filesystem;
 
 constexpr std::uint16_t kOutOfRangeValue = 65535;
 
 void check_index(std::size_t index, std::size_t count) {
   if (index < count) return;
-  throw Error(ErrorCode::invalid_argument,
-              "there is no frame " + std::to_string(index) + " of " + std::to_string(count));
+  refuse("there is no frame " + std::to_string(index) + " of " + std::to_string(count));
 }
 
 // The numbers of a 3x3 matrix, whatever lines they stand on.
@@ -124,6 +137,47 @@ FrameFault size_fault(const fs::path& image, const PinholeCamera& camera) {
 
 }  // namespace
 
+MaskFolder::MaskFolder(std::filesystem::path folder, std::optional<std::uint8_t> least_confidence)
+    : folder_(std::move(folder)), least_confidence_(least_confidence) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder_, ignored)) {
+    throw Error(ErrorCode::io, folder_.string() + ": no such folder");
+  }
+}
+
+void MaskFolder::require_mask_of_any(const std::vector<std::filesystem::path>& images) const {
+  if (std::any_of(images.begin(), images.end(),
+                  [this](const auto& image) { return is_there(file_of(image)); })) {
+    return;
+  }
+  refuse(folder_.string() + ": has no image of the name of a depth image" +
+         (images.empty() ? "" : ", as " + images.front().filename().string()));
+}
+
+std::filesystem::path MaskFolder::file_of(const std::filesystem::path& image) const {
+  return folder_ / image.filename();
+}
+
+std::optional<Gray8Image> MaskFolder::mask_of(const std::filesystem::path& image, int width,
+                                              int height) const {
+  const std::filesystem::path file = file_of(image);
+  if (!is_there(file)) return std::nullopt;
+  Gray8Image mask = read_gray8_png(file, width, height);
+  if (least_confidence_) {
+    for (std::uint8_t& pixel : mask.pixels) pixel = pixel < *least_confidence_ ? 1 : 0;
+  }
+  return mask;
+}
+
+std::uint64_t apply_mask(const Gray8Image& mask, GrayImage& depth) {
+  return apply(mask, depth.width, depth.height, depth.pixels);
+}
+
+std::uint64_t apply_mask(const Gray8Image& mask, DepthFrame& frame) {
+  static_assert(DepthFrame::kInvalid == 0.0F);
+  return apply(mask, frame.width, frame.height, frame.depth);
+}
+
 FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
                                 std::optional<double> depth_scale) {
   std::error_code ignored;
@@ -137,8 +191,7 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
   frames.depth_scale =
       scale.value_or(has_sensor && !frames.recorded ? kDepthUnit : kRecordedDepthUnit);
   if (!(frames.depth_scale > 0) || !std::isfinite(frames.depth_scale)) {
-    throw Error(ErrorCode::invalid_argument, "the depth scale " + short_text(frames.depth_scale) +
-                                                 " must be positive and finite");
+    refuse("the depth scale " + short_text(frames.depth_scale) + " must be positive and finite");
   }
   if (frames.depth_scale > 1) {
     throw Error(ErrorCode::format, dir.string() + ": the depth scale " +
@@ -146,8 +199,7 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
                                        " is over 1 m per unit: is it units per metre?");
   }
   if (sensor.empty() && !has_sensor) {
-    throw Error(ErrorCode::invalid_argument,
-                dir.string() + ": has no sensor.toml, so a sensor is needed");
+    refuse(dir.string() + ": has no sensor.toml, so a sensor is needed");
   }
   frames.sensor = sensor.empty() ? read_sensor_toml(dir / kSensor) : load_sensor(sensor);
   if (frames.recorded && is_there(dir / kIntrinsics)) {

@@ -12,8 +12,8 @@
 #include "octomap/octomap_format.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/octomap_io.hpp"
+#include "viewgain/support/block_lattice.hpp"
 #include "viewgain/support/file_bytes.hpp"
-#include "viewgain/support/grid_blocks.hpp"
 #include "viewgain/support/log_odds_code.hpp"
 #include "viewgain/support/solid_voxels.hpp"
 #include "viewgain/support/text.hpp"
@@ -259,8 +259,7 @@ BeliefGrid empty_grid(const GridConfig& config, const std::string& name) {
 BeliefGrid grid_from_octomap_bytes(std::string_view bytes, const OctomapConfig& config,
                                    const std::string& name) {
   if (!std::isfinite(config.occupied_from)) {
-    throw Error(ErrorCode::invalid_argument, "the log-odds from which a voxel is occupied is " +
-                                                 short_text(config.occupied_from));
+    refuse("the log-odds from which a voxel is occupied is " + short_text(config.occupied_from));
   }
   const Header header = read_header(bytes, name);
   const std::optional<Box> known = check_tree(bytes, header, name);

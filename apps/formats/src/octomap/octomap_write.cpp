@@ -17,7 +17,6 @@
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/block_lattice.hpp"
-#include "viewgain/support/grid_blocks.hpp"
 #include "viewgain/support/log_odds_code.hpp"
 #include "viewgain/support/text.hpp"
 

@@ -101,8 +101,7 @@ std::vector<Pose> hazard_views(const VoxelScene& scene, double distance, double 
                                std::size_t most) {
   for (const double length : {distance, spacing}) {
     if (length > 0 && std::isfinite(length)) continue;
-    throw Error(ErrorCode::invalid_argument,
-                "views by the hazard: a length must not be " + short_text(length) + " m");
+    refuse("views by the hazard: a length must not be " + short_text(length) + " m");
   }
   const HazardField& hazard = scene.hazard();
   const double edge = hazard.voxel_size() * (1 << hazard.cell_shift());

@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/planner/pose_sets.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
@@ -38,9 +36,8 @@ Eigen::Vector3d direction_from(const Eigen::Vector3d& center, const Pose& pose) 
 // Each pose the farthest, by angle, from the start's and from those before it.
 std::vector<Pose> spread_out(const std::vector<Pose>& poses, const PoseSetRequest& request) {
   if (poses.size() > kMostSpreadOut) {
-    throw Error(ErrorCode::invalid_argument, "at most " + std::to_string(kMostSpreadOut) +
-                                                 " poses can be spread out, not " +
-                                                 std::to_string(poses.size()));
+    refuse("at most " + std::to_string(kMostSpreadOut) + " poses can be spread out, not " +
+           std::to_string(poses.size()));
   }
   std::vector<double> nearest(poses.size(), -1);  // cosine of the angle to the nearest one taken
   const auto take = [&](const Pose& pose) {
@@ -142,8 +139,7 @@ PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request)
   } else if (generator == "sequence") {
     set.poses = sequence_poses(request);
   } else {
-    throw Error(ErrorCode::invalid_argument,
-                "generator \"" + std::string(generator) + "\": no such set of poses");
+    refuse("generator \"" + std::string(generator) + "\": no such set of poses");
   }
   if (request.spread_out) set.poses = spread_out(set.poses, request);
   return set;

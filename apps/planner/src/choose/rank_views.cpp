@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -24,8 +23,7 @@ constexpr std::size_t kByStop = 3, kFewPoses = 32;
 
 void refuse_measures(const RankConfig& config) {
   if (config.measure == nullptr && config.run_measure == nullptr) return;
-  throw Error(ErrorCode::invalid_argument,
-              "views that go together are chosen by the gain, not by a measure");
+  refuse("views that go together are chosen by the gain, not by a measure");
 }
 
 double least_area_of(const PlanAhead& ahead, double surface_area) {
@@ -102,23 +100,22 @@ Ranking set_of(const GainEvaluator& evaluator, std::span<const Pose> T_world_cam
 }  // namespace
 
 void PlanAhead::check() const {
-  const auto fail = [](const std::string& what) { throw Error(ErrorCode::invalid_argument, what); };
   if (plan < 1 || plan > kMostPlanned) {
-    fail("plan is " + std::to_string(plan) + "; it must be 1 to " + std::to_string(kMostPlanned));
+    refuse("plan is " + std::to_string(plan) + "; it must be 1 to " + std::to_string(kMostPlanned));
   }
   if (take < 1 || take > plan) {
-    fail("take is " + std::to_string(take) + "; it must be 1 to plan, " + std::to_string(plan));
+    refuse("take is " + std::to_string(take) + "; it must be 1 to plan, " + std::to_string(plan));
   }
   if (!(least_share >= 0 && least_share < 1)) {
-    fail("least_share " + short_text(least_share) + " must be at least 0 and less than 1");
+    refuse("least_share " + short_text(least_share) + " must be at least 0 and less than 1");
   }
 }
 
 std::vector<double> view_costs(std::span<const Pose> poses, const RankConfig& config,
                                const std::optional<Eigen::Vector3d>& here) {
   if (!std::isfinite(config.cost_per_metre) || config.cost_per_metre < 0) {
-    throw Error(ErrorCode::invalid_argument, "cost_per_metre " + short_text(config.cost_per_metre) +
-                                                 " must be at least 0 and finite");
+    refuse("cost_per_metre " + short_text(config.cost_per_metre) +
+           " must be at least 0 and finite");
   }
   std::vector<double> costs(config.costs.begin(), config.costs.end());
   if (config.cost_per_metre == 0 || !here) return costs;

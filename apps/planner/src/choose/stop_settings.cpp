@@ -3,19 +3,11 @@
 #include "viewgain/planner/stop_settings.hpp"
 
 #include <cmath>
-#include <string>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
-namespace {
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, what);
-}
-
-}  // namespace
 
 void set_stop_rules(PlanningConfig& planning, GainModel model, Criterion criterion,
                     std::optional<double> stop_gain, std::optional<double> stop_area) {
@@ -29,9 +21,7 @@ void set_stop_rules(PlanningConfig& planning, GainModel model, Criterion criteri
   if (by_paper && stop_area.value_or(0) > 0) {
     refuse("stop_area goes with the gains surface and combined");
   }
-  if (!by_paper && stop_gain.value_or(0) > 0) {
-    refuse("stop_gain goes with the gain paper");
-  }
+  if (!by_paper && stop_gain.value_or(0) > 0) refuse("stop_gain goes with the gain paper");
   if (model == GainModel::combined && criterion == Criterion::trace) {
     refuse("criterion trace goes with the gain paper: the combined gain is in nats");
   }

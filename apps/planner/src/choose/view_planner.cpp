@@ -12,7 +12,6 @@
 #include "choose/planner_state.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/planner/align_frames.hpp"
-#include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/stop_settings.hpp"
 #include "viewgain/support/stop_rules.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -23,12 +22,8 @@ namespace {
 
 constexpr const char* kNote = "planner";  // the note of the saved map that holds the state
 
-[[noreturn]] void fail(const std::string& what) { throw Error(ErrorCode::invalid_argument, what); }
-
 void check_rigid(const Pose& pose, const char* what) {
-  if (!rigid_pose(pose)) {
-    fail(std::string(what) + " is not a rigid transform of finite numbers");
-  }
+  if (!rigid_pose(pose)) refuse(std::string(what) + " is not a rigid transform of finite numbers");
 }
 
 std::string layout_text(const BeliefGrid& grid) {
@@ -200,8 +195,9 @@ struct ViewPlanner::Impl {
     for (const auto& [reason, count] : bad_frames(state.frames)) {
       counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
     }
-    fail("no view can be proposed: of no frame so far could anything be used (" + counts +
-         "); poses that are world to camera, other units or another workspace would explain that");
+    refuse(
+        "no view can be proposed: of no frame so far could anything be used (" + counts +
+        "); poses that are world to camera, other units or another workspace would explain that");
   }
 
   // After a choice, which takes the place of an earlier one of the same view.
@@ -266,7 +262,7 @@ void ViewPlanner::add_poses(PoseSet set) {
 }
 
 void ViewPlanner::add_generation(std::shared_ptr<ViewpointGeneration> generation) {
-  if (!generation) fail("the generation is null");
+  if (!generation) refuse("the generation is null");
   impl_->proposer.add_generation(std::move(generation));
   impl_->proposal.reset();
 }
@@ -287,13 +283,13 @@ AddedView ViewPlanner::add(const DepthFrame& frame, const Pose& T_world_camera,
 AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_world_camera,
                            const PoseSigma& pose_sigma) {
   Impl& m = *impl_;
-  if (frames.empty()) fail("a view without a frame");
+  if (frames.empty()) refuse("a view without a frame");
   return m.counted(m.map.update({T_world_camera, {frames.begin(), frames.end()}, pose_sigma}),
                    T_world_camera);
 }
 
 AddedView ViewPlanner::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera) {
-  if (is_in_map(verdict)) fail("a frame that is dropped is not in the map");
+  if (is_in_map(verdict)) refuse("a frame that is dropped is not in the map");
   MapUpdate nothing;
   nothing.verdict = verdict;
   return impl_->counted(std::move(nothing), T_world_camera);
@@ -330,7 +326,7 @@ std::size_t ViewPlanner::candidate_count() const noexcept {
 
 Ranking ViewPlanner::rank(std::size_t k, const RankConfig& config, const BatchControl& control) {
   if (!impl_->proposal) {
-    fail("rank: there are no candidates; propose() comes first, after each view anew");
+    refuse("rank: there are no candidates; propose() comes first, after each view anew");
   }
   return impl_->rank(poses_of(impl_->proposal->candidates), k, config, control, &*impl_->proposal);
 }
@@ -355,7 +351,7 @@ std::optional<StopReason> ViewPlanner::should_stop() const noexcept {
 
 void ViewPlanner::save(const std::filesystem::path& path, VdbWriteConfig config) const {
   if (path.extension() == ".ot" || path.extension() == ".bt") {
-    fail(path.string() + ": the state is an OpenVDB file, and this name is OctoMap's");
+    refuse(path.string() + ": the state is an OpenVDB file, and this name is OctoMap's");
   }
   config.notes[kNote] = detail::text_of(impl_->state);
   save_vdb(impl_->map.grid(), path, config);
@@ -374,8 +370,8 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
   if (grid.voxel_size() != expected.voxel_size() || grid.dims() != expected.dims() ||
       grid.min_index() != expected.min_index() || grid.prior_sigma() != expected.prior_sigma() ||
       !(grid.T_world_grid() == expected.T_world_grid())) {
-    fail(path.string() + ": its map, " + layout_text(grid) +
-         ", is laid out otherwise than the configuration says, " + layout_text(expected));
+    refuse(path.string() + ": its map, " + layout_text(grid) +
+           ", is laid out otherwise than the configuration says, " + layout_text(expected));
   }
   detail::PlannerState state = detail::state_of(path.string() + " (note planner)", note->second);
   auto impl = std::make_unique<Impl>(config, exec, MapModel(std::move(grid), sensor, map, exec));

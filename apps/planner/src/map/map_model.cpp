@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/planner/map_model.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,14 +13,10 @@
 namespace viewgain {
 namespace {
 
-void add(IntegrationReport& sum, const IntegrationReport& frame) {
-  sum.readings += frame.readings;
-  sum.plane_readings += frame.plane_readings;
-  sum.out_of_range += frame.out_of_range;
-  sum.invalid += frame.invalid;
-  sum.readings_inside += frame.readings_inside;
-  sum.voxels_hit += frame.voxels_hit;
-  sum.voxels_crossed += frame.voxels_crossed;
+bool sees_plane(const Sensor& sensor, const Eigen::Vector3d& point, const Eigen::Vector3d& sight,
+                double plane) {
+  const double range = sight.norm(), rise = sight.z() / range;  // its size is cosθ on the plane
+  return is_of_plane(point.z() - plane, rise, sensor.sigmas(range, std::abs(rise)));
 }
 
 MapModelConfig with_plane(MapModelConfig config) {
@@ -30,6 +25,36 @@ MapModelConfig with_plane(MapModelConfig config) {
 }
 
 }  // namespace
+
+RealisedArea::RealisedArea(const Sensor& sensor, std::optional<double> support_plane)
+    : sensor_(sensor),
+      support_plane_(support_plane),
+      rays_(sensor.camera.ray_table()),
+      solid_angles_(sensor.camera.solid_angles(rays_)) {}
+
+double RealisedArea::of(const DepthFrame& frame, const Pose& T_world_camera,
+                        const BeliefGrid& before, const HazardField* hazard) const {
+  check_frame_size(frame, sensor_.camera);
+  double area = 0;
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    const float z = frame.depth[i];
+    if (!(z > 0) || !std::isfinite(z) || !rays_[i].allFinite()) continue;
+    const Eigen::Vector3d p_camera = static_cast<double>(z) * rays_[i];
+    const double range = p_camera.norm();
+    if (range < sensor_.min_range || range > sensor_.max_range) continue;
+    if (frame.shows_known(i)) continue;
+    const Eigen::Vector3d point = T_world_camera * p_camera;
+    if (support_plane_ &&
+        sees_plane(sensor_, point, point - T_world_camera.translation(), *support_plane_)) {
+      continue;
+    }
+    const std::optional<Index3> voxel = before.index_of(point);
+    if (!voxel || before.state(*voxel) != VoxelState::unknown) continue;
+    if (hazard != nullptr && !hazard->is_new(*voxel)) continue;
+    area += solid_angles_[i] * range * range;
+  }
+  return area;
+}
 
 MapModel::MapModel(const Sensor& sensor, const MapModelConfig& config, const ExecConfig& exec)
     : MapModel(BeliefGrid(config.grid, sensor), sensor, config, exec) {}
@@ -54,8 +79,7 @@ FrameVerdict MapModel::judged(const Measurements& measurements) const {
   for (const double sigma :
        {measurements.pose_sigma.translation, measurements.pose_sigma.rotation}) {
     if (std::isfinite(sigma) && sigma >= 0) continue;
-    throw Error(ErrorCode::invalid_argument,
-                "the sigma " + short_text(sigma) + " of a pose is negative or not finite");
+    refuse("the sigma " + short_text(sigma) + " of a pose is negative or not finite");
   }
   if (!rigid_pose(measurements.T_world_camera)) return FrameVerdict::lost_pose;
   try {
@@ -115,7 +139,7 @@ void MapModel::integrate(BeliefGrid& grid, const std::vector<DepthFrame>& frames
     }
   }
   for (const DepthFrame& frame : frames) {
-    add(update.counts, integrator_.integrate(grid, frame, T_world_camera, measurements.pose_sigma));
+    update.counts += integrator_.integrate(grid, frame, T_world_camera, measurements.pose_sigma);
   }
 }
 
@@ -155,8 +179,7 @@ MapUpdate MapModel::update(const Measurements& measurements) {
 BeliefGrid MapModel::grid_after(const Measurements& measurements) const {
   const FrameVerdict verdict = judged(measurements);
   if (verdict != FrameVerdict::used) {
-    throw Error(ErrorCode::invalid_argument,
-                "the frames cannot be used: " + std::string(frame_verdict_name(verdict)));
+    refuse("the frames cannot be used: " + std::string(frame_verdict_name(verdict)));
   }
   BeliefGrid grid = grid_.clone();
   FrameIntegrator integrator(sensor_, config_.integration, exec_);

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
-#include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -334,9 +332,7 @@ Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames
 
 Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frames,
                          std::span<const Pose> T_world_camera) {
-  if (frames.size() != T_world_camera.size()) {
-    throw Error(ErrorCode::invalid_argument, "one pose a frame is needed");
-  }
+  if (frames.size() != T_world_camera.size()) refuse("one pose a frame is needed");
   for (const DepthFrame& frame : frames) check_frame_size(frame, sensor.camera);
   if (Suspicion camera = suspect_camera(sensor.camera); !camera.kind.empty()) return camera;
   const Meeting meeting(sensor, frames, T_world_camera);

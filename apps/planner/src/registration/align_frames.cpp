@@ -11,16 +11,13 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "registration/joint_registration.hpp"
-#include "registration/registration_readings.hpp"
 #include "registration/registration_view.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/noise.hpp"
 #include "viewgain/grid/fused_points.hpp"
-#include "viewgain/grid/pooling.hpp"
 #include "viewgain/raycast/obstacle_view.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/thread_pool.hpp"
@@ -171,12 +168,8 @@ constexpr double kSmoothedRadius = 4, kSingleRadius = 5;
 constexpr std::size_t kSmoothedReadings = 6'000, kSingleReadings = 20'000;
 
 void check(const Pose& T_reported, const PoseSigma& sigma) {
-  const auto fail = [](const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, "registration: " + what);
-  };
-  if (!rigid_pose(T_reported)) {
-    fail("the reported pose is not a rigid transform of finite numbers");
-  }
+  const auto fail = [](const std::string& what) { refuse("registration: " + what); };
+  if (!rigid_pose(T_reported)) fail("the reported pose is not a rigid transform of finite numbers");
   for (const auto& [name, value] : {std::pair("sigma_translation", sigma.translation),
                                     std::pair("sigma_rotation", sigma.rotation)}) {
     if (value > 0 && std::isfinite(value)) continue;

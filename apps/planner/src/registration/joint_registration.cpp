@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <numbers>
 #include <tuple>
-#include <utility>
 
 #include "registration/pose_motion.hpp"
 

@@ -8,7 +8,7 @@
 #include "program/cli/app.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/support/nearest_name.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain::app {
 
@@ -23,8 +23,7 @@ struct CommonOptions {
 inline void add_common_options(App& app, CommonOptions& options) {
   app.add_flag("--json", options.json, "print one JSON object instead of text");
   app.add_flag("--quiet", options.quiet, "say nothing of how far the call is");
-  app.add_option("--threads", options.threads, "threads; 0: as many as the machine has")
-      ->capture_default_str();
+  app.add_option("--threads", options.threads, "threads; 0: as many as the machine has");
   app.add_option("--config", options.config,
                  "TOML file: flags without -- and positionals (mesh, map) as keys; what the "
                  "command line says holds");
@@ -37,7 +36,6 @@ inline void add_trace_option(App& app, CommonOptions& options) {
   app.add_option("--trace", options.trace,
                  "how rays meet voxels: by Embree's BVH or by sweeping cells from near to "
                  "far, as unless told otherwise; never changes a result")
-      ->capture_default_str()
       ->check(one_of(tracer_names(), "tracer"));
 }
 
@@ -52,8 +50,12 @@ inline constexpr const char* kViewsGroup = "Choose views";
 inline constexpr const char* kLookGroup = "Look and convert";
 
 /// Where the subcommand stands in the program's help, and a call that works where those of
-/// simulate, integrate, score and so on were made before it.
+/// simulate, integrate, score and so on were made before it. Help shows defaults but of what must
+/// be given or may be repeated. To be called last.
 inline void add_help(App& app, const char* group, const char* example) {
+  for (Option* option : app.get_options()) {
+    if (option->get_required() || option->get_expected_max() > 1) option->default_str("");
+  }
   app.group(group)->footer(std::string("Example:\n  viewgain ") + example);
 }
 
@@ -81,7 +83,7 @@ inline constexpr const char* kStopPromisesHelp =
 
 /// --seed, the same bounds in every subcommand.
 inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {
-  app.add_option("--seed", seed, of_what)->check(a_seed())->capture_default_str();
+  app.add_option("--seed", seed, of_what)->check(a_seed());
 }
 
 }  // namespace viewgain::app

@@ -68,7 +68,6 @@ void add_mask_options(App& app, std::string& mask, std::string& confidence, int&
                  "--least-confidence, an image says nothing");
   app.add_option("--least-confidence", least_confidence,
                  "least value of --confidence that counts, 1..255")
-      ->capture_default_str()
       ->check(CLI::Range(1, 255, "confidence"));
 }
 

@@ -14,7 +14,6 @@
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/formats/frames.hpp"
-#include "viewgain/formats/masks.hpp"
 
 namespace viewgain::app {
 

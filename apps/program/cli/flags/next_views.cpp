@@ -6,7 +6,6 @@
 #include <array>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 
 namespace viewgain::app {
@@ -74,7 +73,6 @@ void add_plan_options(App& app, PlanOptions& options) {
   app.add_option("--plan", options.plan,
                  "K views are planned together, at most, as a set, and taken in an order that is "
                  "short to drive by straight ways; 1: one at a time")
-      ->capture_default_str()
       ->check(counted(1, 1000));
   app.add_option("--take", options.take,
                  "of the views of --plan so many are taken before it is planned anew, if they are "

@@ -11,7 +11,6 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/support/columns/npy_poses.hpp"
 #include "viewgain/support/columns/table.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/text.hpp"
@@ -101,7 +100,7 @@ void add_cost_options(App& app, CostOptions& options, const std::string& of) {
   app.add_option("--costs", options.file,
                  "file of one number for each of " + of +
                      ", which is subtracted from its gain, in the gain's unit");
-  app.add_option("--cost-per-metre", options.per_metre, kCostPerMetreHelp)->capture_default_str();
+  app.add_option("--cost-per-metre", options.per_metre, kCostPerMetreHelp);
 }
 
 std::vector<double> read_costs(const std::string& file, std::size_t poses) {

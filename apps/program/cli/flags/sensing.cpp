@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/noise.hpp"
-#include "viewgain/planner/register_frame.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -34,11 +32,9 @@ void add_sensing_options(App& app, SensingOptions& o) {
                  "default: as --noise")
       ->check(on_or_off());
   app.add_option("--background", o.background,
-                 "radius of a sphere round the origin that stands for the room [m]; 0: none")
-      ->capture_default_str();
+                 "radius of a sphere round the origin that stands for the room [m]; 0: none");
   app.add_option("--scale-error", o.scale_error,
-                 "ranges read 1 + this times what they are, as by a calibration that is off")
-      ->capture_default_str();
+                 "ranges read 1 + this times what they are, as by a calibration that is off");
   app.add_option("--pose-noise", o.pose_noise,
                  "SIGMA_M,SIGMA_DEG: reported poses are off by this, in each axis [m] and each "
                  "component of the rotation vector [deg]; the first view's is exact and defines "
@@ -81,7 +77,6 @@ void add_registration_options(App& app, RegistrationOptions& options) {
   app.add_option("--on-contradiction", options.on_contradiction,
                  "what --register does with a frame that contradicts the others: skip, or keep it "
                  "at its reported pose")
-      ->capture_default_str()
       ->check(one_of({"skip", "keep"}, "answer"));
 }
 
@@ -100,6 +95,34 @@ std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,
   if (noise.translation > 0) sigma.translation = noise.translation;
   if (noise.rotation > 0) sigma.rotation = noise.rotation;
   return sigma;
+}
+
+void ScaleOptions::set(IntegrationConfig& config) const {
+  if (coarsest == 0 && !fine.empty()) refuse("--fine goes with --coarsest");
+  if (finest > coarsest) refuse("--finest is at most --coarsest");
+  config.coarsest = static_cast<int>(coarsest);
+  config.finest = static_cast<int>(finest);
+  for (const std::string& box : fine) config.fine.push_back(parse_box("--fine", box));
+}
+
+Json ScaleOptions::settings() const {
+  Json json = Json::object();
+  if (coarsest > 0) json.update(Json{{"coarsest", coarsest}, {"fine", fine}, {"finest", finest}});
+  return json;
+}
+
+void add_scale_options(App& app, ScaleOptions& options) {
+  app.add_option(
+         "--coarsest", options.coarsest,
+         "up to 2^this voxels an edge are known as one cell where a pixel is as large, 0 to "
+         "3; a nearer look makes them finer")
+      ->check(counted(0, 3));
+  app.add_option("--fine", options.fine,
+                 "x0,y0,z0,x1,y1,z1 [m]: known by single voxels all the same; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--finest", options.finest,
+                 "outside of --fine cells are no smaller than 2^this voxels an edge, 0 to 3")
+      ->check(counted(0, 3));
 }
 
 }  // namespace viewgain::app

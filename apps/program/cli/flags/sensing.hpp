@@ -2,14 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "program/cli/app.hpp"
+#include "program/cli/json.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/integrate.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
@@ -68,5 +72,18 @@ void add_registration_options(App& app, RegistrationOptions& options);
 /// also for --pose-sigma without --register on.
 [[nodiscard]] std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,
                                                           const PoseSigma& noise = {});
+
+/// --coarsest, --fine and --finest: which scales the leaves of a map that is made get.
+struct ScaleOptions {
+  std::size_t coarsest = 0, finest = 0;
+  std::vector<std::string> fine;
+
+  /// Throws Error(invalid_argument) naming --fine or --finest.
+  void set(IntegrationConfig& config) const;
+  /// For a run's settings, empty where they are the defaults.
+  [[nodiscard]] Json settings() const;
+};
+
+void add_scale_options(App& app, ScaleOptions& options);
 
 }  // namespace viewgain::app

@@ -15,7 +15,6 @@
 
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/flags/map_scales.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
@@ -352,11 +351,10 @@ Command add_follow(App& program) {
       ->required();
   app->add_option("--sensor", o.frames.sensor, kSensorHelp + "; default: FRAMES_DIR/sensor.toml");
   add_frame_folder_options(*app, o.frames);
-  app->add_option("--jump-edge-filter", o.jump_edge_filter, kJumpEdgeHelp)->capture_default_str();
+  app->add_option("--jump-edge-filter", o.jump_edge_filter, kJumpEdgeHelp);
   add_scale_options(*app, o.scales);
   app->add_option("--gain", o.gain,
                   "that views are ranked by: paper, surface or combined, as in score")
-      ->capture_default_str()
       ->check(one_of_gain_models());
   app->add_option("--object-size", o.object_size, kObjectSizeHelp);
   app->add_option("--hazard", o.hazard, kHazardHelp);
@@ -367,15 +365,12 @@ Command add_follow(App& program) {
                   "height z of the table [m]: its readings carve but do not hit; default: none");
   app->add_option("--top", o.top,
                   "how many views to say, at most, each by what it adds to those before it")
-      ->capture_default_str()
       ->check(counted(1, 1'000'000));
   add_plan_options(*app, o.plan);
-  app->add_option("--cost-per-metre", o.cost_per_metre, kCostPerMetreHelp)->capture_default_str();
+  app->add_option("--cost-per-metre", o.cost_per_metre, kCostPerMetreHelp);
   app->add_option("--max-views", o.max_views, "view budget: a reason to stop")
-      ->capture_default_str()
       ->check(counted(1, 1'000'000));
   app->add_option("--stop-promises", o.stop_promises, kStopPromisesHelp)
-      ->capture_default_str()
       ->check(counted(0, 1'000'000));
   add_registration_options(*app, o.registration);
   app->add_option("--out", o.out, "folder for state.vdb, next.txt, next.json")->required();

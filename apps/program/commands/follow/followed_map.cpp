@@ -9,20 +9,18 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <string>
 #include <system_error>
 #include <utility>
 
-#include "program/cli/flags/sensed_map.hpp"
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
-#include "viewgain/formats/masks.hpp"
 #include "viewgain/planner/suspect_frames.hpp"
-#include "viewgain/planner_mesh/boundary_generation.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/support/file_bytes.hpp"
 
 namespace viewgain::app {

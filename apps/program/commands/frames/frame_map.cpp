@@ -6,7 +6,6 @@
 
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/scene_sources.hpp"
-#include "program/cli/flags/sensing.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
@@ -72,8 +71,7 @@ void add_frame_map_options(App& app, FrameMapOptions& options) {
   app.add_option("--voxel", options.voxel, "voxel size [m]")->required();
   app.add_option("--workspace", options.workspace,
                  "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what the frames see");
-  app.add_option("--jump-edge-filter", options.jump_edge_filter, kJumpEdgeHelp)
-      ->capture_default_str();
+  app.add_option("--jump-edge-filter", options.jump_edge_filter, kJumpEdgeHelp);
   add_scale_options(app, options.scales);
   add_frame_folder_options(app, options.folder);
 }
@@ -107,9 +105,7 @@ MapUpdate FrameMap::add(std::size_t index, const Pose& T_world_camera,
 void FrameMap::count(std::size_t index, const FrameFault& fault) {
   tally_.add(folder_.frames().images[index], fault);
   const Pose& T_world_camera = folder_.T_world_camera(index);
-  if (!is_in_map(fault.verdict) && rigid_pose(T_world_camera)) {
-    tried_.push_back(T_world_camera);
-  }
+  if (!is_in_map(fault.verdict) && rigid_pose(T_world_camera)) tried_.push_back(T_world_camera);
 }
 
 }  // namespace viewgain::app

@@ -9,7 +9,7 @@
 
 #include "program/cli/app.hpp"
 #include "program/cli/flags/frame_folder.hpp"
-#include "program/cli/flags/map_scales.hpp"
+#include "program/cli/flags/sensing.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
 #include "viewgain/core/exec_config.hpp"

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/frames/frame_tally.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <utility>
-#include <vector>
 
 #include "program/cli/values.hpp"
 #include "viewgain/planner/suspect_frames.hpp"
@@ -99,9 +97,7 @@ void FrameTally::require_any(const FrameFolder& folder) const {
   }
   std::string what =
       folder.name() + ": no frame can be used (" + counts_text(bad_frames(counts_)) + ")";
-  if (count_of(counts_, FrameVerdict::outside) > 0) {
-    what += "; " + none_inside(folder);
-  }
+  if (count_of(counts_, FrameVerdict::outside) > 0) what += "; " + none_inside(folder);
   what += "; " + faults_.front();
   if (!suspicion.empty()) what += "; " + suspicion;
   refuse(what);

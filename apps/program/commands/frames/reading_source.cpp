@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 
 #include "program/cli/flags/scene_sources.hpp"
-#include "program/cli/flags/sensing.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/frames/frame_map.hpp"
@@ -14,7 +13,6 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/cloud_io.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
-#include "viewgain/grid/integrate_cloud.hpp"
 #include "viewgain/planner/align_frames.hpp"
 
 namespace viewgain::app {

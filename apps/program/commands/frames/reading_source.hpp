@@ -12,7 +12,6 @@
 
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/frame_folder.hpp"
-#include "program/cli/flags/map_scales.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"

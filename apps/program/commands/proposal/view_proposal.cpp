@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/formats/reach_toml.hpp"
@@ -100,13 +98,11 @@ void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
   add_cost_options(app, o.costs, "--poses");
   add_proposal_options(app, o);
   app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
-      ->capture_default_str()
       ->check(one_of_gain_models());
   add_plan_options(app, o.plan);
   app.add_option("--top", top,
                  "views to name at most, each by what it adds to those before it, so that no two "
                  "show the same; with --plan that has the numbers")
-      ->capture_default_str()
       ->check(counted(1, 1'000'000));
 }
 
@@ -166,9 +162,7 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
   if (options.generator == "boundary" && grid.views().empty()) {
     refuse(map + ": has no views, which boundary candidates need; try --generator sphere");
   }
-  if (!options.poses.empty()) {
-    config.sets.push_back({kGivenPoses, poses_in(options.poses)});
-  }
+  if (!options.poses.empty()) config.sets.push_back({kGivenPoses, poses_in(options.poses)});
   if (!config.at_boundaries && !options.generator.empty()) {
     config.sets.push_back(make_pose_set(
         options.generator, request_of(options, sensor, grid, config.feasibility.reach)));

@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/file_format.hpp"
 #include "viewgain/core/error.hpp"

@@ -9,7 +9,7 @@
 
 #include "program/cli/json.hpp"
 #include "viewgain/core/planning.hpp"
-#include "viewgain/formats/run_folder.hpp"
+#include "viewgain/formats/staged_folder.hpp"
 
 namespace viewgain::app {
 

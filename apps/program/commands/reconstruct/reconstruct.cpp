@@ -14,15 +14,14 @@
 #include "program/commands/reconstruct/checkpoint.hpp"
 #include "program/commands/reconstruct/run.hpp"
 #include "program/commands/reconstruct/run_outputs.hpp"
-#include "program/commands/reconstruct/run_report.hpp"
 #include "show/pictures/view_picture.hpp"
 #include "show/report/page.hpp"
 #include "show/report/run_page.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/map_file.hpp"
-#include "viewgain/formats/run_folder.hpp"
+#include "viewgain/formats/staged_folder.hpp"
 #include "viewgain/grid/vdb_io.hpp"
-#include "viewgain/planner_mesh/surface_files.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/isa.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -115,9 +114,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
 
   progress.wipe();
   const std::vector<FrameRegistration> registrations = parts.registrations();
-  for (std::size_t i = 0; i < registrations.size(); ++i) {
-    views[i] = registrations[i].T_world_camera;
-  }
+  for (std::size_t i = 0; i < registrations.size(); ++i) views[i] = registrations[i].T_world_camera;
   report.set_registrations(registrations);
   const Json json = report.json(result.reason);
   const Json run = write_results(folder, setup, options.sensing.seed, model, views, json);

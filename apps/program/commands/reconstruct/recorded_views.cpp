@@ -4,8 +4,7 @@
 
 #include <utility>
 
-#include "program/cli/json.hpp"
-#include "program/commands/frames/registration_json.hpp"
+#include "program/commands/frames/frame_tally.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/planner_mesh/mesh_area.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -52,8 +51,7 @@ void RecordedViews::add(std::size_t index) {
     const Stopwatch watch;
     update = map_.add(index, record.T_world_camera,
                       registered != nullptr ? registered->pose_sigma() : PoseSigma{});
-    readings_.readings += update.counts.readings;
-    readings_.readings_inside += update.counts.readings_inside;
+    readings_ += update.counts;
     jump_edge_removed_ += update.flying_pixels;
     for (const auto& [stage, value] : update.seconds) add_seconds(stage, value);
     add_seconds("read", watch.seconds() - sum_of(update.seconds));

@@ -4,14 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "program/cli/flags/scene_sources.hpp"
-#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"

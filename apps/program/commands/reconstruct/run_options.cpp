@@ -6,7 +6,6 @@
 
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/scene_sources.hpp"
-#include "program/cli/flags/sensing.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/planner_mesh/policies.hpp"
@@ -40,7 +39,6 @@ void add_options(App& app, ReconstructOptions& o) {
       "--workspace", o.workspace,
       "x0,y0,z0,x1,y1,z1 [m]; default: a cube of the longest side * 0.4/0.35 around the object");
   app.add_option("--up", o.up, "axis of the mesh file that points up")
-      ->capture_default_str()
       ->check(one_of({"x", "y", "z"}, "axis"));
   app.add_option("--start", o.start,
                  "first camera pose tx,ty,tz,qx,qy,qz,qw [m]; default: 27 deg "
@@ -53,7 +51,6 @@ void add_options(App& app, ReconstructOptions& o) {
                  "gain, kriegel (left, right, top, bottom), sequence (turntable of 8, then top), "
                  "random, frontier (most unknown voxels in view), fibonacci (evenly round the "
                  "object), oracle (knows the mesh: an upper reference)")
-      ->capture_default_str()
       ->check(one_of(policy_names(), "policy"));
   app.add_option("--generator", o.generator,
                  "where candidates come from: boundary, sphere, dome, rings, shell, sequence, or "
@@ -69,19 +66,16 @@ void add_options(App& app, ReconstructOptions& o) {
          "of --policy gain: paper (entropy removed), surface (new surface to be expected) or "
          "combined (default); or a gain of the literature")
       ->check(one_of(all_gain_names(), "gain"));
-  app.add_option("--overlap", o.overlap, kOverlapHelp)->capture_default_str();
-  app.add_option("--region-depth", o.region_depth, kRegionDepthHelp)->capture_default_str();
+  app.add_option("--overlap", o.overlap, kOverlapHelp);
+  app.add_option("--region-depth", o.region_depth, kRegionDepthHelp);
   app.add_option("--object-size", o.object_size, kObjectSizeHelp);
   app.add_option("--hazard", o.hazard, kHazardHelp);
   app.add_option(
          "--criterion", o.criterion,
          "of the map's entropy and the paper's gain: log_diagonal, log_determinant [nat] or trace "
          "[m^2], which the combined gain does not go with")
-      ->capture_default_str()
       ->check(one_of(criterion_names(), "criterion"));
-  app.add_option("--max-views", o.max_views, "view budget")
-      ->capture_default_str()
-      ->check(counted(1, kMaxCount));
+  app.add_option("--max-views", o.max_views, "view budget")->check(counted(1, kMaxCount));
   app.add_option("--stop-gain", o.stop_gain,
                  "of the paper's gain: stop when the best view gains less per touched voxel [nat, "
                  "m^2]; default: 1.2 (trace: 0.01 of the first view's)");
@@ -93,19 +87,16 @@ void add_options(App& app, ReconstructOptions& o) {
   app.add_option("--stop-idle", o.stop_idle,
                  "stop after so many views in a row that change entropy and unknown voxels by "
                  "less than 0.1 %; 0: never")
-      ->capture_default_str()
       ->check(counted(0, kMaxCount));
   app.add_option("--stop-promises", o.stop_promises, kStopPromisesHelp)
-      ->capture_default_str()
       ->check(counted(0, kMaxCount));
   app.add_option("--stop-coverage", o.stop_coverage,
                  "stop at this coverage of the visible surface, 0..1");
-  app.add_option("--tolerance", o.tolerance,
-                 "a point of the mesh counts as covered where the surface is within this of it [m]")
-      ->capture_default_str();
+  app.add_option(
+      "--tolerance", o.tolerance,
+      "a point of the mesh counts as covered where the surface is within this of it [m]");
   app.add_option("--cost-per-metre", o.cost_per_metre,
-                 "rank by gain - L * distance [nat/m, surface: m^2/m]")
-      ->capture_default_str();
+                 "rank by gain - L * distance [nat/m, surface: m^2/m]");
   add_plan_options(app, o.plan);
   app.add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
   app.add_option("--obstacle", o.obstacles,
@@ -120,9 +111,8 @@ void add_options(App& app, ReconstructOptions& o) {
       "SIGMA_M,SIGMA_DEG by which reported poses may be off, of --register; default: those "
       "of --pose-noise, else 0.005,0.5");
   app.add_option("--frames-per-view", o.frames_per_view, "frames from each pose")
-      ->capture_default_str()
       ->check(counted(1, 1000));
-  app.add_option("--jump-edge-filter", o.jump_edge_filter, kJumpEdgeHelp)->capture_default_str();
+  app.add_option("--jump-edge-filter", o.jump_edge_filter, kJumpEdgeHelp);
   add_switch(app, "--refine", o.refine, "readings of a voxel refine it; off: the first one wins");
   add_scale_options(app, o.scales);
   add_output_options(app, o.outputs);

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "program/cli/flags/common_options.hpp"
-#include "program/cli/flags/map_scales.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "viewgain/core/planning.hpp"
-#include "viewgain/planner_mesh/boundary_generation.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
 
 namespace viewgain::app {

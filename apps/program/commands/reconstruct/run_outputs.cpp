@@ -2,20 +2,40 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/reconstruct/run_outputs.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "program/cli/config_file.hpp"
+#include "program/cli/flags/gain_names.hpp"
+#include "program/cli/values.hpp"
 #include "program/commands/file_format.hpp"
+#include "program/commands/frames/frame_tally.hpp"
 #include "show/pictures/view_picture.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/stopwatch.hpp"
 #include "viewgain/version.hpp"
 
 namespace viewgain::app {
+namespace {
+
+// The figures that both a view and the whole run have.
+void put_figures(Json& json, const QualityFigures& quality, const ModelProgress& progress) {
+  json.update(quality_json(quality, "coverage_visible"));
+  json["entropy_removed"] = progress.entropy_removed;
+  json["unknown_voxels"] = progress.unknown_voxels;
+  json["surface_area"] = progress.surface_area;
+}
+
+std::size_t total(const std::map<std::string, std::size_t>& counts) {
+  std::size_t sum = 0;
+  for (const auto& [reason, count] : counts) sum += count;
+  return sum;
+}
+
+}  // namespace
 
 StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPage& page,
                        const ShownStep& step, const ExecConfig& exec) {
@@ -68,6 +88,164 @@ void print_left(const RunOutputs& outputs, const char* files) {
   std::printf("left in %s: %s%s%s%s\n", outputs.out.c_str(), files,
               outputs.with_pictures() ? ", views/" : "", outputs.saves_maps() ? ", maps/" : "",
               outputs.with_report() ? ", report.html" : "");
+}
+
+Json quality_json(const QualityFigures& quality, const char* visible) {
+  return {{"coverage", quality.coverage},
+          {visible, quality.coverage_visible},
+          {"coverage_2_5mm", quality.coverage_2_5mm},
+          {"rms_error", quality.surface_error.rms},
+          {"p95_error", quality.surface_error.p95},
+          {"rms_error_points", quality.points_error.rms},
+          {"p95_error_points", quality.points_error.p95},
+          {"consistency", quality.consistency.mean_clipped},
+          {"consistency_median", quality.consistency.median},
+          {"consistency_above_9", quality.consistency.above_9},
+          {"outliers", quality.consistency.outliers}};
+}
+
+RunReport::RunReport(const PolicyConfig& policy, double tolerance)
+    : entropy_unit_(gain_unit(GainModel::paper, criterion_name(policy.criterion))),
+      tolerance_(tolerance) {
+  gain_unit_ = entropy_unit_;  // what a policy without a gain foretells is the paper's
+  if (policy.policy != Policy::gain) return;
+  if (policy.classic) {
+    ranked_by_ = classic_gain_name(*policy.classic);
+    gain_unit_ = classic_gain_unit(*policy.classic);
+  } else {
+    ranked_by_ = gain_model_name(policy.model);
+    gain_unit_ = gain_unit(policy.model, criterion_name(policy.criterion));
+  }
+}
+
+void RunReport::add_view(const ViewRecord& record, const QualityFigures& quality,
+                         const StageSeconds& seconds) {
+  StageSeconds own = seconds;
+  for (auto& [stage, value] : own) {
+    const auto before = totals_.find(stage);
+    if (before != totals_.end()) value -= before->second;
+  }
+  totals_ = seconds;
+  views_.push_back({record, quality, std::move(own)});
+}
+
+void RunReport::set_registrations(std::vector<FrameRegistration> registrations) {
+  registrations_ = std::move(registrations);
+}
+
+std::string RunReport::progress_line() const {
+  const Entry& e = views_.back();
+  std::string text = formatted(
+      "view %2zu  %6.2f %% visible at %g mm, RMS %.2f mm, unknown %s, +%.4g %s", e.record.index,
+      100 * e.quality.coverage_visible, 1e3 * tolerance_, 1e3 * e.quality.surface_error.rms,
+      with_commas(e.record.progress.unknown_voxels).c_str(), e.record.realised_gain,
+      entropy_unit_.data());
+  text += formatted(", new %.0f cm^2", 1e4 * e.record.progress.new_area);
+  if (!std::isnan(e.record.predicted_area)) {
+    text += formatted(" of %.0f predicted", 1e4 * e.record.predicted_area);
+  }
+  if (e.record.chosen_as && e.record.chosen_as->boundary_class) {
+    text.append("  ").append(boundary_class_name(*e.record.chosen_as->boundary_class));
+  }
+  const std::size_t candidates = e.record.proposal.candidates.size();
+  if (e.record.decision) {
+    text +=
+        formatted("  next: gain %.4g %s of %zu candidates, %zu dropped", e.record.decision->gain,
+                  gain_unit_.data(), candidates, total(e.record.proposal.dropped));
+  }
+  return text;
+}
+
+Json RunReport::entry_json(std::size_t index) const {
+  const Entry& e = views_[index];
+  Json json{{"index", e.record.index}, {"pose", to_json(e.record.T_world_camera)}};
+  const bool chosen = e.record.chosen_as.has_value();
+  const bool of_boundary = chosen && e.record.chosen_as->boundary_class;
+  json["class"] =
+      of_boundary ? Json(boundary_class_name(*e.record.chosen_as->boundary_class)) : Json();
+  json["generator"] = chosen ? Json(e.record.chosen_as->generator) : Json("start");
+  // The proposal that this view was chosen from came after the view before it.
+  const Proposal empty;
+  const Proposal& from = index > 0 ? views_[index - 1].record.proposal : empty;
+  json["candidates"] = from.candidates.size();
+  json["dropped"] = from.dropped;
+  json["predicted_gain"] = e.record.predicted_gain;
+  json["realised_gain"] = e.record.realised_gain;
+  json["predicted_area"] = e.record.predicted_area;
+  json["realised_area"] = e.record.progress.new_area;
+  json["true_new_area"] =
+      e.quality.covered_area - (index > 0 ? views_[index - 1].quality.covered_area : 0.0);
+  // What the stopping rules look at: the best view there is now.
+  json["next_gain_per_voxel"] =
+      e.record.decision ? Json(e.record.decision->gain_per_voxel) : Json();
+  json["next_area"] = e.record.decision ? Json(e.record.decision->best_area) : Json();
+  put_figures(json, e.quality, e.record.progress);
+  json["travelled"] = e.record.travelled;
+  if (index < registrations_.size()) json["registration"] = to_json(registrations_[index]);
+  json["seconds"] = seconds_json(e.seconds);
+  return json;
+}
+
+const Proposal& RunReport::last_proposal() const {
+  for (auto entry = views_.rbegin(); entry != views_.rend(); ++entry) {
+    const Proposal& proposal = entry->record.proposal;
+    if (!proposal.candidates.empty() || !proposal.dropped.empty()) return proposal;
+  }
+  return views_.back().record.proposal;
+}
+
+Json RunReport::json(StopReason reason) const {
+  const Entry& last = views_.back();
+  Json json{{"stop_reason", stop_reason_name(reason)}, {"views", views_.size()}};
+  json["gain_model"] = or_null(std::string(ranked_by_));
+  put_figures(json, last.quality, last.record.progress);
+  json["travelled"] = last.record.travelled;
+  const Proposal& proposal = last_proposal();
+  json["final_candidates"] = proposal.candidates.size();
+  json["final_dropped"] = proposal.dropped;
+  if (!registrations_.empty()) json["registration"] = registration_counts(registrations_);
+  json["seconds"] = seconds_json(totals_);
+  json["per_view"] = Json::array();
+  for (std::size_t i = 0; i < views_.size(); ++i) json["per_view"].push_back(entry_json(i));
+  return json;
+}
+
+std::string RunReport::text(StopReason reason) const {
+  const Entry& last = views_.back();
+  const QualityFigures& q = last.quality;
+  std::string text = formatted("%zu views, stopped: %s\n", views_.size(),
+                               std::string(stop_reason_name(reason)).c_str());
+  const std::map<std::string, std::size_t>& dropped = last.record.proposal.dropped;
+  if (!dropped.empty()) {
+    text += formatted("last candidates: %zu feasible; dropped: %s\n",
+                      last.record.proposal.candidates.size(), counts_text(dropped).c_str());
+  }
+  text += formatted("coverage at %g mm %.2f %% of all, %.2f %% of the visible; at 2.5 mm %.2f %%\n",
+                    1e3 * tolerance_, 100 * q.coverage, 100 * q.coverage_visible,
+                    100 * q.coverage_2_5mm);
+  text += formatted(
+      "error of the surface: RMS %.2f mm, 95 %% under %.2f mm; of the points: %.2f, %.2f\n",
+      1e3 * q.surface_error.rms, 1e3 * q.surface_error.p95, 1e3 * q.points_error.rms,
+      1e3 * q.points_error.p95);
+  text += formatted(
+      "consistency %.2f (1 if honest), median %.2f (0.455), above 9: %.3f (0.003); "
+      "%zu outliers of %zu points\n",
+      q.consistency.mean_clipped, q.consistency.median, q.consistency.above_9,
+      q.consistency.outliers, q.consistency.points + q.consistency.outliers);
+  if (!registrations_.empty()) {
+    text += registration_text(registration_counts(registrations_)) + "\n";
+  }
+  text +=
+      formatted("entropy removed %.6g %s, unknown voxels %s, travelled %.2f m\n",
+                last.record.progress.entropy_removed, entropy_unit_.data(),
+                with_commas(last.record.progress.unknown_voxels).c_str(), last.record.travelled);
+  double sum = 0;
+  std::string stages;
+  for (const auto& [stage, value] : totals_) {
+    sum += value;
+    stages += formatted("%s%s %.2f", stages.empty() ? "" : ", ", stage.c_str(), value);
+  }
+  return text + formatted("%.2f s: %s\n", sum, stages.c_str());
 }
 
 }  // namespace viewgain::app

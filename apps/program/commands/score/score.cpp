@@ -15,7 +15,6 @@
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
-#include "program/cli/flags/sensed_map.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
@@ -239,9 +238,7 @@ void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gai
   scores.seconds = timed(options, [&](const BatchControl& control) {
     evaluator.evaluate(candidates.poses, scores.gains, scores.statuses, control);
   });
-  if (!options.out.empty()) {
-    write_table(options.out, with_poses(scores.table(), source));
-  }
+  if (!options.out.empty()) write_table(options.out, with_poses(scores.table(), source));
   if (options.common.json) {
     scores.print_json(options.top);
   } else {
@@ -315,7 +312,6 @@ Command add_score(App& program) {
                   "paper (entropy removed) [nat], surface (new surface to be expected) "
                   "[m^2] or combined (both) [nat]; or gains of the literature, several "
                   "with commas, ranked by the first")
-      ->capture_default_str()
       ->check(several_of(all_gain_names(), "gain"));
   app->add_option("--refinement-weight", options->refinement_weight,
                   "combined: of refining known surface against finding new; default: 0.3");
@@ -335,11 +331,9 @@ Command add_score(App& program) {
   app->add_option("--criterion", options->criterion,
                   "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] "
                   "or trace [m^2]")
-      ->capture_default_str()
       ->check(one_of(criterion_names(), "criterion"));
   app->add_option("--stride", options->stride, "every s-th pixel of every s-th row")
-      ->check(CLI::Range(1, std::numeric_limits<int>::max(), "stride"))
-      ->capture_default_str();
+      ->check(CLI::Range(1, std::numeric_limits<int>::max(), "stride"));
   app->add_option(
          "--weight", options->weights,
          "x0,y0,z0,x1,y1,z1,W: task weight W >= 0 of a box in the grid's frame [m]; may be "
@@ -351,8 +345,7 @@ Command add_score(App& program) {
   app->add_option("--max-range", options->max_range, "along the ray [m]; default: the sensor's");
   add_cost_options(*app, options->costs, "the poses");
   app->add_option("--top", options->top, "how many of the best to print")
-      ->check(counted(0, 1'000'000'000))
-      ->capture_default_str();
+      ->check(counted(0, 1'000'000'000));
   auto* selection = app->add_option_group("selection", "at most one of; default: score all poses");
   selection->add_flag(
       "--race", options->race,

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "program/cli/flags/gain_names.hpp"
-#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 #include "show/report/score_page.hpp"
 #include "viewgain/formats/sensor_toml.hpp"

@@ -7,7 +7,6 @@
 
 #include "program/cli/values.hpp"
 #include "program/commands/study/results.hpp"
-#include "program/commands/study/statistics.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::app {

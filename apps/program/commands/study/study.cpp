@@ -43,7 +43,7 @@ struct Options {
   CommonOptions common;
   std::string spec;
   std::string out;
-  std::size_t jobs = 0;
+  std::optional<std::size_t> jobs;
   std::string plots = "on";
 };
 
@@ -311,7 +311,7 @@ void study(const Options& options) {
   const std::size_t threads = options.common.threads > 0
                                   ? static_cast<std::size_t>(options.common.threads)
                                   : std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t jobs = options.jobs > 0 ? options.jobs : threads;
+  const std::size_t jobs = options.jobs.value_or(threads);
   const auto threads_per_run = static_cast<int>(std::max<std::size_t>(1, threads / jobs));
   const InterruptGuard interrupt;
   const Stopwatch watch;
@@ -320,9 +320,7 @@ void study(const Options& options) {
                                     if (!options.common.quiet)
                                       print_progress(spec, progress, watch.seconds());
                                   });
-  if (!complete) {
-    throw Stopped{"stopped; the same call goes on with what is in " + options.out};
-  }
+  if (!complete) throw Stopped{"stopped; the same call goes on with what is in " + options.out};
 
   std::vector<ResultRow> rows;
   for (const StudyRun& run : spec.runs) rows.push_back(row_in(folder, spec, run));

@@ -3,12 +3,11 @@
 #include "program/commands/study/study_run.hpp"
 
 #include <utility>
-#include <vector>
 
 #include "program/cli/app.hpp"
 #include "program/commands/reconstruct/run.hpp"
 #include "program/commands/reconstruct/run_options.hpp"
-#include "program/commands/reconstruct/run_report.hpp"
+#include "program/commands/reconstruct/run_outputs.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/isa.hpp"
 

@@ -15,11 +15,9 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "grid_class.hpp"
-#include "labels.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/fused_points.hpp"
-#include "viewgain/grid/pooling.hpp"
 
 namespace viewgain::python {
 
@@ -184,13 +182,11 @@ a copy of a few numbers.)");
              config.T_world_grid = optional_pose(T_world_grid, "T_world_grid").value_or(Pose{});
              return std::make_shared<SharedGrid>(BeliefGrid(config));
            }),
-           py::kw_only(), py::arg("voxel_size"), py::arg("workspace"),
-           py::arg("prior_sigma") = py::none(), py::arg("sensor") = py::none(),
-           py::arg("T_world_grid") = py::none())
-      .def_static("from_labels", &from_labels, py::arg("labels"), py::kw_only(),
-                  py::arg("voxel_size"), py::arg("origin") = std::array<double, 3>{},
-                  py::arg("T_world_grid") = py::none(), py::arg("prior_sigma") = py::none(),
-                  py::arg("sensor") = py::none(),
+           py::kw_only(), "voxel_size"_a, "workspace"_a, "prior_sigma"_a = py::none(),
+           "sensor"_a = py::none(), "T_world_grid"_a = py::none())
+      .def_static("from_labels", &from_labels, "labels"_a, py::kw_only(), "voxel_size"_a,
+                  "origin"_a = std::array<double, 3>{}, "T_world_grid"_a = py::none(),
+                  "prior_sigma"_a = py::none(), "sensor"_a = py::none(),
                   R"(A grid from an array of states.
 
 Parameters
@@ -254,7 +250,7 @@ Returns
 -------
 ndarray, (nx, ny, nz), uint8
     0 unknown, 1 free, 2 occupied. A copy.)")
-      .def("update_box", &update_box, py::arg("first"), py::arg("labels"),
+      .def("update_box", &update_box, "first"_a, "labels"_a,
            R"(Makes the voxels of a box what labels say, for a planner whose own map grows.
 
 Voxels that are that already keep log-odds and belief, the others have no belief afterwards. Cost: linear in the labels.
@@ -310,8 +306,8 @@ Returns
 ndarray, (n,), structured
     voxel (int32, 3; on the lattice, minus ``min_index`` for arrays), hits (a count), information (float32, 6:
     xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3 [1/m], about the voxel's centre).)")
-      .def("points", &points_of, py::kw_only(), py::arg("min_hits") = 2,
-           py::arg("scale_sigma") = 0.0, py::arg("num_threads") = 0,
+      .def("points", &points_of, py::kw_only(), "min_hits"_a = 2, "scale_sigma"_a = 0.0,
+           "num_threads"_a = 0,
            R"(The points of the surface as the map knows it.
 
 Cost: linear in the voxels that were ever hit, some µs each, 0.25 s for 40,000 occupied ones on two
@@ -338,7 +334,7 @@ Returns
 -------
 float
     The voxel size, or the sensor's footprint where that is longer [m].)")
-      .def("statistics", &statistics_of, py::arg("criterion") = "log_diagonal",
+      .def("statistics", &statistics_of, "criterion"_a = "log_diagonal",
            R"(Voxel counts and progress.
 
 Parameters

@@ -28,8 +28,7 @@ void refuse_octomap_name(const std::string& file) {
   std::string end = std::filesystem::path(file).extension().string();
   for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   if (end != ".ot" && end != ".bt") return;
-  throw Error(ErrorCode::invalid_argument,
-              file + ": save writes OpenVDB; for an OctoMap .ot call save_octomap");
+  refuse(file + ": save writes OpenVDB; for an OctoMap .ot call save_octomap");
 }
 
 /// A folder of this process alone, which goes with it.
@@ -103,7 +102,7 @@ Goes through a file in the folder for temporary files. Cost: linear in the block
 Returns
 -------
 bytes)")
-      .def_static("from_bytes", &from_bytes, py::arg("data"),
+      .def_static("from_bytes", &from_bytes, "data"_a,
                   R"(The map that ``to_bytes`` wrote, equal to it.
 
 Parameters
@@ -120,7 +119,7 @@ BeliefGrid)")
             const WithoutGil without_gil;
             return std::make_shared<SharedGrid>(load_vdb(file));
           },
-          py::arg("path"), R"(Reads a map that ``save`` or the program viewgain wrote.
+          "path"_a, R"(Reads a map that ``save`` or the program viewgain wrote.
 
 Cost: linear in the file, 50 ms for 4 MB. Runs without the GIL.
 
@@ -151,9 +150,8 @@ BeliefGrid)")
             }
             return std::make_shared<SharedGrid>(grid_from_octomap_bytes(bytes, config, file));
           },
-          py::arg("path"), py::kw_only(), py::arg("workspace") = py::none(),
-          py::arg("prior_sigma") = py::none(), py::arg("sensor") = py::none(),
-          py::arg("occupied_from") = 0.0,
+          "path"_a, py::kw_only(), "workspace"_a = py::none(), "prior_sigma"_a = py::none(),
+          "sensor"_a = py::none(), "occupied_from"_a = 0.0,
           R"(Reads OctoMap's .ot or .bt; states are kept, and the log-odds of a .ot.
 
 Cost: linear in the tree, 20 ms for 128**3 voxels with 40,000 occupied ones. Runs without the GIL.
@@ -179,7 +177,7 @@ BeliefGrid)")
             const std::string file = writable_file(path);
             grid.read([&](const BeliefGrid& g) { save_octomap(g, file); });
           },
-          py::arg("path"),
+          "path"_a,
           R"(Writes states and log-odds as an OctoMap .ot, in the world's frame where
 T_world_grid is a shift by whole voxels, else in the grid's own.
 
@@ -195,7 +193,7 @@ path : path-like)")
             const std::string file = writable_file(path);
             grid.read([&](const BeliefGrid& g) { save_vdb(g, file, {with_covariance}); });
           },
-          py::arg("path"), py::kw_only(), py::arg("with_covariance") = false,
+          "path"_a, py::kw_only(), "with_covariance"_a = false,
           R"(Writes the map as a plain OpenVDB file; nothing half-written is left behind.
 
 Cost: linear in the blocks of voxels, 80 ms for 128**3 voxels with 40,000 occupied ones, 4 MB.

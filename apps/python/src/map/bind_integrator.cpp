@@ -21,7 +21,6 @@
 #include "viewgain/formats/cloud_io.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/grid/integrate_cloud.hpp"
 
 namespace viewgain::python {
 namespace {
@@ -187,16 +186,16 @@ T_world_sensor : array_like, (4, 4)
              config.fine = optional_boxes(fine, "fine");
              return std::make_unique<Clouds>(*sensor, config, num_threads);
            }),
-           py::arg("sensor"), py::kw_only(), py::arg("occupancy") = "probabilistic",
-           py::arg("support_plane") = py::none(), py::arg("coarsest") = 0,
-           py::arg("fine") = py::none(), py::arg("finest") = 0, py::arg("num_threads") = 0)
-      .def("integrate", &integrate_cloud, py::arg("grid"), py::arg("points"),
-           py::arg("T_world_sensor"), integrate_doc.c_str())
+           "sensor"_a, py::kw_only(), "occupancy"_a = "probabilistic",
+           "support_plane"_a = py::none(), "coarsest"_a = 0, "fine"_a = py::none(), "finest"_a = 0,
+           "num_threads"_a = 0)
+      .def("integrate", &integrate_cloud, "grid"_a, "points"_a, "T_world_sensor"_a,
+           integrate_doc.c_str())
       .def("__repr__",
            [](const Clouds& self) { return "<CloudIntegrator of " + self.sensor.name + ">"; });
 
-  module.def("cloud_bounds", &bounds, py::arg("sensor"), py::arg("points"),
-             py::arg("T_world_sensor"), py::kw_only(), py::arg("support_plane") = py::none(),
+  module.def("cloud_bounds", &bounds, "sensor"_a, "points"_a, "T_world_sensor"_a, py::kw_only(),
+             "support_plane"_a = py::none(),
              R"(As ``reading_bounds``, of a cloud.
 
 Runs without the GIL. Cost: linear in the points, 1.5 ms for 25,000.
@@ -211,7 +210,7 @@ support_plane : float, optional
 Returns
 -------
 ndarray, (2, 3), float64, or None)");
-  module.def("load_cloud", &load, py::arg("path"),
+  module.def("load_cloud", &load, "path"_a,
              R"(Reads the points of a .pcd (ascii, binary) or .ply (ascii, binary).
 
 Runs without the GIL. Cost: linear in the file.
@@ -308,15 +307,14 @@ amplitude : array_like, (height, width), floating point, optional
              config.fine = optional_boxes(fine, "fine");
              return std::make_unique<Integrator>(*sensor, config, num_threads);
            }),
-           py::arg("sensor"), py::kw_only(), py::arg("carve") = "cones",
-           py::arg("occupancy") = "probabilistic", py::arg("support_plane") = py::none(),
-           py::arg("coarsest") = 0, py::arg("fine") = py::none(), py::arg("finest") = 0,
-           py::arg("num_threads") = 0)
-      .def("integrate", &integrate, py::arg("grid"), py::arg("depth"), py::arg("T_world_camera"),
-           py::kw_only(), py::arg("pose_sigma") = std::array<double, 2>{0, 0},
-           py::arg("amplitude") = py::none(), integrate_doc.c_str())
-      .def("calibrate_hazard", &calibrate_hazard, py::arg("grid"), py::arg("scene"),
-           py::arg("depth"), py::arg("T_world_camera"),
+           "sensor"_a, py::kw_only(), "carve"_a = "cones", "occupancy"_a = "probabilistic",
+           "support_plane"_a = py::none(), "coarsest"_a = 0, "fine"_a = py::none(), "finest"_a = 0,
+           "num_threads"_a = 0)
+      .def("integrate", &integrate, "grid"_a, "depth"_a, "T_world_camera"_a, py::kw_only(),
+           "pose_sigma"_a = std::array<double, 2>{0, 0}, "amplitude"_a = py::none(),
+           integrate_doc.c_str())
+      .def("calibrate_hazard", &calibrate_hazard, "grid"_a, "scene"_a, "depth"_a,
+           "T_world_camera"_a,
            R"(Counts how often a frame meets the surface in unknown space, before it is integrated.
 
 The surface and the combined gain of the grid's later scenes go by what was counted. Nothing happens
@@ -344,8 +342,7 @@ depth, T_world_camera
                                         one_pose(T_world_camera, "T_world_camera"), {},
                                         support_plane));
       },
-      py::arg("sensor"), py::arg("depth"), py::arg("T_world_camera"), py::kw_only(),
-      py::arg("support_plane") = py::none(),
+      "sensor"_a, "depth"_a, "T_world_camera"_a, py::kw_only(), "support_plane"_a = py::none(),
       R"(The box that holds every reading of a depth frame, for choosing a workspace.
 
 Holds the GIL. Cost: linear in the pixels, 2 ms for 176x144.

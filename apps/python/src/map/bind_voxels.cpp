@@ -128,7 +128,7 @@ py::array_t<OccupiedRow> occupied(const SharedGrid& grid) {
 void bind_voxels(GridClass& grid_class) {
   PYBIND11_NUMPY_DTYPE(OccupiedRow, voxel, log_odds, hits);
   grid_class
-      .def("index_of", &index_of, py::arg("points"),
+      .def("index_of", &index_of, "points"_a,
            R"(The voxels that hold points. Cost: linear in the points, some 20 ns each.
 
 Parameters
@@ -141,7 +141,7 @@ Returns
 ndarray, (..., 3), int32
     On the lattice, minus ``min_index`` for arrays. -2**31 in all three places, which is no index of any
     array, for a point that is outside the workspace or not finite.)")
-      .def("center", &center, py::arg("voxels"),
+      .def("center", &center, "voxels"_a,
            R"(Where the centres of voxels are. Cost: linear in the voxels, some 25 ns each.
 
 Parameters
@@ -154,7 +154,7 @@ Returns
 ndarray, (..., 3), float64
     World frame [m].)")
       .def(
-          "set", &set, py::arg("voxels"), py::arg("log_odds"),
+          "set", &set, "voxels"_a, "log_odds"_a,
           R"(Sets voxels of the workspace, in their order, all or none. Cost: linear in the voxels, some 0.25 µs each.
 
 Parameters
@@ -172,7 +172,7 @@ log_odds : float or array_like, (...)
             grid.write([&](BeliefGrid& g) { count = g.forget(bounds); });
             return count;
           },
-          py::arg("region"),
+          "region"_a,
           R"(Makes voxels unknown again, for what has moved and for maps that follow a robot; views stay.
 
 Cost: grows with the map's blocks of voxels, 0.4 ms for 128**3 voxels.
@@ -187,7 +187,7 @@ Returns
 -------
 int
     How many of the voxels were known.)")
-      .def("scale", &scale, py::arg("voxels"),
+      .def("scale", &scale, "voxels"_a,
            R"(How large the cells are as which voxels are known. Cost: linear in the voxels.
 
 Parameters
@@ -207,7 +207,7 @@ ndarray, (...), uint8
             grid.write([&](BeliefGrid& g) { count = g.resample(bounds, to); });
             return count;
           },
-          py::arg("region"), py::arg("scale"),
+          "region"_a, "scale"_a,
           R"(Gives leaves of 8**3 voxels cells of another size; hits and information of larger cells are sums.
 
 What goes to smaller cells goes to the one that holds the mean of the readings; what else was occupied

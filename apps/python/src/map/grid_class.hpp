@@ -24,9 +24,9 @@ void bind_voxels(GridClass& grid_class);
 /// voxels more certain than a reading where voxels are finer than the noise.
 inline void require_prior(std::optional<double> prior_sigma, const Sensor* sensor) {
   if (prior_sigma || sensor != nullptr) return;
-  throw Error(ErrorCode::invalid_argument,
-              "give the sensor that the map is for, or prior_sigma, the standard deviation of an "
-              "unknown voxel's position [m]");
+  refuse(
+      "give the sensor that the map is for, or prior_sigma, the standard deviation of an "
+      "unknown voxel's position [m]");
 }
 
 /// The prior sigma [m] of a grid: the one given, else what suits the sensor; throws as

@@ -189,17 +189,14 @@ void bind_reconstruct(py::module_& module) {
       });
 
   const PlanningConfig defaults;
-  module.def("reconstruct", &reconstruct, py::arg("acquire"), py::arg("sensor"), py::arg("start"),
-             py::kw_only(), py::arg("voxel_size"), py::arg("workspace"),
-             py::arg("criterion") = "log_diagonal", py::arg("policy") = "gain",
-             py::arg("gain") = gain_model_name(kDefaultGain), py::arg("boundary") = py::none(),
-             py::arg("candidates") = py::none(), py::arg("reach") = py::none(),
-             py::arg("support_plane") = py::none(), py::arg("jump_edges") = true,
-             py::arg("max_views") = defaults.max_views, py::arg("stop_gain") = py::none(),
-             py::arg("stop_area") = py::none(), py::arg("idle_views") = defaults.idle_views,
-             py::arg("broken_promises") = defaults.broken_promises,
-             py::arg("observer") = py::none(), py::arg("control") = py::none(),
-             py::arg("tracer") = "automatic", py::arg("num_threads") = 0,
+  module.def("reconstruct", &reconstruct, "acquire"_a, "sensor"_a, "start"_a, py::kw_only(),
+             "voxel_size"_a, "workspace"_a, "criterion"_a = "log_diagonal", "policy"_a = "gain",
+             "gain"_a = gain_model_name(kDefaultGain), "boundary"_a = py::none(),
+             "candidates"_a = py::none(), "reach"_a = py::none(), "support_plane"_a = py::none(),
+             "jump_edges"_a = true, "max_views"_a = defaults.max_views, "stop_gain"_a = py::none(),
+             "stop_area"_a = py::none(), "idle_views"_a = defaults.idle_views,
+             "broken_promises"_a = defaults.broken_promises, "observer"_a = py::none(),
+             "control"_a = py::none(), "tracer"_a = "automatic", "num_threads"_a = 0,
              R"(The whole loop: measure, update map and surface, propose views, rank them, go on.
 
 The paper's Algorithm 1 with your camera, or your simulator, in it. The GIL is left but while your

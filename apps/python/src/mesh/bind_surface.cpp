@@ -90,11 +90,10 @@ void bind_boundary(py::module_& module) {
   }
   module.attr("BOUNDARY_CLASS_NAMES") = py::tuple(classes);
 
-  module.def("boundary_candidates", &boundary_candidates, py::arg("surface"), py::arg("views"),
-             py::arg("sensor"), py::kw_only(), py::arg("spacing"),
-             py::arg("working_distance") = py::none(), py::arg("overlap") = py::none(),
-             py::arg("distances") = py::none(), py::arg("tilts") = py::none(),
-             py::arg("rolls") = py::none(),
+  module.def("boundary_candidates", &boundary_candidates, "surface"_a, "views"_a, "sensor"_a,
+             py::kw_only(), "spacing"_a, "working_distance"_a = py::none(),
+             "overlap"_a = py::none(), "distances"_a = py::none(), "tilts"_a = py::none(),
+             "rolls"_a = py::none(),
              R"(Views that look past the open boundaries of a surface, and why.
 
 Runs without the GIL. Cost: grows with the boundary's edges and the views, 3 ms for a surface of 19,000
@@ -173,10 +172,9 @@ py::module_ other_package(const char* name, const char* wanted_by) {
 py::object to_trimesh(const SurfaceMesh& surface) {
   const py::module_ trimesh = other_package("trimesh", "to_trimesh");
   // As it is: trimesh would merge vertices and lose their normals.
-  return trimesh.attr("Trimesh")(py::arg("vertices") = to_array_3(surface.vertices),
-                                 py::arg("faces") = to_array_3(surface.triangles),
-                                 py::arg("vertex_normals") = to_array_3(surface.normals),
-                                 py::arg("process") = false);
+  return trimesh.attr("Trimesh")(
+      "vertices"_a = to_array_3(surface.vertices), "faces"_a = to_array_3(surface.triangles),
+      "vertex_normals"_a = to_array_3(surface.normals), "process"_a = false);
 }
 
 py::object to_open3d(const SurfaceMesh& surface) {
@@ -226,7 +224,7 @@ leaves the GIL, the rest holds it.)");
             const WithoutGil without_gil;
             write_ply(file, {self.vertices, self.normals, {}, self.triangles});
           },
-          py::arg("path"),
+          "path"_a,
           R"(Writes vertices, normals and triangles as binary PLY, whole or not at all.
 
 Parameters
@@ -258,12 +256,10 @@ open3d.geometry.TriangleMesh
       });
 
   const SurfaceConfig defaults;
-  module.def("reconstruct_surface", &surface_of_points, py::arg("points"),
-             py::arg("toward_free") = py::none(), py::kw_only(), py::arg("spacing"),
-             py::arg("smoothing_neighbors") = defaults.smoothing_neighbors,
-             py::arg("max_edge") = defaults.max_edge,
-             py::arg("join_distance") = defaults.join_distance,
-             py::arg("min_component") = defaults.min_component, py::arg("num_threads") = 0,
+  module.def("reconstruct_surface", &surface_of_points, "points"_a, "toward_free"_a = py::none(),
+             py::kw_only(), "spacing"_a, "smoothing_neighbors"_a = defaults.smoothing_neighbors,
+             "max_edge"_a = defaults.max_edge, "join_distance"_a = defaults.join_distance,
+             "min_component"_a = defaults.min_component, "num_threads"_a = 0,
              R"(The open surface through points; no hole is filled beyond max_edge.
 
 Runs without the GIL. Cost: grows with the points, some 20 µs each on two threads.
@@ -290,8 +286,8 @@ Returns
 -------
 Surface
     Empty for no points, or nothing but outliers.)");
-  module.def("surface_of_grid", &surface_of_grid, py::arg("grid"), py::kw_only(),
-             py::arg("min_hits") = 2, py::arg("num_threads") = 0,
+  module.def("surface_of_grid", &surface_of_grid, "grid"_a, py::kw_only(), "min_hits"_a = 2,
+             "num_threads"_a = 0,
              R"(The surface through ``grid.points(min_hits=min_hits)``.
 
 Runs without the GIL; other threads may read the grid meanwhile, not write it. Cost: grows

@@ -84,24 +84,8 @@ using NoiseModel =
 
 /// Sigmas of a reading at range t >= 0 [m] along the ray, for a camera with focal length fx [px]
 /// and a surface whose normal makes an angle with the cosine cos_incidence (1: frontal) with the
-/// ray. One overload a model and one for the variant. Thread safe; costs a few flops. Checks
-/// nothing: a range below kMinNoiseRange counts as that, a cosine outside [kMinCosIncidence, 1] as
-/// the nearest one inside.
-[[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const ShotNoise&, double t, double fx,
-                                                       double cos_incidence);
-/// As above.
-[[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const StructuredLightNoise&, double t,
-                                                       double fx, double cos_incidence);
-/// As above.
-[[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const StereoNoise&, double t, double fx,
-                                                       double cos_incidence);
-/// As above.
-[[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const QuadraticNoise&, double t, double fx,
-                                                       double cos_incidence);
-/// As above.
-[[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const ConstantNoise&, double t, double fx,
-                                                       double cos_incidence);
-/// As above, of whichever model it holds.
+/// ray. Thread safe; costs a few flops. Checks nothing: a range below kMinNoiseRange counts as
+/// that, a cosine outside [kMinCosIncidence, 1] as the nearest one inside.
 [[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const NoiseModel&, double t, double fx,
                                                        double cos_incidence = 1.0);
 

@@ -24,17 +24,20 @@ struct VIEWGAIN_EXPORT ReachRegion {
     Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the spheres [m]
     double min_radius = 0;                             ///< [m]
     double max_radius = 0;                             ///< [m]
+    bool operator==(const Shell&) const = default;
   };
   /// The points p of the world [m] with normal · p >= offset.
   struct HalfSpace {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< points inward; need not be unit
     double offset = 0;  ///< normal · p of the plane, in the unit of both [m]
+    bool operator==(const HalfSpace&) const = default;
   };
 
   /// When two camera poses count as the same view.
   struct Tolerance {
     double distance = 0.010;                      ///< between the camera centres [m]
     double angle = 2.0 * std::numbers::pi / 180;  ///< of the rotation between them [rad]
+    bool operator==(const Tolerance&) const = default;
   };
 
   std::vector<Box> boxes{};     ///< the centre lies in one of them, if there are any; in any order

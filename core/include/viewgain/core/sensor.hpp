@@ -81,6 +81,8 @@ struct VIEWGAIN_EXPORT Sensor {
   /// and finite, range_calibration as in RangeCalibration::validate() with ranges that are
   /// positive, measured and corrected.
   void validate() const;
+
+  bool operator==(const Sensor&) const = default;
 };
 
 /// The presets: sr4000, azure_kinect_nfov, kinect_v1, d435; and laser_line,

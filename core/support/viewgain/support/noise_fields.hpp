@@ -15,6 +15,7 @@ struct NoiseField {
   double Model::*member;
   bool optional = false;     ///< in files: then the model's default holds
   bool unsaid_at_0 = false;  ///< in files: 0 is no value of its own
+  bool may_be_0 = optional;  ///< else positive
 };
 
 /// What a model is called in files, and its parameters in the order of C's vg_sensor::noise.
@@ -55,7 +56,7 @@ struct NoiseLayout<QuadraticNoise> {
   static constexpr const char* kName = "quadratic";
   static constexpr std::array<NoiseField<QuadraticNoise>, 3> kFields{
       {{"offset", &QuadraticNoise::offset},
-       {"quadratic", &QuadraticNoise::quadratic},
+       {"quadratic", &QuadraticNoise::quadratic, false, false, true},
        {"linear", &QuadraticNoise::linear, true, true}}};
 };
 template <>

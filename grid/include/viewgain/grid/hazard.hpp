@@ -12,9 +12,9 @@
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/fused_points.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
 #include "viewgain/grid/hazard_counters.hpp"
-#include "viewgain/grid/pooling.hpp"
 #include "viewgain/grid/voxel.hpp"
 
 namespace viewgain {

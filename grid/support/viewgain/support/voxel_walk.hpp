@@ -22,9 +22,7 @@ struct HalfLine {
   HalfLine(const Eigen::Vector3d& from, const Eigen::Vector3d& along)
       : origin(from), direction(along) {
     constexpr double kTiny = 1e-300;
-    for (int k = 0; k < 3; ++k) {
-      inverse[k] = 1.0 / (std::abs(along[k]) < kTiny ? kTiny : along[k]);
-    }
+    for (int k = 0; k < 3; ++k) inverse[k] = 1.0 / (std::abs(along[k]) < kTiny ? kTiny : along[k]);
   }
 
   /// Where its line is inside a box: from the first to the second, nowhere if the first is not

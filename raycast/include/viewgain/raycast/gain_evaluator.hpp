@@ -14,8 +14,10 @@
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/camera.hpp"
 #include "viewgain/core/criterion.hpp"
+#include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
+#include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
 #include "viewgain/raycast/view_measure.hpp"
@@ -309,5 +311,15 @@ class VIEWGAIN_EXPORT GainEvaluator {
 /// NaN last. k is clamped; never throws. Costs O(n log n).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::size_t> best_indices(
     std::span<const ViewGain> results, std::size_t k);
+
+/// The depths along the optical axis [m] at which the rays that evaluate() uses end, row by row,
+/// for looking at what a gain comes from: every s-th pixel of every s-th row for a pixel stride s;
+/// DepthFrame::kOutOfRange where a ray meets nothing. `labels`, if given, becomes what each meets.
+/// A camera in an occupied voxel sees from there. Costs a trace of the pose and, with lens
+/// distortion, its undoing for every pixel. Thread safe. Throws Error(invalid_argument) for a pose
+/// that is not finite or off by more than 1e-3.
+[[nodiscard]] VIEWGAIN_EXPORT DepthFrame depth_image(const GainEvaluator& evaluator,
+                                                     const Pose& T_world_camera,
+                                                     std::vector<RayHit::Kind>* labels = nullptr);
 
 }  // namespace viewgain

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "viewgain/support/nearest_name.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {

@@ -25,7 +25,7 @@
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/planner.h"
 #include "viewgain/planner/view_planner.hpp"
-#include "viewgain/planner_mesh/boundary_generation.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
 
 namespace viewgain {
 namespace {

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "show/report/blocks.hpp"
 
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -11,7 +10,7 @@
 #include <random>
 
 #include "show/report/page.hpp"
-#include "show/report/shown_mesh.hpp"
+#include "show/report/view_parts.hpp"
 #include "viewgain/core/error.hpp"
 
 namespace viewgain::app {

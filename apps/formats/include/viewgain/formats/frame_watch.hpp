@@ -17,7 +17,6 @@
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/formats/frames.hpp"
-#include "viewgain/formats/masks.hpp"
 
 namespace viewgain {
 

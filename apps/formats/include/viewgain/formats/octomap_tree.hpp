@@ -44,9 +44,7 @@ namespace viewgain {
 inline std::uint64_t update_from_octree(BeliefGrid& grid, const octomap::OcTree& tree,
                                         const Box& region) {
   const double V = tree.getResolution();
-  if (std::abs(grid.voxel_size() - V) > 1e-9 * V) {
-    throw Error(ErrorCode::invalid_argument, "the tree's voxels are not the grid's");
-  }
+  if (std::abs(grid.voxel_size() - V) > 1e-9 * V) refuse("the tree's voxels are not the grid's");
   const auto index = [&](double x) {
     return static_cast<std::int32_t>(std::clamp(std::floor(x / V), -32768.0, 32767.0));
   };

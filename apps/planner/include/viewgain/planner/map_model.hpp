@@ -10,19 +10,45 @@
 #include <vector>
 
 #include "viewgain/core/criterion.hpp"
+#include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/frame_verdict.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/planning.hpp"
+#include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/hazard.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/planner/realised_area.hpp"
 #include "viewgain/raycast/obstacle_view.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain {
+
+/// What frames of a sensor show of new surface, to be held against ViewGain::area. Immutable;
+/// thread safe. Cost of the constructor: a ray() a pixel; of of(): a pass over the pixels.
+class VIEWGAIN_EXPORT RealisedArea {
+ public:
+  /// Undoes the lens distortion once. The sensor must be one that Sensor::validate() takes.
+  /// Readings of the support plane (world z [m]) show nothing: those that is_of_plane() says, as at
+  /// integration.
+  explicit RealisedArea(const Sensor& sensor, std::optional<double> support_plane = {});
+
+  /// Σ ω t² [m²], area across the rays, over the frame's readings within the sensor's range that
+  /// lie in a voxel of the workspace that is unknown in `before`, at d > 1.2 pooling lengths from
+  /// what is known of the surface, and show nothing known (DepthFrame::known_depth). `hazard`: that
+  /// of the same map; null: no surface is known, all is new. Throws Error(invalid_argument) as
+  /// check_frame_size().
+  [[nodiscard]] double of(const DepthFrame& frame, const Pose& T_world_camera,
+                          const BeliefGrid& before, const HazardField* hazard) const;
+
+ private:
+  Sensor sensor_;
+  std::optional<double> support_plane_;
+  std::vector<Eigen::Vector3d> rays_;
+  std::vector<double> solid_angles_;  // [sr]
+};
 
 /// What changes the map.
 struct VIEWGAIN_EXPORT MapModelConfig {

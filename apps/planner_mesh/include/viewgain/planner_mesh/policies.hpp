@@ -2,24 +2,128 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/planning.hpp"
+#include "viewgain/literature/classic_gains.hpp"
+#include "viewgain/mesh/viewpoint_estimator.hpp"
 #include "viewgain/planner/rank_views.hpp"
-#include "viewgain/planner_mesh/boundary_order.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
-#include "viewgain/planner_mesh/classic_choice.hpp"
-#include "viewgain/planner_mesh/oracle_choice.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/raycast/simulated_sensor.hpp"
+#include "viewgain/raycast/surface_scene.hpp"
 
 namespace viewgain {
+
+/// The choice of Kriegel et al. (the paper's section 5): through the left boundaries first, then
+/// the right, top and bottom ones, and within a class the longest run first, which is ours.
+///
+/// A run offers one pose: the nominal one of the patch that is nearest to its middle, of those that
+/// are feasible. It is tried once: a later run of the same class counts as the same if the origin
+/// of one of its patches lies within `same_place` of that of the patch that was tried. Thread
+/// safety: one call at a time. Cost: O(candidates + patches · runs tried).
+class VIEWGAIN_EXPORT BoundaryOrder {
+ public:
+  /// `same_place` [m]: half the length of a patch finds a run that was cut anew; it is not checked.
+  explicit BoundaryOrder(double same_place) : same_place_(same_place) {}
+
+  /// The index of the candidate to take, in their order, which is tried thereby; nothing if none of
+  /// the runs that have not been tried has a feasible nominal pose. Boundary candidates are those
+  /// with a class; their numbers must index estimated.candidates.
+  [[nodiscard]] std::optional<std::size_t> next(std::span<const Candidate> candidates,
+                                                const EstimatedViews& estimated);
+
+ private:
+  struct Try {
+    BoundaryClass boundary_class;  ///< of the boundary
+    Eigen::Vector3d place;         ///< origin of the patch, world [m]
+  };
+  [[nodiscard]] std::vector<bool> tried_runs(const EstimatedViews& estimated) const;
+
+  double same_place_;
+  std::vector<Try> tried_;
+};
+
+/// Candidates by a gain of the literature, on the map as it is at each call.
+///
+/// Thread safety: one call at a time. Deterministic, for any number of threads. Cost:
+/// ClassicMap::build(), about 400 rays a pose, and all rays of 32 poses or of all.
+class VIEWGAIN_EXPORT ClassicChoice {
+ public:
+  /// Candidates that are scored with all rays.
+  static constexpr std::size_t kInFull = 32;
+
+  /// The model must outlive it.
+  ClassicChoice(const SurfaceModel& model, const Sensor& sensor, ClassicGain gain,
+                const ExecConfig& exec);
+
+  /// The gain of each pose, in the gain's unit, in their order. Unless `all` are asked for, those
+  /// that about 400 rays each do not rank among the first 32, ties to the lower index, have NaN.
+  /// Throws as ClassicMap::build() and ClassicGainEvaluator.
+  [[nodiscard]] std::vector<double> gains(std::span<const Pose> T_world_camera, bool all);
+
+ private:
+  const SurfaceModel& model_;
+  Sensor sensor_;
+  ClassicGain gain_;
+  ExecConfig exec_;
+  std::optional<ClassicGainEvaluator> full_, coarse_;  ///< of the last call's map
+};
+
+/// The object as nobody knows it who has yet to model it.
+struct VIEWGAIN_EXPORT KnownObject {
+  std::shared_ptr<const SurfaceScene> mesh;  ///< the object
+  std::shared_ptr<const Truth> truth;        ///< how much of it is covered
+  SimulationConfig simulation{};             ///< of its surroundings; noise is left out
+};
+
+/// The choice of one who knows the object: an upper reference for planners, and no planner. Looks
+/// one view ahead, so that a sequence of views may still be better.
+///
+/// Thread safety: one call at a time. Deterministic, for any number of threads. Members that throw
+/// say so.
+class VIEWGAIN_EXPORT OracleChoice {
+ public:
+  /// Candidates that are simulated.
+  static constexpr std::size_t kSimulated = 8;
+
+  /// The model must outlive it. Throws Error(invalid_argument) without a mesh or truth.
+  OracleChoice(const SurfaceModel& model, const Sensor& sensor, const KnownObject& object,
+               const ExecConfig& exec);
+
+  /// Of the candidates, whose order matters for ties only, the 8 that see most samples of the mesh
+  /// that the surface does not cover yet, unoccluded and at under 72°, are simulated without noise,
+  /// one frame each into a copy of the map; the index of the one after which the map's points cover
+  /// most samples. Ties go to the lower index, in the ranking too. There must be a candidate, which
+  /// is not checked; throws as covered_after(). Takes some seconds for a thousand candidates.
+  [[nodiscard]] std::size_t next(std::span<const Candidate> candidates) const;
+
+  /// How many of the samples that the surface does not cover yet each candidate sees, in their
+  /// order. Costs up to two rays a sample and candidate.
+  [[nodiscard]] std::vector<std::size_t> uncovered_in_view(
+      std::span<const Candidate> candidates) const;
+  /// How many samples the map's points cover after a frame from there. Throws as
+  /// SimulatedSensor::acquire(). Costs a simulated frame and a copy of the map.
+  [[nodiscard]] std::size_t covered_after(const Pose& T_world_camera) const;
+
+ private:
+  const SurfaceModel& model_;
+  Sensor sensor_;
+  KnownObject object_;
+  ExecConfig exec_;
+  SimulatedSensor camera_;
+};
 
 /// How the next view is chosen among the feasible candidates.
 enum class Policy : std::uint8_t {

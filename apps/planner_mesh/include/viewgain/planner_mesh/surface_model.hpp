@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <vector>
@@ -13,7 +14,9 @@
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/mesh/surface.hpp"
+#include "viewgain/planner/align_frames.hpp"
 #include "viewgain/planner/map_model.hpp"
+#include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
@@ -95,5 +98,49 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   std::vector<QualityFigures> quality_;
   std::vector<Pose> tried_;
 };
+
+/// UPDATEREPRESENTATIONS for poses that are a little wrong: each view's first frame is aligned with
+/// those of all views so far, which moves these, too, and the model is made anew from the poses
+/// that come of it. A view that is refused stays out of the model, for as long as it is. The first
+/// view's pose holds.
+///
+/// Keeps all frames. Thread safety: one call at a time. Cost of a view: what the alignment takes,
+/// and an update for every view so far.
+class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
+ public:
+  /// `model` must be empty, made by `map`, and is kept by reference. `sigma`: by how
+  /// much each reported pose may be off. Throws Error(invalid_argument) as FrameAlignment.
+  RegisteredModel(SurfaceModel& model, const MapModelConfig& map, const PoseSigma& sigma,
+                  const ExecConfig& exec = {});
+
+  /// Stages as SurfaceModel::update() and register. Throws as FrameAlignment::add() and
+  /// SurfaceModel::rebuild().
+  ModelProgress update(const Measurements& measurements) override;
+
+  /// One a view, what became of it, as known now.
+  [[nodiscard]] const std::vector<FrameRegistration>& registrations() const {
+    return alignment_.registrations();
+  }
+
+ private:
+  SurfaceModel& model_;
+  PoseSigma sigma_;
+  FrameAlignment alignment_;
+  std::vector<Measurements> views_;  ///< as reported
+};
+
+/// Writes a surface and the points that it goes through as PLY, each vertex with its normal and its
+/// standard deviation along it (`sigma` [m]). `points` are those that the surface was made of, in
+/// their order. Atomic, each file for itself; an empty name: not written. Throws Error(io). Costs
+/// O(vertices + triangles + points).
+VIEWGAIN_EXPORT void write_surfaces(const SurfaceMesh& surface,
+                                    const std::vector<FusedPoint>& points,
+                                    const std::filesystem::path& surface_file,
+                                    const std::filesystem::path& points_file);
+
+/// The same of a model.
+VIEWGAIN_EXPORT void write_surfaces(const SurfaceModel& model,
+                                    const std::filesystem::path& surface_file,
+                                    const std::filesystem::path& points_file);
 
 }  // namespace viewgain

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "program/commands/study/statistics.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "program/commands/study/results.hpp"
 
 namespace viewgain {
 namespace {

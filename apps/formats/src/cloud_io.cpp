@@ -1,19 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include "viewgain/formats/cloud_io.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 
-#include "clouds/cloud_formats.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/support/scalar_type.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/ply_file.hpp"
 #include "viewgain/support/text.hpp"
 
-namespace viewgain::detail {
+namespace viewgain {
 namespace {
+
+using namespace detail;
 
 constexpr std::uint64_t kMostPoints = std::numeric_limits<std::uint32_t>::max();
 constexpr double kMendableNorm = 1e-2;
@@ -56,9 +59,7 @@ void read_kinds(const LineReader& line, std::vector<Field>& fields) {
 Pose read_viewpoint(const LineReader& line) {
   std::array<double, 7> v{};
   if (line.words().size() != 8) line.fail("VIEWPOINT needs 7 numbers: tx ty tz qw qx qy qz");
-  for (std::size_t i = 0; i < 7; ++i) {
-    v[i] = line.finite_number(i + 1);
-  }
+  for (std::size_t i = 0; i < 7; ++i) v[i] = line.finite_number(i + 1);
   Eigen::Quaterniond q(v[3], v[4], v[5], v[6]);
   // Drivers that know no rotation write zeros.
   if (q.squaredNorm() == 0) q.setIdentity();
@@ -171,9 +172,7 @@ void read_ascii(LineReader& line, const Header& header,
                 std::to_string(line.words().size()));
     }
     auto& point = points.emplace_back();
-    for (std::size_t a = 0; a < 3; ++a) {
-      point[a] = line.number(header.fields[header.xyz[a]].word);
-    }
+    for (std::size_t a = 0; a < 3; ++a) point[a] = line.number(header.fields[header.xyz[a]].word);
   }
   while (line.next()) {
     if (line.words().empty() || line.words()[0].front() == '#') continue;
@@ -200,8 +199,6 @@ void read_binary(const LineReader& line, const Header& header,
   }
 }
 
-}  // namespace
-
 PointCloud parse_pcd(std::string_view bytes, const std::string& name) {
   LineReader line(name, bytes);
   const Header header = read_header(line);
@@ -215,4 +212,39 @@ PointCloud parse_pcd(std::string_view bytes, const std::string& name) {
   return cloud;
 }
 
-}  // namespace viewgain::detail
+PointCloud parse_ply(std::string_view bytes, const std::string& name) {
+  PlyFile file(bytes, name);
+  const auto& elements = file.elements();
+  const auto vertices = std::find_if(elements.begin(), elements.end(),
+                                     [](const PlyElement& e) { return e.name == "vertex"; });
+  if (vertices == elements.end()) file.fail("there is no element \"vertex\"");
+  constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
+  std::array<std::size_t, 3> xyz{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto property = vertices->find(kNames[a], false);
+    if (!property) file.fail("the vertices have no property " + quoted(kNames[a]));
+    xyz[a] = *property;
+  }
+  PointCloud cloud;
+  const auto number = static_cast<std::size_t>(vertices - elements.begin());
+  // What stands behind the vertices is not looked at.
+  file.read(number + 1, [&](std::size_t element, const PlyRow& row) {
+    if (element != number) return;
+    cloud.points.push_back({row.scalar(xyz[0]), row.scalar(xyz[1]), row.scalar(xyz[2])});
+  });
+  return cloud;
+}
+
+}  // namespace
+
+PointCloud load_cloud(const std::filesystem::path& path) {
+  const std::string ending = path.extension().string();
+  const bool is_pcd = ending == ".pcd" || ending == ".PCD";
+  if (!is_pcd && ending != ".ply" && ending != ".PLY") {
+    throw Error(ErrorCode::format, path.string() + ": clouds are .pcd or .ply files");
+  }
+  const std::string bytes = file_bytes(path);
+  return is_pcd ? parse_pcd(bytes, path.string()) : parse_ply(bytes, path.string());
+}
+
+}  // namespace viewgain

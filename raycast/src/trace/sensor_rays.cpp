@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "image_projector.hpp"
+#include "sensor_rays.hpp"
 
 #include <algorithm>
 
