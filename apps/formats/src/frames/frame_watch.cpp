@@ -78,6 +78,9 @@ std::vector<ReadPose> poses_of_lines(const fs::path& path) {
   }
 }
 
+// Frames that are decided on and looked at again, a look.
+constexpr std::size_t kAgain = 256;
+
 bool has_end(const fs::path& png) {
   constexpr std::string_view kEnd("\0\0\0\0IEND\xae\x42\x60\x82", 12);
   return file_bytes(png).ends_with(kEnd);
@@ -91,7 +94,8 @@ struct FrameWatch::Impl {
   std::optional<FrameSequence> folder;
   std::map<std::string, std::string> taken;  // by file name, as frame_identity() has them
   std::map<std::uint64_t, Entry> entries;
-  Time looked{};  // when it was looked at last
+  Time looked{};                 // when it was looked at last
+  std::uint64_t next_again = 0;  // the first frame whose turn it is to be looked at again
   FileStamp poses_stamp;
   std::vector<ReadPose> poses;  // of poses.txt
 
@@ -221,9 +225,18 @@ struct FrameWatch::Impl {
       poses = poses_of_lines(dir / kPoses);
     }
     std::erase_if(entries, [&](const auto& entry) { return !frames.contains(entry.first); });
+    // Which of those that are decided on are looked at again, in turns: the rest would take longer
+    // with each frame.
+    const auto first_again = frames.lower_bound(next_again);
+    auto end_again = first_again;
+    for (std::size_t i = 0; i < kAgain && end_again != frames.end(); ++i) ++end_again;
+    const std::uint64_t begin = next_again;
+    next_again = end_again == frames.end() ? 0 : end_again->first;
     FolderLook found;
     for (const auto& [number, name] : frames) {
       Entry& entry = entries[number];
+      const bool is_turn = number >= begin && (next_again == 0 || number < next_again);
+      if (entry.state != State::waits && !is_turn) continue;
       const Signature is = signature(number, name, is_recorded);
       if (!is.depth.is_there()) continue;  // since the folder was listed
       if (is != entry.signature) entry = {is, now};
@@ -258,8 +271,8 @@ struct FrameWatch::Impl {
 };
 
 FrameWatch::FrameWatch(fs::path dir, FrameWatchConfig config)
-    : impl_(
-          std::make_unique<Impl>(Impl{std::move(dir), std::move(config), {}, {}, {}, {}, {}, {}})) {
+    : impl_(std::make_unique<Impl>(
+          Impl{std::move(dir), std::move(config), {}, {}, {}, {}, {}, {}, {}})) {
   for (const std::string& identity : impl_->config.taken) {
     impl_->taken.emplace(identity.substr(identity.find(' ') + 1), identity);
   }
