@@ -334,37 +334,6 @@ TEST_F(Follow, SaysWhereToLookNext) {
   EXPECT_EQ(read("plan/next.json"), before);
 }
 
-// An arm that misses, sees nothing or writes garbage, for 50 steps.
-TEST_F(Follow, NoViewIsProposedTwiceToAnArmThatFails) {
-  const auto nothing = GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)};
-  write_png(dir / "dark.png", nothing);
-  const std::string dark = read("dark.png");
-  for (const std::string kind : {"misses", "sees nothing", "garbage"}) {
-    begin_with_one_frame();
-    std::vector<Pose> asked;
-    json next;
-    std::size_t first_reason = 0;
-    for (std::size_t step = 1; step <= 50; ++step) {
-      run_well(follow({"--top", "1"}));
-      next = json::parse(read("plan/next.json"));
-      if (first_reason == 0 && next["stop_reason"] != nullptr) first_reason = step;
-      if (next["next"].size() == 0) break;
-      const Pose best = best_of(next);
-      EXPECT_FALSE(is_among(best, asked, ReachRegion::Tolerance{})) << kind << " " << step;
-      asked.push_back(best);
-      write(name(step) + ".depth.png", kind == "misses" ? images[0] : dark);
-      write(name(step) + ".pose.txt", kind == "misses"         ? poses[0]
-                                      : kind == "sees nothing" ? matrix_text(best)
-                                                               : "-inf nan 7\n");
-      // The others wait 2 s for each bad file.
-      if (kind != "misses" && first_reason > 0 && step > first_reason + 3) break;
-    }
-    EXPECT_NE(next["stop_reason"], nullptr) << kind;
-    EXPECT_GT(first_reason, 0U) << kind;
-    EXPECT_LE(first_reason, 20U) << kind;  // --max-views
-  }
-}
-
 TEST_F(Follow, AnEmptyViewBreaksItsPromise) {
   write_png(dir / "dark.png", GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)});
   for (const char* rule : {"0", "1", "2"}) {

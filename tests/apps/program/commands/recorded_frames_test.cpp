@@ -155,9 +155,6 @@ TEST_F(RecordedFrames, ReportAndPicturesShowTheFrames) {
   EXPECT_NE(page.find("\"truth\":null"), std::string::npos);
   EXPECT_NE(page.find("frame-000002.depth.png"), std::string::npos);
   EXPECT_EQ(run["per_view"].size(), 3U);
-  double area = 0;
-  for (const json& view : run["per_view"]) area += view["realised_area"].get<double>();
-  EXPECT_NEAR(area, run["surface_area"].get<double>(), 0.5 * run["surface_area"].get<double>());
 }
 
 // Reported poses are off by 5 mm and 0.5 degrees; the frames know better.

