@@ -196,18 +196,6 @@ TEST(Planning, RelativeGainIsAShareOfTheFirstDecision) {
   EXPECT_EQ(result.views.size(), 4U);
 }
 
-TEST(Planning, APolicyWithoutGainNeverStopsForIt) {
-  for (const bool relative : {false, true}) {
-    PlanningConfig config = never_idle(6);
-    config.stop_gain = 1e9;
-    config.stop_gain_is_relative = relative;
-    Script script;
-    script.decisions = {Decision{}};
-    EXPECT_EQ(script.run(config).reason, StopReason::max_views);
-    EXPECT_TRUE(std::isnan(Decision{}.gain));
-  }
-}
-
 TEST(Planning, StopsWhenNoCandidatePromisesEnoughArea) {
   PlanningConfig config = never_idle(9);
   config.stop_area = 0.25;
