@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/literature/classic_makers.hpp"
 
+#include "grid/voxels.hpp"
+
 namespace viewgain::test {
 
 std::vector<ClassicGain> all_classic_gains() {
@@ -22,17 +24,13 @@ void vary_log_odds(BeliefGrid& grid, Random& random) {
         const bool is_uniform = uniform_int(random, 0, 1) == 0;
         double free = 0.1 * uniform_int(random, -20, 0);
         const VoxelBox block = all.intersection(VoxelBox::from_dims({x, y, z}, {8, 8, 8}));
-        for (int i = block.min.x; i < block.max.x; ++i) {
-          for (int j = block.min.y; j < block.max.y; ++j) {
-            for (int k = block.min.z; k < block.max.z; ++k) {
-              const VoxelState state = grid.state({i, j, k});
-              if (state == VoxelState::unknown) continue;
-              if (!is_uniform) free = uniform(random, -2, 0);
-              const double value = state == VoxelState::free ? free : uniform(random, 0.05, 3.5);
-              values.push_back({{i, j, k}, static_cast<float>(value)});
-            }
-          }
-        }
+        for_each_voxel(block, [&](Index3 voxel) {
+          const VoxelState state = grid.state(voxel);
+          if (state == VoxelState::unknown) return;
+          if (!is_uniform) free = uniform(random, -2, 0);
+          const double value = state == VoxelState::free ? free : uniform(random, 0.05, 3.5);
+          values.push_back({voxel, static_cast<float>(value)});
+        });
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "grid/voxels.hpp"
 #include "oracle/rays.hpp"
 
 namespace viewgain::test {
@@ -36,16 +37,11 @@ double area_function(double x, double a) {
 OctomapOracle::OctomapOracle(const BeliefGrid& grid, const Surroundings& surroundings,
                              const std::optional<Acquisition>& acquisition)
     : map_(grid), surroundings_(surroundings), tree_(1.0) {
-  const Index3 low = map_.min_index, dims = map_.dims;
-  for (int x = low.x; x < low.x + dims.x; ++x) {
-    for (int y = low.y; y < low.y + dims.y; ++y) {
-      for (int z = low.z; z < low.z + dims.z; ++z) {
-        if (const auto log_odds = grid.log_odds({x, y, z})) {
-          tree_.setNodeValue(key_of(map_, {x, y, z}), *log_odds, true);
-        }
-      }
+  for_each_voxel(grid, [&](Index3 voxel) {
+    if (const auto log_odds = grid.log_odds(voxel)) {
+      tree_.setNodeValue(key_of(map_, voxel), *log_odds, true);
     }
-  }
+  });
   if (acquisition) mark_occlusion(grid.views(), *acquisition);
 }
 

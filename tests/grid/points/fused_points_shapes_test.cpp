@@ -13,6 +13,7 @@
 
 #include "core/random_values.hpp"
 #include "grid/analytic_frames.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/fused_points.hpp"
@@ -46,42 +47,6 @@ Vector3d free_side(const BeliefGrid& grid, const FusedPoint& point) {
     }
   }
   return side;
-}
-
-TEST(FusedPointsShapes, OnASphereTheyLieOnItAndPointOutwards) {
-  constexpr double kRadius = 0.12, kSigma = 0.003;
-  Sensor sensor = small_sensor(96, 72);
-  sensor.noise = ConstantNoise{kSigma, 0.002};
-  BeliefGrid grid({0.005, {{-0.16, -0.16, -0.16}, {0.16, 0.16, 0.16}}, {}, 0.0072});
-  FrameIntegrator integrator(sensor);
-  RandomValues random(11);
-  for (int view = 0; view < 8; ++view) {
-    DepthFrame frame =
-        see_spheres(sensor, ring_view(view), {{Vector3d::Zero(), kRadius}, {{0, 0, 0}, 1.5}});
-    const std::vector<Vector3d> rays = sensor.camera.ray_table();
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      frame.depth[i] += static_cast<float>(kSigma * random.normal() / rays[i].norm());
-    }
-    integrator.integrate(grid, frame, ring_view(view));
-  }
-  const std::vector<FusedPoint> points = fused_points(grid);
-  std::size_t outward = 0;
-  double sum = 0, squares = 0, consistency = 0;
-  for (const FusedPoint& point : points) {
-    const Vector3d p = vector(point.position), n = p.normalized();
-    const double e = p.norm() - kRadius;
-    sum += e;
-    squares += e * e;
-    consistency += std::min(e * e / n.dot(point.covariance * n), 25.0);
-    if (vector(point.toward_free).dot(n) > 0.9) ++outward;
-  }
-  // The views see the part above -0.3 radii or so.
-  ASSERT_GT(points.size(), 3000U);
-  const auto count = static_cast<double>(points.size());
-  EXPECT_LT(std::abs(sum / count), 0.1 * 0.005);  // a column of a curved surface is not biased
-  EXPECT_LT(std::sqrt(squares / count), 0.5 * kSigma);
-  EXPECT_LT(consistency / count, 2.0);
-  EXPECT_GT(static_cast<double>(outward), 0.97 * count);
 }
 
 // A hall of 20 x 20 x 3 m at 1 cm, whose unknown parts are tiles of three sizes. The side of free
@@ -124,16 +89,11 @@ TEST(FusedPointsShapes, FreeSideBesideLargeUnknownTiles) {
 TEST(FusedPointsShapes, TheFreeSideIsThatOfAllVoxelsAround) {
   RandomValues random(5);
   BeliefGrid grid({0.01, {{0.03, -0.05, 0}, {0.27, 0.17, 0.29}}, {}, 0.01});
-  const VoxelBox all = VoxelBox::from_dims(grid.min_index(), grid.dims());
-  for (std::int32_t x = all.min.x; x < all.max.x; ++x) {
-    for (std::int32_t y = all.min.y; y < all.max.y; ++y) {
-      for (std::int32_t z = all.min.z; z < all.max.z; ++z) {
-        const double dice = random.uniform(0, 1);
-        if (dice < 0.5) grid.set({x, y, z}, -1);
-        if (dice > 0.8) grid.set({x, y, z}, 1, Belief{{1e6F, 2e6F, 3e6F, 0, 0, 0}, {}, 4});
-      }
-    }
-  }
+  test::for_each_voxel(grid, [&](Index3 voxel) {
+    const double dice = random.uniform(0, 1);
+    if (dice < 0.5) grid.set(voxel, -1);
+    if (dice > 0.8) grid.set(voxel, 1, Belief{{1e6F, 2e6F, 3e6F, 0, 0, 0}, {}, 4});
+  });
   FusedPointsConfig config;
   config.per_voxel = true;
   const std::vector<FusedPoint> points = fused_points(grid, config);

@@ -236,40 +236,6 @@ TEST(Beliefs, StayWithAVoxelThatTurnsFreeAndGoOnLater) {
   EXPECT_GT(grid.statistics().entropy_removed, with_it);
 }
 
-TEST(Beliefs, EntropyRemovedIsTheSumOverOccupiedVoxels) {
-  BeliefGrid grid(object_grid(48));
-  const Sensor sensor = small_sensor(64, 48);
-  FrameIntegrator integrator(sensor);
-  for (int i = 0; i < 4; ++i) {
-    integrator.integrate(grid, see_spheres(sensor, ring_view(i), three_spheres_in_a_room()),
-                         ring_view(i));
-  }
-  const double prior = 1.0 / (grid.prior_sigma() * grid.prior_sigma());
-  int voxels = 0;
-  for (const Criterion criterion :
-       {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
-    double sum = 0;
-    voxels = 0;
-    for (int i = -24; i < 24; ++i) {
-      for (int j = -24; j < 24; ++j) {
-        for (int k = -24; k < 24; ++k) {
-          if (grid.state({i, j, k}) != VoxelState::occupied) continue;
-          const auto belief = grid.belief({i, j, k});
-          ASSERT_TRUE(belief.has_value());
-          const SymmetricMatrix3 before = SymmetricMatrix3::identity(prior);
-          sum += entropy(before, criterion) -
-                 entropy(before + belief->information_matrix(), criterion);
-          ++voxels;
-        }
-      }
-    }
-    EXPECT_NEAR(grid.statistics(criterion).entropy_removed, sum, 1e-9 * sum);
-    EXPECT_GT(sum, 0);
-  }
-  EXPECT_EQ(static_cast<std::uint64_t>(voxels), grid.statistics().occupied);
-  EXPECT_GT(voxels, 300);
-}
-
 // Incidence from the amplitude of a frame.
 
 const GridConfig kBox{0.1, {{-1, -1, 0}, {1, 1, 1.5}}, {}, 0.01};

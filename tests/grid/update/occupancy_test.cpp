@@ -69,27 +69,6 @@ TEST(Occupancy, AWallSeenFiftyTimesWithNoiseStays) {
   EXPECT_EQ(grid.views().size(), 50U);
 }
 
-TEST(Occupancy, OneFlyingPixelInSpaceSeenFreeFiftyTimesStaysFree) {
-  const Sensor sensor = small_sensor(24, 18);
-  const GridConfig config{0.01, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01};
-  for (const int when : {0, 25, 50}) {  // among 51 frames
-    BeliefGrid grid(config);
-    FrameIntegrator integrator(sensor);
-    for (int i = 0; i <= 50; ++i) {
-      DepthFrame frame = wall(sensor, 0.55);
-      if (i == when) frame.depth[9 * 24 + 12] = 0.355F;
-      integrator.integrate(grid, frame, Pose{});
-    }
-    const Eigen::Vector3d p = sensor.camera.ray(12, 9) * 0.355;
-    const Index3 voxel{static_cast<int>(std::floor(p.x() / 0.01)),
-                       static_cast<int>(std::floor(p.y() / 0.01)), 35};
-    const auto belief = grid.belief(voxel);
-    ASSERT_TRUE(belief.has_value());
-    EXPECT_EQ(belief->hits, 1U);
-    EXPECT_EQ(grid.state(voxel), VoxelState::free) << when;
-  }
-}
-
 TEST(Occupancy, LogOddsAreClampedAndRoundedToSteps) {
   const Sensor sensor = small_sensor(24, 18);
   BeliefGrid grid({0.02, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01});
@@ -129,21 +108,6 @@ TEST(Occupancy, CrossedWithoutWeightIsFree) {
         << k;
   }
   EXPECT_EQ(column.size(), 40U);
-}
-
-TEST(Occupancy, LiteralFollowsTheLastFrame) {
-  const Sensor sensor = small_sensor(24, 18);
-  BeliefGrid grid({0.02, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01});
-  FrameIntegrator integrator(
-      sensor, {IntegrationConfig::Carve::cones, IntegrationConfig::Occupancy::literal});
-  const Index3 voxel{0, 0, 20};
-  for (int i = 0; i < 5; ++i) integrator.integrate(grid, wall(sensor, 0.41), Pose{});
-  EXPECT_EQ(grid.state(voxel), VoxelState::occupied);
-  integrator.integrate(grid, wall(sensor, 0.51), Pose{});
-  EXPECT_EQ(grid.state(voxel), VoxelState::free);
-  EXPECT_TRUE(grid.belief(voxel).has_value());
-  integrator.integrate(grid, wall(sensor, 0.41), Pose{});
-  EXPECT_EQ(grid.state(voxel), VoxelState::occupied);
 }
 
 // The map is the same bit for bit whatever runs it.

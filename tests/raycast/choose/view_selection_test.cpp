@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "core/expect_error.hpp"
+#include "grid/voxels.hpp"
 #include "oracle/rays.hpp"
 #include "raycast/scene_makers.hpp"
 #include "viewgain/core/error.hpp"
@@ -26,27 +27,23 @@ constexpr std::array kCriteria{Criterion::log_diagonal, Criterion::log_determina
 // A lump of occupied and unknown voxels in the middle of free space, to be looked at from outside.
 BeliefGrid lump(std::uint64_t seed) {
   test::Random random(seed);
-  constexpr int kSide = 40;
   BeliefGrid grid({.voxel_size = 0.01,
                    .workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}},
                    .prior_sigma = 0.01});
   const Eigen::Vector3d shift(test::uniform(random, -4, 4), test::uniform(random, -4, 4),
                               test::uniform(random, -4, 4));
-  for (int x = -kSide / 2; x < kSide / 2; ++x) {
-    for (int y = -kSide / 2; y < kSide / 2; ++y) {
-      for (int z = -kSide / 2; z < kSide / 2; ++z) {
-        const Eigen::Vector3d p = Eigen::Vector3d(x, y, z) - shift;
-        const double r = p.norm() + 2 * std::sin(0.5 * x + 0.3 * z);
-        if (r < 8) continue;
-        // The half that has been seen has a shell with evidence, the other a ragged shadow.
-        if (r < 10 && x + y > 0) {
-          test::set_occupied_with_belief(grid, {x, y, z}, random);
-        } else if (r >= 11 || test::uniform(random, 0, 1) < 0.5) {
-          grid.set({x, y, z}, -0.4F);
-        }
-      }
+  test::for_each_voxel(grid, [&](Index3 voxel) {
+    const auto [x, y, z] = voxel;
+    const Eigen::Vector3d p = Eigen::Vector3d(x, y, z) - shift;
+    const double r = p.norm() + 2 * std::sin(0.5 * x + 0.3 * z);
+    if (r < 8) return;
+    // The half that has been seen has a shell with evidence, the other a ragged shadow.
+    if (r < 10 && x + y > 0) {
+      test::set_occupied_with_belief(grid, {x, y, z}, random);
+    } else if (r >= 11 || test::uniform(random, 0, 1) < 0.5) {
+      grid.set({x, y, z}, -0.4F);
     }
-  }
+  });
   return grid;
 }
 

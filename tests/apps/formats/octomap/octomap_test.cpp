@@ -13,6 +13,7 @@
 
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/formats/octomap_tree.hpp"
 
@@ -195,14 +196,10 @@ TEST(Octomap, AWorkspaceCutsAndGrows) {
   part.copy_states(states);
   std::size_t at = 0;
   int differences = 0, known = 0;
-  for (int x = -57; x < 39; ++x) {
-    for (int y = -13; y < 55; ++y) {
-      for (int z = -29; z < 25; ++z, ++at) {
-        known += states[at] != 0;
-        if (all.state({x, y, z}) != static_cast<VoxelState>(states[at])) ++differences;
-      }
-    }
-  }
+  for_each_voxel(part, [&](Index3 voxel) {
+    known += states[at] != 0;
+    differences += all.state(voxel) != static_cast<VoxelState>(states[at++]) ? 1 : 0;
+  });
   EXPECT_EQ(differences, 0);
   EXPECT_GT(known, 3000);
   const BeliefGrid::Statistics statistics = part.statistics();
