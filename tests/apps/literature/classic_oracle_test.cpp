@@ -132,47 +132,5 @@ INSTANTIATE_TEST_SUITE_P(Maps, ClassicOracle,
                                          MapFamily::odd_and_far, MapFamily::rotated),
                          test::family_name);
 
-// OctoMap's computeRayKeys steps through the voxels that the oracle's walk visits, for rays as
-// OctoMap has them: ends and directions in single precision, steps in double.
-TEST(ClassicOracleWalk, StepsAsOctomapDoes) {
-  test::Random random(5);
-  const BeliefGrid grid = test::sparse_map({64, 48, 56}, {});
-  const test::OctomapOracle oracle(grid, {}, {});
-  std::size_t rays = 0, keys = 0, different = 0;
-  for (int i = 0; i < 20000; ++i) {
-    const auto point = [&] {
-      return octomap::point3d(static_cast<float>(test::uniform(random, 0.1, 63.9)),
-                              static_cast<float>(test::uniform(random, 0.1, 47.9)),
-                              static_cast<float>(test::uniform(random, 0.1, 55.9)));
-    };
-    const octomap::point3d origin = point(), end = point();
-    octomap::KeyRay ray;
-    ASSERT_TRUE(oracle.tree().computeRayKeys(origin, end, ray));
-    octomap::point3d direction = end - origin;
-    direction /= static_cast<float>(direction.norm());
-    const auto doubles = [](const octomap::point3d& p) {
-      return Eigen::Vector3d(static_cast<double>(p.x()), static_cast<double>(p.y()),
-                             static_cast<double>(p.z()));
-    };
-    auto key = ray.begin();
-    bool same = true;
-    oracle::walk(oracle.dense(), {doubles(origin), doubles(direction)},
-                 [&](Index3 voxel, double, double) {
-                   if (key == ray.end()) return true;
-                   same = same && (*key)[0] - 32768 == voxel.x && (*key)[1] - 32768 == voxel.y &&
-                          (*key)[2] - 32768 == voxel.z;
-                   ++key;
-                   ++keys;
-                   return false;
-                 });
-    same = same && key == ray.end();
-    ++rays;
-    different += same ? 0 : 1;
-  }
-  EXPECT_EQ(rays, 20000U);
-  EXPECT_GT(keys, 20000U * 30);
-  EXPECT_EQ(different, 0U);
-}
-
 }  // namespace
 }  // namespace viewgain

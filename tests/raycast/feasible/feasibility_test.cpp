@@ -334,26 +334,6 @@ TEST(Feasibility, TheLowestCornerDecidesAboutThePlane) {
   }
 }
 
-TEST(Feasibility, AWallNearerThanTheSensorMeasuresIsTooNear) {
-  // The lower half of a map of 48³ voxels is not free: a floor at half its height.
-  const BeliefGrid grid = map_of(48, {}, [](int, int, int z) { return z < 24; });
-  FeasibilityConfig config;
-  config.sensor = sensor_preset("sr4000");  // measures from 0.2 m on
-  const double floor = 24 * kVoxel, middle = 24 * kVoxel;
-  const auto above = [&](double height) { return looking_down({middle, middle, floor + height}); };
-  for (const double height : {0.05, 0.1, 0.19, 0.21, 0.3, 0.6}) {
-    const Infeasibility expected = height < 0.2 ? Infeasibility::too_near : Infeasibility::none;
-    EXPECT_EQ(checker_of(grid, config).check(above(height)), expected) << height;
-    EXPECT_EQ(checker_of(grid).check(above(height)), Infeasibility::none) << height;
-  }
-  // Nothing in view is not too near, however near the map is behind the camera.
-  const Pose up(Eigen::Matrix3d::Identity(), Eigen::Vector3d(middle, middle, floor + 0.1));
-  EXPECT_EQ(checker_of(grid, config).check(up), Infeasibility::none);
-  // All rays may be near if the share says so.
-  config.max_near_share = 1.0;
-  EXPECT_EQ(checker_of(grid, config).check(above(0.1)), Infeasibility::none);
-}
-
 TEST(Feasibility, RefusesWhatMakesNoSense) {
   const auto scene = VoxelScene::build(free_map());
   const auto refuses = [&scene](const auto& change) {
