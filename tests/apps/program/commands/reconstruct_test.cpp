@@ -116,19 +116,6 @@ TEST_F(Reconstruct, LeavesAConsistentFolder) {
   EXPECT_EQ(result["per_view"][0]["generator"], "start");
   EXPECT_TRUE(result["per_view"][0]["predicted_area"].is_null());
   EXPECT_EQ(result["gain_model"], "combined");
-  // New area adds up to what is covered, of which a cube of 0.2 m has 0.24 m².
-  double covered = 0;
-  for (const json& view : result["per_view"]) {
-    covered += view["true_new_area"].get<double>();
-    EXPECT_NEAR(covered, 0.24 * view["coverage_visible"].get<double>(), 1e-4);
-  }
-  EXPECT_GT(covered, 0.05);
-  // What a view adds to entropy_removed is its realised gain.
-  double entropy = 0;
-  for (const json& view : result["per_view"]) {
-    entropy += view["realised_gain"].get<double>();
-    EXPECT_NEAR(entropy, view["entropy_removed"].get<double>(), 1e-6 * entropy);
-  }
 }
 
 TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
