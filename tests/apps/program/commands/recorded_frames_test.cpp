@@ -157,22 +157,6 @@ TEST_F(RecordedFrames, ReportAndPicturesShowTheFrames) {
   EXPECT_EQ(run["per_view"].size(), 3U);
 }
 
-TEST_F(RecordedFrames, AreRegisteredWhereThatIsAskedFor) {
-  std::filesystem::remove_all(dir / "frames");
-  run_well({"simulate", "cube.off", "--orbit", "8,0.6,27,0,0", "--sensor", "tof.toml", "--size",
-            "0.2", "--noise", "on", "--recenter", "on", "--out", "frames", "--pose-noise",
-            "0.005,0.5"});
-  const json run = reconstruct("run", {"--pictures", "off", "--register", "on"});
-  const json& counts = run["registration"];
-  EXPECT_EQ(counts["registered"].get<int>() + counts["too_little_overlap"].get<int>() +
-                counts["refused"].get<int>(),
-            8);
-  EXPECT_EQ(run["settings"]["register"], true);
-  // The map has what the corrected poses say.
-  const std::vector<Pose> views = read_tum(dir / "run/views.txt").poses;
-  EXPECT_EQ(views.size(), 8U - counts["refused"].get<std::size_t>());
-}
-
 TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
   reconstruct("run", {"--pictures", "off"});
   std::filesystem::create_directories(dir / "empty");

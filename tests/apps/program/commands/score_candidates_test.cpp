@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "grid/voxels.hpp"
 #include "program/cli/json.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
@@ -22,20 +23,18 @@
 namespace viewgain {
 namespace {
 
+constexpr VoxelBox kUpperHalf{{-10, -10, 0}, {10, 10, 10}}, kBlock{{-3, -3, 4}, {3, 3, 5}};
+
 class ScoreCandidates : public test::ProgramTest {
  protected:
   ScoreCandidates() {
     write_small_sensor();
     BeliefGrid grid({0.02, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.02});
     // The upper half is free but for a block in its middle.
-    for (int x = -10; x < 10; ++x) {
-      for (int y = -10; y < 10; ++y) {
-        for (int z = 0; z < 10; ++z) grid.set({x, y, z}, -0.4F);
-      }
-    }
-    for (int x = -3; x < 3; ++x) {
-      for (int y = -3; y < 3; ++y) grid.set({x, y, 4}, 0.85F, Belief{{1e5F, 1e5F, 1e5F}, {}, 7});
-    }
+    test::for_each_voxel(kUpperHalf, [&](Index3 v) { grid.set(v, -0.4F); });
+    test::for_each_voxel(kBlock, [&](Index3 v) {
+      grid.set(v, 0.85F, Belief{{1e5F, 1e5F, 1e5F}, {}, 7});
+    });
     save_vdb(grid, dir / "map.vdb");
     poses = sphere_poses(40, 0.45);
   }
@@ -216,14 +215,9 @@ class ScoreClassic : public test::ProgramTest {
  protected:
   ScoreClassic() {
     write_small_sensor();
-    for (int x = -10; x < 10; ++x) {
-      for (int y = -10; y < 10; ++y) {
-        for (int z = 0; z < 10; ++z) grid.set({x, y, z}, -0.1F * static_cast<float>(1 + (x & 7)));
-      }
-    }
-    for (int x = -3; x < 3; ++x) {
-      for (int y = -3; y < 3; ++y) grid.set({x, y, 4}, 0.85F);
-    }
+    test::for_each_voxel(kUpperHalf,
+                         [&](Index3 v) { grid.set(v, -0.1F * static_cast<float>(1 + (v.x & 7))); });
+    test::for_each_voxel(kBlock, [&](Index3 v) { grid.set(v, 0.85F); });
     grid.append_view(sphere_poses(40, 0.45)[0]);
     save_vdb(grid, dir / "map.vdb");
   }

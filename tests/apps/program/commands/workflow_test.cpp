@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
+#include "support/pose_file_text.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/formats/frames.hpp"
 
 namespace viewgain {
 namespace {
@@ -50,10 +49,7 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
     const std::string number = i == 0 ? "000000" : i == 1 ? "000050" : "001000";
     std::filesystem::copy(dir / "frames" / ("frame-00000" + std::to_string(i) + ".depth.png"),
                           dir / "recorded" / ("frame-" + number + ".depth.png"));
-    std::ostringstream text;
-    text.precision(17);
-    text << poses.poses[i].isometry().matrix() << "\n";
-    write("recorded/frame-" + number + ".pose.txt", text.str());
+    write("recorded/frame-" + number + ".pose.txt", test::matrix_text(poses.poses[i]));
   }
   write("recorded/camera-intrinsics.txt",
         "\xef\xbb\xbf"
@@ -139,61 +135,6 @@ TEST_F(Workflow, FramesThatAMapHasAreSkipped) {
   // A tree does not remember.
   run_well({"convert", "map.vdb", "tree.ot"});
   EXPECT_EQ(grow({"--map", "tree.ot", "--out", "new.vdb"})["skipped"], 0);
-}
-
-// A pose that contradicts the map: the map is what it is without that frame.
-TEST_F(Workflow, FramesThatContradictTheMapAreLeftOut) {
-  run_well({"simulate", "cube.off", "--size", "0.2", "--recenter", "on", "--orbit", "12,0.6,27",
-            "--sensor", "sr4000", "--out", "whole"});
-  const auto integrated = [this](const std::string& folder, const Strings& more) {
-    const test::ProgramResult result =
-        run(test::joined({"integrate", folder, "--voxel", "0.01", "--workspace",
-                          "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--json", "--out", "map.vdb"},
-                         more));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(result.err.find("(contradicts); left out") != std::string::npos, folder == "bad");
-    return json::parse(result.out);
-  };
-  const Strings registered{"--register", "on"};
-  const json good = integrated("whole", registered);
-  EXPECT_EQ(good["registration"]["refused"], 0);
-  EXPECT_GE(good["registration"]["registered"], 10);
-  EXPECT_TRUE(integrated("whole", {})["registration"].is_null());
-
-  // View 7 stands 10 cm beside where it says; the last ones look elsewhere.
-  FrameSequence frames = open_frames(dir / "whole");
-  FramesWriter bad(dir / "bad"), without(dir / "without");
-  std::vector<Pose> bad_poses, other_poses;
-  for (std::size_t i = 0; i < 12; ++i) {
-    const DepthFrame frame = load_frame(frames, i);
-    bad.write_frame(i, frame);
-    bad_poses.push_back(frames.poses[i]);
-    if (i == 7) {
-      bad_poses.back().m[3] += 0.1;
-      continue;
-    }
-    without.write_frame(other_poses.size(), frame);
-    other_poses.push_back(frames.poses[i]);
-  }
-  bad.commit(bad_poses, frames.sensor);
-  without.commit(other_poses, frames.sensor);
-  const json left_out = integrated("bad", registered);
-  EXPECT_EQ(left_out["registration"]["refused"], 1);
-  EXPECT_EQ(left_out["frames"], 11);
-  EXPECT_EQ(left_out["hash"], integrated("without", registered)["hash"]);
-  // Fed again it is tried again; the others are skipped.
-  (void)integrated("bad", registered);
-  const json again = json::parse(run({"integrate", "bad", "--map", "map.vdb", "--register", "on",
-                                      "--json", "--out", "map.vdb"})
-                                     .out);
-  EXPECT_EQ(again["skipped"], 11);
-  EXPECT_EQ(again["registration"]["refused"], 1);
-  EXPECT_EQ(again["hash"], left_out["hash"]);
-
-  expect_refused_with({"integrate", "whole", "--voxel", "0.01", "--out", "no.vdb"},
-                      {{{"--pose-sigma", "0.01,1"}, "goes with --register on"},
-                       {{"--register", "on", "--pose-sigma", "0,1"}, "--pose-sigma"},
-                       {{"--register", "on", "--pose-sigma", "x"}, "--pose-sigma"}});
 }
 
 TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
