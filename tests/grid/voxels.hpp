@@ -9,17 +9,17 @@
 namespace viewgain::test {
 
 template <typename Visit>
-void for_each_voxel(const VoxelBox& box, Visit&& visit) {
-  for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
-    for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
-      for (std::int32_t z = box.min.z; z < box.max.z; ++z) visit(Index3{x, y, z});
+void for_each_voxel(const VoxelBox& box, Visit&& visit, std::int32_t step = 1) {
+  for (std::int32_t x = box.min.x; x < box.max.x; x += step) {
+    for (std::int32_t y = box.min.y; y < box.max.y; y += step) {
+      for (std::int32_t z = box.min.z; z < box.max.z; z += step) visit(Index3{x, y, z});
     }
   }
 }
 
 template <typename Visit>
-void for_each_voxel(const BeliefGrid& grid, Visit&& visit) {
-  for_each_voxel(VoxelBox::from_dims(grid.min_index(), grid.dims()), visit);
+void for_each_voxel(const BeliefGrid& grid, Visit&& visit, std::int32_t step = 1) {
+  for_each_voxel(VoxelBox::from_dims(grid.min_index(), grid.dims()), visit, step);
 }
 
 /// That a snapshot which follows the one before is what one anew is.

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// All classic gains of random maps against slow sums over an octomap::OcTree, by
-// under each instruction set.
+// All classic gains of random maps against slow sums over an octomap::OcTree, under
+// each instruction set.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "apps/literature/classic_makers.hpp"
 #include "apps/literature/octomap_oracle.hpp"
+#include "grid/voxels.hpp"
 #include "raycast/scene_makers.hpp"
 
 namespace viewgain {
@@ -101,23 +102,21 @@ TEST_P(ClassicOracle, FrontiersAndOcclusionAreTheSameVoxels) {
     const Acquisition acquisition{sensor, 9 * made.grid.voxel_size()};
     const test::OctomapOracle oracle(made.grid, {}, acquisition);
     const auto map = ClassicMap::build(VoxelScene::build(made.grid), made.grid, acquisition);
-    const Index3 low = made.grid.min_index(), dims = made.grid.dims();
+    const auto [x0, y0, z0] = made.grid.min_index();
+    const Index3 dims = made.grid.dims();
     // One voxel beyond the workspace at each side, which is none of either.
     std::size_t wrong = 0;
-    for (int x = low.x - 1; x <= low.x + dims.x; ++x) {
-      for (int y = low.y - 1; y <= low.y + dims.y; ++y) {
-        for (int z = low.z - 1; z <= low.z + dims.z; ++z) {
-          const Index3 voxel{x, y, z};
-          ++voxels;
-          wrong += map->occlusion_steps(voxel) != oracle.occlusion_steps(voxel) ? 1 : 0;
-          hidden += map->occlusion_steps(voxel) > 0 ? 1 : 0;
-          // The 26 neighbours one by one take long: every voxel near the last is enough.
-          if ((x ^ y ^ z) % 3 != 0) continue;
-          wrong += map->is_surface_frontier(voxel) != oracle.is_surface_frontier(voxel) ? 1 : 0;
-          frontiers += map->is_surface_frontier(voxel) ? 1 : 0;
-        }
-      }
-    }
+    const VoxelBox wider =
+        VoxelBox::from_dims({x0 - 1, y0 - 1, z0 - 1}, {dims.x + 2, dims.y + 2, dims.z + 2});
+    test::for_each_voxel(wider, [&](Index3 voxel) {
+      ++voxels;
+      wrong += map->occlusion_steps(voxel) != oracle.occlusion_steps(voxel) ? 1 : 0;
+      hidden += map->occlusion_steps(voxel) > 0 ? 1 : 0;
+      // The 26 neighbours one by one take long: every voxel near the last is enough.
+      if ((voxel.x ^ voxel.y ^ voxel.z) % 3 != 0) return;
+      wrong += map->is_surface_frontier(voxel) != oracle.is_surface_frontier(voxel) ? 1 : 0;
+      frontiers += map->is_surface_frontier(voxel) ? 1 : 0;
+    });
     EXPECT_EQ(wrong, 0U);
   }
   EXPECT_GT(voxels, 3U * 20 * 20 * 20);

@@ -97,15 +97,11 @@ int OctomapOracle::occlusion_steps(Index3 voxel) const {
 bool OctomapOracle::is_surface_frontier(Index3 voxel) const {
   if (!map_.inside(voxel) || find(voxel) != nullptr) return false;
   bool near_free = false, near_occupied = false;
-  for (int dx = -1; dx <= 1; ++dx) {
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dz = -1; dz <= 1; ++dz) {
-        const auto* node = find({voxel.x + dx, voxel.y + dy, voxel.z + dz});
-        if (node == nullptr) continue;
-        (node->getLogOdds() > 0 ? near_occupied : near_free) = true;
-      }
-    }
-  }
+  const Index3 first{voxel.x - 1, voxel.y - 1, voxel.z - 1};
+  for_each_voxel(VoxelBox::from_dims(first, {3, 3, 3}), [&](Index3 near) {
+    const auto* node = find(near);
+    if (node != nullptr) (node->getLogOdds() > 0 ? near_occupied : near_free) = true;
+  });
   return near_free && near_occupied;
 }
 

@@ -124,15 +124,9 @@ TEST(HazardViews, FollowRatesThatAreGiven) {
   HazardConfig config;
   auto volume = std::make_shared<HazardConfig::Volume>();
   volume->box = box;
-  const Index3 side{box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
-  for (int x = 0; x < side.x; ++x) {
-    for (int y = 0; y < side.y; ++y) {
-      for (int z = 0; z < side.z; ++z) {
-        const bool low = box.min.x + x < 0 && box.min.y + y < 0 && box.min.z + z < 0;
-        volume->rates.push_back(low ? 50.0F : 0.0F);
-      }
-    }
-  }
+  test::for_each_voxel(box, [&](Index3 v) {
+    volume->rates.push_back(v.x < 0 && v.y < 0 && v.z < 0 ? 50.0F : 0.0F);
+  });
   config.volume = volume;
   const auto scene = VoxelScene::build(seen.grid(), {}, {}, config);
   int cases = 0;

@@ -34,15 +34,6 @@ DepthFrame one_reading(double depth) { return {1, 1, {static_cast<float>(depth)}
 
 const GridConfig kCube{0.01, {{-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}}, {}, 0.01};
 
-/// Axis-aligned plane z = z0 + slope x of the world, seen along +z from the origin.
-DepthFrame see_plane(const Sensor& sensor, double z0, double slope) {
-  DepthFrame frame{sensor.camera.width, sensor.camera.height, {}};
-  for (const Eigen::Vector3d& ray : sensor.camera.ray_table()) {
-    frame.depth.push_back(static_cast<float>(z0 / (1.0 - slope * ray.x())));
-  }
-  return frame;
-}
-
 TEST(Beliefs, TwoPerpendicularReadings) {
   // The paper's figure 3: each reading is sure across its ray, together they are sure everywhere.
   const ConstantNoise noise{0.004, 0.001};

@@ -22,13 +22,6 @@ namespace {
 
 using namespace test;
 
-DepthFrame wall(const Sensor& sensor, double z) {
-  const auto pixels = static_cast<std::size_t>(sensor.camera.width) *
-                      static_cast<std::size_t>(sensor.camera.height);
-  return {sensor.camera.width, sensor.camera.height,
-          std::vector<float>(pixels, static_cast<float>(z))};
-}
-
 // Frontal wall, SR4000 noise, voxels finer than the noise; all of the workspace is in view.
 TEST(Occupancy, AWallSeenFiftyTimesWithNoiseStays) {
   Sensor sensor = sensor_preset("sr4000");
@@ -42,7 +35,7 @@ TEST(Occupancy, AWallSeenFiftyTimesWithNoiseStays) {
   std::normal_distribution<double> normal(0.0, sensor.sigmas(z).axial);
   int columns = 0;
   for (int frame = 1; frame <= 50; ++frame) {
-    DepthFrame noisy = wall(sensor, z);
+    DepthFrame noisy = see_plane(sensor, z);
     for (float& depth : noisy.depth) depth += static_cast<float>(normal(random));
     integrator.integrate(grid, noisy, Pose{});
     if (frame != 3 && frame != 10 && frame != 50) continue;
@@ -75,7 +68,7 @@ TEST(Occupancy, LogOddsAreClampedAndRoundedToSteps) {
   FrameIntegrator integrator(sensor);
   const Index3 before{0, 0, 15}, at{0, 0, 25};  // centres at 0.31 and 0.51
   for (int i = 1; i <= 8; ++i) {
-    integrator.integrate(grid, wall(sensor, 0.51), Pose{});
+    integrator.integrate(grid, see_plane(sensor, 0.51), Pose{});
     EXPECT_FLOAT_EQ(grid.log_odds(before).value(), std::max(-0.4F * static_cast<float>(i), -2.0F));
     EXPECT_FLOAT_EQ(grid.log_odds(at).value(), std::min(0.85F * static_cast<float>(i), 3.5F));
   }
@@ -87,7 +80,7 @@ TEST(Occupancy, CrossedWithoutWeightIsFree) {
   Sensor sensor = small_sensor(24, 18);
   sensor.noise = ConstantNoise{0.05, 0.05};  // 3 sigma are 150 mm
   BeliefGrid grid({0.005, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01});
-  FrameIntegrator(sensor).integrate(grid, wall(sensor, 0.501), Pose{});
+  FrameIntegrator(sensor).integrate(grid, see_plane(sensor, 0.501), Pose{});
   std::vector<float> column;
   for (int k = 60; k < 100; ++k) {
     ASSERT_EQ(grid.state({0, 0, k}), VoxelState::free) << k;

@@ -306,33 +306,16 @@ std::uint64_t VoxelOracle::differences(const BeliefGrid& grid) const {
 DepthFrame mixed_frame(const Sensor& sensor, const Pose& pose, std::mt19937& random,
                        bool out_of_range) {
   DepthFrame frame = see_spheres(sensor, pose, three_spheres_in_a_room());
-  std::uniform_int_distribution<int> dice(0, 39);
+  std::uniform_int_distribution<std::size_t> dice(0, 39);
   for (float& depth : frame.depth) {
-    switch (dice(random)) {
-      case 0:
-        depth = DepthFrame::kInvalid;
-        break;
-      case 1:
-        depth = out_of_range ? DepthFrame::kOutOfRange : DepthFrame::kInvalid;
-        break;
-      case 2:
-        depth = std::numeric_limits<float>::quiet_NaN();
-        break;
-      case 3:
-        depth = -depth;
-        break;
-      case 4:
-        depth = 0.01F;
-        break;  // nearer than min_range
-      case 5:
-        depth = 50.0F;
-        break;  // farther than max_range
-      case 6:
-        depth *= 0.7F;
-        break;  // in free space
-      default:
-        break;
-    }
+    const std::array instead{DepthFrame::kInvalid,
+                             out_of_range ? DepthFrame::kOutOfRange : DepthFrame::kInvalid,
+                             std::numeric_limits<float>::quiet_NaN(),
+                             -depth,
+                             0.01F,          // nearer than min_range
+                             50.0F,          // farther than max_range
+                             0.7F * depth};  // in free space
+    if (const std::size_t kind = dice(random); kind < instead.size()) depth = instead[kind];
   }
   return frame;
 }

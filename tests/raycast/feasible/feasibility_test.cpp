@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "grid/voxels.hpp"
 #include "raycast/scene_makers.hpp"
 #include "solids.hpp"
 #include "support/meshes.hpp"
@@ -34,13 +35,10 @@ BeliefGrid map_of(int n, const Pose& T_world_grid, const Choose& is_non_free) {
   const double side = kVoxel * n;
   const GridConfig config{kVoxel, {{0, 0, 0}, {side, side, side}}, T_world_grid, 0.01};
   std::vector<std::uint8_t> states;
-  for (int x = 0; x < n; ++x) {
-    for (int y = 0; y < n; ++y) {
-      for (int z = 0; z < n; ++z) {
-        states.push_back(is_non_free(x, y, z) ? ((x + y + z) % 2 == 0 ? 0 : 2) : 1);
-      }
-    }
-  }
+  test::for_each_voxel(VoxelBox{{0, 0, 0}, {n, n, n}}, [&](Index3 voxel) {
+    const auto [x, y, z] = voxel;
+    states.push_back(is_non_free(x, y, z) ? ((x + y + z) % 2 == 0 ? 0 : 2) : 1);
+  });
   return BeliefGrid::from_states(config, states);
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "grid/analytic_frames.hpp"
+#include "grid/voxels.hpp"
 #include "raycast/scene_makers.hpp"
 #include "raycast/trace/oracle_tally.hpp"
 #include "viewgain/core/error.hpp"
@@ -33,12 +34,8 @@ class ChangingMap {
   ChangingMap(const GridConfig& config, bool has_specks)
       : random_(5), grid_(config), sensor_(test::small_sensor(48, 36)), integrator_(sensor_) {
     if (!has_specks) return;
-    const Index3 min = grid_.min_index(), dims = grid_.dims();
-    for (int x = 0; x < dims.x; x += 8) {
-      for (int y = 0; y < dims.y; y += 8) {
-        for (int z = 0; z < dims.z; z += 8) grid_.set({min.x + x, min.y + y, min.z + z}, 0.85F);
-      }
-    }
+    test::for_each_voxel(
+        grid_, [&](Index3 voxel) { grid_.set(voxel, 0.85F); }, 8);
   }
 
   [[nodiscard]] const BeliefGrid& grid() const { return grid_; }
@@ -105,15 +102,6 @@ class ChangingMap {
   FrameIntegrator integrator_;
   std::uint64_t forgotten_ = 0;
 };
-
-void expect_same_hits(const std::vector<RayHit>& a, const std::vector<RayHit>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    ASSERT_EQ(a[i].kind, b[i].kind);
-    ASSERT_EQ(a[i].voxel, b[i].voxel);
-    ASSERT_EQ(a[i].range, b[i].range);
-  }
-}
 
 struct Chain {
   const char* name;
@@ -185,7 +173,7 @@ TEST_P(SceneUpdate, AChainOfUpdatesIsWhatBuildsAre) {
       ASSERT_TRUE(test::same_bits(gains, built.evaluate(poses)));
       for (std::size_t p = 0; p < poses.size(); ++p) {
         const std::vector<RayHit> own = updated.trace(poses[p]);
-        expect_same_hits(own, built.trace(poses[p]));
+        test::expect_same_hits(own, built.trace(poses[p]));
         if (asks_oracle) tallies[k].add(dense, sensor, poses[p], expected[p], own);
         gaining += gains[p].gain > 0 ? 1U : 0U;
         hits += gains[p].hits;
@@ -240,7 +228,7 @@ std::size_t expect_same(const GainEvaluator& followed, const GainEvaluator& fres
       EXPECT_EQ(a[i].gain, b[i].gain);
     }
     const std::vector<RayHit> hits = followed.trace(poses[i]);
-    expect_same_hits(hits, fresh.trace(poses[i]));
+    test::expect_same_hits(hits, fresh.trace(poses[i]));
     rays += hits.size();
   }
   EXPECT_EQ(followed.best_set(poses, 3).indices, fresh.best_set(poses, 3).indices);
