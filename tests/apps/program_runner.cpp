@@ -7,8 +7,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 namespace viewgain::test {
 namespace {
@@ -77,6 +80,22 @@ ProgramResult ProgramTest::run_into(const fs::path& out,
   if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
   result.err = read_file(dir.parent_path() / "stderr");
   return result;
+}
+
+int ProgramTest::ended_by(const std::vector<std::string>& arguments, int signal,
+                          const std::function<bool()>& is_time) const {
+  const pid_t child = start(arguments);
+  int status = 0;
+  while (!is_time()) {
+    if (::waitpid(child, &status, WNOHANG) != 0) {
+      ADD_FAILURE() << "ended too early: " << status;
+      return status;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(::kill(child, signal), 0);
+  EXPECT_EQ(::waitpid(child, &status, 0), child);
+  return status;
 }
 
 std::string ProgramTest::run_well(const std::vector<std::string>& arguments) const {

@@ -6,6 +6,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -48,6 +49,11 @@ class ProgramTest : public testing::Test {
 
   /// Starts viewgain as run() does and does not wait for it; returns the process's number.
   [[nodiscard]] pid_t start(const std::vector<std::string>& arguments) const;
+
+  /// Starts viewgain and sends it the signal as soon as `is_time`; fails the test if it ended
+  /// before. Returns how it ended, as waitpid() says it.
+  int ended_by(const std::vector<std::string>& arguments, int signal,
+               const std::function<bool()>& is_time) const;
 
   /// As run(), and fails the test unless the exit code is 0 and stderr empty. Returns stdout.
   std::string run_well(const std::vector<std::string>& arguments) const;

@@ -46,24 +46,16 @@ LongMatrix widened(const SymmetricMatrix3& m) { return m.matrix().cast<long doub
 
 TEST(Entropy, EqualsTheDefinition) {
   RandomValues random(1);
-  for (int i = 0; i < 3000; ++i) {
-    const auto information = SymmetricMatrix3::from(random.spd(1e3, 1e7));
+  for (int i = 0; i < 5000; ++i) {
+    // And with one to three stiff axes, eigenvalues 1 .. 1e10, where plain cofactors lose
+    // everything.
+    const bool is_stiff = i >= 3000;
+    const auto information =
+        SymmetricMatrix3::from(is_stiff ? random.spd(1, 1e10) : random.spd(1e3, 1e7));
     for (const Criterion c : kCriteria) {
       const double expected = static_cast<double>(explicit_entropy(widened(information), c));
-      ASSERT_NEAR(entropy(information, c), expected, 1e-10 * (1 + std::abs(expected)))
-          << criterion_name(c);
-    }
-  }
-}
-
-TEST(Entropy, SurvivesIllConditionedMatrices) {
-  RandomValues random(2);
-  for (int i = 0; i < 2000; ++i) {
-    // One to three stiff axes: eigenvalues 1 .. 1e10, where plain cofactors lose everything.
-    const auto information = SymmetricMatrix3::from(random.spd(1, 1e10));
-    for (const Criterion c : kCriteria) {
-      const double expected = static_cast<double>(explicit_entropy(widened(information), c));
-      ASSERT_NEAR(entropy(information, c), expected, 1e-5 * (1 + std::abs(expected)))
+      ASSERT_NEAR(entropy(information, c), expected,
+                  (is_stiff ? 1e-5 : 1e-10) * (1 + std::abs(expected)))
           << criterion_name(c);
     }
   }
@@ -125,44 +117,6 @@ TEST(EntropyReduction, OfNothingIsZero) {
       ASSERT_EQ(entropy_reduction(before, {}, c), 0.0);
     }
   }
-}
-
-TEST(EntropyReduction, LargestEigenvalueIsABound) {
-  RandomValues random(7);
-  for (int i = 0; i < 3000; ++i) {
-    const auto before = SymmetricMatrix3::from(random.spd(1e4, 1e6));
-    const Eigen::Matrix3d added = random.spd(1e2, 1e8);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(added);
-    const auto bound = SymmetricMatrix3::identity(solver.eigenvalues()[2]);
-    for (const Criterion c : kCriteria) {
-      ASSERT_LE(entropy_reduction(before, SymmetricMatrix3::from(added), c),
-                entropy_reduction(before, bound, c) * (1 + 1e-9));
-    }
-  }
-}
-
-TEST(EntropyReduction, RotationLeavesDeterminantAndTraceButNotTheDiagonal) {
-  RandomValues random(8);
-  int cases = 0, diagonal_changes = 0;
-  for (int i = 0; i < 2000; ++i, ++cases) {
-    // A view's hits in one voxel: prior, earlier readings, new readings, all turned together.
-    SymmetricMatrix3 before = SymmetricMatrix3::identity(1 / (7.2e-3 * 7.2e-3)), added;
-    for (int k = 0; k < 3; ++k)
-      before += measurement_information(random.unit_vector(), {3.6e-3, 1.8e-3});
-    for (int k = 0; k < 4; ++k)
-      added += measurement_information(random.unit_vector(), {3.6e-3, 1.8e-3});
-    const Eigen::Matrix3d R = random.rotation();
-    const auto turned_before = test::turned(before, R), turned_added = test::turned(added, R);
-    const auto ratio = [&](Criterion c) {
-      return entropy_reduction(turned_before, turned_added, c) /
-             entropy_reduction(before, added, c);
-    };
-    ASSERT_NEAR(ratio(Criterion::log_determinant), 1, 1e-9);
-    ASSERT_NEAR(ratio(Criterion::trace), 1, 1e-9);
-    if (std::abs(ratio(Criterion::log_diagonal) - 1) > 1e-6) ++diagonal_changes;
-  }
-  EXPECT_EQ(cases, 2000);
-  EXPECT_GT(diagonal_changes, 1990);
 }
 
 TEST(CriterionNames, RoundTripAndListTheValidOnes) {

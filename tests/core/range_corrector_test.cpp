@@ -94,15 +94,6 @@ TEST(RangeCorrector, EveryPixelIsCorrectedAlongItsRay) {
   EXPECT_GT(without_ray, 100);  // the last lens folds
 }
 
-TEST(RangeCorrector, WithoutATableItChangesNothing) {
-  const PinholeCamera camera{7, 5, 4.0, 5.0, 2.5, 2.25, {}};
-  const RangeCorrector corrector(camera, {});
-  DepthFrame frame = frame_of(camera);
-  const DepthFrame before = frame;
-  corrector.correct(frame);
-  EXPECT_EQ(frame, before);
-}
-
 TEST(RangeCorrector, ManyThreadsMayUseOne) {
   const PinholeCamera camera{41, 29, 30.0, 31.0, 19.5, 14.25, {-0.1, 0, 0, 0, 0}};
   const RangeCorrector corrector(camera, kTable);

@@ -31,6 +31,14 @@ DepthFrame see_spheres(const Sensor& sensor, const Pose& T_world_camera,
   return frame;
 }
 
+DepthFrame see_plane(const Sensor& sensor, double z0, double slope) {
+  DepthFrame frame{sensor.camera.width, sensor.camera.height, {}};
+  for (const Eigen::Vector3d& ray : sensor.camera.ray_table()) {
+    frame.depth.push_back(static_cast<float>(z0 / (1.0 - slope * ray.x())));
+  }
+  return frame;
+}
+
 std::vector<Sphere> three_spheres_in_a_room() {
   return {{{0.00, 0.00, 0.00}, 0.09},
           {{0.10, 0.03, 0.05}, 0.06},

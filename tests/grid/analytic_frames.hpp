@@ -22,6 +22,9 @@ struct Sphere {
 [[nodiscard]] DepthFrame see_spheres(const Sensor& sensor, const Pose& T_world_camera,
                                      const std::vector<Sphere>& spheres);
 
+/// The plane z = z0 + slope x of the world, seen along +z from the origin.
+[[nodiscard]] DepthFrame see_plane(const Sensor& sensor, double z0, double slope = 0);
+
 /// An object about as large as the camel, of three spheres, in a room of 1.5 m radius.
 [[nodiscard]] std::vector<Sphere> three_spheres_in_a_room();
 

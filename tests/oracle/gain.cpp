@@ -26,26 +26,6 @@ double entropy_of(const Eigen::Matrix3d& information, Criterion criterion) {
 }
 
 /// Λ_r as the inverse of eq. (1)'s covariance, in the grid's frame.
-Eigen::Matrix3d information_of(const Sensor& sensor, const Ray& ray, double range) {
-  const MeasurementSigmas sigmas = sensor.sigmas(range);
-  const Eigen::Matrix3d along = ray.direction * ray.direction.transpose();
-  const Eigen::Matrix3d covariance =
-      sigmas.lateral * sigmas.lateral * (Eigen::Matrix3d::Identity() - along) +
-      sigmas.axial * sigmas.axial * along;
-  return covariance.inverse();
-}
-
-double weight_of(const BeliefGrid& grid, const GainConfig& config, Index3 voxel) {
-  double weight = 1;
-  for (const GainConfig::WeightRegion& region : config.weights) {
-    const double v = grid.voxel_size();
-    if (region.box.contains((voxel.x + 0.5) * v, (voxel.y + 0.5) * v, (voxel.z + 0.5) * v)) {
-      weight = region.weight;
-    }
-  }
-  return weight;
-}
-
 bool is_rigid(const Pose& pose) {
   if (!std::all_of(pose.m.begin(), pose.m.end(), [](double x) { return std::isfinite(x); })) {
     return false;
@@ -106,7 +86,7 @@ ViewGain gain_of_hits(const BeliefGrid& grid, const Sensor& sensor, const GainCo
     const RayHit& hit = hits[i];
     if (!is_gaining(hit)) continue;
     Touched& voxel = touched[{hit.voxel.x, hit.voxel.y, hit.voxel.z}];
-    voxel.added += information_of(sensor, rays[i], hit.range);
+    voxel.added += information_of(sensor, rays[i].direction, hit.range);
     voxel.state = hit.kind == RayHit::Kind::occupied ? VoxelState::occupied : VoxelState::unknown;
     ++result.hits;
   }
@@ -124,7 +104,7 @@ ViewGain gain_of_hits(const BeliefGrid& grid, const Sensor& sensor, const GainCo
     }
     const Eigen::Matrix3d before = prior_of(grid, config) + held;
     const double gain =
-        weight_of(grid, config, index) *
+        weight_of(config, grid.voxel_size(), index) *
         (entropy_of(before, config.criterion) - entropy_of(before + voxel.added, config.criterion));
     (occupied ? result.refinement : result.exploration) += gain;
     ++(occupied ? result.occupied_voxels : result.unknown_voxels);
@@ -141,8 +121,8 @@ double largest_one_hit_gain(const BeliefGrid& grid, const Sensor& sensor, const 
   double largest = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     if (!is_gaining(hits[i])) continue;
-    const Eigen::Matrix3d added = information_of(sensor, rays[i], hits[i].range);
-    largest = std::max(largest, weight_of(grid, config, hits[i].voxel) *
+    const Eigen::Matrix3d added = information_of(sensor, rays[i].direction, hits[i].range);
+    largest = std::max(largest, weight_of(config, grid.voxel_size(), hits[i].voxel) *
                                     (entropy_of(prior, config.criterion) -
                                      entropy_of(prior + added, config.criterion)));
   }

@@ -96,4 +96,22 @@ std::vector<RayHit> trace(const DenseMap& map, const Sensor& sensor, const GainC
   return hits;
 }
 
+Eigen::Matrix3d information_of(const Sensor& sensor, const Eigen::Vector3d& d, double range) {
+  const MeasurementSigmas s = sensor.sigmas(range);
+  const Eigen::Matrix3d along = d * d.transpose();
+  return (s.lateral * s.lateral * (Eigen::Matrix3d::Identity() - along) + s.axial * s.axial * along)
+      .inverse();
+}
+
+double weight_of(const GainConfig& config, double voxel_size, Index3 v) {
+  double weight = 1;
+  for (const GainConfig::WeightRegion& region : config.weights) {
+    if (region.box.contains((v.x + 0.5) * voxel_size, (v.y + 0.5) * voxel_size,
+                            (v.z + 0.5) * voxel_size)) {
+      weight = region.weight;
+    }
+  }
+  return weight;
+}
+
 }  // namespace viewgain::oracle

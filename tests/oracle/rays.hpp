@@ -30,4 +30,11 @@ namespace viewgain::oracle {
                                         const GainConfig& config, const Pose& T_world_camera,
                                         const Obstacles& obstacles = {});
 
+/// Of a reading along a direction of unit length.
+[[nodiscard]] Eigen::Matrix3d information_of(const Sensor& sensor, const Eigen::Vector3d& d,
+                                             double range);
+
+/// Of the last region that holds the voxel's centre, else 1.
+[[nodiscard]] double weight_of(const GainConfig& config, double voxel_size, Index3 v);
+
 }  // namespace viewgain::oracle

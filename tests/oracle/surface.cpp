@@ -18,17 +18,6 @@ using Cell = std::tuple<int, int, int>;
 
 Cell cell_of(Index3 v, int shift) { return {v.x >> shift, v.y >> shift, v.z >> shift}; }
 
-double weight_of(const GainConfig& config, double voxel_size, Index3 v) {
-  double weight = 1;
-  for (const GainConfig::WeightRegion& region : config.weights) {
-    if (region.box.contains((v.x + 0.5) * voxel_size, (v.y + 0.5) * voxel_size,
-                            (v.z + 0.5) * voxel_size)) {
-      weight = region.weight;
-    }
-  }
-  return weight;
-}
-
 /// The solid angle between a pixel's edges, by the derivative of the rays, in steps of a thousandth
 /// of a pixel.
 double pixel_angle(const PinholeCamera& camera, int u, int v) {
@@ -37,13 +26,6 @@ double pixel_angle(const PinholeCamera& camera, int u, int v) {
   const Eigen::Vector3d du = (camera.ray(u + kStep, v) - camera.ray(u - kStep, v)) / (2 * kStep);
   const Eigen::Vector3d dv = (camera.ray(u, v + kStep) - camera.ray(u, v - kStep)) / (2 * kStep);
   return std::abs(p.dot(du.cross(dv))) / std::pow(p.norm(), 3);
-}
-
-Eigen::Matrix3d information_of(const Sensor& sensor, const Eigen::Vector3d& d, double range) {
-  const MeasurementSigmas s = sensor.sigmas(range);
-  const Eigen::Matrix3d along = d * d.transpose();
-  return (s.lateral * s.lateral * (Eigen::Matrix3d::Identity() - along) + s.axial * s.axial * along)
-      .inverse();
 }
 
 double entropy_with_floor(const Eigen::Matrix3d& information, double floor) {

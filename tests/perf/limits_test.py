@@ -86,13 +86,6 @@ class Covers(unittest.TestCase):
         best = covers.best_of(seen, area, 5, seconds=1e-3)
         self.assertGreaterEqual(best.bound, best.share)
 
-    def test_the_first_view_may_do(self):
-        seen = np.array([[True, True, False], [False, False, True]])
-        found = covers.least_views(seen, np.ones(3), 0.6, first=0)
-        self.assertEqual((found.views, found.bound), ([0], 1))
-        self.assertEqual(covers.best_of(seen, np.ones(3), 1, first=1).views, [1])
-        self.assertEqual(covers.greedy(np.zeros((3, 4), bool), np.ones(4)), [])
-
 
 class Tammes(unittest.TestCase):
     def test_known_optima(self):
@@ -171,43 +164,6 @@ class Visibility(unittest.TestCase):
                     path.write_text(wrong, encoding="utf-8")
                     with self.assertRaisesRegex(SystemExit, name):
                         meshes.read_mesh(path)
-
-
-class ObjView(unittest.TestCase):
-    def test_ways_go_round_the_sphere(self):
-        import objview
-
-        x, y = np.eye(3)[:2]
-        self.assertAlmostEqual(objview.way_round(3 * x, 3 * y), np.sqrt(18))  # passes the sphere
-        self.assertAlmostEqual(objview.way_round(3 * x, -3 * x), 2 * np.sqrt(8) + np.pi - 2 * np.arccos(1 / 3))
-        self.assertEqual(objview.way_round(3 * x, 3 * x), 0)
-        # Where the straight line just touches both agree.
-        angle = 2 * np.arccos(1 / 3)
-        near = [objview.way_round(3 * x, 3 * (np.cos(a) * x + np.sin(a) * y)) for a in (angle - 1e-7, angle + 1e-7)]
-        self.assertAlmostEqual(near[0], near[1], places=5)
-
-    def test_the_map_is_stable_after_three_calm_views(self):
-        import objview
-
-        self.assertEqual(objview.stable_at([100, 200, 201, 202, 203]), 5)
-        self.assertEqual(objview.stable_at([100, 200, 201, 202, 210, 211, 212, 213]), 8)
-        self.assertIsNone(objview.stable_at([100, 200, 201, 202]))
-        self.assertIsNone(objview.stable_at([5]))
-
-    def test_sectors_and_cells(self):
-        import objview
-
-        directions = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / np.sqrt(3)
-        self.assertEqual([len(objview.allowed(directions, s)) for s in ("whole", "hemi", "quarter", "eighth")], [8, 4, 2, 1])
-        points, keys = objview.cells_of(np.array([[0.001, 0, 0], [0.002, 0, 0], [-0.001, 0, 0], [0.011, 0.0, 0]]), 0.01)
-        self.assertEqual((len(points), len(set(keys))), (3, 3))
-
-    def test_the_oracle_adds_most(self):
-        import objview
-
-        covered = np.array([[1, 1, 0, 0, 0], [0, 1, 1, 0, 0], [0, 0, 1, 1, 1]], bool)
-        taken, _ = objview.episode(objview.OracleChoice([4, 7, 9], covered), np.array([4, 7, 9]), 4, 5)
-        self.assertEqual(taken, [4, 9, 7])
 
 
 BOX = "OFF\n8 6 0\n" + "".join(f"{x} {y} {z}\n" for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)) + "".join(

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "grid/voxels.hpp"
 #include "viewgain/core/covariance.hpp"
 
 namespace viewgain::test {
@@ -25,16 +26,6 @@ GridConfig layout(double voxel_size, Index3 min, Index3 dims, const Pose& T_worl
           .prior_sigma = 0.6 * voxel_size};
 }
 
-/// Calls visit for the voxels of a box [min, min + dims).
-template <typename Visit>
-void for_each_voxel(Index3 min, Index3 dims, Visit&& visit) {
-  for (int x = min.x; x < min.x + dims.x; ++x) {
-    for (int y = min.y; y < min.y + dims.y; ++y) {
-      for (int z = min.z; z < min.z + dims.z; ++z) visit(Index3{x, y, z});
-    }
-  }
-}
-
 std::uint8_t code(VoxelState state) { return static_cast<std::uint8_t>(state); }
 
 std::uint8_t salt_and_pepper(double share, Random& random) {
@@ -44,7 +35,7 @@ std::uint8_t salt_and_pepper(double share, Random& random) {
 
 /// Evidence at nine of ten occupied voxels; imported maps have none.
 void add_beliefs(BeliefGrid& grid, Random& random) {
-  for_each_voxel(grid.min_index(), grid.dims(), [&](Index3 voxel) {
+  for_each_voxel(grid, [&](Index3 voxel) {
     if (grid.state(voxel) == VoxelState::occupied && uniform(random, 0, 1) < 0.9) {
       set_occupied_with_belief(grid, voxel, random);
     }
@@ -65,20 +56,17 @@ BeliefGrid with_tiles_8(Random& random) {
                    8 * uniform_int(random, -3, 1)};
   const Index3 dims{32, 32, 32};
   BeliefGrid grid(layout(uniform(random, 0.01, 0.05), min, dims));
-  for (int x = 0; x < dims.x; x += 8) {
-    for (int y = 0; y < dims.y; y += 8) {
-      for (int z = 0; z < dims.z; z += 8) {
-        const int kind = uniform_int(random, 0, 2);
-        if (kind == 0) continue;
-        const double share = kind == 1 ? 0 : 0.1;
-        for_each_voxel({min.x + x, min.y + y, min.z + z}, {8, 8, 8}, [&](Index3 voxel) {
-          const std::uint8_t state = salt_and_pepper(share, random);
-          if (state == code(VoxelState::unknown)) return;
-          grid.set(voxel, state == code(VoxelState::free) ? kMissLogOdds : kHitLogOdds);
-        });
-      }
-    }
-  }
+  const auto fill = [&](Index3 leaf) {
+    const int kind = uniform_int(random, 0, 2);
+    if (kind == 0) return;
+    const double share = kind == 1 ? 0 : 0.1;
+    for_each_voxel(VoxelBox::from_dims(leaf, {8, 8, 8}), [&](Index3 voxel) {
+      const std::uint8_t state = salt_and_pepper(share, random);
+      if (state == code(VoxelState::unknown)) return;
+      grid.set(voxel, state == code(VoxelState::free) ? kMissLogOdds : kHitLogOdds);
+    });
+  };
+  for_each_voxel(grid, fill, 8);
   add_beliefs(grid, random);
   return grid;
 }
@@ -90,7 +78,7 @@ RandomMap with_tiles_128(Random& random) {
                     128 + uniform_int(random, 0, 12)};
   BeliefGrid grid(layout(uniform(random, 0.01, 0.05), {-8, 0, 0}, dims));
   const Index3 room_min{-8, uniform_int(random, 8, 100), uniform_int(random, 8, 100)};
-  for_each_voxel(room_min, {8, 18, 18}, [&](Index3 voxel) {
+  for_each_voxel(VoxelBox::from_dims(room_min, {8, 18, 18}), [&](Index3 voxel) {
     const bool occupied = uniform(random, 0, 1) < 0.002;
     if (occupied) {
       set_occupied_with_belief(grid, voxel, random);
@@ -314,6 +302,31 @@ bool same_bits(const std::vector<ViewGain>& a, const std::vector<ViewGain>& b) {
 std::size_t gaining(const std::vector<ViewGain>& views) {
   return static_cast<std::size_t>(
       std::count_if(views.begin(), views.end(), [](const ViewGain& v) { return v.gain > 0; }));
+}
+
+Obstacles random_boxes(const BeliefGrid& grid, Random& random) {
+  Obstacles obstacles;
+  const Box all = grid.workspace();
+  for (int i = 0; i < 3; ++i) {
+    Eigen::Vector3d p;
+    for (std::size_t a = 0; a < 3; ++a) {
+      p[static_cast<Eigen::Index>(a)] = uniform(random, all.min[a], all.max[a]);
+    }
+    p = grid.T_world_grid() * p;
+    const double half = 0.05 * (all.max[0] - all.min[0]);
+    obstacles.boxes.push_back(
+        {{p.x() - half, p.y() - half, p.z() - half}, {p.x() + half, p.y() + half, p.z() + half}});
+  }
+  return obstacles;
+}
+
+void expect_same_hits(const std::vector<RayHit>& a, const std::vector<RayHit>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].kind, b[i].kind);
+    ASSERT_EQ(a[i].voxel, b[i].voxel);
+    ASSERT_EQ(a[i].range, b[i].range);
+  }
 }
 
 }  // namespace viewgain::test

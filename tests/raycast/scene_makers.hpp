@@ -112,4 +112,9 @@ inline constexpr double kExactVoxel = 1.0 / 32.0;  ///< [m]
 /// How many of the views gain something.
 [[nodiscard]] std::size_t gaining(const std::vector<ViewGain>& views);
 
+/// Some boxes within the workspace.
+[[nodiscard]] Obstacles random_boxes(const BeliefGrid& grid, Random& random);
+
+void expect_same_hits(const std::vector<RayHit>& a, const std::vector<RayHit>& b);
+
 }  // namespace viewgain::test

@@ -10,6 +10,7 @@
 #include "choose/planner_state.hpp"
 #include "mesh/files/mesh_dialects.hpp"
 #include "program/commands/reconstruct/checkpoint.hpp"
+#include "support/pose_file_text.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -46,13 +47,6 @@ Sensor small_sensor() {
   Sensor sensor = sensor_preset("kinect_v1");
   sensor.camera = {8, 6, 9.0, 9.0, 3.5, 2.5, {0.1, -0.05, 0.001, 0.002, 0.01}};
   return sensor;
-}
-
-std::string matrix_text(const Pose& pose) {
-  std::string text;
-  for (std::size_t i = 0; i < 12; ++i)
-    text += std::to_string(pose.m[i]) + (i % 4 == 3 ? "\n" : " ");
-  return text + "0 0 0 1\n";
 }
 
 template <typename Value>

@@ -235,16 +235,6 @@ static void of_evaluators(const vg_scene* scene) {
   config.prior_sigma = 0;
   CHECK_REFUSED(vg_evaluator_create(scene, &sensor, &config, &evaluator), "prior sigma is 0");
   CHECK(evaluator == NULL);
-  config.prior_sigma = 0.1;
-  config.pixel_stride = INT32_MAX; /* leaves one pixel, or is refused */
-  vg_evaluator_info_init(&info, sizeof info);
-  if (vg_evaluator_create(scene, &sensor, &config, &evaluator) == VG_OK) {
-    CHECK_OK(vg_evaluator_get_info(evaluator, &info));
-    CHECK(info.image_width == 1 && info.image_height == 1);
-    vg_evaluator_release(evaluator);
-  } else {
-    CHECK(strstr(vg_last_error(), "2147483647") != NULL);
-  }
   CHECK_OK(vg_evaluator_create(scene, &sensor, NULL, &evaluator));
 
   CHECK_REFUSED(vg_evaluator_with_scene(evaluator, scene, NULL), "following is null");

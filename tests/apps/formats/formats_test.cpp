@@ -14,6 +14,7 @@
 
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/octomap_io.hpp"
@@ -271,15 +272,11 @@ TEST(OctomapTiles, HashOfLargeTilesIsThatOfSmallOnes) {
   config.workspace = Box{{-3276.5, -3276.8, -3270.8}, {-3256.0, -3260.6, -3261.9}};
   const BeliefGrid tiles = grid_from_octomap_bytes(free_octree(3, 0), config);
   BeliefGrid blocks = tiles.clone(), voxels(GridConfig{0.1, *config.workspace, {}, 0.05});
-  const Index3 low = tiles.min_index(), dims = tiles.dims();
-  for (int x = low.x; x < low.x + dims.x; ++x) {
-    for (int y = low.y; y < low.y + dims.y; ++y) {
-      for (int z = low.z; z < low.z + dims.z; ++z) {
-        if (x % 8 == 0 && y % 8 == 0 && z % 8 == 0) blocks.set({x, y, z}, -2.0F);
-        voxels.set({x, y, z}, -2.0F);
-      }
-    }
-  }
+  test::for_each_voxel(tiles, [&](Index3 voxel) {
+    const auto [x, y, z] = voxel;
+    if (x % 8 == 0 && y % 8 == 0 && z % 8 == 0) blocks.set({x, y, z}, -2.0F);
+    voxels.set({x, y, z}, -2.0F);
+  });
   EXPECT_EQ(blocks.content_hash(), tiles.content_hash());
   EXPECT_EQ(voxels.content_hash(), tiles.content_hash());
   EXPECT_LT(tiles.statistics().bytes, voxels.statistics().bytes);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/literature/classic_makers.hpp"
 
+#include "grid/voxels.hpp"
+
 namespace viewgain::test {
 
 std::vector<ClassicGain> all_classic_gains() {
@@ -16,43 +18,20 @@ void vary_log_odds(BeliefGrid& grid, Random& random) {
   const VoxelBox all = VoxelBox::from_dims(grid.min_index(), grid.dims());
   std::vector<BeliefGrid::VoxelValue> values;
   const Index3 first{all.min.x & ~7, all.min.y & ~7, all.min.z & ~7};
-  for (int x = first.x; x < all.max.x; x += 8) {
-    for (int y = first.y; y < all.max.y; y += 8) {
-      for (int z = first.z; z < all.max.z; z += 8) {
-        const bool is_uniform = uniform_int(random, 0, 1) == 0;
-        double free = 0.1 * uniform_int(random, -20, 0);
-        const VoxelBox block = all.intersection(VoxelBox::from_dims({x, y, z}, {8, 8, 8}));
-        for (int i = block.min.x; i < block.max.x; ++i) {
-          for (int j = block.min.y; j < block.max.y; ++j) {
-            for (int k = block.min.z; k < block.max.z; ++k) {
-              const VoxelState state = grid.state({i, j, k});
-              if (state == VoxelState::unknown) continue;
-              if (!is_uniform) free = uniform(random, -2, 0);
-              const double value = state == VoxelState::free ? free : uniform(random, 0.05, 3.5);
-              values.push_back({{i, j, k}, static_cast<float>(value)});
-            }
-          }
-        }
-      }
-    }
-  }
+  const auto vary = [&](Index3 leaf) {
+    const bool is_uniform = uniform_int(random, 0, 1) == 0;
+    double free = 0.1 * uniform_int(random, -20, 0);
+    const VoxelBox block = all.intersection(VoxelBox::from_dims(leaf, {8, 8, 8}));
+    for_each_voxel(block, [&](Index3 voxel) {
+      const VoxelState state = grid.state(voxel);
+      if (state == VoxelState::unknown) return;
+      if (!is_uniform) free = uniform(random, -2, 0);
+      const double value = state == VoxelState::free ? free : uniform(random, 0.05, 3.5);
+      values.push_back({voxel, static_cast<float>(value)});
+    });
+  };
+  for_each_voxel(VoxelBox{first, all.max}, vary, 8);
   grid.set(values);
-}
-
-Obstacles random_boxes(const BeliefGrid& grid, Random& random) {
-  Obstacles obstacles;
-  const Box all = grid.workspace();
-  for (int i = 0; i < 3; ++i) {
-    Eigen::Vector3d p;
-    for (std::size_t a = 0; a < 3; ++a) {
-      p[static_cast<Eigen::Index>(a)] = uniform(random, all.min[a], all.max[a]);
-    }
-    p = grid.T_world_grid() * p;
-    const double half = 0.05 * (all.max[0] - all.min[0]);
-    obstacles.boxes.push_back(
-        {{p.x() - half, p.y() - half, p.z() - half}, {p.x() + half, p.y() + half, p.z() + half}});
-  }
-  return obstacles;
 }
 
 }  // namespace viewgain::test

@@ -15,7 +15,4 @@ namespace viewgain::test {
 /// Gives known voxels any log-odds of their state; those of some blocks of 8³ the same.
 void vary_log_odds(BeliefGrid& grid, Random& random);
 
-/// Some boxes within the workspace.
-[[nodiscard]] Obstacles random_boxes(const BeliefGrid& grid, Random& random);
-
 }  // namespace viewgain::test

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "grid/voxels.hpp"
 #include "oracle/rays.hpp"
 
 namespace viewgain::test {
@@ -36,16 +37,11 @@ double area_function(double x, double a) {
 OctomapOracle::OctomapOracle(const BeliefGrid& grid, const Surroundings& surroundings,
                              const std::optional<Acquisition>& acquisition)
     : map_(grid), surroundings_(surroundings), tree_(1.0) {
-  const Index3 low = map_.min_index, dims = map_.dims;
-  for (int x = low.x; x < low.x + dims.x; ++x) {
-    for (int y = low.y; y < low.y + dims.y; ++y) {
-      for (int z = low.z; z < low.z + dims.z; ++z) {
-        if (const auto log_odds = grid.log_odds({x, y, z})) {
-          tree_.setNodeValue(key_of(map_, {x, y, z}), *log_odds, true);
-        }
-      }
+  for_each_voxel(grid, [&](Index3 voxel) {
+    if (const auto log_odds = grid.log_odds(voxel)) {
+      tree_.setNodeValue(key_of(map_, voxel), *log_odds, true);
     }
-  }
+  });
   if (acquisition) mark_occlusion(grid.views(), *acquisition);
 }
 
@@ -101,15 +97,11 @@ int OctomapOracle::occlusion_steps(Index3 voxel) const {
 bool OctomapOracle::is_surface_frontier(Index3 voxel) const {
   if (!map_.inside(voxel) || find(voxel) != nullptr) return false;
   bool near_free = false, near_occupied = false;
-  for (int dx = -1; dx <= 1; ++dx) {
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dz = -1; dz <= 1; ++dz) {
-        const auto* node = find({voxel.x + dx, voxel.y + dy, voxel.z + dz});
-        if (node == nullptr) continue;
-        (node->getLogOdds() > 0 ? near_occupied : near_free) = true;
-      }
-    }
-  }
+  const Index3 first{voxel.x - 1, voxel.y - 1, voxel.z - 1};
+  for_each_voxel(VoxelBox::from_dims(first, {3, 3, 3}), [&](Index3 near) {
+    const auto* node = find(near);
+    if (node != nullptr) (node->getLogOdds() > 0 ? near_occupied : near_free) = true;
+  });
   return near_free && near_occupied;
 }
 

@@ -30,8 +30,6 @@ class OctomapOracle {
                                              const Pose& T_world_camera) const;
 
   /// In units of voxels, its origin at the workspace's lowest corner.
-  [[nodiscard]] const octomap::OcTree& tree() const { return tree_; }
-  [[nodiscard]] const oracle::DenseMap& dense() const { return map_; }
   [[nodiscard]] int occlusion_steps(Index3 voxel) const;
   [[nodiscard]] bool is_surface_frontier(Index3 voxel) const;
 

@@ -16,6 +16,7 @@
 
 #include "apps/planner/planner_scene.hpp"
 #include "core/expect_error.hpp"
+#include "grid/voxels.hpp"
 #include "support/meshes.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 
@@ -61,31 +62,26 @@ std::vector<Expected> expected_places(const VoxelScene& scene) {
     const unsigned offset = static_cast<unsigned>(((v.x & 7) * 8 + (v.y & 7)) * 8 + (v.z & 7));
     return leaf == nullptr || (leaf->occupied[offset / 64] >> (offset % 64) & 1U) == 0;
   };
-  for (int x = box.min.x; x < box.max.x; ++x) {
-    for (int y = box.min.y; y < box.max.y; ++y) {
-      for (int z = box.min.z; z < box.max.z; ++z) {
-        if (!is_unknown({x, y, z})) continue;
-        for (std::size_t s = 0; s < kSides.size(); ++s) {
-          const auto [dx, dy, dz] = kSides[s];
-          const Index3 before{x + dx, y + dy, z + dz};
-          if (!box.contains(before) || !snapshot.is_free(before)) continue;
-          double survives = 1;
-          for (Index3 v{x, y, z}; is_unknown(v) && hazard.is_new(v);
-               v = {v.x - dx, v.y - dy, v.z - dz}) {
-            survives *= std::exp(-kVoxel * static_cast<double>(hazard.rate(v)));
-          }
-          const double area = kVoxel * kVoxel * (1 - survives);
-          if (area == 0) continue;
-          const Eigen::Vector3d p = kVoxel * Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5);
-          const auto cube = [](double value) {
-            return static_cast<int>(std::floor(value / kSpacing));
-          };
-          Expected& e = cubes[{cube(p.x()), cube(p.y()), cube(p.z())}];
-          e.area += area, e.sum += area * p, e.by_side[s] += area;
-        }
+  test::for_each_voxel(box, [&](Index3 voxel) {
+    const auto [x, y, z] = voxel;
+    if (!is_unknown({x, y, z})) return;
+    for (std::size_t s = 0; s < kSides.size(); ++s) {
+      const auto [dx, dy, dz] = kSides[s];
+      const Index3 before{x + dx, y + dy, z + dz};
+      if (!box.contains(before) || !snapshot.is_free(before)) continue;
+      double survives = 1;
+      for (Index3 v{x, y, z}; is_unknown(v) && hazard.is_new(v);
+           v = {v.x - dx, v.y - dy, v.z - dz}) {
+        survives *= std::exp(-kVoxel * static_cast<double>(hazard.rate(v)));
       }
+      const double area = kVoxel * kVoxel * (1 - survives);
+      if (area == 0) continue;
+      const Eigen::Vector3d p = kVoxel * Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5);
+      const auto cube = [](double value) { return static_cast<int>(std::floor(value / kSpacing)); };
+      Expected& e = cubes[{cube(p.x()), cube(p.y()), cube(p.z())}];
+      e.area += area, e.sum += area * p, e.by_side[s] += area;
     }
-  }
+  });
   std::vector<Expected> places;
   for (const auto& [key, place] : cubes) places.push_back(place);
   std::stable_sort(places.begin(), places.end(),
@@ -128,15 +124,9 @@ TEST(HazardViews, FollowRatesThatAreGiven) {
   HazardConfig config;
   auto volume = std::make_shared<HazardConfig::Volume>();
   volume->box = box;
-  const Index3 side{box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z};
-  for (int x = 0; x < side.x; ++x) {
-    for (int y = 0; y < side.y; ++y) {
-      for (int z = 0; z < side.z; ++z) {
-        const bool low = box.min.x + x < 0 && box.min.y + y < 0 && box.min.z + z < 0;
-        volume->rates.push_back(low ? 50.0F : 0.0F);
-      }
-    }
-  }
+  test::for_each_voxel(box, [&](Index3 v) {
+    volume->rates.push_back(v.x < 0 && v.y < 0 && v.z < 0 ? 50.0F : 0.0F);
+  });
   config.volume = volume;
   const auto scene = VoxelScene::build(seen.grid(), {}, {}, config);
   int cases = 0;

@@ -104,44 +104,6 @@ struct SeenBox {
   }
 };
 
-TEST(PlannedAhead, ViewsAreTakenInTheirOrderWhileTheyPromiseEnough) {
-  const SeenBox box;
-  const auto model = box.model_after({box.start});
-  GenerationConfig generation_config = default_generation(box.sensor, 0.005);
-  generation_config.at_boundaries = false;
-  generation_config.sets = {{"sphere", sphere_poses(30, 0.42, {0, 0, 0})}};
-  CandidateGeneration generation(*model, generation_config, box.exec);
-  PolicyConfig config;
-  config.ahead = {.plan = 3, .take = 3, .least_share = 0};
-  PolicyDecision decision(*model, generation, box.sensor, config, box.exec);
-  Pose here = box.start;
-  std::vector<std::size_t> candidates;
-  std::vector<std::string> generators;
-  for (int view = 0; view < 4; ++view) {
-    const Proposal proposal = decision.generate(here);
-    ASSERT_FALSE(proposal.candidates.empty());
-    candidates.push_back(proposal.candidates.size());
-    generators.push_back(proposal.candidates[0].generator);
-    const auto chosen = decision.decide(here, proposal.candidates);
-    ASSERT_TRUE(chosen);
-    EXPECT_GT(chosen->area, 0);
-    EXPECT_GE(chosen->best_area, chosen->area);
-    here = proposal.candidates[chosen->candidate].T_world_camera;
-    // What it promises by itself, as it stands.
-    EXPECT_EQ(chosen->gain,
-              GainEvaluator(model->scene(), box.sensor, {}, box.exec).evaluate(here).gain);
-    (void)model->update(box.view(here));
-  }
-  EXPECT_EQ(generators, (std::vector<std::string>{"sphere", "plan", "plan", "sphere"}));
-  EXPECT_EQ(candidates[1], 2U);
-  EXPECT_EQ(candidates[2], 1U);
-  config.policy = Policy::random;
-  EXPECT_THROW(PolicyDecision(*model, generation, box.sensor, config, box.exec), Error);
-  config.policy = Policy::gain;
-  config.ahead.take = 4;
-  EXPECT_THROW(PolicyDecision(*model, generation, box.sensor, config, box.exec), Error);
-}
-
 TEST(Classic, ChoosesTheFirstOfTheBestByItsGain) {
   const SeenBox box;
   const auto model = box.model_after({box.start});

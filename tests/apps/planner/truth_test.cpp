@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -99,24 +98,6 @@ TEST(Truth, ASensorThatSeesFarTakesNoMoreMemoryAndNoLonger) {
   }
 }
 
-// A lens whose model turns back at 37° folds what lies beyond into the image.
-TEST(Truth, WhatALensFoldsIntoTheImageIsNotVisible) {
-  Sensor sensor = sensor_preset("sr4000");
-  sensor.camera.distortion = {-0.6, 0, 0, 0, 0};
-  // The start alone counts. It looks past the box, which is at 51° from the axis and is folded to
-  // where 6° are.
-  VisibilityConfig config = from_the_side({});
-  config.start = look_at({0.5, 0, 0}, {0, 0.62, 0});
-  config.reach.shells.push_back({{50, 0, 0}, 0, 1});
-  const Eigen::Vector3d face = config.start.inverse() * Eigen::Vector3d(kHalf, 0, 0);
-  ASSERT_LT(sensor.camera.project(face).x(), sensor.camera.width);
-  ASSERT_GT(sensor.camera.project(face).x(), 0);
-  const auto scene = std::make_shared<const SurfaceScene>(test::cube_mesh(kHalf));
-  const Truth truth(scene, sensor, config, {});
-  const double nothing = truth.figures(seen_face(), {}).coverage_visible;
-  EXPECT_TRUE(std::isnan(nothing) || nothing == 0) << nothing;
-}
-
 TEST(Truth, AListOfPosesCountsWhereItIsInReach) {
   ReachRegion list;
   list.poses = {look_at({-0.5, 0, 0}, {0, 0, 0})};
@@ -130,14 +111,6 @@ TEST(Truth, AListOfPosesCountsWhereItIsInReach) {
 constexpr double kVoxel = 0.008;
 constexpr std::size_t kFrames = 3;  // from each pose, so that points have enough hits
 constexpr double kRoof = 0.2;       // height of what hides the plate from above [m]
-
-BeliefGrid free_space() {
-  GridConfig config;
-  config.voxel_size = 0.1;
-  config.workspace = {{-1, -1, -1}, {1, 1, 1}};
-  config.prior_sigma = 0.05;
-  return BeliefGrid::from_states(config, std::vector<std::uint8_t>(20 * 20 * 20, 1));
-}
 
 // A plate under a larger one. View 0 looks at it from the side, view 1 from above.
 class HiddenPlate : public testing::Test {
@@ -186,18 +159,6 @@ TEST_F(HiddenPlate, IsSeenFromTheSideAlone) {
   }
   EXPECT_FALSE(sight.sees(1, {0, 0, 0.7}));  // behind the camera
   EXPECT_FALSE(sight.sees(1, {5, 0, 0}));    // outside the image
-}
-
-// A lens whose model turns back at 37° folds what lies beyond into the image.
-TEST_F(HiddenPlate, IsNotSeenWhereTheLensFoldsIt) {
-  sensor.camera.distortion = {-0.6, 0, 0, 0, 0};
-  const Pose past_it = look_at({0.5, 0, 0.1}, {0.5, 0.62, -0.4});
-  const Eigen::Vector3d point = past_it * Eigen::Vector3d(1.25, 0, 1);  // at 51° from the axis
-  const Eigen::Vector2d pixel = sensor.camera.project({1.25, 0, 1});
-  ASSERT_TRUE(pixel.x() > 0 && pixel.x() < sensor.camera.width - 1) << pixel.x();
-  ViewSight sight(VoxelScene::build(free_space()), sensor, std::vector<Pose>{past_it}, {});
-  EXPECT_TRUE(sight.sees(0, past_it * Eigen::Vector3d(0.1, 0, 1)));
-  EXPECT_FALSE(sight.sees(0, point));
 }
 
 TEST_F(HiddenPlate, ItsBoundariesAreClassedByTheViewThatSeesThem) {

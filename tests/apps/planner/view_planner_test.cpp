@@ -241,7 +241,7 @@ TEST(ViewPlanner, SaysWhyToEnd) {
   EXPECT_TRUE(far.propose().candidates.empty());
   EXPECT_EQ(far.should_stop(), StopReason::unreachable);
 
-  // By the paper's gain a limit that nothing meets; by the combined one no view adds a hundredfold.
+  // By the paper's gain a limit that nothing meets.
   config = scene.config(GainModel::paper);
   config.stop_gain = 1e6;
   ViewPlanner gain(scene.sensor, config, {1});
@@ -257,22 +257,6 @@ TEST(ViewPlanner, SaysWhyToEnd) {
   EXPECT_EQ(gain.should_stop(), StopReason::gain);
   gain.add(scene.see(scene.views[1]), scene.views[1]);
   EXPECT_FALSE(gain.should_stop());
-
-  config = scene.config(GainModel::combined);
-  config.stop_area = 0.999;
-  ViewPlanner area(scene.sensor, config, {1});
-  area.add_poses({"dome", scene.views});
-  int views = 0;
-  for (const std::size_t i : {0U, 4U, 8U, 12U}) {
-    area.add(scene.see(scene.views[i], i), scene.views[i]);
-    // Asked again and again a view still counts once.
-    (void)area.propose();
-    for (int again = 0; again < 3; ++again) (void)area.rank();
-    ++views;
-    if (area.should_stop()) break;
-  }
-  EXPECT_EQ(area.should_stop(), StopReason::area);
-  EXPECT_EQ(views, 3);
 }
 
 // Frames that say nothing where the best view is: what was promised does not come. Views from
@@ -441,17 +425,9 @@ TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
   };
   refuses_config("max_views", [](PlannerConfig& c) { c.max_views = 0; });
   refuses_config("stop_area", [](PlannerConfig& c) { c.stop_area = 2.0; });
-  refuses_config("stop_gain", [](PlannerConfig& c) { c.stop_gain = 2.0; });
   refuses_config("trace", [](PlannerConfig& c) { c.gain.criterion = Criterion::trace; });
-  refuses_config("voxel", [](PlannerConfig& c) { c.grid.voxel_size = 0; });
   refuses_config("clearance", [](PlannerConfig& c) { c.clearance = -1; });
-  refuses_config("stride", [](PlannerConfig& c) { c.gain.pixel_stride = 0; });
-  refuses_config("inside out", [](PlannerConfig& c) {
-    Box& box = c.surroundings.obstacles.boxes[0];
-    std::swap(box.min, box.max);
-  });
-  refuses_config("plane", [](PlannerConfig& c) { c.surroundings.support_plane = kNan; });
-  EXPECT_EQ(cases, 21);
+  EXPECT_EQ(cases, 16);
 }
 
 TEST(ViewPlanner, WhyToEndDoesNotHangOnHowManyAreAskedFor) {

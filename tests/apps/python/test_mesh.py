@@ -58,10 +58,6 @@ def test_the_loop_with_a_camera_in_python(camera, sensor, start, tmp_path):
     header = (tmp_path / "surface.ply").read_bytes()[:400].decode("latin1")
     assert f"element vertex {len(result.surface.vertices)}\n" in header
     assert f"element face {len(result.surface.triangles)}\n" in header
-    second = result.views[1]
-    assert second["predicted_area"] > 0 and second["realised_area"] > 0
-    assert second["surface_area"] > result.views[0]["surface_area"] > 0
-    assert not (result.grid.hazard_factors == 1).all()
 
 
 def test_the_gain_of_the_loop(camera, sensor, start):
@@ -69,26 +65,11 @@ def test_the_gain_of_the_loop(camera, sensor, start):
         result = reconstruct(camera, sensor, start, max_views=2, **settings)
         return result.views[1]["predicted_gain"], result.views[1]["predicted_area"]
 
-    both, area = gains()
-    assert (both, area) == gains(gain="combined")
-    assert gains(gain="surface") == (pytest.approx(area, rel=0.2), pytest.approx(area, rel=0.2))
-    assert gains(gain="paper")[0] not in (both, area)
-    soon = reconstruct(camera, sensor, start, max_views=8, stop_area=0.999,
-                       candidates=viewgain.sphere_poses(40, 0.5))
-    assert soon.reason == "area" and len(soon.views) == 3
-    with pytest.raises(ValueError, match="stop_area"):
-        gains(gain="paper", stop_area=0.1)
-    for wrong in (-0.1, 1.0, np.nan):
-        with pytest.raises(ValueError, match="stop_area"):
-            gains(stop_area=wrong)
-    with pytest.raises(ValueError, match="stop_gain"):
-        gains(stop_gain=1.0)
-    with pytest.raises(ValueError, match="criterion"):
-        gains(criterion="trace")
-    with pytest.raises(ValueError, match="combined"):
-        gains(gain="area")
-    # By trace gains are small numbers: a share of the first decision's ends the run.
-    assert len(reconstruct(camera, sensor, start, gain="paper", criterion="trace").views) > 1
+    assert gains() == gains(gain="combined") != gains(gain="surface")
+    for settings, text in [(dict(gain="paper", stop_area=0.1), "stop_area"), (dict(stop_area=1.0), "stop_area"),
+                           (dict(stop_gain=1.0), "stop_gain"), (dict(criterion="trace"), "criterion"), (dict(gain="area"), "combined")]:
+        with pytest.raises(ValueError, match=text):
+            gains(**settings)
 
 
 def test_candidates_of_ones_own_and_reach(camera, sensor, start):
@@ -106,16 +87,11 @@ def test_candidates_of_ones_own_and_reach(camera, sensor, start):
 def test_policies_with_a_set_of_their_own_leave_boundaries_out(camera, sensor, start):
     candidates = viewgain.sphere_poses(9, 0.5)[::2]
     settings = {"candidates": candidates, "stop_gain": 0.0, "idle_views": 0}
-    turned = reconstruct(camera, sensor, start, policy="sequence", **settings)
-    taken = np.array([view["T_world_camera"] for view in turned.views[1:]])
-    assert len(taken) == 3 and np.array_equal(taken, candidates[:3])
     for policy in ("random", "sequence"):
         views = reconstruct(camera, sensor, start, policy=policy, max_views=3, **settings).views
         assert [view["generator"] for view in views] == ["start", "candidates", "candidates"]
         with pytest.raises(ValueError, match=f'give candidates.*"{policy}"'):
             reconstruct(camera, sensor, start, policy=policy)
-    both = reconstruct(camera, sensor, start, policy="sequence", boundary=True, max_views=2, **settings)
-    assert both.views[1]["generator"] == "candidates"  # sets come first
     with pytest.raises(ValueError, match="give candidates"):
         reconstruct(camera, sensor, start, boundary=False)
 
@@ -190,8 +166,6 @@ def test_surface_and_boundaries(camera, sensor, start):
     assert poses.shape == (len(reasons), 4, 4) and len(reasons) > 10
     assert {viewgain.mesh.BoundaryClass(int(code)).name.lower() for code in reasons["boundary_class"]} <= set(viewgain.mesh.BOUNDARY_CLASS_NAMES)
     assert reasons["nominal"].any() and np.all(reasons["run_length"] > 0)
-    away = np.linalg.norm(poses[:, :3, 3] - reasons["target"], axis=1)
-    assert np.allclose(away, reasons["distance"])
     few, _ = viewgain.mesh.boundary_candidates(
         surface, [start], sensor, spacing=VOXEL, tilts=[0.0], rolls=[0.0], distances=[1.0])
     assert 0 < len(few) < len(poses)

@@ -46,11 +46,6 @@ Sensor looking() {
 
 const Pose kFromFront = look_at({0.03, -0.6, 0.05}, {0, 0, 0}, {0, 0, 1});
 
-DepthFrame frame_of(const Sensor& sensor, float depth) {
-  const auto pixels = static_cast<std::size_t>(sensor.camera.width * sensor.camera.height);
-  return {sensor.camera.width, sensor.camera.height, std::vector<float>(pixels, depth)};
-}
-
 TEST(HazardCalibration, CountsWhatAFineWalkCounts) {
   Sensor sensor = looking();  // so few pixels that all are followed
   sensor.camera.width = 32, sensor.camera.height = 24;
@@ -64,7 +59,7 @@ TEST(HazardCalibration, CountsWhatAFineWalkCounts) {
       BeliefGrid grid = unknown_cube(T_world_grid, {2, -8, 3});
       const HazardField field(grid.snapshot(), {.object_size = 0.35});
       const DepthFrame frame =
-          frame_of(sensor, depth > 2 ? DepthFrame::kOutOfRange : static_cast<float>(depth));
+          test::see_plane(sensor, depth > 2 ? DepthFrame::kOutOfRange : static_cast<float>(depth));
       HazardCalibration(sensor).count(grid, field, frame, kFromFront);
 
       // All pixels, in steps of a twentieth of a voxel.
@@ -116,7 +111,7 @@ TEST(HazardCalibration, FindsTheRateOfAWorldThatHasOne) {
   const std::size_t far = HazardCounters::kClasses - 1;
   int frames = 0;
   for (; frames < 12; ++frames) {
-    DepthFrame frame = frame_of(sensor, DepthFrame::kOutOfRange);
+    DepthFrame frame = test::see_plane(sensor, DepthFrame::kOutOfRange);
     const std::vector<Vector3d> rays = sensor.camera.ray_table();
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Vector3d u = kFromFront.rotation() * rays[i].normalized();
@@ -168,7 +163,7 @@ TEST(HazardCalibration, RatesDoNotStepUpWithTheDistance) {
 
 TEST(HazardCalibration, EarlierFramesFade) {
   const Sensor sensor = looking();
-  const DepthFrame frame = frame_of(sensor, 0.6F);
+  const DepthFrame frame = test::see_plane(sensor, 0.6F);
   BeliefGrid grid = unknown_cube();
   const HazardField field(grid.snapshot(), {.object_size = 0.35});
   const HazardCalibration calibration(sensor);
@@ -196,7 +191,7 @@ TEST(HazardCalibration, PosesThatAreALittleOffAreMended) {
   Eigen::Matrix3d R = kFromFront.rotation();
   R.col(0) += 9e-4 * R.col(1);
   const Pose off(R, kFromFront.translation());
-  const DepthFrame frame = frame_of(sensor, 0.6F);
+  const DepthFrame frame = test::see_plane(sensor, 0.6F);
   HazardCalibration(sensor).count(mended, field, frame, orthonormalized(off));
   HazardCalibration(sensor).count(grid, field, frame, off);
   EXPECT_EQ(grid.hazard_counters(), mended.hazard_counters());
@@ -211,10 +206,10 @@ TEST(HazardCalibration, WhatSaysNothing) {
   const HazardCalibration calibration(sensor);
   BeliefGrid grid = unknown_cube();
   const HazardField field(grid.snapshot(), {.object_size = 0.35});
-  calibration.count(grid, field, frame_of(sensor, DepthFrame::kInvalid), kFromFront);
+  calibration.count(grid, field, test::see_plane(sensor, DepthFrame::kInvalid), kFromFront);
   EXPECT_TRUE(grid.hazard_counters().empty());
   // NaN is no reading, as at integration.
-  calibration.count(grid, field, frame_of(sensor, std::numeric_limits<float>::quiet_NaN()),
+  calibration.count(grid, field, test::see_plane(sensor, std::numeric_limits<float>::quiet_NaN()),
                     kFromFront);
   EXPECT_TRUE(grid.hazard_counters().empty());
   // What is given is not what is counted against: other scenes of the map would be misled.
@@ -223,17 +218,17 @@ TEST(HazardCalibration, WhatSaysNothing) {
         HazardConfig{.calibrated = false}}) {
     const HazardField fixed(grid.snapshot(), given);
     EXPECT_FALSE(fixed.follows_counters());
-    calibration.count(grid, fixed, frame_of(sensor, 0.6F), kFromFront);
+    calibration.count(grid, fixed, test::see_plane(sensor, 0.6F), kFromFront);
     EXPECT_TRUE(grid.hazard_counters().empty());
   }
   EXPECT_TRUE(field.follows_counters());
-  DepthFrame turned = frame_of(sensor, 0.6F);
+  DepthFrame turned = test::see_plane(sensor, 0.6F);
   std::swap(turned.width, turned.height);
   test::expect_error(ErrorCode::invalid_argument, "px",
                      [&] { calibration.count(grid, field, turned, kFromFront); });
   // Readings of a table meet nothing, but pass what is before it.
   const Pose down = look_at({0, 0, 0.6}, {0, 0, 0}, {0, 1, 0});
-  HazardCalibration(sensor, 0.0).count(grid, field, frame_of(sensor, 0.6F), down);
+  HazardCalibration(sensor, 0.0).count(grid, field, test::see_plane(sensor, 0.6F), down);
   std::int64_t expected = 0;
   for (const HazardCounters::Class& c : grid.hazard_counters().classes) {
     EXPECT_EQ(c.met, 0);
@@ -242,12 +237,14 @@ TEST(HazardCalibration, WhatSaysNothing) {
   EXPECT_GT(expected, 0);
   // Without known surface there is no distance.
   BeliefGrid empty({kVoxel, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
-  calibration.count(empty, HazardField(empty.snapshot()), frame_of(sensor, 0.6F), kFromFront);
+  calibration.count(empty, HazardField(empty.snapshot()), test::see_plane(sensor, 0.6F),
+                    kFromFront);
   EXPECT_TRUE(empty.hazard_counters().empty());
   // A field of another map.
   test::expect_error(ErrorCode::invalid_argument, short_text(2 * kVoxel).c_str(), [&] {
     const BeliefGrid other({2 * kVoxel, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
-    calibration.count(grid, HazardField(other.snapshot()), frame_of(sensor, 0.6F), kFromFront);
+    calibration.count(grid, HazardField(other.snapshot()), test::see_plane(sensor, 0.6F),
+                      kFromFront);
   });
   test::expect_error(ErrorCode::invalid_argument, "2 x 2 px", [&] {
     calibration.count(grid, field, DepthFrame{2, 2, std::vector<float>(4, 0.6F)}, kFromFront);

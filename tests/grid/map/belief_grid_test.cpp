@@ -16,6 +16,7 @@
 
 #include "core/expect_error.hpp"
 #include "grid/analytic_frames.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/grid/integrate.hpp"
 
 namespace viewgain {
@@ -115,19 +116,13 @@ TEST(BeliefGrid, DenseStatesRoundTrip) {
       grid.copy_states(read);
       EXPECT_EQ(read, states);
       // The order is [x][y][z].
-      const Index3 min = grid.min_index(), d = grid.dims();
       std::size_t n = 0;
       std::uint64_t counts[3] = {};
-      for (int x = 0; x < d.x; ++x) {
-        for (int y = 0; y < d.y; ++y) {
-          for (int z = 0; z < d.z; ++z, ++n) {
-            const auto state =
-                static_cast<std::uint8_t>(grid.state({min.x + x, min.y + y, min.z + z}));
-            ASSERT_EQ(state, states[n]);
-            ++counts[state];
-          }
-        }
-      }
+      for_each_voxel(grid, [&](Index3 voxel) {
+        const auto state = static_cast<std::uint8_t>(grid.state(voxel));
+        ASSERT_EQ(state, states[n++]);
+        ++counts[state];
+      });
       const BeliefGrid::Statistics statistics = grid.statistics();
       EXPECT_EQ(statistics.unknown, counts[0]);
       EXPECT_EQ(statistics.free, counts[1]);

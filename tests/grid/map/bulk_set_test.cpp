@@ -5,13 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <random>
 #include <tuple>
 
 #include "core/expect_error.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/grid/belief.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/voxel.hpp"
@@ -62,12 +62,7 @@ TEST(BulkSet, IsAsOneByOneInTheirOrder) {
       ASSERT_EQ(together.log_odds(value.voxel), value.log_odds);
     }
     // The snapshot before counts no longer where voxels were set.
-    const GridSnapshot updated = together.snapshot(before), anew = together.snapshot();
-    ASSERT_EQ(updated.leaves.size(), anew.leaves.size());
-    for (std::size_t i = 0; i < anew.leaves.size(); ++i) {
-      ASSERT_EQ(updated.leaves[i].non_free, anew.leaves[i].non_free);
-      ASSERT_EQ(updated.leaves[i].beliefs, anew.leaves[i].beliefs);
-    }
+    test::expect_same(together.snapshot(before), together.snapshot());
   }
   EXPECT_GT(repeated, 1500);
   together.set(std::span<const VoxelValue>{});
@@ -156,23 +151,18 @@ TEST(Voxel, WorldToVoxelAndBack) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> inside(-0.499, 0.499);
   std::uint64_t voxels = 0;
-  for (int x = box.min.x; x < box.max.x; ++x) {
-    for (int y = box.min.y; y < box.max.y; ++y) {
-      for (int z = box.min.z; z < box.max.z; ++z) {
-        const Index3 voxel{x, y, z};
-        const Eigen::Vector3d in_grid = T_world_grid.inverse() * grid.center(voxel);
-        ASSERT_NEAR(in_grid.x(), (x + 0.5) * V, 1e-12);
-        ASSERT_NEAR(in_grid.y(), (y + 0.5) * V, 1e-12);
-        ASSERT_NEAR(in_grid.z(), (z + 0.5) * V, 1e-12);
-        ASSERT_EQ(snapshot.center(voxel), grid.center(voxel));
-        const Eigen::Vector3d off(inside(random), inside(random), inside(random));
-        const Eigen::Vector3d p = grid.center(voxel) + T_world_grid.rotation() * (V * off);
-        ASSERT_EQ(grid.index_of(p), voxel);
-        ASSERT_EQ(snapshot.index_of(p), voxel);
-        ++voxels;
-      }
-    }
-  }
+  test::for_each_voxel(box, [&](Index3 voxel) {
+    const Eigen::Vector3d in_grid = T_world_grid.inverse() * grid.center(voxel);
+    ASSERT_NEAR(in_grid.x(), (voxel.x + 0.5) * V, 1e-12);
+    ASSERT_NEAR(in_grid.y(), (voxel.y + 0.5) * V, 1e-12);
+    ASSERT_NEAR(in_grid.z(), (voxel.z + 0.5) * V, 1e-12);
+    ASSERT_EQ(snapshot.center(voxel), grid.center(voxel));
+    const Eigen::Vector3d off(inside(random), inside(random), inside(random));
+    const Eigen::Vector3d p = grid.center(voxel) + T_world_grid.rotation() * (V * off);
+    ASSERT_EQ(grid.index_of(p), voxel);
+    ASSERT_EQ(snapshot.index_of(p), voxel);
+    ++voxels;
+  });
   EXPECT_EQ(voxels, grid.voxel_count());
 
   // Voxels outside have a centre, but no point finds them.

@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <random>
 #include <set>
@@ -16,7 +14,8 @@
 
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
-#include "plain_cells.hpp"
+#include "grid/map/plain_cells.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
@@ -24,7 +23,7 @@ namespace viewgain {
 namespace {
 
 using test::expect_error;
-using test::Key;
+using test::for_each_voxel;
 using test::kV;
 using test::PlainCells;
 
@@ -64,16 +63,6 @@ Index3 random_voxel(const BeliefGrid& grid, std::mt19937& random) {
   };
   const Index3 min = grid.min_index(), d = grid.dims();
   return {one(min.x, d.x), one(min.y, d.y), one(min.z, d.z)};
-}
-
-template <typename F>
-void for_each_voxel(const BeliefGrid& grid, F&& f) {
-  const Index3 min = grid.min_index(), d = grid.dims();
-  for (int x = min.x; x < min.x + d.x; ++x) {
-    for (int y = min.y; y < min.y + d.y; ++y) {
-      for (int z = min.z; z < min.z + d.z; ++z) f(Index3{x, y, z});
-    }
-  }
 }
 
 TEST(LeafScales, TenThousandStepsAreThoseOfAPlainReference) {
@@ -152,42 +141,6 @@ BeliefGrid mixed_map(unsigned seed) {
   return grid;
 }
 
-TEST(LeafScales, SumsAreKeptUpwards) {
-  BeliefGrid grid(kConfig);
-  std::mt19937 random(3);
-  std::map<Key, std::vector<Belief>> all;
-  for (int i = 0; i < 800; ++i) {
-    const Index3 v = random_voxel(grid, random);
-    const Belief belief = random_belief(random, kV);
-    grid.set(v, 1.0F, belief);
-    all[{v.x, v.y, v.z}] = {belief};
-  }
-  std::uint64_t hits = 0;
-  for (const auto& [key, beliefs] : all) hits += beliefs.front().hits;
-  EXPECT_EQ(grid.statistics().hits, hits);
-  for (int scale = 1; scale <= 3; ++scale) {
-    EXPECT_GT(grid.resample(kAll, scale), 0U);
-    EXPECT_EQ(grid.statistics().hits, hits);
-    // Λ⁻¹η moves with the centre: Σ Λ (c + Λ⁻¹η) is that of the readings.
-    Eigen::Vector3d moment = Eigen::Vector3d::Zero(), expected = moment;
-    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero(), expected_sum = sum;
-    const auto add = [&](Index3 v, int s, const Belief& b, Eigen::Vector3d& to,
-                         Eigen::Matrix3d& all_of) {
-      const auto& e = b.information_vector;
-      to += b.information_matrix().matrix() * voxel_center(v, kV, s) +
-            Eigen::Vector3d(e[0], e[1], e[2]);
-      all_of += b.information_matrix().matrix();
-    };
-    grid.for_each_belief([&](Index3 v, const Belief& b) { add(v, grid.scale(v), b, moment, sum); });
-    for (const auto& [key, beliefs] : all) {
-      const auto& [x, y, z] = key;
-      add({x, y, z}, 0, beliefs.front(), expected, expected_sum);
-    }
-    EXPECT_LT((moment - expected).norm(), 1e-6 * expected_sum.norm());
-    EXPECT_LT((sum - expected_sum).norm(), 1e-6 * expected_sum.norm());
-  }
-}
-
 TEST(LeafScales, ACellIsReadAndSetAsAWhole) {
   BeliefGrid grid = mixed_map(1);
   std::mt19937 random(2);
@@ -261,13 +214,9 @@ TEST(LeafScales, ADenseArrayAndForgettingLeaveWholeCells) {
       for (std::uint8_t& state : states) state = static_cast<std::uint8_t>(random() % 3);
       grid.update_box(box, states);
       std::size_t i = 0;
-      for (int x = box.min.x; x < box.max.x; ++x) {
-        for (int y = box.min.y; y < box.max.y; ++y) {
-          for (int z = box.min.z; z < box.max.z; ++z) {
-            ASSERT_EQ(static_cast<std::uint8_t>(grid.state({x, y, z})), states[i++]);
-          }
-        }
-      }
+      for_each_voxel(box, [&](Index3 voxel) {
+        ASSERT_EQ(static_cast<std::uint8_t>(grid.state(voxel)), states[i++]);
+      });
       ++boxes;
     } else {
       grid.forget({{box.min.x * kV, box.min.y * kV, box.min.z * kV},

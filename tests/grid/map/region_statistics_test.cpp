@@ -13,70 +13,62 @@
 #include <vector>
 
 #include "core/expect_error.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain {
 namespace {
 
+using test::for_each_voxel;
 using Statistics = BeliefGrid::Statistics;
 
 /// A map of 21 x 18 x 25 voxels off the origin in all three states, some with beliefs.
 BeliefGrid random_map(std::mt19937_64& random) {
   const GridConfig config{0.01, {{-0.05, 0.03, -0.11}, {0.16, 0.21, 0.14}}, {}, 0.02};
   BeliefGrid grid(config);
-  const Index3 min = grid.min_index(), dims = grid.dims();
   std::uniform_real_distribution<double> unit(0, 1);
-  for (int x = 0; x < dims.x; ++x) {
-    for (int y = 0; y < dims.y; ++y) {
-      for (int z = 0; z < dims.z; ++z) {
-        const Index3 voxel{min.x + x, min.y + y, min.z + z};
-        if (x < 8 || unit(random) < 0.3) continue;  // unknown, whole leaves of it too
-        const bool occupied = unit(random) < 0.3;
-        std::optional<Belief> belief;
-        if (unit(random) < 0.5) {
-          const auto diagonal = [&] { return static_cast<float>(1e4 + 1e5 * unit(random)); };
-          belief = Belief{{diagonal(), diagonal(), diagonal(), 3e3F, -2e3F, 1e3F},
-                          {},
-                          1 + static_cast<std::uint32_t>(9 * unit(random))};
-        }
-        grid.set(voxel, occupied ? 0.85F : -0.4F, belief);
-      }
+  for_each_voxel(grid, [&](Index3 voxel) {
+    // Unknown, whole leaves of it too.
+    if (voxel.x < grid.min_index().x + 8 || unit(random) < 0.3) return;
+    const bool occupied = unit(random) < 0.3;
+    std::optional<Belief> belief;
+    if (unit(random) < 0.5) {
+      const auto diagonal = [&] { return static_cast<float>(1e4 + 1e5 * unit(random)); };
+      belief = Belief{{diagonal(), diagonal(), diagonal(), 3e3F, -2e3F, 1e3F},
+                      {},
+                      1 + static_cast<std::uint32_t>(9 * unit(random))};
     }
-  }
+    grid.set(voxel, occupied ? 0.85F : -0.4F, belief);
+  });
   return grid;
 }
 
 /// Voxel by voxel, by the definition, and the mean sigma.
 std::pair<Statistics, double> slow_statistics(const BeliefGrid& grid, const Box& region,
                                               Criterion criterion) {
-  const Index3 min = grid.min_index(), dims = grid.dims();
   const double V = grid.voxel_size();
   const SymmetricMatrix3 prior = SymmetricMatrix3::identity(std::pow(grid.prior_sigma(), -2));
   Statistics result;
   double sum = 0;
   int believed = 0;
-  for (int x = min.x; x < min.x + dims.x; ++x) {
-    for (int y = min.y; y < min.y + dims.y; ++y) {
-      for (int z = min.z; z < min.z + dims.z; ++z) {
-        if (!region.contains((x + 0.5) * V, (y + 0.5) * V, (z + 0.5) * V)) continue;
-        const VoxelState state = grid.state({x, y, z});
-        (state == VoxelState::unknown ? result.unknown
-         : state == VoxelState::free  ? result.free
-                                      : result.occupied) += 1;
-        const auto belief = grid.belief({x, y, z});
-        if (!belief) continue;
-        result.hits += belief->hits;
-        if (state != VoxelState::occupied) continue;
-        const SymmetricMatrix3 information = belief->information_matrix();
-        result.entropy_removed +=
-            entropy(prior, criterion) - entropy(prior + information, criterion);
-        const Eigen::Matrix3d covariance =
-            information.matrix().inverse() + V * V / 12 * Eigen::Matrix3d::Identity();
-        sum += std::sqrt(covariance.trace() / 3);
-        ++believed;
-      }
-    }
-  }
+  for_each_voxel(grid, [&](Index3 voxel) {
+    const Eigen::Vector3d p = V * (Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5);
+    if (!region.contains(p.x(), p.y(), p.z())) return;
+    const VoxelState state = grid.state(voxel);
+    (state == VoxelState::unknown ? result.unknown
+     : state == VoxelState::free  ? result.free
+                                  : result.occupied) += 1;
+    const auto belief = grid.belief(voxel);
+    if (!belief) return;
+    result.hits += belief->hits;
+    if (state != VoxelState::occupied) return;
+    const SymmetricMatrix3 information = belief->information_matrix();
+    result.entropy_removed += entropy(prior, criterion) - entropy(prior + information, criterion);
+    const Eigen::Matrix3d covariance =
+        information.matrix().inverse() + V * V / 12 * Eigen::Matrix3d::Identity();
+    sum += std::sqrt(covariance.trace() / 3);
+    ++believed;
+  });
   return {result, sum / believed};
 }
 
@@ -155,16 +147,6 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 // Over a border of OpenVDB's nodes of 128³ voxels, off the blocks' lattice.
 const GridConfig kConfig{0.01, {{-0.13, 1.15, -0.05}, {0.06, 1.45, 0.15}}, {}, 0.01};
 
-template <typename Visit>
-void for_each_voxel(const BeliefGrid& grid, Visit&& visit) {
-  const Index3 min = grid.min_index(), d = grid.dims();
-  for (int x = min.x; x < min.x + d.x; ++x) {
-    for (int y = min.y; y < min.y + d.y; ++y) {
-      for (int z = min.z; z < min.z + d.z; ++z) visit(Index3{x, y, z});
-    }
-  }
-}
-
 /// All voxels free, as tiles where that is possible, but for some voxels of every other block.
 BeliefGrid known_map(unsigned seed) {
   const BeliefGrid layout(kConfig);
@@ -225,14 +207,7 @@ TEST(Forget, VoxelsWhoseCentresLieInTheRegionAreUnknownOthersAsBefore) {
       forgotten += found;
       ASSERT_EQ(grid.views().size(), 1U);
       // What a snapshot follows is what one anew has.
-      const GridSnapshot anew = grid.snapshot(), followed = grid.snapshot(seen);
-      ASSERT_EQ(followed.leaves.size(), anew.leaves.size());
-      ASSERT_EQ(followed.tiles, anew.tiles);
-      for (std::size_t i = 0; i < anew.leaves.size(); ++i) {
-        ASSERT_EQ(followed.leaves[i].origin, anew.leaves[i].origin);
-        ASSERT_EQ(followed.leaves[i].non_free, anew.leaves[i].non_free);
-        ASSERT_EQ(followed.leaves[i].occupied, anew.leaves[i].occupied);
-      }
+      test::expect_same(grid.snapshot(seen), grid.snapshot());
       ASSERT_EQ(grid.forget(region), 0U);
       ASSERT_EQ(grid.statistics().unknown,
                 grid.voxel_count() - grid.statistics().free - grid.statistics().occupied);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/expect_error.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain {
@@ -20,20 +21,13 @@ namespace {
 // Over a border of OpenVDB's nodes of 128³ voxels, off the blocks' lattice.
 const GridConfig kConfig{0.01, {{-0.13, 1.15, -0.05}, {0.06, 1.45, 0.15}}, {}, 0.01};
 
+using test::for_each_voxel;
+
 struct Voxel {
   std::optional<float> log_odds;
   std::optional<Belief> belief;
   [[nodiscard]] std::uint8_t state() const { return !log_odds ? 0 : *log_odds > 0 ? 2 : 1; }
 };
-
-template <typename Visit>
-void for_each_voxel(const VoxelBox& box, Visit&& visit) {
-  for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
-    for (std::int32_t y = box.min.y; y < box.max.y; ++y) {
-      for (std::int32_t z = box.min.z; z < box.max.z; ++z) visit(Index3{x, y, z});
-    }
-  }
-}
 
 // Against a dense array of what each voxel must be.
 TEST(UpdateBox, VoxelsAreWhatTheArraySaysOthersAsBefore) {
@@ -99,14 +93,7 @@ TEST(UpdateBox, VoxelsAreWhatTheArraySaysOthersAsBefore) {
       ASSERT_EQ(grid.belief(at), voxel.belief);
     });
     // What a snapshot follows is what one anew has, and no change changes nothing.
-    const GridSnapshot anew = grid.snapshot(), followed = grid.snapshot(before);
-    ASSERT_EQ(followed.tiles, anew.tiles);
-    ASSERT_EQ(followed.leaves.size(), anew.leaves.size());
-    for (std::size_t i = 0; i < anew.leaves.size(); ++i) {
-      ASSERT_EQ(followed.leaves[i].origin, anew.leaves[i].origin);
-      ASSERT_EQ(followed.leaves[i].non_free, anew.leaves[i].non_free);
-      ASSERT_EQ(followed.leaves[i].occupied, anew.leaves[i].occupied);
-    }
+    test::expect_same(grid.snapshot(before), grid.snapshot());
     const std::string hash = grid.content_hash();
     ASSERT_EQ(grid.update_box(box, states), 0U);
     ASSERT_EQ(grid.content_hash(), hash);
@@ -115,16 +102,6 @@ TEST(UpdateBox, VoxelsAreWhatTheArraySaysOthersAsBefore) {
   EXPECT_GT(changes, 30'000U);
   EXPECT_GT(kept_beliefs, 1'000U);
   EXPECT_GT(lost_beliefs, 1'000U);
-}
-
-TEST(UpdateBox, OfAllTheWorkspaceIsTheMapOfTheStates) {
-  BeliefGrid grid(kConfig);
-  std::vector<std::uint8_t> states(grid.voxel_count());
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    states[i] = static_cast<std::uint8_t>(i / 700 % 3);
-  }
-  EXPECT_GT(grid.update_box(VoxelBox::from_dims(grid.min_index(), grid.dims()), states), 5'000U);
-  EXPECT_EQ(grid.content_hash(), BeliefGrid::from_states(kConfig, states).content_hash());
 }
 
 TEST(UpdateBox, WrongArgumentsChangeNothing) {

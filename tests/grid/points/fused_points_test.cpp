@@ -19,6 +19,7 @@
 #include "core/expect_error.hpp"
 #include "core/random_values.hpp"
 #include "grid/analytic_frames.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/grid/integrate.hpp"
 
 namespace viewgain {
@@ -189,19 +190,15 @@ TEST(FusedPoints, PerVoxelIsTheFusedPositionOfEachOccupiedVoxel) {
   config.min_hits = 2;
   const std::vector<FusedPoint> points = fused_points(grid, config);
   std::vector<Vector3d> expected;
-  const Index3 low = grid.min_index(), dims = grid.dims();
-  for (std::int32_t x = low.x; x < low.x + dims.x; ++x) {
-    for (std::int32_t y = low.y; y < low.y + dims.y; ++y) {
-      for (std::int32_t z = low.z; z < low.z + dims.z; ++z) {
-        const auto belief = grid.belief({x, y, z});
-        if (!belief || belief->hits < 2 || grid.state({x, y, z}) != VoxelState::occupied) continue;
-        const auto& eta = belief->information_vector;
-        const Vector3d center = (Vector3d(x, y, z).array() + 0.5) * grid.voxel_size();
-        expected.push_back(center + belief->information_matrix().inverse() *
-                                        Vector3d(eta[0], eta[1], eta[2]));
-      }
-    }
-  }
+  test::for_each_voxel(grid, [&](Index3 voxel) {
+    const auto [x, y, z] = voxel;
+    const auto belief = grid.belief({x, y, z});
+    if (!belief || belief->hits < 2 || grid.state({x, y, z}) != VoxelState::occupied) return;
+    const auto& eta = belief->information_vector;
+    const Vector3d center = (Vector3d(x, y, z).array() + 0.5) * grid.voxel_size();
+    expected.push_back(center +
+                       belief->information_matrix().inverse() * Vector3d(eta[0], eta[1], eta[2]));
+  });
   ASSERT_EQ(points.size(), expected.size());
   ASSERT_GT(points.size(), 1000U);
   const double floor = grid.voxel_size() * grid.voxel_size() / 12;
@@ -228,25 +225,20 @@ struct SlowBelief {
 std::vector<SlowBelief> all_beliefs(const BeliefGrid& grid, int shift) {
   std::map<std::array<std::int32_t, 3>, SlowBelief> cubes;
   const double V = grid.voxel_size();
-  const Index3 low = grid.min_index(), dims = grid.dims();
-  for (std::int32_t x = low.x; x < low.x + dims.x; ++x) {
-    for (std::int32_t y = low.y; y < low.y + dims.y; ++y) {
-      for (std::int32_t z = low.z; z < low.z + dims.z; ++z) {
-        const auto belief = grid.belief({x, y, z});
-        if (!belief) continue;
-        SlowBelief& cube = cubes[{x >> shift, y >> shift, z >> shift}];
-        const Eigen::Matrix3d information = belief->information_matrix().matrix();
-        const auto& eta = belief->information_vector;
-        cube.center =
-            (Vector3d(x >> shift, y >> shift, z >> shift).array() + 0.5) * (V * (1 << shift));
-        cube.information += information;
-        cube.pull += information * Vector3d((Vector3d(x, y, z).array() + 0.5) * V) +
-                     Vector3d(eta[0], eta[1], eta[2]);
-        cube.hits += belief->hits;
-        cube.occupied = cube.occupied || grid.state({x, y, z}) == VoxelState::occupied;
-      }
-    }
-  }
+  test::for_each_voxel(grid, [&](Index3 voxel) {
+    const auto [x, y, z] = voxel;
+    const auto belief = grid.belief({x, y, z});
+    if (!belief) return;
+    SlowBelief& cube = cubes[{x >> shift, y >> shift, z >> shift}];
+    const Eigen::Matrix3d information = belief->information_matrix().matrix();
+    const auto& eta = belief->information_vector;
+    cube.center = (Vector3d(x >> shift, y >> shift, z >> shift).array() + 0.5) * (V * (1 << shift));
+    cube.information += information;
+    cube.pull += information * Vector3d((Vector3d(x, y, z).array() + 0.5) * V) +
+                 Vector3d(eta[0], eta[1], eta[2]);
+    cube.hits += belief->hits;
+    cube.occupied = cube.occupied || grid.state({x, y, z}) == VoxelState::occupied;
+  });
   std::vector<SlowBelief> result;
   for (const auto& [index, cube] : cubes) result.push_back(cube);
   return result;

@@ -129,18 +129,6 @@ TEST(Association, GoesWhereMoreThanTwiceTheValueIs) {
   EXPECT_EQ(hits(grid, 48), 6U);
 }
 
-TEST(Association, TheBeliefTakesThePlaceOfTheReading) {
-  // Two readings at 48.5 in the voxel of 30 at 50.5: the mean is that of all.
-  BeliefGrid grid = column();
-  read(grid, 0.01, 0.505, 30);
-  read(grid, 0.01, 0.485, 2);
-  const auto belief = grid.belief({0, 0, 50});
-  ASSERT_TRUE(belief.has_value());
-  EXPECT_EQ(belief->hits, 32U);
-  const double z = 0.505 + belief->information_vector[2] / belief->information[2];
-  EXPECT_NEAR(z, (30 * 0.505 + 2 * 0.485) / 32, 1e-6);
-}
-
 TEST(Association, SurfaceThatHasGoneAttractsNothing) {
   BeliefGrid grid = column();
   FrameIntegrator integrator(one_pixel(0.01),
@@ -204,57 +192,6 @@ TEST(Association, WallsStayThinAndThinThingsStay) {
     EXPECT_LE(plate, 2.6) << z;
     EXPECT_GE(plate, 1.0) << z;
   }
-}
-
-/// A map of one noisy frame, of a depth that depends on the column.
-BeliefGrid seen_once(const Sensor& sensor, double voxel, double (*depth_at)(double ray_x)) {
-  BeliefGrid grid(GridConfig{voxel, {{-0.2, -0.2, 0.3}, {0.2, 0.2, 0.7}}, {}, 0.01});
-  std::mt19937 random(4);
-  DepthFrame frame{sensor.camera.width, sensor.camera.height, {}};
-  for (const Eigen::Vector3d& ray : sensor.camera.ray_table()) {
-    frame.depth.push_back(static_cast<float>(depth_at(ray.x())));
-  }
-  FrameIntegrator(sensor).integrate(grid, noisy(sensor, frame, random), {});
-  return grid;
-}
-
-/// Share of the readings that count for a voxel within `distance` of the surface, away from the
-/// image's rim.
-double share_within(const BeliefGrid& grid, double distance, double (*off)(double x, double z)) {
-  double all = 0, near = 0;
-  grid.for_each_belief([&](Index3 v, const Belief& belief) {
-    const Eigen::Vector3d c = grid.center(v);
-    if (std::abs(c.x()) > 0.12 || std::abs(c.y()) > 0.08) return;
-    all += belief.hits;
-    if (std::abs(off(c.x(), c.z())) <= distance) near += belief.hits;
-  });
-  EXPECT_GT(all, 500.0);
-  return near / all;
-}
-
-// 6 mm of noise in voxels of 5 mm. A voxel that a plane goes through has its centre within √3/2
-// voxels of it; by their own voxels a half of the readings would be that near.
-TEST(Association, OneFrameOfASlopeGivesThinSurface) {
-  Sensor sensor = small_sensor(64, 48);
-  sensor.noise = ConstantNoise{0.006, 0.003};
-  constexpr double kSlope = 0.7, kVoxelSize = 0.005;
-  // z = 0.5 + slope · x, seen along rays x = ray.x · z.
-  const BeliefGrid grid =
-      seen_once(sensor, kVoxelSize, [](double ray_x) { return 0.5 / (1 - kSlope * ray_x); });
-  const auto off = [](double x, double z) {
-    return (z - 0.5 - kSlope * x) / std::sqrt(1 + kSlope * kSlope);
-  };
-  EXPECT_GT(share_within(grid, 1.2 * kVoxelSize, off), 0.97);
-}
-
-// A step of 16 sigma: its sides do not draw each other's readings, so nothing lies between them.
-TEST(Association, AStepStaysAStep) {
-  Sensor sensor = small_sensor(64, 48);
-  sensor.noise = ConstantNoise{0.006, 0.003};
-  const BeliefGrid grid =
-      seen_once(sensor, 0.005, [](double ray_x) { return ray_x < 0.01 ? 0.5 : 0.6; });
-  const auto off = [](double, double z) { return z < 0.55 ? z - 0.5 : z - 0.6; };
-  EXPECT_GT(share_within(grid, 0.0075, off), 0.97);
 }
 
 TEST(Association, TheOrderOfPointsDoesNotMatter) {

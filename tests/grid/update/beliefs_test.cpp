@@ -34,15 +34,6 @@ DepthFrame one_reading(double depth) { return {1, 1, {static_cast<float>(depth)}
 
 const GridConfig kCube{0.01, {{-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}}, {}, 0.01};
 
-/// Axis-aligned plane z = z0 + slope x of the world, seen along +z from the origin.
-DepthFrame see_plane(const Sensor& sensor, double z0, double slope) {
-  DepthFrame frame{sensor.camera.width, sensor.camera.height, {}};
-  for (const Eigen::Vector3d& ray : sensor.camera.ray_table()) {
-    frame.depth.push_back(static_cast<float>(z0 / (1.0 - slope * ray.x())));
-  }
-  return frame;
-}
-
 TEST(Beliefs, TwoPerpendicularReadings) {
   // The paper's figure 3: each reading is sure across its ray, together they are sure everywhere.
   const ConstantNoise noise{0.004, 0.001};
@@ -234,40 +225,6 @@ TEST(Beliefs, StayWithAVoxelThatTurnsFreeAndGoOnLater) {
   EXPECT_EQ(again->hits, 2U);
   EXPECT_FLOAT_EQ(again->information[0], 2 * first->information[0]);
   EXPECT_GT(grid.statistics().entropy_removed, with_it);
-}
-
-TEST(Beliefs, EntropyRemovedIsTheSumOverOccupiedVoxels) {
-  BeliefGrid grid(object_grid(48));
-  const Sensor sensor = small_sensor(64, 48);
-  FrameIntegrator integrator(sensor);
-  for (int i = 0; i < 4; ++i) {
-    integrator.integrate(grid, see_spheres(sensor, ring_view(i), three_spheres_in_a_room()),
-                         ring_view(i));
-  }
-  const double prior = 1.0 / (grid.prior_sigma() * grid.prior_sigma());
-  int voxels = 0;
-  for (const Criterion criterion :
-       {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
-    double sum = 0;
-    voxels = 0;
-    for (int i = -24; i < 24; ++i) {
-      for (int j = -24; j < 24; ++j) {
-        for (int k = -24; k < 24; ++k) {
-          if (grid.state({i, j, k}) != VoxelState::occupied) continue;
-          const auto belief = grid.belief({i, j, k});
-          ASSERT_TRUE(belief.has_value());
-          const SymmetricMatrix3 before = SymmetricMatrix3::identity(prior);
-          sum += entropy(before, criterion) -
-                 entropy(before + belief->information_matrix(), criterion);
-          ++voxels;
-        }
-      }
-    }
-    EXPECT_NEAR(grid.statistics(criterion).entropy_removed, sum, 1e-9 * sum);
-    EXPECT_GT(sum, 0);
-  }
-  EXPECT_EQ(static_cast<std::uint64_t>(voxels), grid.statistics().occupied);
-  EXPECT_GT(voxels, 300);
 }
 
 // Incidence from the amplitude of a frame.

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -183,77 +182,6 @@ TEST(Carving, ThreeKindsOfPixel) {
   EXPECT_EQ(column(DepthFrame::kOutOfRange), std::tuple(line(90, 0), 0U, 48U, 0U));
   sensor.max_range = std::nextafter(sensor.max_range, 0.0);
   EXPECT_EQ(column(DepthFrame::kOutOfRange), std::tuple(line(89, 0), 0U, 48U, 0U));
-}
-
-// Pyramids against dense sub-rays inside the pixels: they may disagree only next to a pyramid's
-// face or to a reading.
-TEST(Carving, ConesAgreeWithDenseSubRays) {
-  Sensor sensor = small_sensor(12, 9);
-  sensor.noise = ConstantNoise{0.001, 0.001};
-  const Pose pose = look_at({0.02, -0.45, 0.03}, {0, 0, 0});
-  const GridConfig config{0.004, {{-0.06, -0.06, -0.06}, {0.06, 0.06, 0.06}}, {}, 0.01};
-  const DepthFrame frame = see_spheres(sensor, pose, {{{0, 0, 0}, 0.05}, {{0, 0, 0}, 1.5}});
-  BeliefGrid grid(config);
-  FrameIntegrator(sensor).integrate(grid, frame, pose);
-
-  constexpr int kSub = 20;
-  const Index3 min = grid.min_index(), dims = grid.dims();
-  const auto position = [&](int x, int y, int z) {
-    return static_cast<std::size_t>(((x - min.x) * dims.y + (y - min.y)) * dims.z + (z - min.z));
-  };
-  std::vector<bool> crossed(grid.voxel_count());  // the workspace is 30 voxels wide
-  const double eye[3] = {pose.m[3] / config.voxel_size, pose.m[7] / config.voxel_size,
-                         pose.m[11] / config.voxel_size};
-  for (int v = 0; v < sensor.camera.height; ++v) {
-    for (int u = 0; u < sensor.camera.width; ++u) {
-      const double reach = frame.at(u, v) * sensor.camera.ray(u, v).norm();
-      for (int s = 0; s < kSub * kSub; ++s) {
-        const double du = (s % kSub + 0.5) / kSub - 0.5, dv = (s / kSub + 0.5) / kSub - 0.5;
-        const Eigen::Vector3d d =
-            (pose.rotation() * sensor.camera.ray(u + du, v + dv)).normalized();
-        // Plain numbers: millions of steps, also where nothing is optimised.
-        const double d_voxel[3] = {d.x() / config.voxel_size, d.y() / config.voxel_size,
-                                   d.z() / config.voxel_size};
-        for (double t = 0.35; t < std::min(reach, 0.56); t += 0.002) {
-          const double x = eye[0] + t * d_voxel[0], y = eye[1] + t * d_voxel[1],
-                       z = eye[2] + t * d_voxel[2];
-          if (!(std::abs(x) < 15 && std::abs(y) < 15 && std::abs(z) < 15)) continue;
-          crossed[position(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)),
-                           static_cast<int>(std::floor(z)))] = true;
-        }
-      }
-    }
-  }
-
-  const double one_voxel = std::sqrt(3.0) * config.voxel_size;
-  std::uint64_t compared = 0, agreed = 0, explained = 0;
-  for (int i = min.x; i < min.x + dims.x; ++i) {
-    for (int j = min.y; j < min.y + dims.y; ++j) {
-      for (int k = min.z; k < min.z + dims.z; ++k) {
-        ++compared;
-        const bool known = grid.state({i, j, k}) != VoxelState::unknown;
-        if (known == crossed[position(i, j, k)]) {
-          ++agreed;
-          continue;
-        }
-        const Eigen::Vector3d p =
-            pose.inverse() * (Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5) * config.voxel_size);
-        const Eigen::Vector2d at = sensor.camera.project(p);
-        const Eigen::Vector2d to_face =
-            Eigen::Vector2d::Constant(0.5) - (at - at.array().round().matrix()).cwiseAbs();
-        const bool near_face = to_face.x() * p.z() / sensor.camera.fx < one_voxel ||
-                               to_face.y() * p.z() / sensor.camera.fy < one_voxel;
-        const int u = static_cast<int>(std::lround(at.x())),
-                  v = static_cast<int>(std::lround(at.y()));
-        const bool seen = u >= 0 && v >= 0 && u < sensor.camera.width && v < sensor.camera.height;
-        const double reach = seen ? frame.at(u, v) * sensor.camera.ray(u, v).norm() : 0.0;
-        if (near_face || std::abs(reach - p.norm()) < one_voxel) ++explained;
-      }
-    }
-  }
-  EXPECT_EQ(compared, 27000U);
-  EXPECT_EQ(agreed + explained, compared);
-  EXPECT_GT(agreed, compared * 3 / 4);
 }
 
 }  // namespace

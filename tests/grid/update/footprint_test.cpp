@@ -14,6 +14,7 @@
 
 #include "core/expect_error.hpp"
 #include "grid/analytic_frames.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/grid/integrate.hpp"
 
@@ -23,16 +24,6 @@ namespace {
 using namespace test;
 using Occupancy = IntegrationConfig::Occupancy;
 using Carve = IntegrationConfig::Carve;
-
-template <typename F>
-void for_each_voxel(const BeliefGrid& grid, F&& f) {
-  const VoxelBox box = VoxelBox::from_dims(grid.min_index(), grid.dims());
-  for (int x = box.min.x; x < box.max.x; ++x) {
-    for (int y = box.min.y; y < box.max.y; ++y) {
-      for (int z = box.min.z; z < box.max.z; ++z) f(Index3{x, y, z});
-    }
-  }
-}
 
 Sensor sharp_sensor(int width, int height) {
   Sensor sensor = small_sensor(width, height);

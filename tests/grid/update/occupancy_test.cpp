@@ -22,13 +22,6 @@ namespace {
 
 using namespace test;
 
-DepthFrame wall(const Sensor& sensor, double z) {
-  const auto pixels = static_cast<std::size_t>(sensor.camera.width) *
-                      static_cast<std::size_t>(sensor.camera.height);
-  return {sensor.camera.width, sensor.camera.height,
-          std::vector<float>(pixels, static_cast<float>(z))};
-}
-
 // Frontal wall, SR4000 noise, voxels finer than the noise; all of the workspace is in view.
 TEST(Occupancy, AWallSeenFiftyTimesWithNoiseStays) {
   Sensor sensor = sensor_preset("sr4000");
@@ -42,7 +35,7 @@ TEST(Occupancy, AWallSeenFiftyTimesWithNoiseStays) {
   std::normal_distribution<double> normal(0.0, sensor.sigmas(z).axial);
   int columns = 0;
   for (int frame = 1; frame <= 50; ++frame) {
-    DepthFrame noisy = wall(sensor, z);
+    DepthFrame noisy = see_plane(sensor, z);
     for (float& depth : noisy.depth) depth += static_cast<float>(normal(random));
     integrator.integrate(grid, noisy, Pose{});
     if (frame != 3 && frame != 10 && frame != 50) continue;
@@ -69,34 +62,13 @@ TEST(Occupancy, AWallSeenFiftyTimesWithNoiseStays) {
   EXPECT_EQ(grid.views().size(), 50U);
 }
 
-TEST(Occupancy, OneFlyingPixelInSpaceSeenFreeFiftyTimesStaysFree) {
-  const Sensor sensor = small_sensor(24, 18);
-  const GridConfig config{0.01, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01};
-  for (const int when : {0, 25, 50}) {  // among 51 frames
-    BeliefGrid grid(config);
-    FrameIntegrator integrator(sensor);
-    for (int i = 0; i <= 50; ++i) {
-      DepthFrame frame = wall(sensor, 0.55);
-      if (i == when) frame.depth[9 * 24 + 12] = 0.355F;
-      integrator.integrate(grid, frame, Pose{});
-    }
-    const Eigen::Vector3d p = sensor.camera.ray(12, 9) * 0.355;
-    const Index3 voxel{static_cast<int>(std::floor(p.x() / 0.01)),
-                       static_cast<int>(std::floor(p.y() / 0.01)), 35};
-    const auto belief = grid.belief(voxel);
-    ASSERT_TRUE(belief.has_value());
-    EXPECT_EQ(belief->hits, 1U);
-    EXPECT_EQ(grid.state(voxel), VoxelState::free) << when;
-  }
-}
-
 TEST(Occupancy, LogOddsAreClampedAndRoundedToSteps) {
   const Sensor sensor = small_sensor(24, 18);
   BeliefGrid grid({0.02, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01});
   FrameIntegrator integrator(sensor);
   const Index3 before{0, 0, 15}, at{0, 0, 25};  // centres at 0.31 and 0.51
   for (int i = 1; i <= 8; ++i) {
-    integrator.integrate(grid, wall(sensor, 0.51), Pose{});
+    integrator.integrate(grid, see_plane(sensor, 0.51), Pose{});
     EXPECT_FLOAT_EQ(grid.log_odds(before).value(), std::max(-0.4F * static_cast<float>(i), -2.0F));
     EXPECT_FLOAT_EQ(grid.log_odds(at).value(), std::min(0.85F * static_cast<float>(i), 3.5F));
   }
@@ -108,7 +80,7 @@ TEST(Occupancy, CrossedWithoutWeightIsFree) {
   Sensor sensor = small_sensor(24, 18);
   sensor.noise = ConstantNoise{0.05, 0.05};  // 3 sigma are 150 mm
   BeliefGrid grid({0.005, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01});
-  FrameIntegrator(sensor).integrate(grid, wall(sensor, 0.501), Pose{});
+  FrameIntegrator(sensor).integrate(grid, see_plane(sensor, 0.501), Pose{});
   std::vector<float> column;
   for (int k = 60; k < 100; ++k) {
     ASSERT_EQ(grid.state({0, 0, k}), VoxelState::free) << k;
@@ -129,21 +101,6 @@ TEST(Occupancy, CrossedWithoutWeightIsFree) {
         << k;
   }
   EXPECT_EQ(column.size(), 40U);
-}
-
-TEST(Occupancy, LiteralFollowsTheLastFrame) {
-  const Sensor sensor = small_sensor(24, 18);
-  BeliefGrid grid({0.02, {{-0.1, -0.1, 0.2}, {0.1, 0.1, 0.6}}, {}, 0.01});
-  FrameIntegrator integrator(
-      sensor, {IntegrationConfig::Carve::cones, IntegrationConfig::Occupancy::literal});
-  const Index3 voxel{0, 0, 20};
-  for (int i = 0; i < 5; ++i) integrator.integrate(grid, wall(sensor, 0.41), Pose{});
-  EXPECT_EQ(grid.state(voxel), VoxelState::occupied);
-  integrator.integrate(grid, wall(sensor, 0.51), Pose{});
-  EXPECT_EQ(grid.state(voxel), VoxelState::free);
-  EXPECT_TRUE(grid.belief(voxel).has_value());
-  integrator.integrate(grid, wall(sensor, 0.41), Pose{});
-  EXPECT_EQ(grid.state(voxel), VoxelState::occupied);
 }
 
 // The map is the same bit for bit whatever runs it.

@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <new>
 #include <tuple>
 #include <vector>
 
+#include "core/replaced_new.hpp"
 #include "core/temporary_folder.hpp"
 #include "grid/analytic_frames.hpp"
 #include "viewgain/grid/integrate.hpp"
@@ -24,14 +24,9 @@ std::atomic<long> allocations_left{-1};
 
 }  // namespace
 
-// Not inlined, else GCC sees free() called on what its own operator new gave.
-[[gnu::noinline]] void* operator new(std::size_t size) {
+void on_allocation() {
   if (allocations_left.load() >= 0 && allocations_left.fetch_sub(1) <= 0) throw std::bad_alloc();
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
 }
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace viewgain {
 namespace {

@@ -17,6 +17,7 @@
 
 #include "core/expect_error.hpp"
 #include "grid/analytic_frames.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"
@@ -162,19 +163,15 @@ TEST_F(SupportPlaneScene, OnlyVoxelsWithReadingsOfThePlaneDiffer) {
   EXPECT_GT(plane_readings, 3000U);
 
   std::size_t compared = 0, different = 0, occupied = 0;
-  for (int i = -15; i < 15; ++i) {
-    for (int j = -15; j < 15; ++j) {
-      for (int k = -15; k < 15; ++k, ++compared) {
-        occupied += without.state({i, j, k}) == VoxelState::occupied ? 1 : 0;
-        if (with.state({i, j, k}) == without.state({i, j, k}) &&
-            with.belief({i, j, k}) == without.belief({i, j, k})) {
-          continue;
-        }
-        EXPECT_TRUE(plane_voxels.contains({i, j, k})) << i << " " << j << " " << k;
-        ++different;
-      }
+  for_each_voxel(VoxelBox{{-15, -15, -15}, {15, 15, 15}}, [&](Index3 voxel) {
+    ++compared;
+    occupied += without.state(voxel) == VoxelState::occupied ? 1 : 0;
+    if (with.state(voxel) == without.state(voxel) && with.belief(voxel) == without.belief(voxel)) {
+      return;
     }
-  }
+    EXPECT_TRUE(plane_voxels.contains({voxel.x, voxel.y, voxel.z})) << voxel.x << " " << voxel.y;
+    ++different;
+  });
   EXPECT_EQ(compared, 27'000U);
   EXPECT_GT(different, 300U);
   EXPECT_GT(occupied, 100U);

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "grid/analytic_frames.hpp"
+#include "grid/voxels.hpp"
 
 namespace viewgain::test {
 namespace {
@@ -180,44 +181,41 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
   std::vector<std::array<double, 3>> directions;
   for (const Eigen::Vector3d& ray : rays) directions.push_back({ray.x(), ray.y(), ray.z()});
 
-  for (int i = min_.x; i < min_.x + dims_.x; ++i) {
-    for (int j = min_.y; j < min_.y + dims_.y; ++j) {
-      for (int k = min_.z; k < min_.z + dims_.z; ++k) {
-        int& delta = deltas[position({i, j, k})];
-        if (config.carve == IntegrationConfig::Carve::cones) {
-          const Eigen::Vector3d c = center({i, j, k});
-          const auto& T = T_camera_grid.m;
-          const Eigen::Vector3d p(T[0] * c.x() + T[1] * c.y() + T[2] * c.z() + T[3],
-                                  T[4] * c.x() + T[5] * c.y() + T[6] * c.z() + T[7],
-                                  T[8] * c.x() + T[9] * c.y() + T[10] * c.z() + T[11]);
-          int u = 0, v = 0;
-          if (!holding_pixel(camera, p, u, v)) continue;
-          const double range = std::sqrt(p.x() * p.x() + p.y() * p.y() + p.z() * p.z());
-          const auto said =
-              crossing(sensor, pixels[static_cast<std::size_t>(v * camera.width + u)], range);
-          if (said) delta = *said;
-          continue;
-        }
-        // Lines: the slab test of every ray with this voxel.
-        const double low[3] = {i * voxel_size_ - eye[0], j * voxel_size_ - eye[1],
-                               k * voxel_size_ - eye[2]};
-        const double high[3] = {(i + 1) * voxel_size_ - eye[0], (j + 1) * voxel_size_ - eye[1],
-                                (k + 1) * voxel_size_ - eye[2]};
-        for (std::size_t n = 0; n < pixels.size(); ++n) {
-          if (!pixels[n].valid) continue;
-          double enter = 0, leave = pixels[n].range + 1.0;
-          for (int a = 0; a < 3 && enter < leave; ++a) {
-            const double t0 = low[a] / directions[n][a], t1 = high[a] / directions[n][a];
-            enter = t0 < t1 ? (t0 > enter ? t0 : enter) : (t1 > enter ? t1 : enter);
-            leave = t0 < t1 ? (t1 < leave ? t1 : leave) : (t0 < leave ? t0 : leave);
-          }
-          if (!(leave - enter > 1e-13)) continue;
-          const auto said = crossing(sensor, pixels[n], enter);
-          if (said) delta = delta == kNothing ? *said : std::min(delta, *said);
-        }
-      }
+  for_each_voxel(VoxelBox::from_dims(min_, dims_), [&](Index3 voxel) {
+    const auto [i, j, k] = voxel;
+    int& delta = deltas[position({i, j, k})];
+    if (config.carve == IntegrationConfig::Carve::cones) {
+      const Eigen::Vector3d c = center({i, j, k});
+      const auto& T = T_camera_grid.m;
+      const Eigen::Vector3d p(T[0] * c.x() + T[1] * c.y() + T[2] * c.z() + T[3],
+                              T[4] * c.x() + T[5] * c.y() + T[6] * c.z() + T[7],
+                              T[8] * c.x() + T[9] * c.y() + T[10] * c.z() + T[11]);
+      int u = 0, v = 0;
+      if (!holding_pixel(camera, p, u, v)) return;
+      const double range = std::sqrt(p.x() * p.x() + p.y() * p.y() + p.z() * p.z());
+      const auto said =
+          crossing(sensor, pixels[static_cast<std::size_t>(v * camera.width + u)], range);
+      if (said) delta = *said;
+      return;
     }
-  }
+    // Lines: the slab test of every ray with this voxel.
+    const double low[3] = {i * voxel_size_ - eye[0], j * voxel_size_ - eye[1],
+                           k * voxel_size_ - eye[2]};
+    const double high[3] = {(i + 1) * voxel_size_ - eye[0], (j + 1) * voxel_size_ - eye[1],
+                            (k + 1) * voxel_size_ - eye[2]};
+    for (std::size_t n = 0; n < pixels.size(); ++n) {
+      if (!pixels[n].valid) continue;
+      double enter = 0, leave = pixels[n].range + 1.0;
+      for (int a = 0; a < 3 && enter < leave; ++a) {
+        const double t0 = low[a] / directions[n][a], t1 = high[a] / directions[n][a];
+        enter = t0 < t1 ? (t0 > enter ? t0 : enter) : (t1 > enter ? t1 : enter);
+        leave = t0 < t1 ? (t1 < leave ? t1 : leave) : (t0 < leave ? t0 : leave);
+      }
+      if (!(leave - enter > 1e-13)) continue;
+      const auto said = crossing(sensor, pixels[n], enter);
+      if (said) delta = delta == kNothing ? *said : std::min(delta, *said);
+    }
+  });
 
   std::vector<std::optional<std::size_t>> own(pixels.size());  // voxel that a reading lies in
   std::vector<Eigen::Vector3d> starts(pixels.size());          // where its support is sought
@@ -278,68 +276,46 @@ void VoxelOracle::integrate(const Sensor& sensor, const DepthFrame& frame,
 
 std::uint64_t VoxelOracle::differences(const BeliefGrid& grid) const {
   std::uint64_t differences = 0;
-  for (int i = min_.x; i < min_.x + dims_.x; ++i) {
-    for (int j = min_.y; j < min_.y + dims_.y; ++j) {
-      for (int k = min_.z; k < min_.z + dims_.z; ++k) {
-        const Index3 voxel{i, j, k};
-        const int steps = steps_[position(voxel)];
-        const VoxelState state = steps == kUnknown ? VoxelState::unknown
-                                 : steps > 0       ? VoxelState::occupied
-                                                   : VoxelState::free;
-        const auto log_odds = grid.log_odds(voxel);
-        bool same = grid.state(voxel) == state && log_odds.has_value() == (steps != kUnknown);
-        if (log_odds) same = same && *log_odds == static_cast<float>(0.05 * steps);
+  for_each_voxel(VoxelBox::from_dims(min_, dims_), [&](Index3 voxel) {
+    const int steps = steps_[position(voxel)];
+    const VoxelState state = steps == kUnknown ? VoxelState::unknown
+                             : steps > 0       ? VoxelState::occupied
+                                               : VoxelState::free;
+    const auto log_odds = grid.log_odds(voxel);
+    bool same = grid.state(voxel) == state && log_odds.has_value() == (steps != kUnknown);
+    if (log_odds) same = same && *log_odds == static_cast<float>(0.05 * steps);
 
-        const auto belief = grid.belief(voxel);
-        const auto fused = fused_.find(position(voxel));
-        same = same && belief.has_value() == (fused != fused_.end());
-        if (belief && fused != fused_.end()) {
-          const Eigen::Matrix3d information = belief->information_matrix().matrix();
-          const auto& eta = belief->information_vector;
-          const Eigen::Vector3d vector(eta[0], eta[1], eta[2]);
-          same = same && belief->hits == fused->second.hits &&
-                 (information - fused->second.information).norm() <
-                     1e-5 * fused->second.information.norm() &&
-                 (vector - fused->second.vector).norm() <
-                     1e-5 * fused->second.information.norm() * voxel_size_;
-        }
-        if (!same) ++differences;
-      }
+    const auto belief = grid.belief(voxel);
+    const auto fused = fused_.find(position(voxel));
+    same = same && belief.has_value() == (fused != fused_.end());
+    if (belief && fused != fused_.end()) {
+      const Eigen::Matrix3d information = belief->information_matrix().matrix();
+      const auto& eta = belief->information_vector;
+      const Eigen::Vector3d vector(eta[0], eta[1], eta[2]);
+      same = same && belief->hits == fused->second.hits &&
+             (information - fused->second.information).norm() <
+                 1e-5 * fused->second.information.norm() &&
+             (vector - fused->second.vector).norm() <
+                 1e-5 * fused->second.information.norm() * voxel_size_;
     }
-  }
+    if (!same) ++differences;
+  });
   return differences;
 }
 
 DepthFrame mixed_frame(const Sensor& sensor, const Pose& pose, std::mt19937& random,
                        bool out_of_range) {
   DepthFrame frame = see_spheres(sensor, pose, three_spheres_in_a_room());
-  std::uniform_int_distribution<int> dice(0, 39);
+  std::uniform_int_distribution<std::size_t> dice(0, 39);
   for (float& depth : frame.depth) {
-    switch (dice(random)) {
-      case 0:
-        depth = DepthFrame::kInvalid;
-        break;
-      case 1:
-        depth = out_of_range ? DepthFrame::kOutOfRange : DepthFrame::kInvalid;
-        break;
-      case 2:
-        depth = std::numeric_limits<float>::quiet_NaN();
-        break;
-      case 3:
-        depth = -depth;
-        break;
-      case 4:
-        depth = 0.01F;
-        break;  // nearer than min_range
-      case 5:
-        depth = 50.0F;
-        break;  // farther than max_range
-      case 6:
-        depth *= 0.7F;
-        break;  // in free space
-      default:
-        break;
-    }
+    const std::array instead{DepthFrame::kInvalid,
+                             out_of_range ? DepthFrame::kOutOfRange : DepthFrame::kInvalid,
+                             std::numeric_limits<float>::quiet_NaN(),
+                             -depth,
+                             0.01F,          // nearer than min_range
+                             50.0F,          // farther than max_range
+                             0.7F * depth};  // in free space
+    if (const std::size_t kind = dice(random); kind < instead.size()) depth = instead[kind];
   }
   return frame;
 }

@@ -239,29 +239,13 @@ TEST(GrowRegion, IsWhatRelaxationFinds) {
   EXPECT_GT(sizes, 500U);
 }
 
-TEST(GrowRegion, EndsAtTheDepthTheTurnAndTheComponent) {
-  const SurfaceMesh plane = test::plane_sheet(0.2, 0.2, 0.01);
-  // Rows of 21 vertices; along them and across, edges are the shortest ways.
-  std::vector<std::uint32_t> side(21);
-  for (std::uint32_t i = 0; i < 21; ++i) side[i] = i;
-  EXPECT_EQ(grow_region(plane, side, 0.0501, 0.1).size(), 6U * 21U);
-  EXPECT_EQ(grow_region(plane, side, 0.0, 0.1), side);
-  EXPECT_TRUE(grow_region(plane, {}, 0.05, 0.1).empty());
-  const SurfaceMesh both = test::joined(plane, plane, {0, 0, 0.001});
-  EXPECT_EQ(grow_region(both, side, 9.0, 0.1).size(), plane.vertices.size());
-
-  const SurfaceMesh cylinder = test::cylinder_sheet(0.05, 0.02, 1.5, 0.001);
-  const std::vector<std::uint32_t> front{75};
-  const auto region = grow_region(cylinder, front, 9.0, 0.5);
-  EXPECT_GT(region.size(), 500U);
-  for (const std::uint32_t v : region) {
-    const Vector3d p = test::vertex_position(cylinder, v);
-    EXPECT_LT(std::abs(std::atan2(p.x(), -p.y())), 0.5 + 0.02);
-  }
-  SurfaceMesh opposed = plane;
-  opposed.normals[0] = {0, 0, -1};
+TEST(GrowRegion, OfNothingOrOfOppositeNormalsIsEmpty) {
+  SurfaceMesh plane = test::plane_sheet(0.2, 0.2, 0.01);
   const std::vector<std::uint32_t> two{0, 1};
-  EXPECT_TRUE(grow_region(opposed, two, 0.1, 1.0).empty());
+  EXPECT_EQ(grow_region(plane, two, 0.0, 0.1), two);
+  EXPECT_TRUE(grow_region(plane, {}, 0.05, 0.1).empty());
+  plane.normals[0] = {0, 0, -1};
+  EXPECT_TRUE(grow_region(plane, two, 0.1, 1.0).empty());
 }
 
 TEST(GrowRegion, RefusesASeedThatIsNotThere) {

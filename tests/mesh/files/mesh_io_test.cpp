@@ -76,7 +76,7 @@ TEST_F(MeshIo, EveryDialectIsReadOrRefused) {
       EXPECT_EQ(said.find('\n'), said.npos) << said;
     }
   }
-  EXPECT_EQ(rows, 253U);
+  EXPECT_EQ(rows, 203U);
 }
 
 // Polygons with a random radius for each direction, in a random plane, against points in them.

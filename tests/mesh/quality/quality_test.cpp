@@ -181,43 +181,6 @@ TEST(Quality, CoverageOfAHalf) {
   EXPECT_THROW(static_cast<void>(coverage(distances, 1, std::vector<std::uint8_t>(3))), Error);
 }
 
-/// Points scattered about a surface by a covariance of their own each, which is what consistency
-/// must find honest.
-struct Scatter {
-  Points points;
-  std::vector<SymmetricMatrix3> covariances;
-};
-
-Scatter scatter(std::size_t count, const GroundTruth& truth, double scale) {
-  Noise noise(9);
-  Scatter result;
-  for (std::size_t i = 0; i < count; ++i) {
-    // An ellipsoid of axes 0.2 to 1 mm in a random direction.
-    const Eigen::Quaterniond q =
-        Eigen::Quaterniond(noise.normal(), noise.normal(), noise.normal(), noise.normal())
-            .normalized();
-    const Vector3d sigma(2e-4 + 8e-4 * noise.uniform(), 2e-4 + 8e-4 * noise.uniform(), 5e-4);
-    const Eigen::Matrix3d root = q.toRotationMatrix() * sigma.asDiagonal();
-    const Vector3d offset = root * Vector3d(noise.normal(), noise.normal(), noise.normal());
-    result.points.push_back(array_of(truth.samples()[i].position + offset));
-    result.covariances.push_back(SymmetricMatrix3::from(scale * root * root.transpose()));
-  }
-  return result;
-}
-
-TEST(Quality, TrueCovariancesAreConsistent) {
-  for (const TriangleMesh& mesh : {plate_mesh(2.0), sphere_mesh(0.5, 300)}) {
-    const GroundTruth truth(mesh, 20'000);
-    const Scatter s = scatter(20'000, truth, 1.0);
-    const Consistency c = truth.consistency(s.points, s.covariances);
-    EXPECT_EQ(c.points, 20'000U);
-    EXPECT_EQ(c.outliers, 0U);
-    EXPECT_NEAR(c.mean_clipped, 1, 0.05);
-    EXPECT_NEAR(c.median, 0.455, 0.03);
-    EXPECT_NEAR(c.above_9, 0.0027, 0.0015);
-  }
-}
-
 TEST(Quality, ConsistencyInClosedForm) {
   const GroundTruth truth(plate_mesh(1.0), 10);
   // Heights 0, 1, 2, 9 and 10.1 mm, with a variance along z of 1 mm²; one point beside the edge, at

@@ -127,21 +127,6 @@ TEST(SurfaceReconstruction, OutliersGoAndNothingElse) {
   EXPECT_GE(kept_good, good * 99 / 100);
 }
 
-TEST(SurfaceReconstruction, SparseRegionIsMeshedToo) {
-  // Below the equator a spacing apart, above 2.5.
-  std::vector<OrientedPoint> thinned;
-  for (const auto& p : sphere_points(kRadius, kSpacing, 0.2 * kSpacing)) {
-    if (p.position[2] < 0) thinned.push_back(p);
-  }
-  const auto sparse = sphere_points(kRadius, 2.5 * kSpacing, 0.2 * kSpacing, 0.0);
-  thinned.insert(thinned.end(), sparse.begin(), sparse.end());
-  const SurfaceMesh mesh = reconstruct_surface(thinned, kConfig);
-  const Topology topology = check_surface(mesh, thinned);
-  EXPECT_EQ(topology.components, 1U);
-  EXPECT_GE(mesh.vertices.size(), thinned.size() * 98 / 100);
-  EXPECT_NEAR(area_of(mesh), 4 * std::numbers::pi * kRadius * kRadius, 0.03 * area_of(mesh));
-}
-
 TEST(SurfaceReconstruction, FineAndCoarsePointsAreOneSurface) {
   // Below the equator a spacing apart, above four and more, said of each point or not.
   for (const double ratio : {4.0, 6.0}) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "grid/voxels.hpp"
 #include "raycast/scene_makers.hpp"
 #include "solids.hpp"
 #include "support/meshes.hpp"
@@ -34,13 +35,10 @@ BeliefGrid map_of(int n, const Pose& T_world_grid, const Choose& is_non_free) {
   const double side = kVoxel * n;
   const GridConfig config{kVoxel, {{0, 0, 0}, {side, side, side}}, T_world_grid, 0.01};
   std::vector<std::uint8_t> states;
-  for (int x = 0; x < n; ++x) {
-    for (int y = 0; y < n; ++y) {
-      for (int z = 0; z < n; ++z) {
-        states.push_back(is_non_free(x, y, z) ? ((x + y + z) % 2 == 0 ? 0 : 2) : 1);
-      }
-    }
-  }
+  test::for_each_voxel(VoxelBox{{0, 0, 0}, {n, n, n}}, [&](Index3 voxel) {
+    const auto [x, y, z] = voxel;
+    states.push_back(is_non_free(x, y, z) ? ((x + y + z) % 2 == 0 ? 0 : 2) : 1);
+  });
   return BeliefGrid::from_states(config, states);
 }
 
@@ -332,26 +330,6 @@ TEST(Feasibility, TheLowestCornerDecidesAboutThePlane) {
     EXPECT_EQ(checker.check({R, {3, 4, 0.5 - lowest}}), Infeasibility::plane);
     EXPECT_EQ(checker.check({R, {3, 4, -5}}), Infeasibility::plane);
   }
-}
-
-TEST(Feasibility, AWallNearerThanTheSensorMeasuresIsTooNear) {
-  // The lower half of a map of 48³ voxels is not free: a floor at half its height.
-  const BeliefGrid grid = map_of(48, {}, [](int, int, int z) { return z < 24; });
-  FeasibilityConfig config;
-  config.sensor = sensor_preset("sr4000");  // measures from 0.2 m on
-  const double floor = 24 * kVoxel, middle = 24 * kVoxel;
-  const auto above = [&](double height) { return looking_down({middle, middle, floor + height}); };
-  for (const double height : {0.05, 0.1, 0.19, 0.21, 0.3, 0.6}) {
-    const Infeasibility expected = height < 0.2 ? Infeasibility::too_near : Infeasibility::none;
-    EXPECT_EQ(checker_of(grid, config).check(above(height)), expected) << height;
-    EXPECT_EQ(checker_of(grid).check(above(height)), Infeasibility::none) << height;
-  }
-  // Nothing in view is not too near, however near the map is behind the camera.
-  const Pose up(Eigen::Matrix3d::Identity(), Eigen::Vector3d(middle, middle, floor + 0.1));
-  EXPECT_EQ(checker_of(grid, config).check(up), Infeasibility::none);
-  // All rays may be near if the share says so.
-  config.max_near_share = 1.0;
-  EXPECT_EQ(checker_of(grid, config).check(above(0.1)), Infeasibility::none);
 }
 
 TEST(Feasibility, RefusesWhatMakesNoSense) {

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "grid/voxels.hpp"
 #include "oracle/rays.hpp"
 #include "raycast/scene_makers.hpp"
 #include "solids.hpp"
@@ -224,20 +225,13 @@ TEST(Bodies, AcrossManyRegionsMeetWhatTheyWouldVoxelByVoxel) {
     };
     std::vector<std::uint8_t> states(static_cast<std::size_t>(dims.x * dims.y * dims.z), 1);
     const auto make_unknown = [&](const Index3& low, const Index3& high) {
-      std::array<int, 6> box{std::max(low.x, min.x),           std::max(low.y, min.y),
-                             std::max(low.z, min.z),           std::min(high.x, min.x + dims.x),
-                             std::min(high.y, min.y + dims.y), std::min(high.z, min.z + dims.z)};
-      for (int x = box[0]; x < box[3]; ++x) {
-        for (int y = box[1]; y < box[4]; ++y) {
-          for (int z = box[2]; z < box[5]; ++z) {
-            states[static_cast<std::size_t>(((x - min.x) * dims.y + y - min.y) * dims.z + z -
-                                            min.z)] = 0;
-          }
-        }
-      }
-      if (box[0] < box[3] && box[1] < box[4] && box[2] < box[5]) {
-        add({box[0] * 1.0, box[1] * 1.0, box[2] * 1.0}, {box[3] * 1.0, box[4] * 1.0, box[5] * 1.0});
-      }
+      const VoxelBox box = VoxelBox{low, high}.intersection(VoxelBox::from_dims(min, dims));
+      test::for_each_voxel(box, [&](Index3 v) {
+        const int row = (v.x - min.x) * dims.y + v.y - min.y;
+        states[static_cast<std::size_t>(row * dims.z + v.z - min.z)] = 0;
+      });
+      const auto corner = [](Index3 v) { return Eigen::Vector3d(v.x, v.y, v.z); };
+      if (box.volume() > 0) add(corner(box.min), corner(box.max));
     };
     const auto anywhere = [&] {
       return Index3{test::uniform_int(random, min.x, min.x + dims.x - 1),

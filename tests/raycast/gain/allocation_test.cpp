@@ -6,7 +6,7 @@
 
 #include <atomic>
 
-#include "raycast/replaced_new.hpp"
+#include "core/replaced_new.hpp"
 #include "raycast/scene_makers.hpp"
 
 namespace {

@@ -59,26 +59,6 @@ TEST_F(Batch, PosteriorEntropyIsThereIfAskedForAndChangesNothingElse) {
   }
 }
 
-TEST_F(Batch, ABadPoseSpoilsOnlyItself) {
-  const std::vector<ViewGain> expected = evaluator().evaluate(poses_);
-  std::vector<Pose> with_bad = poses_;
-  for (std::size_t i = 3; i < with_bad.size(); i += 7) with_bad[i].m[i % 12] = kNan;
-  const std::vector<ViewGain> actual = evaluator().evaluate(with_bad);
-  std::size_t bad = 0;
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
-    if (i % 7 == 3) {
-      EXPECT_EQ(actual[i].status, ViewGain::Status::bad_pose);
-      EXPECT_TRUE(std::isnan(actual[i].gain));
-      EXPECT_TRUE(std::isnan(actual[i].posterior_entropy));
-      ++bad;
-    } else {
-      EXPECT_TRUE(test::same_bits(expected[i], actual[i]));
-    }
-  }
-  EXPECT_EQ(bad, 29U);
-  EXPECT_TRUE(evaluator().trace(with_bad[3]).empty());
-}
-
 TEST_F(Batch, EveryCallReportsProgressOneAtATimeUpToItsTotal) {
   const GainEvaluator own = evaluator(3);
   const auto expect_reports = [&](std::size_t total, const auto& call) {
@@ -306,24 +286,6 @@ TEST(Determinism, SameBitsAcrossInstructionSets) {
       EXPECT_GT(test::gaining(by_isa.back()), made.poses.size() / 2) << isa;
     }
   }
-}
-
-TEST(Determinism, SceneOutlivesTheGridAndIgnoresItsChanges) {
-  test::RandomCase made = test::random_case(14, test::MapFamily::salt_and_pepper_1, 40);
-  const GainEvaluator evaluator(VoxelScene::build(made.map.grid), made.sensor, test::kPaper);
-  const std::vector<ViewGain> expected = evaluator.evaluate(made.poses);
-  const Index3 min = made.map.grid.min_index();
-  const Index3 dims = made.map.grid.dims();
-  for (int x = 0; x < dims.x; ++x) {
-    for (int y = 0; y < dims.y; ++y) {
-      made.map.grid.set({min.x + x, min.y + y, min.z + dims.z / 2}, 0.85F);
-    }
-  }
-  EXPECT_TRUE(test::same_bits(expected, evaluator.evaluate(made.poses)));
-  const GainEvaluator changed(VoxelScene::build(made.map.grid), made.sensor, test::kPaper);
-  EXPECT_FALSE(test::same_bits(expected, changed.evaluate(made.poses)));
-  made.map.grid = test::sparse_map({4, 4, 4}, {});
-  EXPECT_TRUE(test::same_bits(expected, evaluator.evaluate(made.poses)));
 }
 
 }  // namespace

@@ -126,30 +126,5 @@ TEST(GainClosedForm, TwoPerpendicularRaysOfOneView) {
   EXPECT_NEAR(score(grid, sensor, pose, Criterion::trace).gain, variances, 1e-6 * variances);
 }
 
-TEST(GainClosedForm, IsotropicNoiseMakesDiagonalAndDeterminantEqual) {
-  test::Random random(3);
-  int gaining = 0;
-  for (int i = 0; i < 8; ++i) {
-    test::RandomMap made = test::random_map(test::MapFamily::salt_and_pepper_30, random);
-    // Without beliefs: those of the random map are not isotropic.
-    const oracle::DenseMap map(made.grid);
-    const BeliefGrid bare = BeliefGrid::from_states({.voxel_size = made.grid.voxel_size(),
-                                                     .workspace = made.grid.workspace(),
-                                                     .prior_sigma = made.grid.prior_sigma()},
-                                                    map.states);
-    Sensor sensor = test::random_sensor(bare, random);
-    sensor.noise = ConstantNoise{.sigma_axial = 0.01, .sigma_lateral = 0.01};
-    const auto scene = VoxelScene::build(bare);
-    const GainEvaluator diagonal(scene, sensor, test::by_paper(Criterion::log_diagonal));
-    const GainEvaluator determinant(scene, sensor, test::by_paper(Criterion::log_determinant));
-    for (const Pose& pose : test::random_poses(made, 5, random)) {
-      const double expected = determinant.evaluate(pose).gain;
-      EXPECT_NEAR(diagonal.evaluate(pose).gain, expected, 1e-9 * expected);
-      gaining += expected > 0 ? 1 : 0;
-    }
-  }
-  EXPECT_GT(gaining, 20);
-}
-
 }  // namespace
 }  // namespace viewgain

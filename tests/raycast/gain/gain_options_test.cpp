@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/expect_error.hpp"
 #include "oracle/gain.hpp"
 #include "raycast/scene_makers.hpp"
 #include "viewgain/core/error.hpp"
@@ -100,47 +99,6 @@ TEST(GainOptions, PriorAndRangesOverrideTheMapsAndTheSensors) {
     EXPECT_NEAR(evaluator.evaluate(pose).gain, expected.gain, 1e-6 * expected.gain);
   }
   EXPECT_GT(hits, 500);
-}
-
-TEST(GainOptions, ObstaclesBlockAtAnyRangeAndGainNothing) {
-  // A wall of unknown voxels behind a box that covers the lower half of the view.
-  std::vector<Index3> wall;
-  for (int x = 0; x < 16; ++x) {
-    for (int y = 0; y < 16; ++y) wall.push_back({x, y, 12});
-  }
-  const BeliefGrid grid = test::sparse_map({16, 16, 16}, wall, VoxelState::unknown);
-  Sensor sensor = test::lattice_sensor(8, 8);
-  sensor.camera.fx = sensor.camera.fy = 10;
-  sensor.min_range = 10 * kExactVoxel;
-  const Pose pose = test::axis_pose({8, 8, 0}, 2, true);
-  const double v = kExactVoxel;
-  // Nearer than min_range, and outside the workspace's voxels that matter: it still blocks.
-  const Box box{{-8 * v, -8 * v, 2 * v}, {8 * v, 24 * v, 3 * v}};
-  TriangleMesh mesh;
-  mesh.vertices = {{-40 * v, -40 * v, 2.5 * v},
-                   {8 * v, -40 * v, 2.5 * v},
-                   {8 * v, 60 * v, 2.5 * v},
-                   {-40 * v, 60 * v, 2.5 * v}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-
-  const ViewGain open = GainEvaluator(VoxelScene::build(grid), sensor, test::kPaper).evaluate(pose);
-  EXPECT_EQ(open.hits, 64U);
-  for (const Obstacles& obstacles : {Obstacles{{box}, {}}, Obstacles{{}, {mesh}}}) {
-    const GainEvaluator evaluator(VoxelScene::build(grid, {obstacles}), sensor, test::kPaper);
-    const ViewGain blocked = evaluator.evaluate(pose);
-    EXPECT_EQ(blocked.rays, 64U);
-    EXPECT_EQ(blocked.hits, 32U);
-    EXPECT_NEAR(blocked.gain, 0.5 * open.gain, 1e-9);
-    int stopped = 0;
-    for (const RayHit& hit : evaluator.trace(pose)) {
-      stopped += hit.kind == RayHit::Kind::obstacle ? 1 : 0;
-    }
-    EXPECT_EQ(stopped, 32);
-  }
-  // Behind the wall it takes nothing away.
-  const Obstacles behind{{Box{{-8 * v, -8 * v, 14 * v}, {24 * v, 24 * v, 15 * v}}}, {}};
-  EXPECT_TRUE(test::same_bits(
-      open, GainEvaluator(VoxelScene::build(grid, {behind}), sensor, test::kPaper).evaluate(pose)));
 }
 
 TEST(GainOptions, ObstaclesInRandomMapsAgreeWithTheOracle) {

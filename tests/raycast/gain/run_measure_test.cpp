@@ -270,24 +270,6 @@ GainConfig random_config(const BeliefGrid& grid, int number, test::Random& rando
   return config;
 }
 
-Obstacles random_obstacles(const BeliefGrid& grid, int number, test::Random& random) {
-  Obstacles obstacles;
-  if (number % 3 != 2) return obstacles;
-  const Box all = grid.workspace();
-  for (int k = 0; k < 3; ++k) {
-    Eigen::Vector3d p;
-    for (int a = 0; a < 3; ++a) {
-      const auto i = static_cast<std::size_t>(a);
-      p[a] = test::uniform(random, all.min[i], all.max[i]);
-    }
-    p = grid.T_world_grid() * p;
-    const double half = 0.05 * (all.max[0] - all.min[0]);
-    obstacles.boxes.push_back(
-        {{p.x() - half, p.y() - half, p.z() - half}, {p.x() + half, p.y() + half, p.z() + half}});
-  }
-  return obstacles;
-}
-
 class SurfaceOracle : public testing::TestWithParam<MapFamily> {};
 
 TEST_P(SurfaceOracle, AgreesUnderEachInstructionSet) {
@@ -302,7 +284,7 @@ TEST_P(SurfaceOracle, AgreesUnderEachInstructionSet) {
     const HazardConfig hazard_config = random_hazard(made.grid, i, random);
     const HazardField hazard(made.grid.snapshot(), hazard_config);
     const GainConfig config = random_config(made.grid, i, random);
-    const Obstacles obstacles = random_obstacles(made.grid, i, random);
+    const Obstacles obstacles = i % 3 == 2 ? test::random_boxes(made.grid, random) : Obstacles{};
     for (const Pose& pose : test::random_poses(made, kPosesPerMap, random)) {
       const oracle::SurfaceValue expected =
           oracle::surface_value(made.grid, map, hazard, sensor, config, pose, obstacles);

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "raycast/replaced_new.hpp"
+#include "core/replaced_new.hpp"
 #include "raycast/scene_makers.hpp"
 #include "viewgain/core/error.hpp"
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/expect_error.hpp"
+#include "grid/voxels.hpp"
 #include "raycast/scene_makers.hpp"
 #include "viewgain/viewgain.hpp"
 
@@ -29,11 +30,8 @@ namespace {
 BeliefGrid many_leaves() {
   constexpr int kEdge = 144;
   std::vector<Index3> unknown;
-  for (int x = 3; x < kEdge; x += 8) {
-    for (int y = 3; y < kEdge; y += 8) {
-      for (int z = 3; z < kEdge; z += 8) unknown.push_back({x, y, z});
-    }
-  }
+  test::for_each_voxel(
+      VoxelBox{{3, 3, 3}, {kEdge, kEdge, kEdge}}, [&](Index3 v) { unknown.push_back(v); }, 8);
   return test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
 }
 

@@ -49,21 +49,6 @@ void expect_hit(const RayHit& hit, RayHit::Kind kind, Index3 voxel, double range
   EXPECT_EQ(hit.range, range_in_voxels * kExactVoxel);
 }
 
-TEST_P(DegenerateRays, AlongAxesFromBothSides) {
-  const BeliefGrid grid = sparse_map({24, 24, 24}, {{10, 10, 10}});
-  for (int axis = 0; axis < 3; ++axis) {
-    SCOPED_TRACE(axis);
-    Eigen::Vector3d start = Eigen::Vector3d::Constant(10.5);
-    start[axis] = -4;
-    expect_hit(shoot(grid, axis_pose(start, axis, true)), RayHit::Kind::occupied, {10, 10, 10}, 14);
-    EXPECT_EQ(shoot(grid, axis_pose(start, axis, false)).kind, RayHit::Kind::none);
-    start[axis] = 30;
-    expect_hit(shoot(grid, axis_pose(start, axis, false)), RayHit::Kind::occupied, {10, 10, 10},
-               19);
-    EXPECT_EQ(shoot(grid, axis_pose(start, axis, true)).kind, RayHit::Kind::none);
-  }
-}
-
 TEST_P(DegenerateRays, InAFaceBelongToTheLargerIndex) {
   // x = 8 is a face between leaves, x = 5 one inside a leaf.
   for (const int x : {5, 8}) {
@@ -74,23 +59,6 @@ TEST_P(DegenerateRays, InAFaceBelongToTheLargerIndex) {
     };
     EXPECT_EQ(along_z({x - 1, 3, 9}).kind, RayHit::Kind::none);
     expect_hit(along_z({x, 3, 9}), RayHit::Kind::occupied, {x, 3, 9}, 10);
-  }
-}
-
-TEST_P(DegenerateRays, InAnEdgeBelongToTheLargerIndices) {
-  for (const int c : {5, 8}) {
-    for (const bool positive : {true, false}) {
-      SCOPED_TRACE(std::to_string(c) + (positive ? " up" : " down"));
-      const auto along_z = [&](Index3 voxel) {
-        const auto e = static_cast<double>(c);
-        return shoot(sparse_map({16, 16, 16}, {voxel}),
-                     axis_pose({e, e, positive ? -1.0 : 17.0}, 2, positive));
-      };
-      EXPECT_EQ(along_z({c - 1, c - 1, 9}).kind, RayHit::Kind::none);
-      EXPECT_EQ(along_z({c - 1, c, 9}).kind, RayHit::Kind::none);
-      EXPECT_EQ(along_z({c, c - 1, 9}).kind, RayHit::Kind::none);
-      expect_hit(along_z({c, c, 9}), RayHit::Kind::occupied, {c, c, 9}, positive ? 10 : 7);
-    }
   }
 }
 

@@ -112,30 +112,5 @@ TEST(Oracle, ALeakThroughASeamIsNoTie) {
   }
 }
 
-TEST(Oracle, RangeIsThatOfTheEntryPoint) {
-  const DenseMap map(sparse_map({16, 16, 16}, {{4, 4, 8}}));
-  const Ray ray{{4.5, 4.5, 0}, Eigen::Vector3d::UnitZ()};
-  RayHit actual = oracle::first_hit(map, ray, {});
-  EXPECT_EQ(actual.range, 8 * kExactVoxel);
-  EXPECT_TRUE(oracle::range_is_entry(map, ray, {}, actual));
-  actual.range = 8.5 * kExactVoxel;
-  EXPECT_FALSE(oracle::range_is_entry(map, ray, {}, actual));
-  EXPECT_TRUE(oracle::range_is_entry(map, ray, {.min_range = 8.5}, actual));
-}
-
-TEST(Oracle, GainOfOneReadingByHand) {
-  const BeliefGrid grid = sparse_map({8, 8, 8}, {{4, 4, 4}}, VoxelState::unknown);
-  Sensor sensor = test::lattice_sensor(1, 1);
-  sensor.noise = ConstantNoise{.sigma_axial = 0.02, .sigma_lateral = 0.005};
-  const Pose pose = test::axis_pose({4.5, 4.5, 0.5}, 2, true);
-  const GainConfig config{
-      .model = GainModel::paper, .criterion = Criterion::trace, .prior_sigma = 0.1};
-  const std::vector<RayHit> hits = oracle::trace(DenseMap(grid), sensor, config, pose);
-  const ViewGain gain = oracle::gain_of_hits(grid, sensor, config, pose, hits);
-  const double after = 2 / (1 / 0.01 + 1 / 0.000025) + 1 / (1 / 0.01 + 1 / 0.0004);
-  EXPECT_NEAR(gain.gain, 3 * 0.01 - after, 1e-12);
-  EXPECT_EQ(gain.unknown_voxels, 1U);
-}
-
 }  // namespace
 }  // namespace viewgain

@@ -10,6 +10,7 @@
 #include <array>
 
 #include "core/expect_error.hpp"
+#include "grid/voxels.hpp"
 #include "raycast/scene_makers.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -41,14 +42,9 @@ std::size_t compare(const BeliefGrid& grid, const Sensor& sensor, const std::vec
   }
   std::size_t hits = 0;
   for (const Pose& pose : poses) {
-    const std::vector<RayHit> a = free_choice.trace(pose), b = bvh.trace(pose);
-    EXPECT_EQ(a.size(), b.size());
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      EXPECT_EQ(a[i].kind, b[i].kind);
-      EXPECT_EQ(a[i].voxel, b[i].voxel);
-      EXPECT_EQ(a[i].range, b[i].range);
-      hits += a[i].kind == RayHit::Kind::none ? 0U : 1U;
-    }
+    const std::vector<RayHit> a = free_choice.trace(pose);
+    test::expect_same_hits(a, bvh.trace(pose));
+    for (const RayHit& hit : a) hits += hit.kind == RayHit::Kind::none ? 0U : 1U;
   }
   return hits;
 }
@@ -315,13 +311,10 @@ TEST(TracePaths, FarCamerasSeeTheSameBits) {
 TEST(TracePaths, ManyRegionsGiveTheSameBits) {
   constexpr int kEdge = 544, kRegion = 32;
   std::vector<Index3> unknown;
-  for (int x = 5; x < kEdge; x += kRegion) {
-    for (int y = 9; y < kEdge; y += kRegion) {
-      for (int z = 3; z < kEdge; z += kRegion) {
-        for (int i = 0; i < 6; ++i) unknown.push_back({x + i, y + (x + z) / 32 % 17, z + i});
-      }
-    }
-  }
+  const auto add = [&](Index3 v) {
+    for (int i = 0; i < 6; ++i) unknown.push_back({v.x + i, v.y + (v.x + v.z) / 32 % 17, v.z + i});
+  };
+  test::for_each_voxel(VoxelBox{{5, 9, 3}, {kEdge, kEdge, kEdge}}, add, kRegion);
   const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
   ASSERT_GT(grid.snapshot().regions.size(), 4096U);
   Sensor sensor = test::lattice_sensor(61, 47);
@@ -341,16 +334,9 @@ TEST(TracePaths, ManyRegionsGiveTheSameBits) {
 TEST(TracePaths, ABlockLeftOfALargeTileIsSeenAmongManyPrimitives) {
   constexpr int kEdge = 136, kCorner = 128;
   std::vector<Index3> unknown;
-  for (int x = 3; x < kEdge; x += 8) {
-    for (int y = 3; y < kEdge; y += 8) {
-      for (int z = 3; z < kEdge; z += 8) unknown.push_back({x, y, z});
-    }
-  }
-  for (int x = kCorner; x < kEdge; ++x) {
-    for (int y = kCorner; y < kEdge; ++y) {
-      for (int z = kCorner; z < kEdge; ++z) unknown.push_back({x, y, z});
-    }
-  }
+  const auto add = [&](Index3 voxel) { unknown.push_back(voxel); };
+  test::for_each_voxel(VoxelBox{{3, 3, 3}, {kEdge, kEdge, kEdge}}, add, 8);
+  test::for_each_voxel(VoxelBox{{kCorner, kCorner, kCorner}, {kEdge, kEdge, kEdge}}, add);
   const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
   ASSERT_GT(VoxelScene::build(grid)->primitive_count(), 4096U);
   ASSERT_EQ(grid.snapshot().tiles_of(0)[0], 1U);
@@ -427,14 +413,10 @@ TEST(Sweep, BoxesLargerThanNodesGiveTheSameBits) {
                  .prior_sigma = 0.02});
   // The workspace crosses a boundary of the tree's largest nodes, at 4096; what lies beyond it
   // stays boxes that are 204 voxels long.
-  for (int x = 4000; x < 4050; ++x) {
-    for (int y = 0; y < 60; ++y) {
-      for (int z = 0; z < 50; ++z) {
-        if (test::uniform(random, 0, 1) < 0.03) continue;
-        grid.set({x, y, z}, test::uniform(random, 0, 1) < 0.01 ? 0.85F : -0.4F);
-      }
-    }
-  }
+  test::for_each_voxel(VoxelBox{{4000, 0, 0}, {4050, 60, 50}}, [&](Index3 voxel) {
+    if (test::uniform(random, 0, 1) < 0.03) return;
+    grid.set(voxel, test::uniform(random, 0, 1) < 0.01 ? 0.85F : -0.4F);
+  });
   const GridSnapshot snapshot = grid.snapshot();
   const auto is_larger = [](const VoxelBox& box) {
     return box.min.x >> 7 != (box.max.x - 1) >> 7 || box.min.y >> 7 != (box.max.y - 1) >> 7 ||
@@ -464,14 +446,9 @@ TEST(Sweep, CamerasAmongTheCellsSeeTheSameBits) {
   constexpr int kEdge = 144;
   test::Random random(5);
   std::vector<Index3> unknown;
-  for (int x = 1; x < kEdge; x += 8) {
-    for (int y = 1; y < kEdge; y += 8) {
-      for (int z = 1; z < kEdge; z += 8) {
-        unknown.push_back({x + test::uniform_int(random, 0, 6), y + test::uniform_int(random, 0, 6),
-                           z + test::uniform_int(random, 0, 6)});
-      }
-    }
-  }
+  const auto off = [&] { return test::uniform_int(random, 0, 6); };
+  const auto add = [&](Index3 v) { unknown.push_back({v.x + off(), v.y + off(), v.z + off()}); };
+  test::for_each_voxel(VoxelBox{{1, 1, 1}, {kEdge, kEdge, kEdge}}, add, 8);
   const BeliefGrid grid = test::sparse_map({kEdge, kEdge, kEdge}, unknown, VoxelState::unknown);
   Sensor sensor = test::lattice_sensor(45, 33);
   sensor.camera.fx = sensor.camera.fy = 30;

@@ -9,10 +9,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
+#include "grid/voxels.hpp"
 #include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/formats/octomap_tree.hpp"
 
@@ -44,14 +46,11 @@ void fill(Tree& tree) {
   for (const float v : {0.0F, 0.01F, -0.01F, -0.024F, 0.024F, 1e-7F, -1e-7F}) {
     set({place(random), place(random), place(random)}, v);
   }
-  for (int x = 0; x < 16; ++x) {
-    for (int y = 0; y < 16; ++y) {
-      for (int z = 0; z < 16; ++z) {
-        set({32 + x, 48 + y, -32 + z}, -2.0F);
-        set({-64 + x, y, 16 + z}, 3.5F);
-      }
-    }
-  }
+  for_each_voxel(VoxelBox{{0, 0, 0}, {16, 16, 16}}, [&](Index3 voxel) {
+    const auto [x, y, z] = voxel;
+    set({32 + x, 48 + y, -32 + z}, -2.0F);
+    set({-64 + x, y, 16 + z}, 3.5F);
+  });
   tree.updateInnerOccupancy();
   tree.prune();
 }
@@ -63,27 +62,22 @@ struct Comparison {
 template <typename Tree>
 Comparison compare(const Tree& tree, const BeliefGrid& grid, bool binary) {
   Comparison result;
-  for (int x = -70; x < 60; ++x) {
-    for (int y = -50; y < 70; ++y) {
-      for (int z = -50; z < 40; ++z) {
-        const Index3 voxel{x, y, z};
-        const auto* node = tree.search(key_of(voxel));
-        VoxelState state = VoxelState::unknown;
-        std::optional<float> log_odds;
-        if (node != nullptr) {
-          const bool occupied = tree.isNodeOccupied(node);
-          state = occupied ? VoxelState::occupied : VoxelState::free;
-          log_odds = binary ? (occupied ? 3.5F : -2.0F) : rounded(node->getLogOdds());
-          ++result.known;
-        }
-        ++result.voxels;
-        if (grid.state(voxel) != state || grid.log_odds(voxel) != log_odds ||
-            grid.belief(voxel).has_value()) {
-          ++result.differences;
-        }
-      }
+  for_each_voxel(VoxelBox{{-70, -50, -50}, {60, 70, 40}}, [&](Index3 voxel) {
+    const auto* node = tree.search(key_of(voxel));
+    VoxelState state = VoxelState::unknown;
+    std::optional<float> log_odds;
+    if (node != nullptr) {
+      const bool occupied = tree.isNodeOccupied(node);
+      state = occupied ? VoxelState::occupied : VoxelState::free;
+      log_odds = binary ? (occupied ? 3.5F : -2.0F) : rounded(node->getLogOdds());
+      ++result.known;
     }
-  }
+    ++result.voxels;
+    if (grid.state(voxel) != state || grid.log_odds(voxel) != log_odds ||
+        grid.belief(voxel).has_value()) {
+      ++result.differences;
+    }
+  });
   EXPECT_EQ(result.voxels, 130 * 120 * 90);
   EXPECT_GT(result.known, 10000);
   return result;
@@ -195,14 +189,10 @@ TEST(Octomap, AWorkspaceCutsAndGrows) {
   part.copy_states(states);
   std::size_t at = 0;
   int differences = 0, known = 0;
-  for (int x = -57; x < 39; ++x) {
-    for (int y = -13; y < 55; ++y) {
-      for (int z = -29; z < 25; ++z, ++at) {
-        known += states[at] != 0;
-        if (all.state({x, y, z}) != static_cast<VoxelState>(states[at])) ++differences;
-      }
-    }
-  }
+  for_each_voxel(part, [&](Index3 voxel) {
+    known += states[at] != 0;
+    differences += all.state(voxel) != static_cast<VoxelState>(states[at++]) ? 1 : 0;
+  });
   EXPECT_EQ(differences, 0);
   EXPECT_GT(known, 3000);
   const BeliefGrid::Statistics statistics = part.statistics();
@@ -221,17 +211,11 @@ BeliefGrid make_rich_grid() {
   config.workspace = Box{{-30.1, -30.1, -30.1}, {29.9, 30.3, 29.7}};
   octomap::OcTree tree(0.1);
   fill(tree);
-  for (int x = -256; x < -128; ++x) {
-    for (int y = -256; y < -128; ++y) {
-      for (int z = 128; z < 256; ++z) tree.setNodeValue(key_of({x, y, z}), -2.0F, true);
-    }
-  }
+  for_each_voxel(VoxelBox{{-256, -256, 128}, {-128, -128, 256}},
+                 [&](Index3 voxel) { tree.setNodeValue(key_of(voxel), -2.0F, true); });
   // A pruned free cube that reaches out of the workspace.
-  for (int x = 288; x < 320; ++x) {
-    for (int y = 288; y < 320; ++y) {
-      for (int z = 288; z < 320; ++z) tree.setNodeValue(key_of({x, y, z}), -0.4F, true);
-    }
-  }
+  for_each_voxel(VoxelBox{{288, 288, 288}, {320, 320, 320}},
+                 [&](Index3 voxel) { tree.setNodeValue(key_of(voxel), -0.4F, true); });
   tree.updateInnerOccupancy();
   tree.prune();
   BeliefGrid grid = grid_from_octree(tree, config);
@@ -317,11 +301,10 @@ BeliefGrid blobs(Index3 low, const Pose& T_world_grid) {
   for (int i = 0; i < 60; ++i) {
     const int size = 1 + static_cast<int>(random() % 24), x0 = static_cast<int>(random() % 270),
               y0 = static_cast<int>(random() % 60), z0 = static_cast<int>(random() % 60);
-    for (int x = x0; x < x0 + size; ++x) {
-      for (int y = y0; y < y0 + size; ++y) {
-        for (int z = z0; z < z0 + size; ++z) states[at(x, y, z)] = i % 3 == 0 ? 0 : 2;
-      }
-    }
+    for_each_voxel(VoxelBox::from_dims({x0, y0, z0}, {size, size, size}), [&](Index3 voxel) {
+      const auto [x, y, z] = voxel;
+      states[at(x, y, z)] = i % 3 == 0 ? 0 : 2;
+    });
   }
   return BeliefGrid::from_states({V, {corner(low), corner(high)}, T_world_grid, 0.05}, states);
 }
@@ -386,6 +369,109 @@ TEST(Octomap, IndicesBeyondATreeAreRefused) {
   EXPECT_EQ(octree_from_grid(grid)->getNumLeafNodes(), 1U);
   grid.set({32768, 0, 0}, 1.0F);
   expect_error(ErrorCode::capacity, "32768", [&] { (void)octomap_bytes(grid); });
+}
+
+// Files that are cut, forged or of another kind.
+class DamagedOctomap : public testing::Test {
+ protected:
+  DamagedOctomap() {
+    octomap::OcTree tree(0.1);
+    for (int i = 0; i < 60; ++i) {
+      tree.updateNode(
+          octomap::point3d(0.1F * static_cast<float>(i % 7), 0.1F * static_cast<float>(i % 5),
+                           0.1F * static_cast<float>(i)),
+          i % 2 == 0);
+    }
+    tree.write((folder_.path() / "good.ot").string());
+    tree.writeBinary((folder_.path() / "good.bt").string());
+    full_ = read_all(folder_.path() / "good.ot");
+    binary_ = read_all(folder_.path() / "good.bt");
+  }
+
+  void expect_refused(const std::string& part, const std::string& contents,
+                      ErrorCode code = ErrorCode::format) {
+    const auto path = folder_.file("bad.ot", contents);
+    expect_error(code, part, [&] { (void)load_octomap(path); });
+    expect_error(code, "bad.ot", [&] { (void)load_octomap(path); });
+    ++cases_;
+  }
+
+  TemporaryFolder folder_;
+  std::string full_, binary_;
+  int cases_ = 0;
+};
+
+TEST_F(DamagedOctomap, HeadersAreNamedByLine) {
+  const std::string size =
+      full_.substr(full_.find("size "), full_.find("\nres") - full_.find("size "));
+  for (const char* res : {"0", "-0.1", "nan", "inf", "1e999", "x", ""}) {
+    expect_refused("bad.ot:", with(full_, "res 0.1", std::string("res ") + res));
+  }
+  for (const char* count : {"size", "size -5", "size 99999999999", "size 1e3", "size x"}) {
+    expect_refused("bad.ot:", with(full_, size, count));
+  }
+  for (const char* count : {"size 1", "size 4294967295"}) {
+    expect_refused("nodes", with(full_, size, count));
+  }
+  expect_refused(":4: trees of the type 'OcTreeStamped'",
+                 with(full_, "id OcTree", "id OcTreeStamped"));
+  expect_refused("no known voxel", with(full_, size, "size 0"));
+  expect_refused("\"id\"", with(full_, "id OcTree", "# OcTree"));
+  expect_refused("\"size\"", with(full_, size, "# none"));
+  expect_refused("\"res\"", with(full_, "res 0.1", "# none"));
+  expect_refused("\"data\"", with(full_, "data\n", "date\n"));
+  expect_refused(":1: is no OctoMap file", "");
+  expect_refused(":1: is no OctoMap file", "ply\nformat ascii 1.0\n");
+  expect_refused(":1: is no OctoMap file", std::string(1000, '\0'));
+  // A .bt's tree behind a .ot's header and the other way round.
+  expect_refused("", with(full_, "# Octomap OcTree file", "# Octomap OcTree binary file"));
+  expect_refused("", with(binary_, "# Octomap OcTree binary file", "# Octomap OcTree file"));
+  EXPECT_NO_THROW((void)load_octomap(
+      folder_.file("good.ot", with(full_, "id OcTree", "# comment\nauthor me\nid OcTree"))));
+  expect_error(ErrorCode::io, "none.ot", [&] { (void)load_octomap(folder_.path() / "none.ot"); });
+  expect_error(ErrorCode::io, "directory", [&] { (void)load_octomap(folder_.path()); });
+}
+
+std::string tree_bytes(const char* kind, int nodes, const std::string& data) {
+  return "# Octomap OcTree " + std::string(kind) + "\nid OcTree\nsize " + std::to_string(nodes) +
+         "\nres 0.1\ndata\n" + data;
+}
+std::string node(float log_odds, int children) {
+  std::string bytes(4, '\0');
+  std::memcpy(bytes.data(), &log_odds, 4);
+  bytes.push_back(static_cast<char>(children));
+  return bytes;
+}
+
+TEST_F(DamagedOctomap, ForgedTrees) {
+  std::string deep, deep_binary;
+  for (int i = 0; i < 18; ++i) deep += node(0, 1);
+  for (int i = 0; i < 18; ++i) deep_binary += std::string("\3\0", 2);
+  expect_refused("16 levels", tree_bytes("file", 18, deep));
+  expect_refused("16 levels", tree_bytes("binary file", 18, deep_binary));
+  expect_refused("not finite", tree_bytes("file", 1, node(std::nanf(""), 0)));
+  expect_refused("not finite", tree_bytes("file", 1, node(HUGE_VALF, 0)));
+  // One leaf for all of a tree's space, and ones of 8192³ and 1024³ occupied voxels.
+  expect_refused("voxels", tree_bytes("file", 1, node(-1, 0)), ErrorCode::capacity);
+  std::string solid, small;
+  for (int i = 0; i < 3; ++i) solid += node(1, 1);
+  for (int i = 0; i < 6; ++i) small += node(1, 1);
+  expect_refused("2^27", tree_bytes("file", 4, solid + node(1, 0)), ErrorCode::capacity);
+  expect_refused("2^27", tree_bytes("file", 7, small + node(1, 0)), ErrorCode::capacity);
+  // Free, the same cube is nothing special.
+  const BeliefGrid grid =
+      load_octomap(folder_.file("free.ot", tree_bytes("file", 4, solid + node(-1, 0))));
+  EXPECT_EQ(grid.statistics().free, std::uint64_t{1} << 39U);
+  EXPECT_LT(grid.statistics().bytes, std::uint64_t{1} << 20U);
+  EXPECT_EQ(octomap_bytes(grid).size(), tree_bytes("file", 4, solid + node(-1, 0)).size());
+  // The corner of a cube of occupied voxels can be had.
+  OctomapConfig config;
+  config.workspace = Box{{-3276.8, -3276.8, -3276.8}, {-3275, -3275, -3275}};
+  EXPECT_EQ(
+      load_octomap(folder_.file("solid.ot", tree_bytes("file", 4, solid + node(1, 0))), config)
+          .statistics()
+          .occupied,
+      18U * 18 * 18);
 }
 
 }  // namespace

@@ -40,31 +40,11 @@ class ConfigFile : public test::ProgramTest {
 };
 
 TEST_F(ConfigFile, ARunIsRepeatedByteForByte) {
-  const Strings call{"reconstruct",
-                     "cube.off",
-                     "--sensor",
-                     "tof.toml",
-                     "--size",
-                     "0.2",
-                     "--voxel",
-                     "0.00625",
-                     "--seed",
-                     "3",
-                     "--max-views",
-                     "2",
-                     "--out",
-                     "run",
-                     "--json",
-                     "--quiet",
-                     "--threads",
-                     "2",
-                     "--gain",
-                     "surface",
-                     "--save-maps",
-                     "on",
-                     "--obstacle",
-                     "0.5,-1,-1,0.6,1,1",
-                     "--obstacle=-0.6,-1,-1,-0.5,1,1"};
+  const Strings call = test::joined(
+      {"reconstruct", "cube.off", "--sensor", "tof.toml", "--size", "0.2", "--voxel", "0.00625"},
+      {"--seed", "3", "--max-views", "2", "--out", "run", "--json", "--quiet", "--threads", "2",
+       "--gain", "surface", "--save-maps", "on", "--obstacle", "0.5,-1,-1,0.6,1,1",
+       "--obstacle=-0.6,-1,-1,-0.5,1,1"});
   run_well(call);
   // Without where it went and how it was shown.
   for (const char* key : {"out", "json", "threads", "quiet", "config"}) {
@@ -181,19 +161,15 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithFileAndLine) {
       {"\n\ntop = \"three\"\n", "c.toml: line 6: key \"top\" must be a whole number"},
       {"top = 2.5\n", "line 4: key \"top\" must be a whole number"},
       {"max-range = \"far\"\n", "line 4: key \"max-range\" must be a number"},
-      {"max-range = true\n", "line 4: key \"max-range\" must be a number"},
       {"gain = true\n", "line 4: key \"gain\" must be a text"},
       {"feasible = 1\n", "line 4: key \"feasible\" must be true or false"},
-      {"race = \"on\"\n", "line 4: key \"race\" must be true or false"},
       {"weight = \"0,0,0,1,1,1,2\"\n", "line 4: key \"weight\" must be a list"},
       {"weight = [0,0,0,1,1,1,2]\n", "--weight 0: needs 7"},
       {"center = []\n", "line 4: key \"center\" must be"},
-      {"center = [[1, 2], 3]\n", "line 4: key \"center\" must be"},
       {"reach = 1979-05-27\n", "line 4: key \"reach\" must be"},
       {"reach = \"r.toml\\u0000x\"\n", "line 4: key \"reach\" must not hold a zero byte"},
       {"[gain]\nmodel = 1\n", "line 4: key \"gain\" must be"},
       {"top = 1\ntop = 2\n", "c.toml: line 5"},
-      {"gain = \"surfce\"\n", "did you mean surface?"},
       {"dome = \"20,0.6\"\n", "--dome"}};
   for (const auto& [text, word] : files) {
     write("c.toml", head + text);

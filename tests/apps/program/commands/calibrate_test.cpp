@@ -100,49 +100,36 @@ void expect_axial(const Sensor& found, const NoiseModel& truth, int& cases) {
   }
 }
 
-TEST_F(CalibrateNoise, ShotNoiseIsFound) {
-  const NoiseModel truth = read_sensor_toml(dir / "tof.toml").noise;
-  NoiseModel guess = truth;
-  std::get<ShotNoise>(guess).reference_sigma *= 2;
+TEST_F(CalibrateNoise, OfEachModelIsFound) {
+  const NoiseModel shot = read_sensor_toml(dir / "tof.toml").noise;
+  ShotNoise shot_guess = std::get<ShotNoise>(shot);
+  shot_guess.reference_sigma *= 2;
+  const StructuredLightNoise light;
+  StructuredLightNoise light_guess = light;
+  light_guess.offset *= 2;
+  light_guess.quadratic *= 0.5;
+  light_guess.lateral_px = 0.4;
+  const ConstantNoise constant{0.004, 0.008};
   int cases = 0;
   for (const int seed : {1, 2, 3}) {
     json report;
-    expect_axial(calibrated(truth, guess, seed, &report), truth, cases);
+    expect_axial(calibrated(shot, shot_guess, seed, &report), shot, cases);
     EXPECT_FALSE(report.at("lateral_in_model").get<bool>());
     EXPECT_NEAR(report.at("sigma_lateral_px").get<double>(), 1, kClose);
     EXPECT_EQ(report.at("frames"), 40);
-  }
-  EXPECT_EQ(cases, 9);
-}
 
-TEST_F(CalibrateNoise, StructuredLightIsFoundWithItsGrowthAndAcrossTheRay) {
-  const StructuredLightNoise truth;
-  StructuredLightNoise guess = truth;
-  guess.offset *= 2;
-  guess.quadratic *= 0.5;
-  guess.lateral_px = 0.4;
-  int cases = 0;
-  for (const int seed : {1, 2, 3}) {
-    json report;
-    const Sensor found = calibrated(truth, guess, seed, &report);
-    expect_axial(found, truth, cases);
+    Sensor found = calibrated(light, light_guess, seed, &report);
+    expect_axial(found, light, cases);
     EXPECT_TRUE(report.at("ranges_tell_shape").get<bool>());
-    EXPECT_NEAR(std::get<StructuredLightNoise>(found.noise).lateral_px, truth.lateral_px,
-                kClose * truth.lateral_px);
-  }
-  EXPECT_EQ(cases, 9);
-}
+    EXPECT_NEAR(std::get<StructuredLightNoise>(found.noise).lateral_px, light.lateral_px,
+                kClose * light.lateral_px);
 
-TEST_F(CalibrateNoise, ConstantNoiseIsFoundInMetres) {
-  const ConstantNoise truth{0.004, 0.008};
-  int cases = 0;
-  for (const int seed : {1, 2, 3}) {
-    const Sensor found = calibrated(truth, ConstantNoise{0.002, 0.004}, seed);
-    expect_axial(found, truth, cases);
-    EXPECT_NEAR(std::get<ConstantNoise>(found.noise).sigma_lateral, truth.sigma_lateral,
-                kClose * truth.sigma_lateral);
+    found = calibrated(constant, ConstantNoise{0.002, 0.004}, seed);
+    expect_axial(found, constant, cases);
+    EXPECT_NEAR(std::get<ConstantNoise>(found.noise).sigma_lateral, constant.sigma_lateral,
+                kClose * constant.sigma_lateral);
   }
-  EXPECT_EQ(cases, 9);
+  EXPECT_EQ(cases, 27);
 }
 
 TEST_F(CalibrateNoise, WhatDoesNotTellTheNoiseIsRefused) {

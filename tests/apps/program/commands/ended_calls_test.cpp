@@ -10,7 +10,6 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <string>
 #include <thread>
 
@@ -33,29 +32,10 @@ class EndedCalls : public test::ProgramTest {
         "0.2",      "--recenter", "on",      "--out",    out,        "--frames-per-view", frames};
   }
   static Strings reconstruct(const std::string& out, const std::string& views) {
-    return {"reconstruct",
-            "cube.off",
-            "--sensor",
-            "tof.toml",
-            "--voxel",
-            "0.00625",
-            "--size",
-            "0.2",
-            "--out",
-            out,
-            "--json",
-            "--max-views",
-            views,
-            "--save-maps",
-            "on",
-            "--pictures",
-            "off",
-            "--stop-gain",
-            "0",
-            "--stop-idle",
-            "0",
-            "--stop-promises",
-            "0"};
+    return test::joined({"reconstruct", "cube.off", "--sensor", "tof.toml", "--voxel", "0.00625",
+                         "--size", "0.2", "--save-maps", "on", "--pictures", "off", "--stop-gain",
+                         "0", "--stop-idle", "0", "--json"},
+                        {"--stop-promises", "0", "--out", out, "--max-views", views});
   }
 
   // The hidden folder of a call that is writing; empty if there is none.
@@ -64,23 +44,6 @@ class EndedCalls : public test::ProgramTest {
       if (name[0] == '.') return dir / folder / name;
     }
     return {};
-  }
-
-  // Starts a call and sends it a signal as soon as `is_time`; returns how it ended.
-  [[nodiscard]] int ended_by(const Strings& arguments, int signal,
-                             const std::function<bool()>& is_time) const {
-    const pid_t child = start(arguments);
-    int status = 0;
-    while (!is_time()) {
-      if (::waitpid(child, &status, WNOHANG) != 0) {
-        ADD_FAILURE() << "ended too early: " << status;
-        return status;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    EXPECT_EQ(::kill(child, signal), 0);
-    EXPECT_EQ(::waitpid(child, &status, 0), child);
-    return status;
   }
 };
 
@@ -107,19 +70,6 @@ TEST_F(EndedCalls, ASignalThatWasIgnoredStaysSo) {
     ++cases;
   }
   EXPECT_EQ(cases, 4);
-}
-
-TEST_F(EndedCalls, AClosedTerminalEndsARunAfterTheViewAtHand) {
-  for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
-    const std::string run = "run" + std::to_string(signal);
-    const int status = ended_by(reconstruct(run, "60"), signal, [&] {
-      const fs::path folder = hidden(".");
-      return !folder.empty() && fs::exists(folder / "maps/00.vdb");
-    });
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << signal << ": " << status;
-    EXPECT_EQ(json::parse(read(run + "/run.json"))["stop_reason"], "interrupted") << signal;
-    EXPECT_TRUE(hidden(".").empty());
-  }
 }
 
 // Frames are aligned before any goes into the map, which takes most of such a call's time.

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/program/commands/pose_file_text.hpp"
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
+#include "support/pose_file_text.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/png.hpp"
 

@@ -21,10 +21,10 @@
 #include <utility>
 #include <vector>
 
-#include "apps/program/commands/pose_file_text.hpp"
 #include "apps/program_runner.hpp"
 #include "core/temporary_folder.hpp"
 #include "program/cli/json.hpp"
+#include "support/pose_file_text.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
@@ -334,37 +334,6 @@ TEST_F(Follow, SaysWhereToLookNext) {
   EXPECT_EQ(read("plan/next.json"), before);
 }
 
-// An arm that misses, sees nothing or writes garbage, for 50 steps.
-TEST_F(Follow, NoViewIsProposedTwiceToAnArmThatFails) {
-  const auto nothing = GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)};
-  write_png(dir / "dark.png", nothing);
-  const std::string dark = read("dark.png");
-  for (const std::string kind : {"misses", "sees nothing", "garbage"}) {
-    begin_with_one_frame();
-    std::vector<Pose> asked;
-    json next;
-    std::size_t first_reason = 0;
-    for (std::size_t step = 1; step <= 50; ++step) {
-      run_well(follow({"--top", "1"}));
-      next = json::parse(read("plan/next.json"));
-      if (first_reason == 0 && next["stop_reason"] != nullptr) first_reason = step;
-      if (next["next"].size() == 0) break;
-      const Pose best = best_of(next);
-      EXPECT_FALSE(is_among(best, asked, ReachRegion::Tolerance{})) << kind << " " << step;
-      asked.push_back(best);
-      write(name(step) + ".depth.png", kind == "misses" ? images[0] : dark);
-      write(name(step) + ".pose.txt", kind == "misses"         ? poses[0]
-                                      : kind == "sees nothing" ? matrix_text(best)
-                                                               : "-inf nan 7\n");
-      // The others wait 2 s for each bad file.
-      if (kind != "misses" && first_reason > 0 && step > first_reason + 3) break;
-    }
-    EXPECT_NE(next["stop_reason"], nullptr) << kind;
-    EXPECT_GT(first_reason, 0U) << kind;
-    EXPECT_LE(first_reason, 20U) << kind;  // --max-views
-  }
-}
-
 TEST_F(Follow, AnEmptyViewBreaksItsPromise) {
   write_png(dir / "dark.png", GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)});
   for (const char* rule : {"0", "1", "2"}) {
@@ -404,27 +373,55 @@ TEST_F(Follow, SaysWhatIsSuspectedOfTheFrames) {
   }
 }
 
+// A pose that contradicts the map: the map is what it is without that frame.
 TEST_F(Follow, WhatContradictsTheMapIsLeftOut) {
   run_well({"simulate", "cube.off", "--orbit", "10,0.6,27", "--sensor", "sr4000", "--size", "0.2",
             "--recenter", "on", "--out", "moved"});
-  PoseList poses_of_frames = read_tum(dir / "moved/poses.txt");
-  poses_of_frames.poses[7].m[3] += 0.1;
-  viewgain::write_tum(dir / "moved/poses.txt", poses_of_frames.poses);
+  FrameSequence frames = open_frames(dir / "moved");
+  FramesWriter without(dir / "without");
+  std::vector<Pose> others;
+  for (std::size_t i = 0; i < 10; ++i) {
+    if (i == 7) continue;
+    without.write_frame(others.size(), load_frame(frames, i));
+    others.push_back(frames.poses[i]);
+  }
+  without.commit(others, frames.sensor);
+  frames.poses[7].m[3] += 0.1;
+  viewgain::write_tum(dir / "moved/poses.txt", frames.poses);
   write("moved/done", "");
-  const json result = json::parse(
-      run_well({"follow", "moved", "--voxel", "0.01", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-                "--register", "on", "--out", "plan", "--json", "--quiet"}));
+  const Strings made{"--voxel", "0.01", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2"};
+  std::string said;
+  const auto ran = [&](const Strings& call, const Strings& more) {
+    const test::ProgramResult result =
+        run(test::joined(test::joined(call, {"--register", "on", "--json"}), more));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    said = result.err;
+    return json::parse(result.out);
+  };
+  const Strings map{"--out", "map.vdb"};
+  const std::string hash = ran({"integrate", "without"}, test::joined(made, map))["hash"];
+  const json result = ran({"follow", "moved", "--out", "plan"}, made);
   EXPECT_EQ(result["bad"].size(), 1U);
   EXPECT_EQ(result["bad"]["contradicts"], 1);
   EXPECT_EQ(result["frames"], 9);
+  EXPECT_EQ(result["hash"], hash);
+  const json integrated = ran({"integrate", "moved"}, test::joined(made, map));
+  EXPECT_NE(said.find("(contradicts); left out"), std::string::npos) << said;
+  EXPECT_EQ(integrated["registration"]["refused"], 1);
+  EXPECT_EQ(integrated["hash"], hash);
+  // Fed again it is tried again; the others are skipped.
+  const json again = ran({"integrate", "moved", "--map", "map.vdb"}, map);
+  EXPECT_EQ(again["skipped"], 9);
+  EXPECT_EQ(again["registration"]["refused"], 1);
+  EXPECT_EQ(again["hash"], hash);
 
   std::size_t cases = 0;
   for (const Strings& call : {Strings{"follow", "moved"}, Strings{"integrate", "moved"},
                               Strings{"reconstruct", "moved", "--pictures", "off"}}) {
-    const std::string out = "kept" + std::to_string(cases) + (call[0] == "integrate" ? ".vdb" : "");
-    const json kept = json::parse(run_well(test::joined(
-        call, {"--voxel", "0.01", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--register", "on",
-               "--on-contradiction", "keep", "--out", out, "--json", "--quiet"})));
+    const json kept =
+        ran(test::joined(call, {"--out", "kept-" + call[0] + (call[0] == "integrate" ? ".vdb" : ""),
+                                "--on-contradiction", "keep"}),
+            made);
     EXPECT_EQ(kept["bad"].size(), 0U) << call[0];
     EXPECT_EQ(kept["frames"], 10) << call[0];
     ++cases;
@@ -464,31 +461,22 @@ TEST_F(Follow, FaultsOfFilesAndClocks) {
   write("odd\nname/frame-000002.depth.png", image);
   write("odd\nname/frame-00\n0004.depth.png", image);
   write("odd\nname/frame-000009.depth.png\n", image);
-  const pid_t child = start({"follow", "odd\nname", "--voxel", "0.0125", "--workspace",
-                             "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "plan", "--quiet"});
-  const auto counted = [&] {
-    return fs::exists(dir / "plan/next.json") ? json::parse(read("plan/next.json")) : json();
-  };
-  const auto wait_for = [&](auto&& is_there) {
-    for (int i = 0; i < 3000 && !is_there(counted()); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-  };
-  wait_for([](const json& now) { return now.is_object() && now["frames"] == 4; });
-  // The same again, dated anew, and at last the rest of the one that was cut off.
-  bring(0, 7, 5);
-  wait_for([](const json& now) { return now.is_object() && now["bad"].contains("unreadable"); });
-  EXPECT_EQ(counted()["bad"]["unreadable"], 1);
-  bring(4, 1, -5);
-  wait_for([](const json& now) { return now["frames"] == 5; });
   write("odd\nname/done", "");
-  int status = 0;
-  EXPECT_EQ(::waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  const json last = counted();
+  const auto followed = [&] {
+    return json::parse(run({"follow", "odd\nname", "--voxel", "0.0125", "--workspace",
+                            "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "plan", "--json"})
+                           .out);
+  };
+  const json first = followed();
+  EXPECT_EQ(first["frames"], 4);
+  EXPECT_EQ(first["bad"], (json{{"no_pose", 1}, {"unreadable", 1}}));
+  // The same again, dated anew, and the rest of the one that was cut off.
+  bring(0, 7, 5);
+  bring(4, 1, -5);
+  const json last = followed();
+  EXPECT_EQ(last["added"], 1);
   EXPECT_EQ(last["frames"], 5);
-  EXPECT_EQ(last["bad"].size(), 1U);
-  EXPECT_EQ(last["bad"]["no_pose"], 1);
+  EXPECT_EQ(last["bad"], (json{{"no_pose", 1}}));
   EXPECT_EQ(load_vdb(dir / "plan/state.vdb").views().size(), 5U);
 }
 

@@ -81,21 +81,7 @@ TEST_F(Render, SaysWhatItCannotDraw) {
                              {{"cube.off", "--what", "map"}, "cube.off"}};
   expect_refused_with({"render", "--out", "picture.png"}, cases);
   expect_refused({"render", "run", "--what", "map", "--out", "map.jpg"}, ".png");
-}
-
-TEST_F(Render, WhatCannotBeShownOrReadIsNamed) {
-  make_run("run");
-  // What is read is not written, and odd names are bad input.
-  const std::string before = read("run/views/00.png");
-  for (const std::vector<std::string>& call :
-       {std::vector<std::string>{"run", "--what", "map", "--out", "run/views/00.png"},
-        {std::string(300, 'n'), "--what", "map", "--out", "odd.png"}}) {
-    std::vector<std::string> all = call;
-    all.insert(all.begin(), "render");
-    const test::ProgramResult result = run(all);
-    EXPECT_EQ(result.exit_code, 2) << result.err;
-  }
-  EXPECT_EQ(read("run/views/00.png"), before);
+  expect_refused({"render", "run", "--what", "map", "--out", "run/map.vdb"}, "run/map.vdb");
 }
 
 TEST_F(Render, MapsRememberTheirSensor) {
@@ -113,9 +99,7 @@ TEST_F(Render, MapsRememberTheirSensor) {
   EXPECT_NE(two.err.find(" there, "), std::string::npos) << two.err;
   EXPECT_TRUE(json::parse(run_well({"info", "two.vdb", "--json"})).at("sensor").is_null());
 
-  // It goes through convert, not into a tree.
-  run_well({"convert", "run/map.vdb", "again.vdb"});
-  EXPECT_EQ(json::parse(run_well({"info", "again.vdb", "--json"})).at("sensor"), sensor);
+  // It does not go into a tree.
   run_well({"convert", "run/map.vdb", "tree.ot"});
   const test::ProgramResult none = run({"score", "tree.ot", "--sphere", "20,0.6"});
   EXPECT_EQ(none.exit_code, 2);
@@ -136,9 +120,6 @@ TEST_F(Surface, IsThatOfTheRunThatMadeTheMap) {
                             "--truth", "cube.off", "--size", "0.2", "--recenter", "on", "--json"}));
   EXPECT_EQ(read("s.ply"), read("run/surface.ply"));
   EXPECT_EQ(read("p.ply"), read("run/points.ply"));
-  EXPECT_GT(result["points"], 500);
-  EXPECT_GT(result["triangles"], 500);
-  EXPECT_GT(result["median_sigma"].get<double>(), 1e-5);
   const json last = json::parse(read("run/run.json"))["per_view"].back();
   EXPECT_NEAR(result["area"].get<double>(), last["surface_area"].get<double>(), 1e-12);
   for (const char* figure : {"coverage", "coverage_2_5mm", "rms_error", "p95_error",
@@ -146,10 +127,6 @@ TEST_F(Surface, IsThatOfTheRunThatMadeTheMap) {
                              "consistency_median", "consistency_above_9", "outliers"}) {
     EXPECT_NEAR(result["truth"][figure].get<double>(), last[figure].get<double>(), 1e-9) << figure;
   }
-  // Two views see part of a cube, and what they see is mostly in the map.
-  const double seen = result["truth"]["coverage_seen"];
-  EXPECT_GT(seen, result["truth"]["coverage"].get<double>() + 0.1);
-  EXPECT_GT(seen, 0.65);
 }
 
 TEST_F(Surface, SaysWithoutATruthWhatItMade) {

@@ -5,12 +5,10 @@
 
 #include <sys/wait.h>
 
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <map>
 #include <string>
-#include <thread>
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
@@ -62,20 +60,6 @@ class Resume : public test::ProgramTest {
     for (std::size_t at = 0; (at = text.find("map_hash", at)) != std::string::npos; ++at) ++count;
     return count;
   }
-
-  // Ends a call by the signal after so many decisions, or files. Returns how it ended.
-  template <typename IsTime>
-  int ended_by(int signal, const Strings& call, IsTime&& is_time) const {
-    const pid_t child = start(call);
-    int status = 0;
-    while (!is_time()) {
-      if (::waitpid(child, &status, WNOHANG) != 0) return status;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    EXPECT_EQ(::kill(child, signal), 0);
-    EXPECT_EQ(::waitpid(child, &status, 0), child);
-    return status;
-  }
 };
 
 TEST_F(Resume, AKilledRunEndsWithTheSameBytes) {
@@ -90,12 +74,12 @@ TEST_F(Resume, AKilledRunEndsWithTheSameBytes) {
     for (const std::size_t after : {1U, 2U}) {
       fs::remove_all(dir / "out");
       const int status =
-          ended_by(SIGKILL, run_of("out", more), [&] { return decisions() >= after; });
+          ended_by(run_of("out", more), SIGKILL, [&] { return decisions() >= after; });
       ASSERT_TRUE(WIFSIGNALED(status)) << more[1] << ": " << status;
       EXPECT_FALSE(fs::exists(dir / "out"));
       EXPECT_GE(decisions(), after);
       // Again, right at the start.
-      (void)ended_by(SIGKILL, run_of("out", more), [] { return true; });
+      (void)ended_by(run_of("out", more), SIGKILL, [] { return true; });
       EXPECT_GE(decisions(), after);
       ASSERT_EQ(run(run_of("out", more)).exit_code, 0) << more[1];
       EXPECT_TRUE(result("out") == whole) << more[1] << " after " << after;
@@ -108,7 +92,7 @@ TEST_F(Resume, AKilledRunEndsWithTheSameBytes) {
 }
 
 TEST_F(Resume, WhatWasDecidedIsNotDecidedAgain) {
-  const int status = ended_by(SIGKILL, run_of("out"), [&] { return decisions() >= 2; });
+  const int status = ended_by(run_of("out"), SIGKILL, [&] { return decisions() >= 2; });
   ASSERT_TRUE(WIFSIGNALED(status));
   // Another choice in the first decision's place: the run goes by it.
   const std::string name = left().filename().string() + "/checkpoint.json";
@@ -129,8 +113,9 @@ TEST_F(Resume, AnInterruptedRunGoesOnFromItsFolder) {
   const auto whole = result("whole");
   std::size_t cases = 0;
   for (const int signal : {SIGTERM, SIGHUP, SIGINT}) {
-    const int status = ended_by(signal, run_of("out"), [&] { return decisions() >= 1; });
+    const int status = ended_by(run_of("out"), signal, [&] { return decisions() >= 1; });
     ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << signal;
+    EXPECT_TRUE(left().empty());
     EXPECT_EQ(json::parse(read("out/run.json"))["stop_reason"], "interrupted") << signal;
     EXPECT_TRUE(fs::exists(dir / "out/checkpoint.json"));
     ASSERT_EQ(run(run_of("out")).exit_code, 0);
@@ -154,7 +139,7 @@ TEST_F(Resume, OfFramesWhatWasDrawnIsKept) {
     const fs::path folder = left();
     return !folder.empty() && fs::exists(folder / "views/01.png");
   };
-  const int status = ended_by(SIGKILL, of("out"), drawn);
+  const int status = ended_by(of("out"), SIGKILL, drawn);
   ASSERT_TRUE(WIFSIGNALED(status)) << status;
   const auto time = fs::last_write_time(left() / "views/01.png");
   const test::ProgramResult other = run(test::joined(of("out"), {"--coarsest", "1"}));
@@ -167,7 +152,7 @@ TEST_F(Resume, OfFramesWhatWasDrawnIsKept) {
 }
 
 TEST_F(Resume, AnothersCheckpointIsRefusedAndStays) {
-  const int status = ended_by(SIGKILL, run_of("out"), [&] { return decisions() >= 1; });
+  const int status = ended_by(run_of("out"), SIGKILL, [&] { return decisions() >= 1; });
   ASSERT_TRUE(WIFSIGNALED(status));
   const std::string name = left().filename().string() + "/checkpoint.json";
   const std::string good = read(name);
@@ -202,7 +187,7 @@ TEST_F(Resume, AnothersCheckpointIsRefusedAndStays) {
 
 // A link that somebody put into what was left leads no file out of it.
 TEST_F(Resume, LinksInWhatWasLeftAreNotFollowed) {
-  const int status = ended_by(SIGKILL, run_of("out"), [&] { return decisions() >= 1; });
+  const int status = ended_by(run_of("out"), SIGKILL, [&] { return decisions() >= 1; });
   ASSERT_TRUE(WIFSIGNALED(status));
   write("mine.txt", "mine");
   fs::create_directory(dir / "elsewhere");

@@ -1,15 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
-#include "viewgain/core/generators.hpp"
+#include "support/pose_file_text.hpp"
 #include "viewgain/core/pose_io.hpp"
-#include "viewgain/formats/frames.hpp"
-#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
 namespace {
@@ -52,10 +49,7 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
     const std::string number = i == 0 ? "000000" : i == 1 ? "000050" : "001000";
     std::filesystem::copy(dir / "frames" / ("frame-00000" + std::to_string(i) + ".depth.png"),
                           dir / "recorded" / ("frame-" + number + ".depth.png"));
-    std::ostringstream text;
-    text.precision(17);
-    text << poses.poses[i].isometry().matrix() << "\n";
-    write("recorded/frame-" + number + ".pose.txt", text.str());
+    write("recorded/frame-" + number + ".pose.txt", test::matrix_text(poses.poses[i]));
   }
   write("recorded/camera-intrinsics.txt",
         "\xef\xbb\xbf"
@@ -68,35 +62,14 @@ TEST_F(Workflow, RecordedFramesGiveTheSameMap) {
   integrate("recorded", "recorded.vdb", {"--sensor", "wrong.toml", "--depth-scale", "1e-4"});
   EXPECT_EQ(hash("recorded.vdb"), hash("own.vdb"));
 
-  // Without the scale the depths are ten times too long: all readings lie out of range. A sensor
-  // file of the user's beside the recording changes nothing about that.
+  // Without the scale the depths are ten times too long: all readings lie out of range.
   expect_refused({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
                   "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
                  "0.001 m per unit");
-  write("recorded/sensor.toml", read("wrong.toml"));
-  expect_refused({"integrate", "recorded", "--voxel", "0.02", "--workspace",
-                  "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "none.vdb"},
-                 "0.001 m per unit");
-  expect_refused({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
-                  "--depth-scale", "1e-6", "--out", "none.vdb"},
-                 "1e-06 m per unit");
   EXPECT_NE(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
                       "--depth-scale", "1e-4", "--out", "own.vdb"})
                 .find("depth images: 1e-04 m per unit"),
             std::string::npos);
-
-  // A rotation that is off by 1e-4 is mended and said; another map than with the exact one.
-  std::string pose = read("recorded/frame-000050.pose.txt");
-  std::istringstream numbers(pose);
-  double first = 0;
-  numbers >> first;
-  std::string rest;
-  std::getline(numbers, rest, '\0');
-  write("recorded/frame-000050.pose.txt", std::to_string(first * (1 + 1e-4)) + rest);
-  const json mended =
-      json::parse(run_well({"integrate", "recorded", "--sensor", "wrong.toml", "--voxel", "0.02",
-                            "--depth-scale", "1e-4", "--out", "mended.vdb", "--json"}));
-  EXPECT_EQ(mended.at("orthonormalized_poses"), 1);
 }
 
 TEST_F(Workflow, AMapKeepsItsLayout) {
@@ -164,61 +137,6 @@ TEST_F(Workflow, FramesThatAMapHasAreSkipped) {
   EXPECT_EQ(grow({"--map", "tree.ot", "--out", "new.vdb"})["skipped"], 0);
 }
 
-// A pose that contradicts the map: the map is what it is without that frame.
-TEST_F(Workflow, FramesThatContradictTheMapAreLeftOut) {
-  run_well({"simulate", "cube.off", "--size", "0.2", "--recenter", "on", "--orbit", "12,0.6,27",
-            "--sensor", "sr4000", "--out", "whole"});
-  const auto integrated = [this](const std::string& folder, const Strings& more) {
-    const test::ProgramResult result =
-        run(test::joined({"integrate", folder, "--voxel", "0.01", "--workspace",
-                          "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--json", "--out", "map.vdb"},
-                         more));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(result.err.find("(contradicts); left out") != std::string::npos, folder == "bad");
-    return json::parse(result.out);
-  };
-  const Strings registered{"--register", "on"};
-  const json good = integrated("whole", registered);
-  EXPECT_EQ(good["registration"]["refused"], 0);
-  EXPECT_GE(good["registration"]["registered"], 10);
-  EXPECT_TRUE(integrated("whole", {})["registration"].is_null());
-
-  // View 7 stands 10 cm beside where it says; the last ones look elsewhere.
-  FrameSequence frames = open_frames(dir / "whole");
-  FramesWriter bad(dir / "bad"), without(dir / "without");
-  std::vector<Pose> bad_poses, other_poses;
-  for (std::size_t i = 0; i < 12; ++i) {
-    const DepthFrame frame = load_frame(frames, i);
-    bad.write_frame(i, frame);
-    bad_poses.push_back(frames.poses[i]);
-    if (i == 7) {
-      bad_poses.back().m[3] += 0.1;
-      continue;
-    }
-    without.write_frame(other_poses.size(), frame);
-    other_poses.push_back(frames.poses[i]);
-  }
-  bad.commit(bad_poses, frames.sensor);
-  without.commit(other_poses, frames.sensor);
-  const json left_out = integrated("bad", registered);
-  EXPECT_EQ(left_out["registration"]["refused"], 1);
-  EXPECT_EQ(left_out["frames"], 11);
-  EXPECT_EQ(left_out["hash"], integrated("without", registered)["hash"]);
-  // Fed again it is tried again; the others are skipped.
-  (void)integrated("bad", registered);
-  const json again = json::parse(run({"integrate", "bad", "--map", "map.vdb", "--register", "on",
-                                      "--json", "--out", "map.vdb"})
-                                     .out);
-  EXPECT_EQ(again["skipped"], 11);
-  EXPECT_EQ(again["registration"]["refused"], 1);
-  EXPECT_EQ(again["hash"], left_out["hash"]);
-
-  expect_refused_with({"integrate", "whole", "--voxel", "0.01", "--out", "no.vdb"},
-                      {{{"--pose-sigma", "0.01,1"}, "goes with --register on"},
-                       {{"--register", "on", "--pose-sigma", "0,1"}, "--pose-sigma"},
-                       {{"--register", "on", "--pose-sigma", "x"}, "--pose-sigma"}});
-}
-
 TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   simulate("frames");
   integrate("frames", "map.vdb");
@@ -234,15 +152,13 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   };
   const double gain = paper({}).at("gain");
   EXPECT_EQ(paper({}).at("rays"), 48 * 36);
-  EXPECT_EQ(paper({"--weight", "-1,-1,-1,1,1,1,0"}).at("gain"), 0.0);
-  EXPECT_NEAR(paper({"--weight", "-1,-1,-1,1,1,1,2"}).at("gain"), 2 * gain, 1e-9 * gain);
   EXPECT_NEAR(paper({"--weight", "-1,-1,-1,1,1,1,0", "--weight", "-1,-1,-1,1,1,1,1"}).at("gain"),
               gain, 1e-9 * gain);
-  EXPECT_EQ(paper({"--max-range", "0.3"}).at("hits"), 0);
-  EXPECT_EQ(paper({"--min-range", "2"}).at("hits"), 0);
-  EXPECT_GT(paper({"--prior-sigma", "0.5"}).at("gain"), gain);
-  EXPECT_NE(paper({"--criterion", "trace"}).at("gain"), gain);
-  EXPECT_LT(paper({"--stride", "3"}).at("gain"), gain);
+  for (const Strings& flag :
+       {Strings{"--max-range", "0.3"}, Strings{"--min-range", "2"}, Strings{"--prior-sigma", "0.5"},
+        Strings{"--criterion", "trace"}, Strings{"--stride", "3"}}) {
+    EXPECT_NE(paper(flag).at("gain"), gain) << flag[0];
+  }
 
   const json surface = best({"--gain", "surface"}), combined = best({"--gain", "combined"});
   EXPECT_EQ(best({}), combined);
@@ -262,13 +178,6 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   EXPECT_GT(best({"--gain", "surface", "--hazard", "20"}).at("area"),
             best({"--gain", "surface", "--hazard", "1"}).at("area"));
   EXPECT_EQ(best({"--gain", "surface", "--hazard", "0"}).at("area"), 0.0);
-  // From a file: as the same number everywhere, up to the size of the hazard's cells.
-  const BeliefGrid map = load_vdb(dir / "map.vdb");
-  save_hazard_vdb({VoxelBox{}, {}, 20.0F}, map, dir / "prior.vdb");
-  const json by_number = best({"--gain", "surface", "--hazard", "20"});
-  const json by_file = best({"--gain", "surface", "--hazard", "prior.vdb"});
-  EXPECT_NEAR(by_file.at("area").get<double>(), by_number.at("area").get<double>(),
-              0.02 * by_number.at("area").get<double>());
   EXPECT_EQ(best({"--gain", "surface", "--support-plane", "9"}).at("rays"), 48 * 36);
   EXPECT_NE(best({"--gain", "surface", "--object-size", "1"}).at("area"), surface.at("area"));
 

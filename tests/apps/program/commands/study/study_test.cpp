@@ -6,12 +6,10 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "apps/program_runner.hpp"
@@ -126,13 +124,9 @@ TEST_F(Study, KilledItGoesOn) {
   run_well(study("whole", {"--plots", "off", "--jobs", "1"}));
   std::size_t kills = 0;
   for (std::size_t wanted : {0U, 1U, 3U, 4U}) {
-    const pid_t child = start(study("killed", {"--plots", "off", "--jobs", "2"}));
-    int status = 0;
-    while (runs_in("killed") < wanted && ::waitpid(child, &status, WNOHANG) == 0) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    if (::kill(child, SIGKILL) == 0) ++kills;
-    ::waitpid(child, &status, 0);
+    const int status = ended_by(study("killed", {"--plots", "off", "--jobs", "2"}), SIGKILL,
+                                [&] { return runs_in("killed") >= wanted; });
+    if (WIFSIGNALED(status)) ++kills;
     EXPECT_FALSE(fs::exists(dir / "killed/results.json"));
   }
   EXPECT_EQ(kills, 4U);
@@ -148,13 +142,8 @@ TEST_F(Study, KilledItGoesOn) {
 }
 
 TEST_F(Study, AWishToStopLeavesWhatIsWhole) {
-  const pid_t child = start(study("out", {"--plots", "off", "--jobs", "1"}));
-  int status = 0;
-  while (runs_in("out") < 1 && ::waitpid(child, &status, WNOHANG) == 0) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  ASSERT_EQ(::kill(child, SIGINT), 0);
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  const int status = ended_by(study("out", {"--plots", "off", "--jobs", "1"}), SIGINT,
+                              [&] { return runs_in("out") >= 1; });
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 130) << status;
   EXPECT_EQ(list("out"), Strings{"runs"});
   EXPECT_LT(runs_in("out"), 6U);
