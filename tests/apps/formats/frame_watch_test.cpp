@@ -335,6 +335,27 @@ TEST_F(WatchedFolder, ATakenFrameStaysTaken) {
   EXPECT_EQ(first.taken(), taken);
 }
 
+TEST_F(WatchedFolder, ManyTakenFramesAreLookedAtAgainInTurns) {
+  constexpr int kFrames = 600;  // 256 a look
+  for (int number = 0; number < kFrames; ++number) put_frame(number);
+  FrameWatch watched = watch();
+  EXPECT_EQ(complete(watched).size(), std::size_t{kFrames});
+  for (const int changed : {0, 300, kFrames - 1}) {
+    put(name(changed, ".depth.png"), png(777));
+    std::size_t looks = 0;
+    for (; watched.waiting() == 0 && looks < 4; ++looks) EXPECT_FALSE(watched.look(now).frame);
+    EXPECT_LE(looks, 3U) << changed;
+    EXPECT_EQ(watched.waiting(), 1U);
+    now += 3s;
+    EXPECT_FALSE(watched.look(now).frame);
+    EXPECT_EQ(watched.waiting(), 0U);
+  }
+  EXPECT_EQ(watched.bad(), (Counts{{"changed", 3}}));
+  std::size_t looks = 1;
+  for (; !watched.is_settled() && looks < 9; ++looks) EXPECT_FALSE(watched.look(now).frame);
+  EXPECT_EQ(looks, 3U);
+}
+
 TEST_F(WatchedFolder, AmplitudesAreWaitedForWhereThereAreAny) {
   put_frame(0);
   FrameWatch watched = watch();

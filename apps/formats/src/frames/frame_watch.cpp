@@ -96,6 +96,7 @@ struct FrameWatch::Impl {
   std::map<std::uint64_t, Entry> entries;
   Time looked{};                 // when it was looked at last
   std::uint64_t next_again = 0;  // the first frame whose turn it is to be looked at again
+  std::size_t quiet_looks = 0;   // in a row, that found nothing new
   FileStamp poses_stamp;
   std::vector<ReadPose> poses;  // of poses.txt
 
@@ -232,6 +233,7 @@ struct FrameWatch::Impl {
     for (std::size_t i = 0; i < kAgain && end_again != frames.end(); ++i) ++end_again;
     const std::uint64_t begin = next_again;
     next_again = end_again == frames.end() ? 0 : end_again->first;
+    ++quiet_looks;
     FolderLook found;
     for (const auto& [number, name] : frames) {
       Entry& entry = entries[number];
@@ -239,7 +241,10 @@ struct FrameWatch::Impl {
       if (entry.state != State::waits && !is_turn) continue;
       const Signature is = signature(number, name, is_recorded);
       if (!is.depth.is_there()) continue;  // since the folder was listed
-      if (is != entry.signature) entry = {is, now};
+      if (is != entry.signature) {
+        entry = {is, now};
+        quiet_looks = 0;
+      }
       entry.name = name + std::string(kDepthSuffix);
       const bool is_stable = now - entry.since >= config.settle;
       if (entry.state != State::waits || (is_stable ? entry.is_judged : entry.is_examined))
@@ -337,6 +342,7 @@ std::map<std::string, std::size_t> FrameWatch::bad() const {
 }
 
 bool FrameWatch::is_settled() const {
+  if (impl_->quiet_looks * kAgain < impl_->entries.size()) return false;  // not all had their turn
   return std::all_of(impl_->entries.begin(), impl_->entries.end(), [&](const auto& entry) {
     return entry.second.state != State::waits ||
            impl_->looked - entry.second.since >= impl_->config.settle;

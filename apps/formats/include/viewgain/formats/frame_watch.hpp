@@ -86,7 +86,8 @@ class VIEWGAIN_EXPORT FrameWatch {
 
   /// Looks at the folder; `now` must not go back. A frame that is given out counts as taken; the
   /// next one comes with the next look. Throws Error(io) if the folder cannot be read, and with the
-  /// first complete frame as open_frames() for what holds for all. Takes some µs a file.
+  /// first complete frame as open_frames() for what holds for all. Of frames that are taken or bad
+  /// 256 are looked at again, in turns. Takes some µs a file of these and of the new ones.
   [[nodiscard]] FolderLook look(Time now);
 
   /// Nobody writes any more: frames that wait for a pose, a mask or, where poses.txt has a line
@@ -106,8 +107,8 @@ class VIEWGAIN_EXPORT FrameWatch {
   [[nodiscard]] std::size_t waiting() const;
   /// Bad frames in the folder: verdict's name -> count.
   [[nodiscard]] std::map<std::string, std::size_t> bad() const;
-  /// Did the last look find that nothing has changed, for FrameWatchConfig::settle, of the frames
-  /// that wait?
+  /// Have the looks found that nothing has changed, for FrameWatchConfig::settle of the frames that
+  /// wait, since each of the others had its turn?
   [[nodiscard]] bool is_settled() const;
 
  private:
