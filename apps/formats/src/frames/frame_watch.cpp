@@ -275,9 +275,9 @@ struct FrameWatch::Impl {
   }
 };
 
-FrameWatch::FrameWatch(fs::path dir, FrameWatchConfig config)
-    : impl_(std::make_unique<Impl>(
-          Impl{std::move(dir), std::move(config), {}, {}, {}, {}, {}, {}, {}})) {
+FrameWatch::FrameWatch(fs::path dir, FrameWatchConfig config) : impl_(std::make_unique<Impl>()) {
+  impl_->dir = std::move(dir);
+  impl_->config = std::move(config);
   for (const std::string& identity : impl_->config.taken) {
     impl_->taken.emplace(identity.substr(identity.find(' ') + 1), identity);
   }
