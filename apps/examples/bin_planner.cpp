@@ -43,7 +43,7 @@ int main(int argc, char** argv) try {
     std::printf("view %zu: %.1f cm2 of new surface, %.0f nat", i, 1e4 * view.update.new_area,
                 view.entropy_removed);
     const std::size_t possible = planner.propose().candidates.size();
-    for (const RankedView& best : planner.rank(1, {.cost_per_metre = 100}).views) {  // [nat/m]
+    for (const RankedView& best : planner.rank(1, {.cost_per_metre = 20}).views) {  // [nat/m]
       const Eigen::Vector3d at = best.T_world_camera.translation();
       std::printf("; of %zu views the best is %zu at (%.3f, %.3f, %.3f) m, %.1f nat", possible,
                   best.index, at.x(), at.y(), at.z(), best.gain.gain);

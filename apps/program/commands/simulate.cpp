@@ -97,16 +97,21 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
   if (std::none_of(poses.begin(), poses.end(),
                    [&](const Pose& pose) { return sees_mesh(scene, sensor, rays, pose); })) {
-    Box box{scene.mesh().vertices.front(), scene.mesh().vertices.front()};
-    for (const auto& v : scene.mesh().vertices) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        box.min[k] = std::min(box.min[k], v[k]);
-        box.max[k] = std::max(box.max[k], v[k]);
-      }
-    }
     refuse(options.mesh + ": no pose has the mesh in view and in range, which lies in " +
-           describe(box) + " m (--size, --recenter, --place)");
+           describe(bounds_of(scene.mesh())) + " m (--size, --recenter, --place)");
   }
+}
+
+// Most meshes that are far too large are in millimetres.
+void warn_of_size(const Options& options, const SurfaceScene& scene, const Sensor& sensor) {
+  constexpr double kTooLarge = 10;  // times what the sensor sees
+  const double side = longest_side(bounds_of(scene.mesh()));
+  if (side <= kTooLarge * sensor.max_range) return;
+  std::fprintf(stderr,
+               "viewgain: warning: %s is %s m long, the sensor sees to %s m: is it in metres? "
+               "(--size)\n",
+               options.mesh.c_str(), short_text(side).c_str(),
+               short_text(sensor.max_range).c_str());
 }
 
 void simulate(const Options& options) {
@@ -124,6 +129,7 @@ void simulate(const Options& options) {
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
   check_view(options, *scene, sensor, source.poses);
+  warn_of_size(options, *scene, sensor);
   const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, sensor), exec);
   const PoseSigma pose_noise = parse_pose_sigma("--pose-noise", options.sensing.pose_noise);
   std::vector<Pose> poses, reported;  // one a frame

@@ -112,6 +112,23 @@ void print(const QualityFigures& figures) {
               figures.consistency.mean_clipped, figures.consistency.outliers);
 }
 
+// A truth that lies elsewhere than the map, or is much larger.
+void warn_of_place(const Options& options, const TriangleMesh& truth, const BeliefGrid& grid) {
+  constexpr double kTooLarge = 10;  // times the map
+  const Box box = bounds_of(truth), map = grid.workspace();
+  bool is_inside = longest_side(box) <= kTooLarge * longest_side(map);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double middle = 0.5 * (box.min[a] + box.max[a]);
+    is_inside = is_inside && middle >= map.min[a] && middle <= map.max[a];
+  }
+  if (is_inside) return;
+  std::fprintf(
+      stderr,
+      "viewgain: warning: %s lies in %s m, the map in %s m: is it where the object was, in "
+      "metres? (--size, --recenter, --up)\n",
+      options.truth.c_str(), describe(box).c_str(), describe(map).c_str());
+}
+
 void surface(const Options& options, const App& app) {
   const Stopwatch watch;
   check(options, app);
@@ -123,7 +140,10 @@ void surface(const Options& options, const App& app) {
   if (points.empty()) refuse(options.map + ": no voxel has readings that make a surface");
   const SurfaceMesh surface = surface_of(points, exec);
   std::optional<QualityFigures> figures;
-  if (truth) figures = figures_of(*truth, map, surface, points, exec);
+  if (truth) {
+    warn_of_place(options, truth->mesh(), map.grid);
+    figures = figures_of(*truth, map, surface, points, exec);
+  }
   write_surfaces(surface, points, options.out, options.points);
   std::vector<double> sigmas = surface_sigmas(surface, points);
   std::optional<double> median;

@@ -9,8 +9,8 @@ namespace viewgain::python {
 inline constexpr const char* kPlannerDoc =
     R"(Next best views step by step, for a robot's program: frames in, views out.
 
-``add`` a frame; ask ``should_stop``; ``propose`` candidates; ``rank`` them; move, and say how that
-went with ``tried``; ``add`` the next frame.
+``add`` a frame; ``propose`` candidates; ``rank`` them; ask ``should_stop``, which counts what they
+promise; move, and say how that went with ``tried``; ``add`` the next frame.
 
 Parameters
 ----------

@@ -212,7 +212,7 @@ class Ranking(NamedTuple):
 
     index: Annotated[NDArray[np.int64], "(k,), int64: indices into ``poses`` where they are given, else into the proposal's candidates, in which poses of ``add_poses`` have other places."]
     T_world_camera: Annotated[_Floats, "(k, 4, 4), float64."]
-    gain: Annotated[_Floats, "(k,), float64 [nat; by gain \"surface\" m**2]; together or in a new plan what each view adds."]
+    gain: Annotated[_Floats, "(k,), float64 [nat; by gain \"surface\" m**2]; together or in a new plan what each view adds; NaN with ``measure``, whose value is in ``worth``."]
     area: Annotated[_Floats, "(k,), float64: new surface to be expected [m**2]; NaN by gain \"paper\"."]
     worth: Annotated[_Floats, "(k,), float64: the gain less the cost, in its unit; 0 or less: the way costs more than the view brings."]
     complete: Annotated[bool, "False if a stop was requested."]

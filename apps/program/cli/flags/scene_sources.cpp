@@ -96,18 +96,35 @@ void warn_of_few_voxels(const BeliefGrid& grid) {
                short_text(grid.voxel_size()).c_str(), longest, longest == 1 ? "" : "s");
 }
 
+Box bounds_of(const TriangleMesh& mesh) {
+  if (mesh.vertices.empty()) return {};
+  Box box{mesh.vertices.front(), mesh.vertices.front()};
+  for (const auto& v : mesh.vertices) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      box.min[a] = std::min(box.min[a], v[a]);
+      box.max[a] = std::max(box.max[a], v[a]);
+    }
+  }
+  return box;
+}
+
+double longest_side(const Box& box) {
+  double longest = 0;
+  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.max[a] - box.min[a]);
+  return longest;
+}
+
 void warn_of_far_obstacles(const std::vector<std::string>& values, const BeliefGrid& grid,
                            const Sensor& sensor) {
   constexpr double kHuge = 100;  // times the workspace
   const Box map = grid.workspace();
-  double longest = 0;
-  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, map.max[a] - map.min[a]);
+  const double longest = longest_side(map);
   for (const std::string& value : values) {
-    if (is_obstacle_file(value)) continue;
-    const Box box = parse_box("--obstacle", value);
-    double side = 0, squared = 0;
+    const Box box =
+        is_obstacle_file(value) ? bounds_of(read_mesh(value)) : parse_box("--obstacle", value);
+    const double side = longest_side(box);
+    double squared = 0;
     for (std::size_t a = 0; a < 3; ++a) {
-      side = std::max(side, box.max[a] - box.min[a]);
       const double gap = std::max({0.0, box.min[a] - map.max[a], map.min[a] - box.max[a]});
       squared += gap * gap;
     }

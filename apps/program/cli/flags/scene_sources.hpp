@@ -55,7 +55,11 @@ inline constexpr const char* kObstacleHelp =
 
 /// Voxels so large that there are hardly any.
 void warn_of_few_voxels(const BeliefGrid& grid);
-/// Boxes of --obstacle out of the reach of views of the map, or 100 times its size.
+/// The least box with all vertices in it; zero without any.
+[[nodiscard]] Box bounds_of(const TriangleMesh& mesh);
+[[nodiscard]] double longest_side(const Box& box);
+
+/// Obstacles of --obstacle out of the reach of views of the map, or 100 times its size.
 void warn_of_far_obstacles(const std::vector<std::string>& values, const BeliefGrid& grid,
                            const Sensor& sensor);
 /// Poses of a file of which most see nothing of the map (suspect_poses()).

@@ -113,6 +113,16 @@ class Surface : public test::ProgramTest {
   Surface() { make_small_run(); }
 };
 
+TEST_F(Surface, ATruthInMillimetresOrElsewhereIsNamed) {
+  write("mm.off", "OFF\n3 1 0\n-100 -100 0\n100 -100 0\n0 100 50\n3 0 1 2\n");
+  for (const auto& [more, is_named] : std::vector<std::pair<std::vector<std::string>, bool>>{
+           {{"mm.off"}, true}, {{"cube.off", "--size", "0.2", "--recenter", "on"}, false}}) {
+    const std::string said =
+        run(test::joined({"surface", "run/map.vdb", "--out", "s.ply", "--truth"}, more)).err;
+    EXPECT_EQ(said.find("in metres? (--size") != std::string::npos, is_named) << said;
+  }
+}
+
 // The loop's own surface, points and figures come from the same map.
 TEST_F(Surface, IsThatOfTheRunThatMadeTheMap) {
   const json result =

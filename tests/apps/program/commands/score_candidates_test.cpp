@@ -61,10 +61,13 @@ class ScoreCandidates : public test::ProgramTest {
 };
 
 TEST_F(ScoreCandidates, ObstaclesFarFromTheMapAreNamed) {
+  // One that is in millimetres has the map inside.
+  write("room_mm.off", "OFF\n3 1 0\n-3000 -3000 0\n3000 -3000 0\n0 3000 3000\n3 0 1 2\n");
   for (const auto& [box, is_far] :
        std::vector<std::pair<std::string, bool>>{{"-2,-2,-1,2,2,-0.9", false},
                                                  {"900,0,0,950,50,50", true},
-                                                 {"-300,-300,-1,300,300,-0.9", true}}) {
+                                                 {"-300,-300,-1,300,300,-0.9", true},
+                                                 {"room_mm.off", true}}) {
     const std::string said = run(arguments({"--obstacle", box})).err;
     EXPECT_EQ(said.find("--obstacle " + box) != std::string::npos, is_far) << said;
     EXPECT_EQ(said.find("is it in metres?") != std::string::npos, is_far) << said;

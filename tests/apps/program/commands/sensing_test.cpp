@@ -92,6 +92,18 @@ TEST_F(Sensing, FlyingPixelsFollowTheNoiseUnlessAsked) {
   EXPECT_NE(load("noisy"), load("noise_alone"));
 }
 
+TEST_F(Sensing, AMeshInMillimetresIsNamed) {
+  write("mm.off", "OFF\n3 1 0\n-100 -100 0\n100 -100 0\n0 100 50\n3 0 1 2\n");
+  const test::ProgramResult result =
+      run({"simulate", "mm.off", "--orbit", "1,101,80", "--sensor", "tof.toml", "--out", "far"});
+  EXPECT_EQ(result.exit_code, 2) << result.err;  // nothing is in range
+  write("near.off", "OFF\n3 1 0\n-100 -100 0\n100 -100 0\n0 100 0\n3 0 1 2\n");
+  const std::string said =
+      run({"simulate", "near.off", "--orbit", "1,1,80", "--sensor", "tof.toml", "--out", "near"})
+          .err;
+  EXPECT_NE(said.find("near.off is 200 m long"), std::string::npos) << said;
+}
+
 TEST_F(Sensing, AScaleErrorIsInTheFrames) {
   EXPECT_EQ(simulate("exact").at("scale_error"), 0.0);
   EXPECT_EQ(simulate("off", {"--scale-error", "0.05"}).at("scale_error"), 0.05);

@@ -74,10 +74,10 @@ struct VIEWGAIN_EXPORT AddedView {
 /// Next best views for a robot's program that calls step by step: frames in, views out. The steps
 /// of Algorithm 1 without its loop.
 ///
-/// add() a frame, where reported poses are inexact at the one that register_frame() finds; ask
-/// should_stop(); propose() candidates; rank() them; move, and say how that went with tried();
-/// add() the next frame. With PlannerConfig::ahead rank() plans some views, and propose() names
-/// what is left of the plan until its share is taken.
+/// add() a frame, where reported poses are inexact at the one that register_frame() finds;
+/// propose() candidates; rank() them; ask should_stop(), which counts what they promise; move, and
+/// say how that went with tried(); add() the next frame. With PlannerConfig::ahead rank() plans
+/// some views, and propose() names what is left of the plan until its share is taken.
 ///
 /// What is refused (Error(invalid_argument)) has changed nothing. What the user's own parts throw,
 /// a generation, the reach region's predicate or a measure, passes through propose() and rank().
