@@ -228,10 +228,9 @@ struct FrameWatch::Impl {
     std::erase_if(entries, [&](const auto& entry) { return !frames.contains(entry.first); });
     // Which of those that are decided on are looked at again, in turns: the rest would take longer
     // with each frame.
-    const auto first_again = frames.lower_bound(next_again);
-    auto end_again = first_again;
-    for (std::size_t i = 0; i < kAgain && end_again != frames.end(); ++i) ++end_again;
     const std::uint64_t begin = next_again;
+    auto end_again = frames.lower_bound(begin);
+    for (std::size_t i = 0; i < kAgain && end_again != frames.end(); ++i) ++end_again;
     next_again = end_again == frames.end() ? 0 : end_again->first;
     ++quiet_looks;
     FolderLook found;
@@ -261,6 +260,7 @@ struct FrameWatch::Impl {
         if (is_new || known->second == finding.frame->identity) entry.state = State::taken;
         if (is_new) {
           found.frame = std::move(finding.frame);
+          quiet_looks = 0;  // those behind it had no turn
           return found;
         }
         if (entry.state == State::taken) continue;
