@@ -26,14 +26,14 @@ bool is_there(const fs::path& path) {
   return true;
 }
 
-std::vector<fs::path> names_in(const fs::path& folder) {
-  std::vector<fs::path> names;
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
   std::error_code code;
   if (!fs::is_directory(folder, code)) return names;
   fs::directory_iterator entry(folder, code);
   check(code, folder);
   while (entry != fs::directory_iterator()) {
-    names.push_back(entry->path().filename());
+    names.push_back(entry->path().filename().string());
     entry.increment(code);
     check(code, folder);
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace viewgain {
@@ -13,6 +14,6 @@ namespace viewgain {
 
 /// Names in a folder, sorted; none where there is no such folder. Throws Error(io) for one that
 /// cannot be read.
-[[nodiscard]] std::vector<std::filesystem::path> names_in(const std::filesystem::path& folder);
+[[nodiscard]] std::vector<std::string> names_in(const std::filesystem::path& folder);
 
 }  // namespace viewgain

@@ -232,10 +232,10 @@ std::vector<fs::path> run_files(const fs::path& dir) {
   for (const auto& [folder, endings] :
        {std::pair{"views", std::vector<const char*>{".png", ".amplitude.png"}},
         std::pair{"maps", std::vector<const char*>{".vdb"}}}) {
-    for (const fs::path& name : names_in(dir / folder)) {
+    for (const std::string& name : names_in(dir / folder)) {
       if (std::any_of(endings.begin(), endings.end(),
-                      [&](const char* ending) { return is_numbered(name.string(), ending); })) {
-        files.push_back(folder / name);
+                      [&](const char* ending) { return is_numbered(name, ending); })) {
+        files.push_back(fs::path(folder) / name);
       }
     }
   }

@@ -358,13 +358,24 @@ Infeasibility FeasibilityChecker::check(const Pose& T_world_camera,
 
 std::vector<Infeasibility> FeasibilityChecker::check(std::span<const Pose> T_world_camera,
                                                      std::span<const Pose> taken) const {
+  // A map may have ten thousand views: by x, so that each pose meets those near it alone.
+  const double reach = impl_->settings->config.taken_tolerance.distance;
+  const auto x_of = [](const Pose& pose) { return pose.translation().x(); };
+  std::vector<Pose> by_x(taken.begin(), taken.end());
+  std::erase_if(by_x, [&](const Pose& pose) { return !std::isfinite(x_of(pose)); });
+  std::ranges::sort(by_x, {}, x_of);
+  const auto near = [&](const Pose& pose) {
+    const double x = x_of(pose), slack = reach + 1e-9 * (1 + std::abs(x));  // for rounding
+    const auto begin = std::ranges::lower_bound(by_x, x - slack, {}, x_of);
+    return std::span(begin, std::ranges::upper_bound(begin, by_x.end(), x + slack, {}, x_of));
+  };
   std::vector<Infeasibility> results(T_world_camera.size());
-  impl_->settings->pool().for_each_chunk(results.size(), kPosesAtOnce,
-                                         [&](std::size_t begin, std::size_t end) {
-                                           for (std::size_t i = begin; i < end; ++i) {
-                                             results[i] = impl_->check(T_world_camera[i], taken);
-                                           }
-                                         });
+  impl_->settings->pool().for_each_chunk(
+      results.size(), kPosesAtOnce, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          results[i] = impl_->check(T_world_camera[i], near(T_world_camera[i]));
+        }
+      });
   return results;
 }
 

@@ -89,10 +89,10 @@ std::optional<std::string> frame_number(const std::string& name, std::string_vie
   return digits;
 }
 
-std::map<std::uint64_t, std::string> list_frames(const std::vector<std::filesystem::path>& names) {
+std::map<std::uint64_t, std::string> list_frames(const std::vector<std::string>& names) {
   std::map<std::uint64_t, std::string> frames;
-  for (const std::filesystem::path& name : names) {
-    if (const auto digits = frame_number(name.string(), kDepthSuffix)) {
+  for (const std::string& name : names) {
+    if (const auto digits = frame_number(name, kDepthSuffix)) {
       const std::string frame = std::string(kFramePrefix) + *digits;
       const auto [other, is_new] = frames.emplace(std::stoull(*digits), frame);
       if (is_new) continue;

@@ -69,7 +69,7 @@ inline constexpr std::array kNames{kPoses, kSensor, kIntrinsics, kSimulated, kSc
 /// The depth images among the names in a folder by their number, as "frame-NNNNNN", of however many
 /// digits. Throws Error(format) for two of one number.
 [[nodiscard]] std::map<std::uint64_t, std::string> list_frames(
-    const std::vector<std::filesystem::path>& names);
+    const std::vector<std::string>& names);
 
 /// The amplitude image that belongs to a depth image, whether there is one or not.
 [[nodiscard]] std::filesystem::path amplitude_path(const std::filesystem::path& depth_image);

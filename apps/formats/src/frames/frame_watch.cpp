@@ -78,8 +78,23 @@ std::vector<ReadPose> poses_of_lines(const fs::path& path) {
   }
 }
 
-// Frames that are decided on and looked at again, a look.
+// Frames that are decided on and looked at again with a listing, and looks that one serves at most:
+// both would take longer with each frame.
 constexpr std::size_t kAgain = 256;
+
+// What is in the folder, and how far the looks have come with it.
+struct Listing {
+  std::map<std::uint64_t, std::string> frames{};  // "frame-NNNNNN" by number
+  bool needs_amplitude = false;
+  bool is_recorded = false;
+  std::uint64_t again_begin = 0, again_end = 0;  // whose turn it is; end 0: all from the begin on
+  std::uint64_t next = 0;                        // the first that had no turn yet
+  std::size_t looks = kAgain;                    // that it has served: a new one is due
+
+  [[nodiscard]] bool is_turn(std::uint64_t number) const {
+    return number >= again_begin && (again_end == 0 || number < again_end);
+  }
+};
 
 bool has_end(const fs::path& png) {
   constexpr std::string_view kEnd("\0\0\0\0IEND\xae\x42\x60\x82", 12);
@@ -94,9 +109,9 @@ struct FrameWatch::Impl {
   std::optional<FrameSequence> folder;
   std::map<std::string, std::string> taken;  // by file name, as frame_identity() has them
   std::map<std::uint64_t, Entry> entries;
-  Time looked{};                 // when it was looked at last
-  std::uint64_t next_again = 0;  // the first frame whose turn it is to be looked at again
-  std::size_t quiet_looks = 0;   // in a row, that found nothing new
+  Listing listing;
+  Time looked{};                   // when it was looked at last
+  std::size_t quiet_listings = 0;  // in a row, with which nothing new was found
   FileStamp poses_stamp;
   std::vector<ReadPose> poses;  // of poses.txt
 
@@ -214,45 +229,61 @@ struct FrameWatch::Impl {
       throw Error(ErrorCode::io, dir.string() + ": no such folder");
     }
     looked = now;
-    const std::vector<fs::path> names = names_in(dir);
-    const auto frames = list_frames(names);
-    const bool needs_amplitude = std::any_of(names.begin(), names.end(), [](const fs::path& name) {
-      return frame_number(name.string(), kAmplitudeSuffix).has_value();
+    FolderLook found;
+    if (listing.looks < kAgain) look_on(now, found);
+    if (found.frame) return found;
+    list();
+    look_on(now, found);
+    return found;
+  }
+
+  void list() {
+    const std::vector<std::string> names = names_in(dir);
+    const std::uint64_t begin = listing.again_end;
+    listing = {};
+    listing.frames = list_frames(names);
+    listing.needs_amplitude = std::any_of(names.begin(), names.end(), [](const std::string& name) {
+      return frame_number(name, kAmplitudeSuffix).has_value();
     });
     const bool has_poses = std::find(names.begin(), names.end(), kPoses) != names.end();
-    const bool is_recorded = folder ? folder->recorded : !has_poses;
+    listing.is_recorded = folder ? folder->recorded : !has_poses;
     if (const FileStamp stamp = stamp_of(dir / kPoses); stamp != poses_stamp) {
       poses_stamp = stamp;
       poses = poses_of_lines(dir / kPoses);
     }
-    std::erase_if(entries, [&](const auto& entry) { return !frames.contains(entry.first); });
-    // Which of those that are decided on are looked at again, in turns: the rest would take longer
-    // with each frame.
-    const std::uint64_t begin = next_again;
-    auto end_again = frames.lower_bound(begin);
-    for (std::size_t i = 0; i < kAgain && end_again != frames.end(); ++i) ++end_again;
-    next_again = end_again == frames.end() ? 0 : end_again->first;
-    ++quiet_looks;
-    FolderLook found;
-    for (const auto& [number, name] : frames) {
+    std::erase_if(entries,
+                  [&](const auto& entry) { return !listing.frames.contains(entry.first); });
+    listing.again_begin = begin;
+    auto end = listing.frames.lower_bound(begin);
+    for (std::size_t i = 0; i < kAgain && end != listing.frames.end(); ++i) ++end;
+    listing.again_end = end == listing.frames.end() ? 0 : end->first;
+    listing.looks = 0;
+    ++quiet_listings;
+  }
+
+  // Until a frame is found, or to the listing's end.
+  void look_on(Time now, FolderLook& found) {
+    ++listing.looks;
+    for (auto it = listing.frames.lower_bound(listing.next); it != listing.frames.end(); ++it) {
+      const auto& [number, name] = *it;
+      listing.next = number + 1;
       Entry& entry = entries[number];
-      const bool is_turn = number >= begin && (next_again == 0 || number < next_again);
-      if (entry.state != State::waits && !is_turn) continue;
-      const Signature is = signature(number, name, is_recorded);
+      if (entry.state != State::waits && !listing.is_turn(number)) continue;
+      const Signature is = signature(number, name, listing.is_recorded);
       if (!is.depth.is_there()) continue;  // since the folder was listed
       if (is != entry.signature) {
         entry = {is, now};
-        quiet_looks = 0;
+        quiet_listings = 0;
       }
       entry.name = name + std::string(kDepthSuffix);
       const bool is_stable = now - entry.since >= config.settle;
       if (entry.state != State::waits || (is_stable ? entry.is_judged : entry.is_examined))
         continue;
-      Finding finding = examine(number, name, is, needs_amplitude, is_stable);
+      Finding finding = examine(number, name, is, listing.needs_amplitude, is_stable);
       entry.is_examined = true;
       entry.is_judged = is_stable;
       // What was written meanwhile is for the next look.
-      if (signature(number, name, is_recorded) != is) continue;
+      if (signature(number, name, listing.is_recorded) != is) continue;
       entry.missing_mask = finding.missing_mask;
       if (finding.frame) {
         const auto [known, is_new] =
@@ -260,8 +291,8 @@ struct FrameWatch::Impl {
         if (is_new || known->second == finding.frame->identity) entry.state = State::taken;
         if (is_new) {
           found.frame = std::move(finding.frame);
-          quiet_looks = 0;  // those behind it had no turn
-          return found;
+          quiet_listings = 0;  // those behind it had no turn
+          return;
         }
         if (entry.state == State::taken) continue;
         finding = fault(FrameVerdict::changed,
@@ -271,7 +302,7 @@ struct FrameWatch::Impl {
       if (finding.fault.verdict == FrameVerdict::used || !is_stable) continue;
       found.bad.push_back(set_bad(number, entry, std::move(finding)));
     }
-    return found;
+    listing.looks = kAgain;
   }
 };
 
@@ -327,6 +358,8 @@ std::set<std::string> FrameWatch::taken() const {
   return identities;
 }
 
+std::size_t FrameWatch::taken_count() const { return impl_->taken.size(); }
+
 std::size_t FrameWatch::waiting() const {
   return static_cast<std::size_t>(
       std::count_if(impl_->entries.begin(), impl_->entries.end(),
@@ -342,7 +375,8 @@ std::map<std::string, std::size_t> FrameWatch::bad() const {
 }
 
 bool FrameWatch::is_settled() const {
-  if (impl_->quiet_looks * kAgain < impl_->entries.size()) return false;  // not all had their turn
+  if (impl_->quiet_listings * kAgain < impl_->entries.size())
+    return false;  // not all had their turn
   return std::all_of(impl_->entries.begin(), impl_->entries.end(), [&](const auto& entry) {
     return entry.second.state != State::waits ||
            impl_->looked - entry.second.since >= impl_->config.settle;

@@ -303,12 +303,12 @@ std::string frame_identity(const FrameSequence& frames, std::size_t index) {
 
 std::vector<fs::path> frame_files(const fs::path& dir) {
   std::vector<fs::path> files;
-  for (const fs::path& name : names_in(dir)) {
+  for (const std::string& name : names_in(dir)) {
     const bool is_frames = std::any_of(
         kFrameSuffixes.begin(), kFrameSuffixes.end(),
-        [&](std::string_view suffix) { return frame_number(name.string(), suffix).has_value(); });
-    if (is_frames || std::find(kNames.begin(), kNames.end(), name.string()) != kNames.end()) {
-      files.push_back(name);
+        [&](std::string_view suffix) { return frame_number(name, suffix).has_value(); });
+    if (is_frames || std::find(kNames.begin(), kNames.end(), name) != kNames.end()) {
+      files.emplace_back(name);
     }
   }
   return files;

@@ -206,7 +206,7 @@ class Following {
     }
   }
 
-  [[nodiscard]] std::size_t count() const { return watch_->taken().size(); }
+  [[nodiscard]] std::size_t count() const { return watch_->taken_count(); }
 
   void open_map() {
     const Sensor& sensor = watch_->folder()->sensor;
@@ -259,8 +259,9 @@ class Following {
 
   // First the state: what is next takes longest, and can be made of it again.
   void write() {
-    map_->save(watch_->taken());
-    propose(watch_->taken());
+    const std::set<std::string> frames = watch_->taken();
+    map_->save(frames);
+    propose(frames);
     write_tum(out_ / "next.txt", poses_of(next_));
     write_json();
     has_news_ = false;

@@ -55,8 +55,9 @@ struct VIEWGAIN_EXPORT BadFrame {
 
 /// What a look at the folder found.
 struct VIEWGAIN_EXPORT FolderLook {
-  std::optional<WatchedFrame> frame{};  ///< the complete one of the lowest number, if there is one
-  std::vector<BadFrame> bad{};          ///< bad since the look before; numbers rising
+  std::optional<WatchedFrame>
+      frame{};                  ///< the complete one that is next in the list, if there is one
+  std::vector<BadFrame> bad{};  ///< bad since the look before; numbers rising
 };
 
 /// A folder of frames of either layout (open_frames()) into which somebody else writes, file by
@@ -85,7 +86,8 @@ class VIEWGAIN_EXPORT FrameWatch {
   FrameWatch& operator=(FrameWatch&&) noexcept;
 
   /// Looks at the folder; `now` must not go back. A frame that is given out counts as taken; the
-  /// next one comes with the next look. Throws Error(io) if the folder cannot be read, and with the
+  /// next one comes with the next look. The folder is listed when a look has come to the end of the
+  /// last list, or after 256 of them. Throws Error(io) if the folder cannot be read, and with the
   /// first complete frame as open_frames() for what holds for all. Of frames that are taken or bad
   /// 256 are looked at again, in turns. Takes some µs a file of these and of the new ones.
   [[nodiscard]] FolderLook look(Time now);
@@ -103,6 +105,8 @@ class VIEWGAIN_EXPORT FrameWatch {
   [[nodiscard]] const std::optional<FrameSequence>& folder() const noexcept;
   /// Of the frames that were taken, here and before.
   [[nodiscard]] std::set<std::string> taken() const;
+  /// How many these are.
+  [[nodiscard]] std::size_t taken_count() const;
   /// Frames in the folder of which something is missing or may still be written.
   [[nodiscard]] std::size_t waiting() const;
   /// Bad frames in the folder: verdict's name -> count.
