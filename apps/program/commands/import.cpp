@@ -21,6 +21,7 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string source;
+  std::string format = "tum";
   std::string sensor;
   std::string intrinsics;
   double max_time_gap = ImportConfig{}.max_time_gap;
@@ -98,6 +99,9 @@ Command add_import(App& program) {
       "frames that integrate reads. Frames that cannot be used are left out and counted by reason: "
       "no_pose, lost_pose, unreadable, wrong_size.");
   app->add_option("SOURCE", options->source, "folder of the recording")->required();
+  app->add_option("--format", options->format,
+                  "layout of the recording, of which there is one: tum")
+      ->check(one_of({"tum"}, "layout"));
   app->add_option("--sensor", options->sensor,
                   kSensorHelp +
                       ", whose noise and ranges the folder is to say; its intrinsics, too, "

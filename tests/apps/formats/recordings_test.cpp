@@ -191,8 +191,8 @@ TEST_F(Recordings, LinksOutOfARecordingAreRefused) {
 
 TEST_F(Recordings, ComeThroughExactly) {
   write_tum_recording();
-  json result = json::parse(
-      run_well({"import", "rec", "--intrinsics", "60,61,23.5,17.5", "--out", "frames", "--json"}));
+  json result = json::parse(run_well({"import", "rec", "--format", "tum", "--intrinsics",
+                                      "60,61,23.5,17.5", "--out", "frames", "--json"}));
   EXPECT_EQ(result["frames"], kFrames);
   EXPECT_TRUE(result["dropped"].empty());
   EXPECT_EQ(result["intrinsics"], (json{60, 61, 23.5, 17.5}));
@@ -344,13 +344,16 @@ TEST_F(Recordings, AMapIsMadeOfWhatIsImported) {
 
 TEST_F(Recordings, FlagsThatDoNotFitAreRefused) {
   write_plain_recording();
-  expect_refused({{{"import", "rec", "--out", "frames"}, "--intrinsics or --sensor"},
-                  {call({"--max-time-gap", "-1"}), "--max-time-gap -1"},
-                  {call({"--max-time-gap", "nan"}), "--max-time-gap"},
-                  {call({"--intrinsics", "60,60,23.5"}), "--intrinsics"},
-                  {call({"--intrinsics", "60,-60,23.5,17.5"}), "fy"},
-                  {{"import", "nowhere", "--sensor", "small.toml", "--out", "frames"}, "nowhere"},
-                  {{"import", "rec", "--sensor", "small.toml"}, "--out"}});
+  expect_refused(
+      {{{"import", "rec", "--out", "frames"}, "--intrinsics or --sensor"},
+       {call({"--max-time-gap", "-1"}), "--max-time-gap -1"},
+       {call({"--max-time-gap", "nan"}), "--max-time-gap"},
+       {call({"--intrinsics", "60,60,23.5"}), "--intrinsics"},
+       {call({"--intrinsics", "60,-60,23.5,17.5"}), "fy"},
+       {{"import", "nowhere", "--sensor", "small.toml", "--out", "frames"}, "nowhere"},
+       {{"import", "rec", "--format", "bop", "--sensor", "small.toml", "--out", "frames"},
+        "no such layout"},
+       {{"import", "rec", "--sensor", "small.toml"}, "--out"}});
 }
 
 TEST_F(Recordings, WhatIsDamagedIsNamed) {
