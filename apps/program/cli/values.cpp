@@ -107,8 +107,9 @@ std::string fault_of_name(const std::string& value, const std::vector<std::strin
                           const char* what) {
   if (std::find(names.begin(), names.end(), value) != names.end()) return {};
   const std::string nearest = did_you_mean(value, names);
-  return value + ": no such " + what +
-         (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names);
+  const std::string there = names.size() == 1 ? "here is " : "here are ";
+  return value + ": no such " + what + (nearest.empty() ? "; t" : nearest + " T") + there +
+         listed(names);
 }
 
 std::vector<std::string> names_in(std::string_view text) {

@@ -182,7 +182,7 @@ void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
   indices_.push_back(record.index);
 }
 
-Json RunPage::json(const Json& run, const SurfaceScene* object) const {
+Json RunPage::json(const Json& run, const SurfaceScene* object, const Json& beside) const {
   Json page = head_;
   page["settings"] = run.at("settings");
   page["summary"] = run;
@@ -190,6 +190,7 @@ Json RunPage::json(const Json& run, const SurfaceScene* object) const {
   page["summary"].erase("per_view");
   page["summary"].erase("next");
   page["truth"] = object == nullptr ? Json() : truth_json(*object);
+  page["beside"] = beside;
   page["views"] = views_;
   for (std::size_t i = 0; i < views_.size(); ++i) {
     page["views"][i]["figures"] = run.at("per_view").at(indices_[i]);

@@ -36,8 +36,9 @@ class RunPage {
                 const GainEvaluator& evaluator, std::vector<VoxelContribution> contributions);
 
   /// The page's data. `run` is what run.json holds; there must have been a view. Each view has the
-  /// figures of run.json's view of its index. `object` may be null, too.
-  [[nodiscard]] Json json(const Json& run, const SurfaceScene* object) const;
+  /// figures of run.json's view of its index. `object` may be null, too, and so may `beside`,
+  /// another run that is shown over this one: name, and settings and per_view as run.json has them.
+  [[nodiscard]] Json json(const Json& run, const SurfaceScene* object, const Json& beside) const;
 
  private:
   std::string title_, criterion_;

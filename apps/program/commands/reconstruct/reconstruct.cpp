@@ -64,6 +64,7 @@ std::string run_title(const ReconstructOptions& options, const RunSetup& setup) 
 void reconstruct(const ReconstructOptions& options, const App& app) {
   const RunOutputs& outputs = options.outputs;
   if (outputs.with_report()) check_report_page("--report");
+  const Json beside = beside_json(outputs);
   StageSeconds seconds;
   const ExecConfig exec = exec_of(options.common);
   RunSetup setup = set_up(options, exec);
@@ -119,7 +120,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   const Json json = report.json(result.reason);
   const Json run = write_results(folder, setup, options.sensing.seed, model, views, json);
   if (outputs.with_report()) {
-    write_report(folder.file("report.html"), page.json(run, setup.stage.scene.get()));
+    write_report(folder.file("report.html"), page.json(run, setup.stage.scene.get(), beside));
   }
   commit(folder, run, app);
   if (options.common.json) {

@@ -100,7 +100,10 @@ std::map<std::size_t, FrameRegistration> align_folder(const FrameMap& map, const
 class Recording {
  public:
   Recording(const Options& options, const std::stop_token& stop)
-      : options_(options), proposal_(options.proposal), exec_(exec_of(options.common)) {
+      : options_(options),
+        proposal_(options.proposal),
+        exec_(exec_of(options.common)),
+        beside_(beside_json(options.outputs)) {
     check(proposal_);
     map_.emplace(options.frames, proposal_, options.common.quiet, exec_);
     sigma_ = registration_sigma(options.registration);
@@ -165,7 +168,7 @@ class Recording {
     run.update(views_->json(moment.model, next_));
     write_file_atomically(folder.file("run.json"), json_text(run));
     if (options_.outputs.with_report()) {
-      write_report(folder.file("report.html"), page_->json(run, nullptr));
+      write_report(folder.file("report.html"), page_->json(run, nullptr, beside_));
     }
     return run;
   }
@@ -226,6 +229,7 @@ class Recording {
   const Options& options_;
   const ProposalOptions& proposal_;
   ExecConfig exec_;
+  Json beside_;  // another run that the page shows
   std::optional<FrameMap> map_;
   std::optional<RunPage> page_;
   std::optional<PoseSigma> sigma_;  // of the poses, where frames are aligned

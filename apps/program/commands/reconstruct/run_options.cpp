@@ -22,6 +22,8 @@ void add_output_options(App& app, RunOutputs& outputs) {
   add_switch(app, "--pictures", outputs.pictures, "draw views/NN.png");
   add_switch(app, "--report", outputs.report,
              "write report.html: the run to look at in a browser, in one file");
+  app.add_option("--beside", outputs.beside,
+                 "folder of another run, whose curves are drawn over this one's; with a report");
   app.add_flag("--resume", outputs.resume,
                "go on where the same call was ended, if it was: by a kill, a signal, a full disk");
   app.add_option("--out", outputs.out, "folder to write")->required();

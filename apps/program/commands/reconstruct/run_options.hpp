@@ -21,12 +21,13 @@ struct RunOutputs {
   std::string save_maps = "off";
   std::string pictures = "on";
   std::string report = "off";
+  std::string beside;
   bool resume = false;
   std::string out;
 
   [[nodiscard]] bool saves_maps() const { return save_maps == "on"; }
   [[nodiscard]] bool with_pictures() const { return pictures == "on"; }
-  [[nodiscard]] bool with_report() const { return report == "on"; }
+  [[nodiscard]] bool with_report() const { return report == "on" || !beside.empty(); }
   [[nodiscard]] bool draws() const { return with_pictures() || with_report(); }
 };
 void add_output_options(App& app, RunOutputs& outputs);

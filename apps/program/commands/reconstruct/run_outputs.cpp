@@ -14,7 +14,9 @@
 #include "program/commands/file_format.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "show/pictures/view_picture.hpp"
+#include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/stopwatch.hpp"
 #include "viewgain/version.hpp"
 
@@ -76,6 +78,16 @@ Json run_head(const Json& settings) {
   return {{"format", kRunFormat},
           {"settings", settings},
           {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}}};
+}
+
+Json beside_json(const RunOutputs& outputs) {
+  if (outputs.beside.empty()) return nullptr;
+  const std::filesystem::path file = std::filesystem::path(outputs.beside) / "run.json";
+  const Json run = Json::parse(file_bytes(file), nullptr, false);
+  const bool has_views = run.is_object() && run.contains("settings") && run.contains("per_view") &&
+                         run["per_view"].is_array() && !run["per_view"].empty();
+  if (!has_views) throw Error(ErrorCode::format, file.string() + ": is not a run's");
+  return {{"name", outputs.beside}, {"settings", run["settings"]}, {"per_view", run["per_view"]}};
 }
 
 void commit(RunFolder& folder, const Json& run, const App& app) {

@@ -39,6 +39,10 @@ StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPa
 /// `settings` and `versions`, with which run.json begins.
 [[nodiscard]] Json run_head(const Json& settings);
 
+/// What the page shows of the run of --beside: its name, settings and views; null without one.
+/// Throws Error(io) and Error(format), naming the file.
+[[nodiscard]] Json beside_json(const RunOutputs& outputs);
+
 /// Writes the flags of the call into config.toml, for --config, and puts the folder in its place;
 /// `run` is what run.json holds.
 void commit(RunFolder& folder, const Json& run, const App& app);

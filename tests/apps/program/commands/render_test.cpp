@@ -243,6 +243,20 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
               score.at("score").at("rows").at(i).at(1));
   }
 
+  // The run of another folder stands beside it.
+  EXPECT_TRUE(page.at("beside").is_null());
+  run_well({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel", "0.01",
+            "--out", "second", "--max-views", "2", "--policy", "random", "--beside", "run",
+            "--quiet"});
+  const json beside = data("second/report.html").at("beside");
+  EXPECT_EQ(beside.at("name"), "run");
+  EXPECT_EQ(beside.at("settings"), run_json.at("settings"));
+  EXPECT_EQ(beside.at("per_view"), run_json.at("per_view"));
+  write("none/run.json", "{\"settings\": {}}");
+  expect_refused({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
+                  "0.01", "--out", "third", "--beside", "none"},
+                 "none/run.json: is not a run's");
+
   // A later run in the folder takes the report of the one before with it.
   ASSERT_EQ(reconstruct("off").exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(dir / "run" / "report.html"));

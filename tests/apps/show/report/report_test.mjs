@@ -68,8 +68,8 @@ async function checkScheme(browser, scheme) {
   await keepPicture(report, scheme);
   await checkLayout(report);
   if (kind === "reconstruct") {
-    await checkShownNumbers(report, data);
     await checkTwoRuns(report, data);
+    await checkShownNumbers(report, data);
   }
   await checkSteps(report, data);
   await checkLayers(report);

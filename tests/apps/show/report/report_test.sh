@@ -54,10 +54,11 @@ OFF
 3 3 2 10
 3 3 10 6
 MESH
-rm -rf run
+rm -rf run before
 status=0
-viewgain reconstruct object.off --size 0.3 --sensor sr4000 --voxel 0.006 --max-views 4 --pictures off \
-  --report on --out run >log.txt 2>&1 || status=$?
+run() { viewgain reconstruct object.off --size 0.3 --sensor sr4000 --voxel 0.006 --pictures off "$@" >log.txt 2>&1; }
+run --max-views 3 --policy random --out before
+run --max-views 4 --beside before --out run || status=$?
 if [ "$status" -ne 0 ]; then
   cat log.txt
   if grep -q "npm was missing" log.txt; then echo "skipped: built without npm"; exit 77; fi

@@ -30,7 +30,7 @@ export async function checkShownNumbers(report, data) {
   await page.locator("#tab-plots").click();
 }
 
-/** Another run of one view more, half as good. */
+/** The run that the page came with; then another of one view more, half as good. */
 export async function checkTwoRuns(report, data) {
   const { page } = report;
   const own = data.views.map(({ figures }) => figures);
@@ -38,11 +38,13 @@ export async function checkTwoRuns(report, data) {
   const other = { settings: { policy: "frontier", mesh: "folder/other.off" }, per_view: figures };
   const choose = (text) => page.locator("#compare").setInputFiles(
     { name: "run.json", mimeType: "application/json", buffer: Buffer.from(text) });
+  const dots = page.locator('[data-plot="coverage"] circle[data-other]');
+  check((await dots.count()) === data.beside.per_view.length, "the run of --beside has its curve");
+  check((await page.locator("#other").textContent()).endsWith(", policy random"), "and its name");
   await choose("no run");
   await page.waitForFunction(() => document.getElementById("other").textContent.includes("not shown"));
   await choose(JSON.stringify(other));
   await page.waitForFunction(() => document.getElementById("other").textContent === "other.off, policy frontier");
-  const dots = page.locator('[data-plot="coverage"] circle[data-other]');
   check((await dots.count()) === figures.length, "the other run has its curve");
   const at = (selector) => page.locator(`[data-plot="coverage"] ${selector}`).evaluate((dot) => Number(dot.getAttribute("cy")));
   const base = await page.locator('[data-plot="coverage"] .grid').first().evaluate((line) => Number(line.getAttribute("y1")));

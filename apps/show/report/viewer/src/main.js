@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 // The page of a report: reads the data in it and builds what shows them.
-import { Report } from "./data/report.js";
+import { otherRun, Report } from "./data/report.js";
 import { byId, el } from "./dom.js";
 import { layersOf, LayerStack } from "./layers/stack.js";
 import { outlookOf } from "./scene/outlook.js";
@@ -115,7 +115,7 @@ async function build(report) {
     sigmas: 3,
     best: report.isRun && mostKept(report) > 400 ? 200 : Infinity,
     tab: "plots",
-    other: null,
+    other: report.beside ? otherRun(report.beside.name, report.beside) : null,
     theme: "light",
   });
   const toggleTheme = followTheme(state);

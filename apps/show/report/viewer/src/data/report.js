@@ -3,10 +3,14 @@
 // The report's data as steps: the views of a run, or the ranks of scored poses.
 import { PartCache, quantile } from "./parts.js";
 
-/** The run of another report's page, or of a run.json: its name and its figures by views. */
-export function otherRun(name, text) {
+/** What another report's page or a run.json holds. */
+export function dataOf(text) {
   const page = /<script type="application\/json" id="data">([^]*?)<\/script>/.exec(text);
-  const data = JSON.parse(page ? page[1] : text);
+  return JSON.parse(page ? page[1] : text);
+}
+
+/** The run of such data: its name and its figures by views. */
+export function otherRun(name, data) {
   const figures = data.per_view ?? data.views?.map((view) => view.figures);
   if (!Array.isArray(figures) || figures.length === 0) throw new Error("it holds no run");
   const { policy, gain, mesh } = data.settings ?? {};

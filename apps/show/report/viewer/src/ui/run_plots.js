@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which plots a report has.
 import { stageColours } from "../colours.js";
-import { otherRun } from "../data/report.js";
+import { dataOf, otherRun } from "../data/report.js";
 import { el } from "../dom.js";
 import { unitOf, words } from "../format.js";
 import { buildPlot } from "./plots.js";
@@ -62,11 +62,11 @@ function scorePlots(report) {
 
 /** Chooses another run, whose curves the plots show over this one's. */
 function comparison(state) {
-  const name = el("b", { id: "other" });
+  const name = el("b", { id: "other" }, state.values.other?.name ?? "");
   const open = async () => {
     try {
       const [file] = input.files;
-      state.set({ other: file ? otherRun(file.name, await file.text()) : null });
+      state.set({ other: file ? otherRun(file.name, dataOf(await file.text())) : null });
       name.textContent = state.values.other?.name ?? "";
     } catch (error) {
       name.textContent = `not shown: ${error.message}`;
