@@ -227,6 +227,22 @@ TEST(AlignFrames, WithoutOverlapAPoseWaitsForWhatShowsMore) {
   EXPECT_EQ(frames.add(nothing, truth[0], kSigma).status, RegistrationStatus::too_little_overlap);
 }
 
+// Its two sides lie in one place and are two surfaces.
+TEST(AlignFrames, TheBackOfASheetIsNoPairOfItsFront) {
+  const test::RegistrationScene scene(test::wall(1.2), false, {});
+  const Pose front = test::camera_at(0, 5, test::RegistrationScene::kDistance);
+  const Pose back = test::camera_at(180, 5, test::RegistrationScene::kDistance);
+  FrameAlignment frames = scene.alignment();
+  (void)frames.add(scene.see(front), front, kSigma);
+  const FrameRegistration again = frames.add(scene.see(front), front, kSigma);
+  EXPECT_EQ(again.status, RegistrationStatus::registered) << again.reason;
+  EXPECT_GT(again.pairs, 1000U);
+  const FrameRegistration behind = frames.add(scene.see(back), back, kSigma);
+  EXPECT_EQ(behind.status, RegistrationStatus::too_little_overlap) << behind.reason;
+  EXPECT_GT(behind.readings, 1000U);
+  EXPECT_EQ(behind.pairs, 0U);
+}
+
 TEST(AlignFrames, TheSameBitsForAnyNumberOfThreads) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
   FrameAlignment one = scene.alignment(1), three = scene.alignment(3);
