@@ -195,9 +195,9 @@ clearance : float
     The body is grown by this on each side [m].
 reach : ReachRegion, optional
 sensor : Sensor, optional
-    Views much of whose image would show what is nearer than the sensor's min_range are too near.
+    With it, views are too near where much of the image would show what is nearer than its min_range.
 max_near_share : float
-    How much: share of the rays that end in the map.
+    Of the rays that end in the map, the largest share that may end nearer than min_range.
 num_threads : int
     For arrays of poses; 0: all hardware threads. They ask the predicate of ``reach`` one at a time.
 

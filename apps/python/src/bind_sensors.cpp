@@ -280,7 +280,7 @@ ndarray, (height, width), float32
 Parameters
 ----------
 t : float
-    [m], >= 0; whether it is one of the sensor's ranges nobody looks.
+    [m], >= 0; that it lies in the sensor's limits is not checked.
 cos_incidence : float
     Cosine of the angle between ray and surface normal; 1: frontal.
 

@@ -37,7 +37,7 @@ def named(module: str) -> Any:
 
 @named("viewgain")
 class Sigmas(NamedTuple):
-    """Standard deviations of a reading, of ``Sensor.sigmas``."""
+    """Standard deviations of a reading, from ``Sensor.sigmas``."""
 
     axial: Annotated[float, "Along the ray [m]."]
     lateral: Annotated[float, "Across the ray [m]."]
@@ -45,10 +45,10 @@ class Sigmas(NamedTuple):
 
 @named("viewgain")
 class IntegrationReport(NamedTuple):
-    """What ``integrate`` has put into a map, of ``FrameIntegrator`` and ``CloudIntegrator``."""
+    """What ``integrate`` has put into a map, from ``FrameIntegrator`` and ``CloudIntegrator``."""
 
     readings: Annotated[int, "Pixels or points whose range is within the sensor's limits."]
-    plane_readings: Annotated[int, "Such that see the support plane; not among readings."]
+    plane_readings: Annotated[int, "Pixels or points that see the support plane; not among readings."]
     out_of_range: Annotated[int, "Pixels or points that carve up to max_range."]
     invalid: Annotated[int, "Pixels or points that say nothing."]
     readings_inside: Annotated[int, "Readings that lie in the workspace."]
@@ -58,7 +58,7 @@ class IntegrationReport(NamedTuple):
 
 @named("viewgain")
 class Suspicion(NamedTuple):
-    """What is probably wrong with frames, of ``suspect_frames``."""
+    """What is probably wrong with frames, from ``suspect_frames``."""
 
     kind: Annotated[str, "The mistake, such as depth_scale, world_to_camera or quaternion_order."]
     what: Annotated[str, "A sentence with the figure that made it suspicious."]
@@ -66,7 +66,7 @@ class Suspicion(NamedTuple):
 
 @named("viewgain")
 class RayOutcomes(NamedTuple):
-    """What becomes of a view's rays, of ``GainEvaluator.outcomes`` and ``ViewPlanner.outcomes``."""
+    """What becomes of a view's rays, from ``GainEvaluator.outcomes`` and ``ViewPlanner.outcomes``."""
 
     rays: Annotated[int, "Of the view."]
     unknown: Annotated[int, "Come to unknown space: what may be new."]
@@ -79,7 +79,7 @@ class RayOutcomes(NamedTuple):
 
 @named("viewgain")
 class GridStatistics(NamedTuple):
-    """Voxels and progress of a map, of ``BeliefGrid.statistics``."""
+    """Voxels and progress of a map, from ``BeliefGrid.statistics``."""
 
     unknown: Annotated[int, "Voxels never observed."]
     free: Annotated[int, "Voxels known to be free."]
@@ -90,7 +90,7 @@ class GridStatistics(NamedTuple):
 
 @named("viewgain")
 class ChosenViews(NamedTuple):
-    """The best of many poses, of ``best``, ``race`` and ``best_set`` with ``return_gains=True``."""
+    """The best of many poses, from ``best``, ``race`` and ``best_set`` with ``return_gains=True``."""
 
     indices: Annotated[NDArray[np.int64], "(k,), int64: indices into the poses with their leading axes flattened, best first."]
     gains: Annotated[NDArray[np.void], "(k,), structured: as from ``evaluate_detailed``, in its unit; of a set, what each adds."]
@@ -98,7 +98,7 @@ class ChosenViews(NamedTuple):
 
 @named("viewgain")
 class RacedViews(NamedTuple):
-    """The best of many poses that could be found in time, of ``race_until``, and what was done."""
+    """The best of many poses that could be found in time, from ``race_until``, and what was done."""
 
     indices: Annotated[NDArray[np.int64], "(<= k,), int64: as ``ChosenViews``, of poses that were scored in full."]
     gains: Annotated[NDArray[np.void], "(<= k,), structured: of these, as from ``evaluate_detailed``."]
@@ -109,7 +109,7 @@ class RacedViews(NamedTuple):
 
 @named("viewgain")
 class Frame(NamedTuple):
-    """A recorded frame, of ``read_frames``."""
+    """A recorded frame, from ``read_frames``."""
 
     depth: Annotated[_Image, "(height, width), float32: along the optical axis [m]; 0: nothing known, inf: nothing up to max_range."]
     T_world_camera: Annotated[_Floats, "(4, 4), float64."]
@@ -118,7 +118,7 @@ class Frame(NamedTuple):
 
 @named("viewgain")
 class SimulatedFrame(NamedTuple):
-    """A simulated frame, of ``SimulatedSensor.acquire``."""
+    """A simulated frame, from ``SimulatedSensor.acquire``."""
 
     depth: Annotated[_Image, "(height, width), float32: along the optical axis [m]; 0: invalid, inf: nothing up to max_range."]
     amplitude: Annotated[_Image, "(height, width), float32: cos / range**2 [1/m**2]; 0 where there is no reading."]
@@ -126,7 +126,7 @@ class SimulatedFrame(NamedTuple):
 
 @named("viewgain")
 class Cloud(NamedTuple):
-    """A point cloud, of ``load_cloud``."""
+    """A point cloud, from ``load_cloud``."""
 
     points: Annotated[_Floats, "(n, 3), float64: as they stand in the file, in the file's frame [m]; NaN where an organised cloud has none."]
     viewpoint: Annotated[Optional[_Floats], "(4, 4), float64: the sensor's pose in the points' frame, or None."]
@@ -134,7 +134,7 @@ class Cloud(NamedTuple):
 
 @named("viewgain")
 class TimedPoses(NamedTuple):
-    """Poses with their times, of ``read_poses`` with ``return_timestamps=True``."""
+    """Poses with their times, from ``read_poses`` with ``return_timestamps=True``."""
 
     T_world_camera: Annotated[_Floats, "(n, 4, 4), float64."]
     timestamps: Annotated[_Floats, "(n,), float64 [s]."]
@@ -142,17 +142,17 @@ class TimedPoses(NamedTuple):
 
 @named("viewgain")
 class FrameRegistration(NamedTuple):
-    """Where a frame's camera was, of ``ViewPlanner.register_frame``."""
+    """Where a frame's camera was, from ``ViewPlanner.register_frame``."""
 
     status: Annotated[str, "\"registered\", \"too_little_overlap\" or \"refused\"."]
-    reason: Annotated[str, "Of the status, for people; empty if registered."]
+    reason: Annotated[str, "Why it has this status, for people; empty if registered."]
     T_world_camera: Annotated[_Floats, "(4, 4), float64, corrected if registered, else as reported."]
     covariance: Annotated[_Floats, "(6, 6), float64, of its translation [m], then its rotation [rad], world axes."]
     translation: Annotated[float, "Way of the camera's centre by the correction that was found [m]."]
     rotation: Annotated[float, "Its angle [rad]."]
     residual_before: Annotated[float, "RMS distance of the pairs at the reported pose [m]."]
     residual_after: Annotated[float, "The same at the pose that was found [m]."]
-    readings: Annotated[int, "That were looked at."]
+    readings: Annotated[int, "Readings that were looked at."]
     pairs: Annotated[int, "Readings that belong to a point of the map."]
     overlap: Annotated[float, "Share: pairs / readings."]
     contradiction: Annotated[float, "The larger share: of readings in space known to be free, of the map's surface that the frame looks past."]
@@ -163,27 +163,27 @@ class FrameRegistration(NamedTuple):
 
 @named("viewgain")
 class AddedView(NamedTuple):
-    """What a frame has changed, of ``ViewPlanner.add``."""
+    """What a frame has changed, from ``ViewPlanner.add``."""
 
     readings: Annotated[int, "Pixels or points whose range is within the sensor's limits."]
-    plane_readings: Annotated[int, "Such that see the support plane; not among readings."]
+    plane_readings: Annotated[int, "Pixels or points that see the support plane; not among readings."]
     out_of_range: Annotated[int, "Pixels or points that carve up to max_range."]
     invalid: Annotated[int, "Pixels or points that say nothing."]
     readings_inside: Annotated[int, "Readings that lie in the workspace."]
     voxels_hit: Annotated[int, "Voxels that readings lie in."]
     voxels_crossed: Annotated[int, "Voxels that rays pass and no reading lies in."]
     view: Annotated[int, "Number of the view, from 0."]
-    entropy_removed: Annotated[float, "By this view [nat, or m**2 for trace]."]
+    entropy_removed: Annotated[float, "Entropy that this view has removed [nat, or m**2 for trace]."]
     new_area: Annotated[float, "New surface that this view has shown, its area across the rays [m**2]; NaN by gain \"paper\"."]
-    total_entropy_removed: Annotated[float, "So far [nat, or m**2 for trace]."]
+    total_entropy_removed: Annotated[float, "Entropy removed so far [nat, or m**2 for trace]."]
     total_area: Annotated[float, "Sum of the new areas so far [m**2]."]
-    unknown_voxels: Annotated[int, "That are left."]
+    unknown_voxels: Annotated[int, "Unknown voxels that are left."]
     verdict: Annotated[str, "What became of the frame: used, carved (free space alone), lost_pose, no_pose, unreadable, wrong_size, nothing_in_range, outside, contradicts."]
 
 
 @named("viewgain")
 class Proposal(NamedTuple):
-    """Candidates that are possible now, of ``ViewPlanner.propose``.
+    """Candidates that are possible now, from ``ViewPlanner.propose``.
 
     A tuple of these three: ``len(proposal)`` is 3, and ``len(proposal.T_world_camera)`` says how many candidates there are.
     """
@@ -195,7 +195,7 @@ class Proposal(NamedTuple):
 
 @named("viewgain")
 class ViewTour(NamedTuple):
-    """Views in the order in which they are driven to, of ``GainEvaluator.plan_tour``."""
+    """Views in the order in which they are driven to, from ``GainEvaluator.plan_tour``."""
 
     indices: Annotated[NDArray[np.int64], "(k,), int64: of the poses."]
     gains: Annotated[NDArray[np.void], "(k,), structured: what each added to those that were chosen before it."]
@@ -205,7 +205,7 @@ class ViewTour(NamedTuple):
 
 @named("viewgain")
 class Ranking(NamedTuple):
-    """The best candidates in their order, of ``ViewPlanner.rank``.
+    """The best candidates in their order, from ``ViewPlanner.rank``.
 
     A tuple of these six: ``len(ranking)`` is 6, and ``len(ranking.index)`` says how many views there are.
     """

@@ -323,9 +323,9 @@ while no surface is known, and where the scene's hazard was given. Cost: about 5
 Parameters
 ----------
 grid : BeliefGrid
-    Not yet with the frame.
+    The map before the frame is integrated.
 scene : VoxelScene
-    Of the grid as it stands.
+    The scene of the grid as it stands.
 depth, T_world_camera
     As ``integrate``.)")
       .def("__repr__", [](const Integrator& self) {
