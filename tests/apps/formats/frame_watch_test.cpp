@@ -356,6 +356,24 @@ TEST_F(WatchedFolder, ManyTakenFramesAreLookedAtAgainInTurns) {
   EXPECT_EQ(looks, 3U);
 }
 
+TEST_F(WatchedFolder, WhatComesMeanwhileIsInTheNextList) {
+  for (const int number : {5, 6, 8}) put_frame(number);
+  FrameWatch watched = watch();
+  const auto next = [&] {
+    const FolderLook found = watched.look(now);
+    return found.frame ? static_cast<int>(found.frame->number) : -1;
+  };
+  EXPECT_EQ(next(), 5);
+  put_frame(3);
+  std::filesystem::remove(dir.path() / name(6, ".depth.png"));
+  EXPECT_EQ(next(), 8);
+  EXPECT_EQ(next(), 3);
+  EXPECT_EQ(next(), -1);
+  EXPECT_EQ(watched.taken_count(), 3U);
+  EXPECT_EQ(watched.taken().size(), 3U);
+  EXPECT_EQ(watched.waiting(), 0U);
+}
+
 TEST_F(WatchedFolder, AmplitudesAreWaitedForWhereThereAreAny) {
   put_frame(0);
   FrameWatch watched = watch();
