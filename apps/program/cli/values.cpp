@@ -107,8 +107,8 @@ std::string fault_of_name(const std::string& value, const std::vector<std::strin
                           const char* what) {
   if (std::find(names.begin(), names.end(), value) != names.end()) return {};
   const std::string nearest = did_you_mean(value, names);
-  return value + ": no such " + what +
-         (nearest.empty() ? "; there are " : nearest + " There are ") + listed(names);
+  return value + " is no " + what + (nearest.empty() ? "; there are " : nearest + " There are ") +
+         listed(names);
 }
 
 std::vector<std::string> names_in(std::string_view text) {
