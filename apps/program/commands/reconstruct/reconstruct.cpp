@@ -145,11 +145,11 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
     print_json(json);
   } else {
     std::printf("%s", report.text(result.reason).c_str());
-    if (options.tolerance < options.voxel) {
+    if (setup.visibility.tolerance < options.voxel) {
       std::printf(
           "coverage at %g mm, less than a voxel: what is rebuilt right may count as missed "
           "(--tolerance)\n",
-          1e3 * options.tolerance);
+          1e3 * setup.visibility.tolerance);
     }
     const Eigen::Vector3d& center = setup.stage.center;
     std::printf("the object's box, %.3g m long, has its centre at %.3g, %.3g, %.3g m\n",
