@@ -100,10 +100,12 @@ def scaled_intrinsics(factor):
     return apply
 
 
-def longer_focus(folder, _):
-    text = (folder / "sensor.toml").read_text()
-    text = re.sub(r"^(f[xy]) = ([\d.]+)", lambda m: f"{m[1]} = {float(m[2]) * 1.1}", text, flags=re.M)
-    (folder / "sensor.toml").write_text(text)
+def focal_length(factor, words):
+    def apply(folder, _):
+        text = (folder / "sensor.toml").read_text()
+        text = re.sub(r"^(f[xy]) = ([\d.]+)", lambda m: f"{m[1]} = {float(m[2]) * factor}", text, flags=re.M)
+        (folder / "sensor.toml").write_text(text)
+    return apply, rf"focal length is {words} times"
 
 
 def other_scale(factor, words):
@@ -170,7 +172,16 @@ MISTAKES = {
     "body frame": (each_pose(lambda t, q: [*t, *product(q, [0.5, -0.5, 0.5, 0.5])]), "body frame"),
     "half-resolution intrinsics": (scaled_intrinsics(1 / 2), "principal point"),
     "intrinsics of 424 pixels for 320": (scaled_intrinsics(424 / 320), "principal point"),
-    "focal length 10 % too large": (longer_focus, "."),
+    "focal length twice too large": focal_length(2, "0.5"),
+    "1.5 times": focal_length(1.5, "0.67"),
+    "1.25 times": focal_length(1.25, "0.8"),
+    "10 % too large": focal_length(1.1, "0.9"),
+    "5 % too large (any factor)": focal_length(1.05, ".*"),
+    "5 % too small (any factor)": focal_length(0.95, ".*"),
+    "10 % too small": focal_length(0.9, "1.1"),
+    "0.8 of what it should be": focal_length(0.8, "1.25"),
+    "two thirds": focal_length(2 / 3, "1.5"),
+    "half": focal_length(0.5, "2"),
     "depth along the ray": (along_ray, "along the ray"),
     "poses in millimetres": (each_pose(lambda t, q: [1000 * c for c in t] + q), "poses are in millimetres"),
 }

@@ -50,10 +50,13 @@ test -s sigma.png
 
 score_poses run/map.vdb | tee best.txt
 test "$(grep -cE '^pose [0-9]+: [0-9.]+ nat$' best.txt)" -eq 3
-status=0
-score_poses no_such.vdb 2>error.txt || status=$?
-test "$status" -eq 2
-grep -q no_such.vdb error.txt
+score_poses_c run/map.vdb | diff best.txt -  # C says what C++ says
+for program in score_poses score_poses_c; do
+  status=0
+  "$program" no_such.vdb 2>error.txt || status=$?
+  test "$status" -eq 2
+  grep -q no_such.vdb error.txt
+done
 
 if [ $# -eq 4 ]; then
   mkdir -p out

@@ -19,17 +19,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-double longest_side(const TriangleMesh& mesh) {
-  double longest = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto [low, high] =
-        std::minmax_element(mesh.vertices.begin(), mesh.vertices.end(),
-                            [a](const auto& v, const auto& w) { return v[a] < w[a]; });
-    longest = std::max(longest, (*high)[a] - (*low)[a]);
-  }
-  return longest;
-}
-
 constexpr std::size_t kPoses = 2562, kSamples = 10'000;
 constexpr std::uint64_t kSeed = 1;  // of the samples
 const double kMinCosine = std::cos(80.0 * std::numbers::pi / 180);
@@ -101,11 +90,10 @@ Stage set_stage(const StageConfig& config, const ExecConfig& exec) {
   }
   TriangleMesh mesh = read_mesh(config.mesh, {config.up, true, config.size.value_or(0)});
   Stage stage;
-  stage.size = config.size ? *config.size : longest_side(mesh);
+  stage.size = config.size ? *config.size : longest_side(bounds_of(mesh));
   if (!(stage.size > 0)) refuse(config.mesh.string() + ": the mesh has no extent");
   if (config.support_plane) {
-    double lowest = 0;  // the box is centred at the origin
-    for (const auto& v : mesh.vertices) lowest = std::min(lowest, v[2]);
+    const double lowest = bounds_of(mesh).min[2];  // the box is centred at the origin
     for (auto& v : mesh.vertices) v[2] += *config.support_plane - lowest;
     stage.center.z() = *config.support_plane - lowest;
   }

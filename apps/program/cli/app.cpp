@@ -40,7 +40,11 @@ std::string source_of(const App& form) {
   }
   std::vector<std::string> flags;
   for (const Option* option : all_options(subcommand)) {
-    if (option->nonpositional()) flags.push_back(option->get_name());
+    const std::string name = option->get_name();
+    if (option->nonpositional()) flags.push_back(name);
+    if (flag == "--" + CLI::detail::to_lower(name)) {  // a positional's
+      refuse(subcommand, flag, name + " is given without a flag");
+    }
   }
   refuse(subcommand, flag, "no such flag of " + name_of(subcommand) + did_you_mean(flag, flags));
 }

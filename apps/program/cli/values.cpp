@@ -108,7 +108,7 @@ std::string fault_of_name(const std::string& value, const std::vector<std::strin
   if (std::find(names.begin(), names.end(), value) != names.end()) return {};
   const std::string nearest = did_you_mean(value, names);
   const std::string there = names.size() == 1 ? "here is " : "here are ";
-  return value + ": no such " + what + (nearest.empty() ? "; t" : nearest + " T") + there +
+  return value + " is no " + what + (nearest.empty() ? "; t" : nearest + " T") + there +
          listed(names);
 }
 

@@ -91,7 +91,8 @@ void candidates(const Options& options) {
   const Sensor sensor = with_body(std::move(map.sensor), options.proposal);
   const GenerationConfig config =
       generation_config(options.proposal, sensor, map.grid, options.map);
-  const SurfaceModel model = model_of(std::move(map.grid), sensor, options.proposal, exec);
+  const SurfaceModel model = model_of(std::move(map.grid), sensor, options.proposal,
+                                      obstacles_of(options.proposal.obstacles), exec);
   CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});
   const Order ranking = rank(options.proposal, model, sensor, exec, proposal.candidates);

@@ -13,6 +13,7 @@
 #include "program/cli/progress.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/frames/frame_map.hpp"
+#include "program/commands/map_json.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -34,6 +35,7 @@ struct Options {
 struct Frames {
   FrameCounts counts;
   std::vector<Pose> tried;
+  Obstacles obstacles;
 };
 
 SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<Frames>& frames) {
@@ -49,8 +51,8 @@ SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<F
     map.add(i);
     progress.update(i + 1, map.folder().size());
   }
-  map.require_frames();
-  frames = {map.counts(), map.tried()};
+  map.require_frames(true);
+  frames = {map.counts(), map.tried(), map.config().surroundings.obstacles};
   return {map.model().grid().clone(), map.model().sensor()};
 }
 
@@ -62,8 +64,9 @@ void next(const Options& options) {
   auto [grid, sensor] = map_of(options, exec, frames);
   const GenerationConfig config = generation_config(options.proposal, sensor, grid, options.source,
                                                     frames ? frames->tried : std::vector<Pose>());
-  const SurfaceModel model = model_of(std::move(grid), sensor, options.proposal, exec);
-  warn_of_set_up(options.proposal, model, sensor);
+  const Obstacles obstacles = frames ? frames->obstacles : obstacles_of(options.proposal.obstacles);
+  const SurfaceModel model = model_of(std::move(grid), sensor, options.proposal, obstacles, exec);
+  warn_of_set_up(options.proposal, obstacles, model, sensor);
   CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});
   const GainEvaluator evaluator = evaluator_of(options.proposal, model, sensor, exec);
@@ -72,7 +75,10 @@ void next(const Options& options) {
   if (!options.out.empty()) write_tum(options.out, poses_of(views));
   if (options.common.json) {
     Json json{{"views", model.grid().views().size()}};
-    if (frames) json.update(frames_json(frames->counts));
+    if (frames) {
+      json.update(map_json(model.grid(), model.grid().statistics()));
+      json.update(frames_json(frames->counts));
+    }
     json.update(to_json(views));
     json["out"] = nullptr;
     if (!options.out.empty()) json["out"] = options.out;
@@ -80,6 +86,7 @@ void next(const Options& options) {
     print_json(json);
     return;
   }
+  if (frames) print_map(model.grid(), model.grid().statistics());
   std::printf("%zu views so far, %s; %s\n", model.grid().views().size(), sensor.name.c_str(),
               summary_of(views).c_str());
   if (const std::string text = frames ? frames_text(frames->counts) : ""; !text.empty()) {

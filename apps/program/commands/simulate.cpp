@@ -102,16 +102,22 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   }
 }
 
-// Most meshes that are far too large are in millimetres.
-void warn_of_size(const Options& options, const SurfaceScene& scene, const Sensor& sensor) {
+// Most meshes that are far too large are in millimetres; what is under the table is not seen.
+void warn_of_place(const Options& options, const Box& box, const Sensor& sensor) {
   constexpr double kTooLarge = 10;  // times what the sensor sees
-  const double side = longest_side(bounds_of(scene.mesh()));
-  if (side <= kTooLarge * sensor.max_range) return;
+  if (const double side = longest_side(box); side > kTooLarge * sensor.max_range) {
+    std::fprintf(stderr,
+                 "viewgain: warning: %s is %s m long, the sensor sees to %s m: is it in metres? "
+                 "(--size)\n",
+                 options.mesh.c_str(), short_text(side).c_str(),
+                 short_text(sensor.max_range).c_str());
+  }
+  const std::optional<double>& plane = options.sensing.support_plane;
+  if (!plane || !(box.max[2] - *plane <= 0.501 * (box.max[2] - box.min[2]))) return;
   std::fprintf(stderr,
-               "viewgain: warning: %s is %s m long, the sensor sees to %s m: is it in metres? "
-               "(--size)\n",
-               options.mesh.c_str(), short_text(side).c_str(),
-               short_text(sensor.max_range).c_str());
+               "viewgain: warning: %s lies in %s m, half of it or more under the support plane at "
+               "%s m (--place)\n",
+               options.mesh.c_str(), describe(box).c_str(), short_text(*plane).c_str());
 }
 
 void simulate(const Options& options) {
@@ -129,7 +135,7 @@ void simulate(const Options& options) {
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
   check_view(options, *scene, sensor, source.poses);
-  warn_of_size(options, *scene, sensor);
+  warn_of_place(options, bounds_of(scene->mesh()), sensor);
   const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, sensor), exec);
   const PoseSigma pose_noise = parse_pose_sigma("--pose-noise", options.sensing.pose_noise);
   std::vector<Pose> poses, reported;  // one a frame

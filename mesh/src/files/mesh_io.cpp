@@ -4,10 +4,8 @@
 #include "viewgain/mesh/mesh_io.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -24,22 +22,6 @@ std::string lower_case_extension(const std::filesystem::path& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
-}
-
-struct Bounds {
-  std::array<double, 3> min, max;
-};
-
-Bounds bounds_of(const TriangleMesh& mesh) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Bounds bounds{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  for (const auto& vertex : mesh.vertices) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      bounds.min[k] = std::min(bounds.min[k], vertex[k]);
-      bounds.max[k] = std::max(bounds.max[k], vertex[k]);
-    }
-  }
-  return bounds;
 }
 
 }  // namespace
@@ -69,6 +51,23 @@ TriangleMesh read_mesh(const std::filesystem::path& path, const MeshPlacement& p
   }
 }
 
+Box bounds_of(const TriangleMesh& mesh) {
+  if (mesh.vertices.empty()) return {};
+  Box box{mesh.vertices.front(), mesh.vertices.front()};
+  for (const auto& v : mesh.vertices) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.min[k] = std::min(box.min[k], v[k]);
+      box.max[k] = std::max(box.max[k], v[k]);
+    }
+  }
+  return box;
+}
+
+double longest_side(const Box& box) {
+  const auto& [min, max] = box;
+  return std::max({max[0] - min[0], max[1] - min[1], max[2] - min[2]});
+}
+
 TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement) {
   if (!std::isfinite(placement.longest_side) || placement.longest_side < 0) {
     refuse("the longest side must be finite and not negative, not " +
@@ -80,9 +79,7 @@ TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement) {
     if (placement.up == UpAxis::y) v = {v[2], v[0], v[1]};
   }
   if (placement.longest_side > 0) {
-    const Bounds bounds = bounds_of(mesh);
-    double extent = 0;
-    for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, bounds.max[k] - bounds.min[k]);
+    const double extent = longest_side(bounds_of(mesh));
     const double scale = placement.longest_side / extent;
     if (!(extent > 0) || !std::isfinite(scale)) refuse("the mesh has no extent to scale");
     for (auto& v : mesh.vertices) {
@@ -90,7 +87,7 @@ TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement) {
     }
   }
   if (placement.center && !mesh.vertices.empty()) {
-    const Bounds bounds = bounds_of(mesh);
+    const Box bounds = bounds_of(mesh);
     for (auto& v : mesh.vertices) {
       for (std::size_t k = 0; k < 3; ++k) v[k] -= 0.5 * (bounds.min[k] + bounds.max[k]);
     }

@@ -7,16 +7,20 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/planner/registration_scene.hpp"
 #include "core/expect_error.hpp"
+#include "support/meshes.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/grid/belief_grid.hpp"
@@ -128,6 +132,115 @@ TEST_F(SuspectFrames, WhatFitsAlikeIsNamed) {
 TEST_F(SuspectFrames, DepthsAlongTheRay) {
   scale(1, 1);
   EXPECT_EQ(kind(), "depth_along_ray");
+}
+
+// Boxes of other sides and places, as one mesh.
+TriangleMesh boxes(const std::vector<std::array<double, 6>>& all) {
+  TriangleMesh mesh;
+  for (const auto& [x, y, z, a, b, c] : all) {
+    const TriangleMesh cube = test::cube_mesh(0.5);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const auto& v : cube.vertices) {
+      mesh.vertices.push_back({x + a * v[0], y + b * v[1], z + c * v[2]});
+    }
+    for (const auto& t : cube.triangles) {
+      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  }
+  return mesh;
+}
+
+// What is rendered by one camera and read by another: the stated focal length times the factor is
+// the right one.
+TEST(SuspectFocalLengths, AreNamedAndRightOnesAreNot) {
+  const std::vector<TriangleMesh> objects{
+      test::bumpy_sphere(0.12, 0.008), test::bumpy_sphere(0.1, 0.02),
+      boxes({{0, 0, -0.05, 0.25, 0.12, 0.06}, {0.05, 0.02, 0.05, 0.06, 0.06, 0.2}}),
+      boxes({{0, 0, -0.12, 0.8, 0.8, 0.02}, {-0.06, 0, -0.04, 0.1, 0.14, 0.14}}),
+      test::cylinder(0.07, 0.25)};
+  struct View {
+    PinholeCamera camera;
+    double distance, elevation, sigma;
+    std::size_t count;
+  };
+  const std::vector<View> setups{{{64, 48, 60, 60, 31.5, 23.5}, 0.5, 0.6, 0.002, 6},
+                                 {{88, 72, 100, 100, 44, 35}, 0.6, 0.4, 0.003, 9},
+                                 {{80, 60, 70, 72, 39, 30}, 0.7, 0.9, 0.001, 12}};
+  std::size_t right = 0, wrong = 0, alarms = 0, told = 0, named = 0, beside = 0;
+  for (const TriangleMesh& object : objects) {
+    const auto scene = std::make_shared<const SurfaceScene>(object);
+    for (const View& view : setups) {
+      Sensor sensor = sensor_preset("sr4000");
+      sensor.camera = view.camera;
+      sensor.noise = ConstantNoise{view.sigma, view.sigma};
+      const SimulatedSensor camera(scene, sensor, {.noise = true}, {1});
+      const std::vector<Pose> poses = orbit_poses(view.count, view.distance, view.elevation);
+      std::vector<DepthFrame> frames;
+      for (const Pose& pose : poses) frames.push_back(camera.acquire(pose, frames.size()));
+      for (const char* factor : {"1", "0.5", "0.75", "0.9", "1.1", "1.25", "2"}) {
+        Sensor stated = sensor;
+        stated.camera.fx /= std::stod(factor);
+        stated.camera.fy /= std::stod(factor);
+        const Suspicion found = suspect_frames(stated, frames, poses);
+        if (std::stod(factor) == 1) {
+          ++right;
+          alarms += found.kind.empty() ? 0 : 1;
+          EXPECT_EQ(found.kind, "") << right << found.what;
+          continue;
+        }
+        ++wrong;
+        const std::string words = std::string("the focal length is ") + factor + " times";
+        const bool is_named = found.what.find(words) != std::string::npos;
+        told += found.kind == "focal_length" ? 1 : 0;
+        named += is_named ? 1 : 0;
+        beside += is_named && found.what.find(", or if") != std::string::npos ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(right, 15U);
+  EXPECT_EQ(alarms, 0U);
+  EXPECT_EQ(wrong, 90U);
+  EXPECT_GE(told, 89U);
+  EXPECT_GE(named, 85U);  // the others: a neighbouring factor
+  EXPECT_LE(beside, 3U);
+}
+
+// Cameras that move across their axes see a relief as half as wide by twice the focal length as by
+// half the depth: both are named.
+TEST(SuspectFocalLengths, WhatFitsAsWellAsADepthScaleIsNamedBesideIt) {
+  std::vector<std::array<double, 6>> relief{{0, 0, -0.05, 2, 2, 0.02}};
+  for (int i = 0; i < 25; ++i) {
+    relief.push_back({0.14 * (i % 5 - 2), 0.13 * (i / 5 - 2), 0, 0.05 + 0.01 * (i % 3), 0.06,
+                      0.04 + 0.02 * (i * 7 % 5)});
+  }
+  const auto scene = std::make_shared<const SurfaceScene>(boxes(relief));
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera = {88, 72, 100, 100, 43.5, 35.5};
+  sensor.noise = ConstantNoise{0.002, 0.002};
+  const SimulatedSensor camera(scene, sensor, {.noise = true}, {1});
+  std::vector<Pose> poses;
+  std::vector<DepthFrame> frames;
+  for (int i = 0; i < 9; ++i) {
+    const Eigen::Vector3d eye(0.09 * (i % 3 - 1), 0.08 * (i / 3 - 1), 0.7);
+    poses.push_back(look_at(eye, eye - Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY()));
+    frames.push_back(camera.acquire(poses.back(), frames.size()));
+  }
+  EXPECT_EQ(suspect_frames(sensor, frames, poses).kind, "");
+  std::size_t cases = 0;
+  for (const auto& [factor, words] :
+       {std::pair{"2", "2 times smaller"}, {"0.5", "2 times larger"}}) {
+    Sensor stated = sensor;
+    stated.camera.fx /= std::stod(factor);
+    stated.camera.fy /= std::stod(factor);
+    const Suspicion found = suspect_frames(stated, frames, poses);
+    EXPECT_NE(found.what.find(std::string("the focal length is ") + factor + " times"),
+              std::string::npos)
+        << found.what;
+    EXPECT_NE(found.what.find(std::string("the depth scale is ") + words), std::string::npos)
+        << found.what;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 2U);
 }
 
 TEST_F(SuspectFrames, IntrinsicsOfHalfTheResolution) {

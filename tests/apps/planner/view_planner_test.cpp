@@ -323,6 +323,18 @@ TEST(ViewPlanner, ProposesWhatSetsReachAndGenerationsHave) {
   EXPECT_EQ(planner.seconds().count("candidates"), 1U);
 }
 
+TEST(ViewPlanner, VoxelsInMillimetresAreRefused) {
+  const BinScene scene;
+  PlannerConfig config = scene.config();
+  const auto make = [&] { ViewPlanner(scene.sensor, config, {1}); };
+  config.grid.voxel_size = 0.5;  // the workspace is 0.3 m long
+  expect_error(ErrorCode::invalid_argument, "lengths are in metres", make);
+  config.grid.workspace = {{-20, -20, -20}, {20, 20, 20}};
+  EXPECT_NO_THROW(make());
+  config.grid.voxel_size = 6;  // it sees to 5 m
+  expect_error(ErrorCode::invalid_argument, "lengths are in metres", make);
+}
+
 TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
   const BinScene scene;
   ViewPlanner planner(scene.sensor, scene.config(), {1});

@@ -223,7 +223,8 @@ def test_refused(sensor, camera, poses):
         planner.rank(poses=poses, costs=[1.0])
     with pytest.raises(ValueError, match="cost"):
         planner.rank(poses=poses, costs=[])
-    for settings in (dict(gain="best"), dict(max_views=0), dict(workspace=[[0, 0, 0]]), dict(body_size=[1, 2])):
+    for settings in (dict(gain="best"), dict(max_views=0), dict(workspace=[[0, 0, 0]]), dict(body_size=[1, 2]),
+                     dict(voxel_size=5)):
         with pytest.raises(ValueError):
             make(sensor, **settings)
     control = viewgain.BatchControl()

@@ -24,6 +24,17 @@ MapModelConfig with_plane(MapModelConfig config) {
   return config;
 }
 
+// Voxels as large as all that is to be mapped, or as the camera sees, are in another unit.
+BeliefGrid empty_grid(const GridConfig& config, const Sensor& sensor) {
+  BeliefGrid grid(config, sensor);
+  const auto& [min, max] = config.workspace;
+  const double longest = std::max({max[0] - min[0], max[1] - min[1], max[2] - min[2]});
+  if (config.voxel_size < longest && config.voxel_size <= sensor.max_range) return grid;
+  refuse("voxels of " + short_text(config.voxel_size) + " m in a workspace of " +
+         short_text(longest) + " m, for a sensor that sees to " + short_text(sensor.max_range) +
+         " m: lengths are in metres");
+}
+
 }  // namespace
 
 RealisedArea::RealisedArea(const Sensor& sensor, std::optional<double> support_plane)
@@ -57,7 +68,7 @@ double RealisedArea::of(const DepthFrame& frame, const Pose& T_world_camera,
 }
 
 MapModel::MapModel(const Sensor& sensor, const MapModelConfig& config, const ExecConfig& exec)
-    : MapModel(BeliefGrid(config.grid, sensor), sensor, config, exec) {}
+    : MapModel(empty_grid(config.grid, sensor), sensor, config, exec) {}
 
 MapModel::MapModel(BeliefGrid grid, const Sensor& sensor, const MapModelConfig& config,
                    const ExecConfig& exec)

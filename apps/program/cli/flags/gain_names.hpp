@@ -32,7 +32,8 @@ namespace viewgain::app {
   check.operation([](std::string& value) {
     const std::vector<std::string>& classic = classic_gain_names();
     return std::find(classic.begin(), classic.end(), value) != classic.end()
-               ? value + ": a gain of the literature, which score, study and reconstruct MESH take"
+               ? value +
+                     " is a gain of the literature, which score, study and reconstruct MESH take"
                : fault_of_name(value, gain_model_names(), "gain");
   });
   return check;

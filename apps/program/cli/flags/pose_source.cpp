@@ -127,4 +127,10 @@ PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {
   return {std::move(list.poses), list.orthonormalized};
 }
 
+std::vector<Pose> poses_in(const std::string& file) {
+  PoseOptions options;
+  options.file = file;
+  return make_poses(options, 0).poses;
+}
+
 }  // namespace viewgain::app

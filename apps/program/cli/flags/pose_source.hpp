@@ -59,4 +59,7 @@ void add_cost_options(App& app, CostOptions& options, const std::string& of);
 /// read_npy_poses throw.
 [[nodiscard]] PoseSource make_poses(const PoseOptions& options, std::uint64_t seed);
 
+/// Those of a file of --poses. Throws as make_poses().
+[[nodiscard]] std::vector<Pose> poses_in(const std::string& file);
+
 }  // namespace viewgain::app

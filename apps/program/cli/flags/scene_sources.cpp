@@ -96,32 +96,15 @@ void warn_of_few_voxels(const BeliefGrid& grid) {
                short_text(grid.voxel_size()).c_str(), longest, longest == 1 ? "" : "s");
 }
 
-Box bounds_of(const TriangleMesh& mesh) {
-  if (mesh.vertices.empty()) return {};
-  Box box{mesh.vertices.front(), mesh.vertices.front()};
-  for (const auto& v : mesh.vertices) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      box.min[a] = std::min(box.min[a], v[a]);
-      box.max[a] = std::max(box.max[a], v[a]);
-    }
-  }
-  return box;
-}
-
-double longest_side(const Box& box) {
-  double longest = 0;
-  for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.max[a] - box.min[a]);
-  return longest;
-}
-
-void warn_of_far_obstacles(const std::vector<std::string>& values, const BeliefGrid& grid,
-                           const Sensor& sensor) {
+void warn_of_far_obstacles(const std::vector<std::string>& values, const Obstacles& obstacles,
+                           const BeliefGrid& grid, const Sensor& sensor) {
   constexpr double kHuge = 100;  // times the workspace
   const Box map = grid.workspace();
   const double longest = longest_side(map);
+  auto mesh = obstacles.meshes.begin();
+  auto other = obstacles.boxes.begin();
   for (const std::string& value : values) {
-    const Box box =
-        is_obstacle_file(value) ? bounds_of(read_mesh(value)) : parse_box("--obstacle", value);
+    const Box box = is_obstacle_file(value) ? bounds_of(*mesh++) : *other++;
     const double side = longest_side(box);
     double squared = 0;
     for (std::size_t a = 0; a < 3; ++a) {

@@ -55,13 +55,10 @@ inline constexpr const char* kObstacleHelp =
 
 /// Voxels so large that there are hardly any.
 void warn_of_few_voxels(const BeliefGrid& grid);
-/// The least box with all vertices in it; zero without any.
-[[nodiscard]] Box bounds_of(const TriangleMesh& mesh);
-[[nodiscard]] double longest_side(const Box& box);
-
-/// Obstacles of --obstacle out of the reach of views of the map, or 100 times its size.
-void warn_of_far_obstacles(const std::vector<std::string>& values, const BeliefGrid& grid,
-                           const Sensor& sensor);
+/// Obstacles of --obstacle, obstacles_of(values), out of the reach of views of the map, or 100
+/// times its size.
+void warn_of_far_obstacles(const std::vector<std::string>& values, const Obstacles& obstacles,
+                           const BeliefGrid& grid, const Sensor& sensor);
 /// Poses of a file of which most see nothing of the map (suspect_poses()).
 void warn_of_poses(const std::string& file, const std::vector<Pose>& poses,
                    const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor);

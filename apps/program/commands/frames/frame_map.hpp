@@ -53,7 +53,9 @@ class FrameMap {
   void drop(std::size_t index, const FrameFault& fault) { count(index, fault); }
 
   /// Throws as FrameTally::require_any().
-  void require_frames() const { tally_.require_any(folder_); }
+  void require_frames(bool needs_surface = false) const {
+    tally_.require_any(folder_, model_.grid(), needs_surface);
+  }
 
   [[nodiscard]] const FrameCounts& counts() const noexcept { return tally_.counts(); }
   /// Where frames were taken that brought nothing, as the folder says.

@@ -28,14 +28,6 @@ std::string frames_text(const FrameCounts& counts) {
   return frames_text(count_of(counts, FrameVerdict::carved), bad_frames(counts));
 }
 
-namespace {
-
-bool carve_most(const FrameCounts& counts) {
-  return count_of(counts, FrameVerdict::carved) > count_of(counts, FrameVerdict::used);
-}
-
-}  // namespace
-
 std::string suspicion_of(const FrameFolder& folder) {
   constexpr std::size_t kFrames = 12;
   std::vector<DepthFrame> frames;
@@ -65,7 +57,10 @@ void FrameTally::add(const std::filesystem::path& image, const FrameFault& fault
                     std::string(frame_verdict_name(fault.verdict)) + ")");
 }
 
-void FrameTally::add(const IntegrationReport& counts) { readings_ += counts.readings; }
+void FrameTally::add(const IntegrationReport& counts) {
+  readings_ += counts.readings;
+  sees_plane_ = sees_plane_ || counts.plane_readings > 0;
+}
 
 void FrameTally::name_left_out() const {
   if (quiet_) return;
@@ -80,18 +75,29 @@ std::string FrameTally::none_inside(const FrameFolder& folder) const {
          " m per unit of the depth images (--depth-scale)";
 }
 
-void FrameTally::require_any(const FrameFolder& folder) const {
+void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
+                             bool needs_surface) const {
   const std::string suspicion = suspicion_of(folder);
   if (counts_.empty() || is_in_map(counts_.begin()->first)) {
     name_left_out();
-    std::string warning = suspicion;
-    if (count_of(counts_, FrameVerdict::used) == 0 && readings_ > 0) {
-      warning = none_inside(folder) + (suspicion.empty() ? "" : "; " + suspicion);
-      if (!suspicion.empty()) refuse(folder.name() + ": " + warning);
-    } else if (warning.empty() && carve_most(counts_)) {
+    const bool has_surface = sees_plane_ || map.statistics().occupied > 0;
+    const std::size_t used = count_of(counts_, FrameVerdict::used);
+    const bool is_outside = used == 0 && readings_ > 0;
+    std::string warning = is_outside ? none_inside(folder) : "";
+    if (!has_surface) {
+      constexpr const char* kWords =
+          "no voxel is occupied: does the workspace hold the object, are the poses camera to "
+          "world?";
+      warning += (warning.empty() ? "" : "; ") + std::string(kWords);
+    } else if (warning.empty() && suspicion.empty() &&
+               count_of(counts_, FrameVerdict::carved) > used) {
       warning = frames_text(counts_) + ": are scale, poses and workspace right?";
     }
+    if (!suspicion.empty()) warning += (warning.empty() ? "" : "; ") + suspicion;
     if (warning.empty()) return;
+    if ((is_outside && !suspicion.empty()) || (needs_surface && !has_surface)) {
+      refuse(folder.name() + ": " + warning);
+    }
     std::fprintf(stderr, "viewgain: warning: %s: %s\n", folder.name().c_str(), warning.c_str());
     return;
   }

@@ -15,6 +15,7 @@
 #include "program/cli/json.hpp"
 #include "viewgain/core/frame_verdict.hpp"
 #include "viewgain/formats/frames.hpp"
+#include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/planner/register_frame.hpp"
 
@@ -45,8 +46,11 @@ class FrameTally {
   void add(const IntegrationReport& counts);
   /// Throws Error(invalid_argument) if there were frames and none is in the map, or none has a
   /// reading in the workspace and something is suspected, with the reasons and suspicion_of(); else
-  /// names the first of each kind that was left out, unless quiet, and warns of what is suspected.
-  void require_any(const FrameFolder& folder) const;
+  /// names the first of each kind that was left out, unless quiet, and warns of what is suspected,
+  /// and where no voxel of their `map` is occupied and no frame shows the support plane: which is
+  /// an error where the caller `needs_surface`.
+  void require_any(const FrameFolder& folder, const BeliefGrid& map,
+                   bool needs_surface = false) const;
 
   /// Names the first of each kind that was left out, unless quiet.
   void name_left_out() const;
@@ -62,6 +66,7 @@ class FrameTally {
   FrameCounts counts_;
   std::vector<std::string> faults_;
   std::uint64_t readings_ = 0;
+  bool sees_plane_ = false;
 };
 
 /// No frame has a reading that a workspace could be made round: throws Error(invalid_argument) with

@@ -22,12 +22,6 @@ bool is_at_boundaries(const ProposalOptions& options) {
   return options.generator == "boundary";
 }
 
-std::vector<Pose> poses_in(const std::string& file) {
-  PoseOptions options;
-  options.file = file;
-  return make_poses(options, 0).poses;
-}
-
 // What each candidate costs; empty without --costs.
 std::vector<double> costs_of(const ProposalOptions& options, const Proposal& proposal) {
   if (options.costs.file.empty()) return {};
@@ -142,10 +136,10 @@ Sensor with_body(Sensor sensor, const ProposalOptions& options) {
 }
 
 SurfaceModel model_of(BeliefGrid grid, const Sensor& sensor, const ProposalOptions& options,
-                      const ExecConfig& exec) {
+                      Obstacles obstacles, const ExecConfig& exec) {
   SurfaceModelConfig config;
   config.map.hazard = hazard_source(options.hazard, options.object_size, grid);
-  config.map.surroundings = {obstacles_of(options.obstacles), options.support_plane};
+  config.map.surroundings = {std::move(obstacles), options.support_plane};
   return {std::move(grid), sensor, config, exec};
 }
 
@@ -177,9 +171,9 @@ GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& m
   return {model.scene(), sensor, config, exec};
 }
 
-void warn_of_set_up(const ProposalOptions& options, const SurfaceModel& model,
-                    const Sensor& sensor) {
-  warn_of_far_obstacles(options.obstacles, model.grid(), sensor);
+void warn_of_set_up(const ProposalOptions& options, const Obstacles& obstacles,
+                    const SurfaceModel& model, const Sensor& sensor) {
+  warn_of_far_obstacles(options.obstacles, obstacles, model.grid(), sensor);
   if (options.poses.empty()) return;
   warn_of_poses(options.poses, poses_in(options.poses), model.scene(), sensor);
 }

@@ -56,9 +56,10 @@ void check(const ProposalOptions& options);
 /// The sensor with --body.
 [[nodiscard]] Sensor with_body(Sensor sensor, const ProposalOptions& options);
 
-/// The model of a map with --obstacle, --hazard and --object-size.
+/// The model of a map with --obstacle (obstacles_of()), --hazard and --object-size.
 [[nodiscard]] SurfaceModel model_of(BeliefGrid grid, const Sensor& sensor,
-                                    const ProposalOptions& options, const ExecConfig& exec);
+                                    const ProposalOptions& options, Obstacles obstacles,
+                                    const ExecConfig& exec);
 
 /// Without --reach the views at boundaries stay inside of the workspace where all views so far
 /// were, as in a room. `map`: what errors call it; `tried`: views that
@@ -74,8 +75,8 @@ void check(const ProposalOptions& options);
                                          const Sensor& sensor, const ExecConfig& exec);
 
 /// Warns of --obstacle and --poses that are far from the map (scene_sources.hpp).
-void warn_of_set_up(const ProposalOptions& options, const SurfaceModel& model,
-                    const Sensor& sensor);
+void warn_of_set_up(const ProposalOptions& options, const Obstacles& obstacles,
+                    const SurfaceModel& model, const Sensor& sensor);
 
 /// At most `top` candidates that go together (rank_views()), or the first views of a plan
 /// (plan_views()): each with what it adds to those chosen before it, and that less --costs and

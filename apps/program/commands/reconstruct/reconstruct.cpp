@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include "program/cli/interrupt.hpp"
 #include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
+#include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/reconstruct/checkpoint.hpp"
 #include "program/commands/reconstruct/run.hpp"
@@ -61,6 +63,22 @@ std::string run_title(const ReconstructOptions& options, const RunSetup& setup) 
   return std::filesystem::path(options.mesh).filename().string() + ", " + setup.sensor.name;
 }
 
+void warn_of_workspace(const Stage& stage) {
+  const Box object = bounds_of(stage.scene->mesh());
+  double share = 1;  // of the object's box
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double side = object.max[a] - object.min[a];
+    const double inside = std::min(object.max[a], stage.workspace.max[a]) -
+                          std::max(object.min[a], stage.workspace.min[a]);
+    if (side > 0) share *= std::max(0.0, inside / side);
+  }
+  if (share >= 0.5) return;
+  std::fprintf(stderr,
+               "viewgain: warning: the workspace holds %.0f %% of the object's box, %s m "
+               "(--workspace)\n",
+               100 * share, describe(object).c_str());
+}
+
 void reconstruct(const ReconstructOptions& options, const App& app) {
   const RunOutputs& outputs = options.outputs;
   if (outputs.with_report()) check_report_page("--report");
@@ -68,6 +86,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   StageSeconds seconds;
   const ExecConfig exec = exec_of(options.common);
   RunSetup setup = set_up(options, exec);
+  warn_of_workspace(setup.stage);
   const InterruptGuard interrupt;
   setup.planning.stop = interrupt.token();
   const Stopwatch watch_of_set_up;
@@ -127,11 +146,11 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
     print_json(json);
   } else {
     std::printf("%s", report.text(result.reason).c_str());
-    if (options.tolerance < options.voxel) {
+    if (setup.visibility.tolerance < options.voxel) {
       std::printf(
           "coverage at %g mm, less than a voxel: what is rebuilt right may count as missed "
           "(--tolerance)\n",
-          1e3 * options.tolerance);
+          1e3 * setup.visibility.tolerance);
     }
     const Eigen::Vector3d& center = setup.stage.center;
     std::printf("the object's box, %.3g m long, has its centre at %.3g, %.3g, %.3g m\n",

@@ -19,6 +19,7 @@
 #include "program/commands/commands.hpp"
 #include "program/commands/frames/frame_map.hpp"
 #include "program/commands/frames/frame_tally.hpp"
+#include "program/commands/map_json.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
 #include "program/commands/reconstruct/checkpoint.hpp"
 #include "program/commands/reconstruct/recorded_views.hpp"
@@ -66,7 +67,8 @@ struct Moment {
   GainEvaluator evaluator;
 
   Moment(const FrameMap& map, const ProposalOptions& proposal, const ExecConfig& exec)
-      : model(model_of(map.model().grid().clone(), map.model().sensor(), proposal, exec)),
+      : model(model_of(map.model().grid().clone(), map.model().sensor(), proposal,
+                       map.config().surroundings.obstacles, exec)),
         generation(model,
                    generation_config(proposal, map.model().sensor(), model.grid(),
                                      map.folder().name(), map.tried()),
@@ -186,6 +188,7 @@ class Recording {
   [[nodiscard]] const NextViews& next() const { return next_; }
   [[nodiscard]] const FrameCounts& counts() const { return map_->counts(); }
   [[nodiscard]] const Sensor& sensor() const { return map_->model().sensor(); }
+  [[nodiscard]] const BeliefGrid& grid() const { return map_->model().grid(); }
 
  private:
   void show(RunFolder& folder, const Moment& moment) {
@@ -238,8 +241,9 @@ class Recording {
   NextViews next_;
 };
 
-void print(const Options& options, const Json& run, const FrameCounts& counts,
-           const NextViews& next) {
+void print(const Options& options, const Json& run, const BeliefGrid& grid,
+           const FrameCounts& counts, const NextViews& next) {
+  print_map(grid, grid.statistics());
   std::printf("%zu frames, %s readings, %s of them in the workspace\n",
               run["frames"].get<std::size_t>(),
               with_commas(run["readings"].get<std::uint64_t>()).c_str(),
@@ -271,7 +275,7 @@ void reconstruct(Options& options, const App& app) {
   const Json run = recording.finish(folder);
   commit(folder, run, app);
   if (options.common.json) return print_json(run);
-  print(options, run, recording.counts(), recording.next());
+  print(options, run, recording.grid(), recording.counts(), recording.next());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/formats/reach_toml.hpp"
@@ -98,6 +99,7 @@ std::vector<std::string> generators(const ReconstructOptions& options, Policy po
     return names;
   }
   if (policy == Policy::random || policy == Policy::fibonacci) return {"sphere"};
+  if (!options.poses.empty()) return {};
   if (policy == Policy::sequence) return {"sequence"};
   return {"boundary"};
 }
@@ -113,6 +115,7 @@ GenerationConfig generation_config(const ReconstructOptions& options, const RunS
   PoseSetRequest request{setup.stage.center,   setup.distance, options.count,
                          options.sensing.seed, setup.start,    spread_out};
   if (!options.distance) request.reach = setup.reach;
+  if (!options.poses.empty()) config.sets.push_back({kGivenPoses, poses_in(options.poses)});
   for (const std::string& name : generators(options, setup.policy.policy)) {
     if (name == "boundary") {
       config.at_boundaries = true;
@@ -137,9 +140,8 @@ PlanningConfig planning_config(const ReconstructOptions& options, const PolicyCo
 }
 
 StageConfig stage_config(const ReconstructOptions& options) {
-  StageConfig config{options.mesh, options.size, UpAxis::z, std::nullopt,
+  StageConfig config{options.mesh, options.size, placement_of({}, "", options.up).up, std::nullopt,
                      options.sensing.support_plane};
-  if (options.up != "z") config.up = options.up == "x" ? UpAxis::x : UpAxis::y;
   if (!options.workspace.empty()) config.workspace = parse_box("--workspace", options.workspace);
   return config;
 }
@@ -177,7 +179,7 @@ Json settings_json(const ReconstructOptions& o, const RunSetup& setup) {
             {"stop_idle", o.stop_idle},
             {"stop_promises", o.stop_promises},
             {"stop_coverage", o.stop_coverage},
-            {"tolerance", o.tolerance},
+            {"tolerance", o.covered_within()},
             {"cost_per_metre", o.cost_per_metre},
             {"reach", or_null(o.reach)},
             {"support_plane", o.sensing.support_plane},
@@ -192,6 +194,7 @@ Json settings_json(const ReconstructOptions& o, const RunSetup& setup) {
             {"jump_edge_filter", o.jump_edge_filter},
             {"refine", o.refine == "on"}};
   if (!o.obstacles.empty()) json["obstacles"] = o.obstacles;
+  if (!o.poses.empty()) json["poses"] = o.poses;
   json.update(o.scales.settings());
   if (const PlanAhead& ahead = setup.policy.ahead; ahead.is_on()) {
     json.update(Json{{"plan", ahead.plan}, {"take", ahead.take}});
@@ -245,7 +248,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
                       setup.reach,
                       options.sensing.support_plane,
                       nullptr,
-                      options.tolerance};
+                      options.covered_within()};
   setup.simulation = simulation_config(options.sensing, setup.sensor);
   setup.pose_noise = parse_pose_sigma("--pose-noise", options.sensing.pose_noise);
   setup.registration = registration_sigma(options.registration, setup.pose_noise);

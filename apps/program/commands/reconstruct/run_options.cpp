@@ -59,6 +59,9 @@ void add_options(App& app, ReconstructOptions& o) {
                  "several with commas; default: boundary (random and fibonacci: sphere, sequence: "
                  "sequence)")
       ->check(several_of(generator_names(), "generator"));
+  app.add_option("--poses", o.poses,
+                 "TUM or .npy file of poses of your own that --policy sequence takes after the "
+                 "start, in their order; default: the turntable");
   app.add_option("--count", o.count,
                  "poses of the sphere, dome or shell (default 500; sphere of --policy fibonacci: "
                  "--max-views); rings: 48, 80, 288 or 864 (default 48)")
@@ -96,7 +99,8 @@ void add_options(App& app, ReconstructOptions& o) {
                  "stop at this coverage of the visible surface, 0..1");
   app.add_option(
       "--tolerance", o.tolerance,
-      "a point of the mesh counts as covered where the surface is within this of it [m]");
+      "a point of the mesh counts as covered where the surface is within this of it [m]; default: "
+      "0.005, or a voxel where that is larger");
   app.add_option("--cost-per-metre", o.cost_per_metre,
                  "rank by gain - L * distance [nat/m, surface: m^2/m]");
   add_plan_options(app, o.plan);
@@ -131,9 +135,13 @@ void check(const ReconstructOptions& options) {
   if (!options.gain.empty() && parse_policy(options.policy) != Policy::gain) {
     refuse("--gain " + options.gain + " goes with --policy gain, not " + options.policy);
   }
+  if (!options.poses.empty() &&
+      (parse_policy(options.policy) != Policy::sequence || !options.generator.empty())) {
+    refuse("--poses goes with --policy sequence, without --generator");
+  }
   const std::vector<std::string>& classic = classic_gain_names();
   const bool is_classic = std::find(classic.begin(), classic.end(), options.gain) != classic.end();
-  check_positive("--tolerance", options.tolerance);
+  if (options.tolerance) check_positive("--tolerance", *options.tolerance);
   check_at_least_0("--cost-per-metre", options.cost_per_metre);
   check(options.plan);
   if (options.plan.plan > 1 && (parse_policy(options.policy) != Policy::gain || is_classic)) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -44,6 +45,7 @@ struct ReconstructOptions {
   std::optional<double> distance;
   std::string policy = "gain";
   std::string generator;
+  std::string poses;
   std::optional<std::size_t> count;
   std::string gain;
   double overlap = default_estimator(1.0).overlap;
@@ -57,7 +59,7 @@ struct ReconstructOptions {
   std::size_t stop_idle = PlanningConfig{}.idle_views;
   std::size_t stop_promises = PlanningConfig{}.broken_promises;
   std::optional<double> stop_coverage;
-  double tolerance = kCovered;
+  std::optional<double> tolerance;
   double cost_per_metre = 0;
   PlanOptions plan;
   std::string reach;
@@ -71,6 +73,11 @@ struct ReconstructOptions {
   ScaleOptions scales;
   std::string refine = "on";
   RunOutputs outputs;
+
+  /// --tolerance, or what a study takes: what is finer than a voxel judges the voxels.
+  [[nodiscard]] double covered_within() const {
+    return tolerance.value_or(std::max(kCovered, voxel));
+  }
 };
 
 /// Declares the flags, with o's values as defaults.

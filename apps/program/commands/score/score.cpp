@@ -76,11 +76,18 @@ GainConfig gain_config(const Options& options) {
   return config;
 }
 
+std::shared_ptr<const VoxelScene> scene_of(const Options& options, const BeliefGrid& grid,
+                                           const Sensor& sensor, const ExecConfig& exec,
+                                           const HazardConfig& hazard = {}) {
+  const Obstacles obstacles = obstacles_of(options.obstacles);
+  warn_of_far_obstacles(options.obstacles, obstacles, grid, sensor);
+  return VoxelScene::build(grid, {obstacles, options.support_plane}, exec, hazard);
+}
+
 // The poses that are to be scored: all, those in reach, or those that are possible.
 FeasiblePoses candidates_of(const Options& options, const PoseSource& source, const Sensor& sensor,
                             const BeliefGrid& grid, const std::shared_ptr<const VoxelScene>& scene,
                             const ExecConfig& exec) {
-  warn_of_far_obstacles(options.obstacles, grid, sensor);
   if (!options.poses.file.empty()) warn_of_poses(options.poses.file, source.poses, scene, sensor);
   ReachRegion reach;
   if (!options.reach.empty()) reach = read_reach_toml(options.reach);
@@ -223,8 +230,7 @@ void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gai
   const PoseSource source = make_poses(options.poses, options.seed);
   const SensedMap map = load_sensed_map(options.map, options.sensor, exec);
   const auto& [grid, sensor] = map;
-  const auto scene =
-      VoxelScene::build(grid, {obstacles_of(options.obstacles), options.support_plane}, exec);
+  const auto scene = scene_of(options, grid, sensor, exec);
   const bool hides = std::any_of(config.gains.begin(), config.gains.end(), needs_occlusion);
   const auto acquisition = hides ? std::optional(Acquisition{sensor}) : std::nullopt;
   const ClassicGainEvaluator evaluator(ClassicMap::build(scene, grid, acquisition, exec), sensor,
@@ -260,8 +266,7 @@ void score(const Options& options) {
   const Sensor& sensor = map.sensor;
   source.costs = costs_of(options, source, grid);
   const HazardConfig hazard = hazard_source(options.hazard, options.object_size, grid);
-  const auto scene = VoxelScene::build(
-      grid, {obstacles_of(options.obstacles), options.support_plane}, exec, hazard);
+  const auto scene = scene_of(options, grid, sensor, exec, hazard);
   const GainEvaluator evaluator(scene, sensor, config, exec);
   FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
   check_left(candidates);

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -17,14 +18,6 @@ using Figure = std::function<double(const ResultRow&)>;
 
 std::string fixed(double value, int digits) {
   return std::isfinite(value) ? formatted("%.*f", digits, value) : "-";
-}
-
-// "0.81 ± 0.02"
-std::string with_error(const std::vector<double>& values, const std::vector<std::size_t>& objects,
-                       int digits) {
-  const MeanWithError mean = mean_of(values, objects);
-  if (mean.count == 0) return "-";
-  return fixed(mean.mean, digits) + " ± " + fixed(mean.error, digits);
 }
 
 std::vector<double> figures(const Rows& rows, const Figure& figure) {
@@ -76,23 +69,37 @@ std::vector<std::size_t> objects_of(const Rows& rows) {
   return objects;
 }
 
+// With its 95 % interval.
+std::string interval_cell(const Rows& rows, const Figure& figure, int digits) {
+  const std::vector<double> values = figures(rows, figure);
+  const double interval = interval_of(values, objects_of(rows));
+  return mean_cell(rows, figure, digits) +
+         (std::isnan(interval) ? "" : " ± " + fixed(interval, digits));
+}
+
+std::size_t count_of_never(const Rows& rows, std::size_t goal) {
+  return static_cast<std::size_t>(std::count_if(
+      rows.begin(), rows.end(), [&](const ResultRow* row) { return !row->views_to[goal]; }));
+}
+
 Figure metres_to(std::size_t goal) {
   return [goal](const ResultRow& row) { return row.metres_to[goal]; };
 }
 
 // Mean / median / runs that never got there, which are beyond all others and make of the mean a
-// lower bound, and the way until then.
+// lower bound without an interval, and the way until then.
 std::string counts(const Rows& rows, std::size_t goal) {
+  const std::size_t never = count_of_never(rows, goal);
+  if (never == rows.size()) return "-";
   std::vector<double> views;
-  std::size_t never = 0;
   for (const ResultRow* row : rows) {
-    never += row->views_to[goal] ? 0 : 1;
     views.push_back(row->views_to[goal] ? row->counted_views_to(goal) : HUGE_VAL);
   }
   const double median = median_of(std::move(views));
-  return (never > 0 ? "≥ " : "") + mean_cell(rows, views_to(goal), 2) + " / " +
-         (median == HUGE_VAL ? "never" : fixed(median, 1)) + " / " + std::to_string(never) + "; " +
-         mean_cell(rows, metres_to(goal), 2) + " m";
+  return (never > 0 ? "≥ " + mean_cell(rows, views_to(goal), 2)
+                    : interval_cell(rows, views_to(goal), 2)) +
+         " / " + (median == HUGE_VAL ? "never" : fixed(median, 1)) + " / " + std::to_string(never) +
+         "; " + mean_cell(rows, metres_to(goal), 2) + " m";
 }
 
 std::string means(const Group& group) {
@@ -103,12 +110,12 @@ std::string means(const Group& group) {
     const Rows rows = group.of(policy);
     std::vector<std::string> cells{group.spec.policies[policy].name};
     for (std::size_t goal = 0; goal < kGoals.size(); ++goal) cells.push_back(counts(rows, goal));
-    cells.push_back(mean_cell(rows, &ResultRow::auc, 3));
+    cells.push_back(interval_cell(rows, &ResultRow::auc, 3));
     const auto in_the_end = [](const ResultRow& row) { return 100 * row.coverage_visible; };
-    cells.push_back(mean_cell(rows, in_the_end, 1) + " %");
-    cells.push_back(mean_cell(rows, rms_mm, 2));
-    cells.push_back(mean_cell(rows, &ResultRow::consistency, 2));
-    cells.push_back(mean_cell(rows, &ResultRow::travelled, 1));
+    cells.push_back(interval_cell(rows, in_the_end, 1) + " %");
+    cells.push_back(interval_cell(rows, rms_mm, 2));
+    cells.push_back(interval_cell(rows, &ResultRow::consistency, 2));
+    cells.push_back(interval_cell(rows, &ResultRow::travelled, 1));
     const auto decisions = [](const ResultRow& row) { return static_cast<double>(row.decisions); };
     cells.push_back(mean_cell(rows, decisions, 1));
     cells.push_back(mean_cell(rows, &ResultRow::deciding_seconds, 2));
@@ -139,10 +146,12 @@ std::string difference(const Rows& of, const Rows& against, const Figure& figure
     const double better = more_is_better ? d : -d;
     ++count[better > 0 ? 0 : better < 0 ? 2 : 1];
   }
-  return with_error(differences, objects_of(of), digits) + " (" + std::to_string(count[0]) + "-" +
-         std::to_string(count[1]) + "-" + std::to_string(count[2]) + "; " +
-         probability(sign_test(differences)) + ", " + probability(signed_rank_test(differences)) +
-         ")";
+  const MeanWithError mean = mean_of(differences, objects_of(of));
+  if (mean.count == 0) return "-";
+  return fixed(mean.mean, digits) + " ± " + fixed(mean.error, digits) + " (" +
+         std::to_string(count[0]) + "-" + std::to_string(count[1]) + "-" +
+         std::to_string(count[2]) + "; " + probability(sign_test(differences)) + ", " +
+         probability(signed_rank_test(differences)) + ")";
 }
 
 std::string pairs(const Group& group) {
@@ -163,7 +172,9 @@ std::string pairs(const Group& group) {
     const Rows of = group.of(policy);
     std::vector<std::string> cells{spec.policies[policy].name};
     for (std::size_t goal = 0; goal < kGoals.size(); ++goal) {
-      cells.push_back(difference(of, against, views_to(goal), 2, false));
+      const bool is_reached =
+          count_of_never(of, goal) + count_of_never(against, goal) < of.size() + against.size();
+      cells.push_back(is_reached ? difference(of, against, views_to(goal), 2, false) : "-");
     }
     cells.push_back(difference(of, against, metres_if_there(kGoals.size() - 1), 2, false));
     cells.push_back(difference(of, against, &ResultRow::auc, 3, true));
@@ -222,7 +233,11 @@ std::string results_markdown(const StudySpec& spec, const std::vector<ResultRow>
       "- AUC: mean coverage over the views. In the end: coverage by the last view. RMS: error of "
       "the "
       "surface that is there, lower too where hard places are not. Consistency: the points' "
-      "squared errors by their own sigmas, 1 if these are honest, above if too small.\n- ±: " +
+      "squared errors by their own sigmas, 1 if these are honest, above if too small.\n"
+      "- A - where no run got there, or nothing can be said.\n"
+      "- ± of a policy's mean: its 95 % interval (Student's t) for other seeds on the same "
+      "objects; "
+      "fewer than about 5 seeds make it wide.\n- ± of a difference: " +
       (objects.size() > 1
            ? "standard errors by object, for runs on one object are not independent; p is of these "
              "objects, by runs.\n"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <numeric>
 
 #include "viewgain/planner/rank_views.hpp"
@@ -93,6 +94,28 @@ double flip_test(std::span<const double> differences, bool by_size) {
   }
   const auto tail = static_cast<std::ptrdiff_t>(std::min(sum, all - sum)) + 1;
   return std::min(1.0, 2 * std::accumulate(probability.begin(), probability.begin() + tail, 0.0));
+}
+
+// What 95 % of Student's t lie within. Its distribution is a finite sum in the angle
+// atan(t / sqrt(freedom)) (Abramowitz and Stegun, 26.7.3 and 26.7.4).
+double student_t(std::size_t freedom) {
+  const bool is_odd = freedom % 2 == 1;
+  const auto share_within = [&](double angle) {
+    double sum = 0, term = is_odd ? std::cos(angle) : 1;
+    for (std::size_t power = is_odd ? 1 : 0; power + 2 <= freedom; power += 2) {
+      sum += term;
+      term *= static_cast<double>(power + 1) / static_cast<double>(power + 2) *
+              std::pow(std::cos(angle), 2);
+    }
+    sum *= std::sin(angle);
+    return is_odd ? 2 / std::numbers::pi * (angle + sum) : sum;
+  };
+  double low = 0, high = 0.5 * std::numbers::pi;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (share_within(middle) < 0.95 ? low : high) = middle;
+  }
+  return std::sqrt(static_cast<double>(freedom)) * std::tan(low);
 }
 
 }  // namespace
@@ -206,6 +229,23 @@ MeanWithError mean_of(std::span<const double> values, std::span<const std::size_
   for (const auto& [cluster, sum] : sums) squares += sum * sum;
   if (groups > 1) result.error = std::sqrt(groups / (groups - 1) * squares) / n;
   return result;
+}
+
+double interval_of(std::span<const double> values, std::span<const std::size_t> clusters) {
+  std::map<std::size_t, std::vector<double>> groups;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) groups[clusters[i]].push_back(values[i]);
+  }
+  double squares = 0;
+  std::size_t count = 0;
+  for (const auto& [cluster, group] : groups) {
+    const double mean = mean_of(group).mean;
+    for (const double value : group) squares += (value - mean) * (value - mean);
+    count += group.size();
+  }
+  const std::size_t freedom = count - groups.size();
+  if (freedom == 0) return kNone;
+  return student_t(freedom) * std::sqrt(squares / static_cast<double>(freedom * count));
 }
 
 double median_of(std::vector<double> values) {

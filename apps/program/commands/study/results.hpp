@@ -78,6 +78,11 @@ struct MeanWithError {
 [[nodiscard]] MeanWithError mean_of(std::span<const double> values,
                                     std::span<const std::size_t> clusters = {});
 
+/// Half the 95 % interval of the mean, by Student's t, for other seeds on the same objects: from
+/// the variance within clusters, one for all. Not finite ones do not count; NaN where none has two.
+[[nodiscard]] double interval_of(std::span<const double> values,
+                                 std::span<const std::size_t> clusters);
+
 /// The middle value, or the mean of the middle two; infinities may be among them. NaN of none.
 [[nodiscard]] double median_of(std::vector<double> values);
 

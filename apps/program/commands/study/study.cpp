@@ -353,7 +353,12 @@ Command add_study(App& program) {
       "study",
       "Compares policies and gains: a run of `reconstruct` for every object, policy, seed, sensor, "
       "voxel and size of a spec, in one table; stopped and called again it goes on.");
-  app->add_option("SPEC", options->spec, "TOML file that says what to compare")->required();
+  app->add_option(
+         "SPEC", options->spec,
+         "TOML file that says what to compare: lists objects, policies, seeds, sensors and "
+         "voxels [m], and max_views; as you like also a list of sizes [m], against, "
+         "tolerance [m], kept_candidates and a list of flags")
+      ->required();
   app->add_option("--out", options->out, "folder for results; several machines may share it")
       ->required();
   app->add_option("--jobs", options->jobs, "runs at once; default: as many as threads")

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "viewgain/core/box.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/triangle_mesh.hpp"
 
@@ -20,6 +21,11 @@ namespace viewgain {
 /// file_bytes(). Thread safe. Costs O(file), and for polygons that are no fan the squares of their
 /// corners, of which they may have 10,000.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path);
+
+/// The least box with all vertices in it [m]; zero without any. Never throws. Costs O(vertices).
+[[nodiscard]] VIEWGAIN_EXPORT Box bounds_of(const TriangleMesh& mesh);
+/// The length of a box's longest side [m]. Never throws.
+[[nodiscard]] VIEWGAIN_EXPORT double longest_side(const Box& box);
 
 /// Which axis of the mesh file points up.
 enum class UpAxis : std::uint8_t { x, y, z };

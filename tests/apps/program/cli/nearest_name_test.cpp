@@ -69,15 +69,16 @@ class Spelling : public test::ProgramTest {
 
 TEST_F(Spelling, TheNearestIsNamed) {
   expect_refused(
-      {{{"scor"}, "no such subcommand; did you mean score? There are reconstruct, simulate"},
-       {{"zzz"}, "zzz: no such subcommand; there are reconstruct, simulate"},
+      {{{"scor"}, "scor is no subcommand; did you mean score? There are reconstruct, simulate"},
+       {{"zzz"}, "zzz is no subcommand; there are reconstruct, simulate"},
        {{"--versoin"}, "did you mean --version?"},
        {{"info", "map.vdb", "--jsno"}, "--jsno: no such flag of info; did you mean --json?"},
        {{"score", "map.vdb", "--spere=5,1"},
         "--spere: no such flag of score; did you mean --sphere?"},
+       {{"convert", "map.vdb", "--out", "map.ot"}, "--out: OUT is given without a flag (see"},
        {{"reconstruct", "--nonsense"}, "--nonsense: no such flag of reconstruct (see"},
        {{"score", "map.vdb", "--gain", "surfce"},
-        "--gain: surfce: no such gain; did you mean surface? There are paper, surface, combined"},
+        "--gain: surfce is no gain; did you mean surface? There are paper, surface, combined"},
        {{"candidates", "map.vdb", "--generator", "boundry"}, "did you mean boundary?"},
        {{"reconstruct", "cube.off", "--policy", "fronteir"}, "did you mean frontier?"},
        {{"integrate", "frames", "--carve", "cone"}, "did you mean cones?"},

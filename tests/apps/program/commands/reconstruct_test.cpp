@@ -128,8 +128,8 @@ TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
   // Where results go, how fast; the seed is beside the settings, the body in the sensor; obstacles
   // are there where there are any.
   const std::set<std::string> elsewhere{
-      "help",     "json",  "threads", "out",         "save_maps", "pictures", "seed",  "body",
-      "obstacle", "quiet", "config",  "save_config", "report",    "trace",    "resume"};
+      "help",     "json",  "threads", "out",         "save_maps", "pictures", "seed",   "body",
+      "obstacle", "quiet", "config",  "save_config", "report",    "trace",    "resume", "poses"};
   const std::string both = run_well({"reconstruct", "--help"});
   std::istringstream help(both.substr(0, both.rfind("Usage: ")));  // the other is of frames
   std::size_t flags = 0;
@@ -223,6 +223,59 @@ TEST_F(Reconstruct, ObjectLargerThanTheWorkspaceEnds) {
   EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
   EXPECT_GT(result["coverage"].get<double>(), 0.02);
   EXPECT_LT(result["coverage"].get<double>(), 0.6);
+}
+
+// The same start, and then the file's views, but for one that cannot be.
+TEST_F(Reconstruct, TakesPosesOfAFileInTheirOrder) {
+  const std::vector<Pose> poses{look_at({0.5, 0, 0.3}, {0, 0, 0}), look_at({0.01, 0, 0}, {0, 0, 1}),
+                                look_at({0, -0.5, 0.3}, {0, 0, 0})};
+  write_tum(dir / "own.txt", poses);
+  const Strings flags{"--size", "0.2", "--pictures", "off", "--max-views", "9", "--stop-idle", "0"};
+  const json own =
+      reconstruct("cube.off", test::joined(flags, {"--policy", "sequence", "--poses", "own.txt"}));
+  const std::vector<Pose> views = read_tum(dir / "run/views.txt").poses;
+  const json start =
+      reconstruct("cube.off", {"--size", "0.2", "--pictures", "off", "--max-views", "1"});
+  EXPECT_EQ(own["per_view"][0]["pose"], start["per_view"][0]["pose"]);
+  ASSERT_EQ(views.size(), 3U);
+  EXPECT_LT((views[1].translation() - poses[0].translation()).norm(), 1e-9);
+  EXPECT_LT((views[2].translation() - poses[2].translation()).norm(), 1e-9);
+  EXPECT_EQ(own["per_view"][1]["generator"], "poses");
+  expect_refused({"reconstruct", "cube.off", "--sensor", "tof.toml", "--voxel", "0.01", "--size",
+                  "0.2", "--poses", "own.txt", "--out", "new"},
+                 "--poses goes with --policy sequence");
+}
+
+TEST_F(Reconstruct, AWorkspaceThatCutsTheObjectIsToldOf) {
+  const auto said = [this](const std::string& workspace) {
+    return run({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
+                "0.0125", "--workspace", workspace, "--max-views", "1", "--pictures", "off",
+                "--out", "cut"})
+        .err;
+  };
+  // 2/3 by 2/3 by 1/2 of the object's box.
+  const std::string small = said("-0.1,-0.1,0,0.1,0.1,0.17"), half = said("-1,-1,0,1,1,1");
+  EXPECT_NE(small.find("the workspace holds 22 % of the object's box, -0.15,-0.15,-0.15"),
+            std::string::npos)
+      << small;
+  EXPECT_EQ(half.find("warning"), std::string::npos) << half;
+}
+
+// Coverage finer than the voxels would judge these.
+TEST_F(Reconstruct, CoverageIsNoFinerThanTheVoxels) {
+  std::size_t cases = 0;
+  for (const auto& [voxel, more, tolerance] :
+       {std::tuple{"0.0125", Strings{}, 0.0125},
+        {"0.004", Strings{}, 0.005},
+        {"0.0125", Strings{"--tolerance", "0.005"}, 0.005}}) {
+    run_well(
+        test::joined({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
+                      voxel, "--max-views", "1", "--quiet", "--pictures", "off", "--out", "run"},
+                     more));
+    EXPECT_EQ(json::parse(read("run/run.json"))["settings"]["tolerance"], tolerance) << voxel;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3U);
 }
 
 TEST_F(Reconstruct, SupportPlaneWithTheUpperHalfInReach) {

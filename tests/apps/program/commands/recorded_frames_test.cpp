@@ -72,6 +72,49 @@ TEST_F(RecordedFrames, ReconstructIsIntegrateSurfaceAndNextInOne) {
   EXPECT_EQ(again["skipped"], 3);
 }
 
+// The box and its voxels, as integrate says them, where nobody named one.
+TEST_F(RecordedFrames, TheMapThatWasMadeIsTold) {
+  const Strings map{"frames", "--voxel", "0.02"};
+  const auto first_lines = [](const std::string& text) {
+    return text.substr(0, text.find('\n', text.find('\n') + 1));
+  };
+  const std::string told =
+      first_lines(run_well(test::joined({"integrate", "--out", "map.vdb"}, map)));
+  EXPECT_TRUE(told.starts_with("workspace ")) << told;
+  EXPECT_EQ(first_lines(run_well(test::joined({"next"}, map))), told);
+  EXPECT_EQ(first_lines(
+                run_well(test::joined({"reconstruct", "--pictures", "off", "--out", "run"}, map))),
+            told);
+  const json of_map = json::parse(run_well({"info", "map.vdb", "--json"}));
+  const json next = json::parse(run_well(test::joined({"next", "--json"}, map)));
+  for (const char* key : {"workspace", "dims", "unknown", "free", "occupied"}) {
+    EXPECT_EQ(next[key], of_map[key]) << key;
+  }
+}
+
+// Frames that carve alone leave nothing to plan on, unless they show the table.
+TEST_F(RecordedFrames, AMapWithoutASurfaceIsToldOf) {
+  const std::string kWords = "no voxel is occupied: does the workspace hold the object";
+  // Before the cube and beside it.
+  const Strings beside{"--voxel", "0.02", "--workspace", "0.15,-0.1,0,0.3,0.1,0.15"};
+  const test::ProgramResult integrated =
+      run(test::joined({"integrate", "frames", "--out", "map.vdb"}, beside));
+  EXPECT_EQ(integrated.exit_code, 0) << integrated.err;
+  EXPECT_NE(integrated.err.find(kWords), std::string::npos) << integrated.err;
+  const test::ProgramResult next = run(test::joined({"next", "frames"}, beside));
+  EXPECT_EQ(next.exit_code, 2);
+  EXPECT_EQ(next.err.find("warning"), std::string::npos) << next.err;
+  EXPECT_NE(next.err.find(kWords), std::string::npos) << next.err;
+
+  run_well({"simulate", "cube.off", "--orbit", "3,0.6,40,0,46", "--sensor", "tof.toml", "--size",
+            "0.2", "--recenter", "on", "--support-plane", "-0.1", "--out", "table"});
+  const test::ProgramResult table = run({"next", "table", "--voxel", "0.02", "--workspace",
+                                         "0.15,-0.1,-0.1,0.3,0.1,0.1", "--support-plane", "-0.1"});
+  EXPECT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_EQ(table.err.find(kWords), std::string::npos) << table.err;
+  EXPECT_NE(table.out.find(" 0 occupied"), std::string::npos) << table.out;
+}
+
 // Units that were mistaken for metres are named, whatever they make of the map.
 TEST_F(RecordedFrames, MillimetresAreToldOf) {
   run_well({"simulate", "cube.off", "--orbit", "6,0.6,10", "--sensor", "tof.toml", "--size", "0.2",

@@ -76,7 +76,7 @@ TEST_F(Render, EachKindIsAPictureOfTheSizeThatWasAsked) {
 
 TEST_F(Render, SaysWhatItCannotDraw) {
   make_run("run", {"--pictures", "off"});
-  const test::Refusals cases{{{"run", "--what", "gain"}, "gain: no such"},
+  const test::Refusals cases{{{"run", "--what", "gain"}, "--what: gain is no kind of picture"},
                              {{"no-such-run", "--what", "map"}, "no-such-run"},
                              {{"cube.off", "--what", "map"}, "cube.off"}};
   expect_refused_with({"render", "--out", "picture.png"}, cases);

@@ -104,6 +104,22 @@ TEST_F(Sensing, AMeshInMillimetresIsNamed) {
   EXPECT_NE(said.find("near.off is 200 m long"), std::string::npos) << said;
 }
 
+TEST_F(Sensing, AMeshUnderTheTableIsToldOf) {
+  const auto warns = [this](const char* z) {
+    const test::ProgramResult result =
+        run({"simulate", "cube.off", "--orbit", "1,0.6,40", "--sensor", "small.toml", "--size",
+             "0.2", "--recenter", "on", "--place", std::string("0,0,") + z, "--support-plane", "0",
+             "--out", "table"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.err.find("half of it or more under the support plane at 0 m") !=
+           std::string::npos;
+  };
+  EXPECT_TRUE(warns("0"));
+  EXPECT_TRUE(warns("-0.05"));
+  EXPECT_FALSE(warns("0.01"));
+  EXPECT_FALSE(warns("0.1"));
+}
+
 TEST_F(Sensing, AScaleErrorIsInTheFrames) {
   EXPECT_EQ(simulate("exact").at("scale_error"), 0.0);
   EXPECT_EQ(simulate("off", {"--scale-error", "0.05"}).at("scale_error"), 0.05);

@@ -88,7 +88,7 @@ struct VIEWGAIN_EXPORT MapUpdate {
 class VIEWGAIN_EXPORT MapModel {
  public:
   /// An empty map. Throws Error(invalid_argument) as the parts: a sensor, grid, obstacle or filter
-  /// that is not valid.
+  /// that is not valid; and for voxels as large as the workspace or larger than the sensor's range.
   MapModel(const Sensor& sensor, const MapModelConfig& config, const ExecConfig& exec = {});
 
   /// One that goes on from `grid`; config.grid says nothing then. Throws as the other.

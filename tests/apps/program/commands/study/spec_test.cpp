@@ -202,6 +202,22 @@ TEST_F(StudySpecTest, ATourPlansByTheDefaultGain) {
             spec_of(with("gain:combined", "tour:5:3")).runs[0].hash);
 }
 
+// Every key, which the help names, and no other.
+TEST_F(StudySpecTest, TheHelpHasTheKeys) {
+  const std::string help = run_well({"study", "--help"});
+  std::string all = kSpec;
+  all += "sizes = [0.2]\ntolerance = 0.01\nkept_candidates = 3\n";
+  EXPECT_EQ(error_of(all), "");
+  std::size_t keys = 0;
+  for (std::size_t at = 0; at < all.size(); at = all.find('\n', at) + 1) {
+    const std::string key = all.substr(at, all.find(' ', at) - at);
+    EXPECT_NE(help.find(key), std::string::npos) << key;
+    ++keys;
+  }
+  EXPECT_EQ(keys, 11U);
+  EXPECT_NE(error_of(all + "colour = 1\n").find("colour"), std::string::npos);
+}
+
 TEST_F(StudySpecTest, FiguresOfARun) {
   const app::StudySpec spec = spec_of(kSpec);
   // Falls under a goal again: the first time counts. Ends early: keeps its last.
@@ -247,16 +263,18 @@ TEST_F(StudySpecTest, TheTableIsThatByHand) {
   };
   // Seed 1: combined 2 and 2 views to 80 and 90 %, frontier never; seed 2 the same for both.
   const std::string table = table_of(text, {{0.6, 0.9}, {0.4, 0.7}, {0.8, 0.8}, {0.8, 0.8}});
+  // Of two values that are d off their mean the interval is 12.706 d.
   for (const char* line :
        {"4 runs: cube; 2 seeds; 2 views.", "(within 10 mm)", "of 2 pairs p cannot be below 0.500",
         "the one object",
-        "| gain:combined | 1.50 / 1.5 / 0; 0.25 m | ≥ 2.50 / never / 1; 0.50 m | ≥ 3.00 / never / "
-        "2; 0.50 m | 0.775 | 85.0 % | 0.70 | - | 1.5 | 1.0 | 1.00 | 4.0 |",
-        "| frontier | ≥ 2.00 / never / 1; 0.25 m | ≥ 3.00 / never / 2; 0.50 m | ≥ 3.00 / never / "
-        "2; "
-        "0.50 m | 0.675 | 75.0 % | 0.60 | - | 1.5 | 1.0 | 1.00 | 4.0 |",
+        "| gain:combined | 1.50 ± 6.35 / 1.5 / 0; 0.25 m | ≥ 2.50 / never / 1; 0.50 m | - | 0.775 "
+        "± "
+        "0.318 | 85.0 ± 63.5 % | 0.70 ± 1.27 | - | 1.5 ± 0.0 | 1.0 | 1.00 | 4.0 |",
+        "| frontier | ≥ 2.00 / never / 1; 0.25 m | - | - | 0.675 ± 1.588 | 75.0 ± 63.5 % | 0.60 ± "
+        "2.54 | - | 1.5 ± 0.0 | 1.0 | 1.00 | 4.0 |",
+        "95 % interval (Student's t)",
         "| gain:combined | -0.50 ± 0.50 (1-1-0; 1.000, 1.000) | -0.50 ± 0.50 (1-1-0; 1.000, 1.000) "
-        "| 0.00 ± 0.00 (0-2-0; 1.000, 1.000) | - (0-0-0; 1.000, 1.000) | 0.100 ± 0.100 "
+        "| - | - | 0.100 ± 0.100 "
         "(1-1-0; 1.000, 1.000) | 0.10 ± 0.10 "
         "(0-1-1; 1.000, 1.000) |"}) {
     EXPECT_NE(table.find(line), std::string::npos) << line << "\n" << table;

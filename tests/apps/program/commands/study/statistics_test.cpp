@@ -50,6 +50,41 @@ TEST(Statistics, ErrorsByClusterInClosedForm) {
   }
 }
 
+// Of values that are all one off their object's mean it is t / sqrt(degrees of freedom), t as in
+// printed tables of 97.5 %.
+TEST(Statistics, IntervalsAreThoseOfStudentsTable) {
+  struct Case {
+    std::size_t objects, seeds;
+    double t;
+  };
+  std::size_t cases = 0;
+  for (const Case& one : {Case{1, 2, 12.706},
+                          {2, 2, 4.303},
+                          {1, 4, 3.182},
+                          {4, 2, 2.776},
+                          {1, 6, 2.571},
+                          {1, 10, 2.262},
+                          {10, 2, 2.228},
+                          {10, 4, 2.042},
+                          {60, 10, 1.964}}) {
+    std::vector<double> values;
+    std::vector<std::size_t> objects;
+    for (std::size_t i = 0; i < one.objects * one.seeds; ++i) {
+      objects.push_back(i / one.seeds);
+      values.push_back(static_cast<double>(10 * objects.back()) + (i % 2 == 0 ? 1 : -1));
+    }
+    values.push_back(kNaN);  // does not count
+    objects.push_back(0);
+    const auto freedom = static_cast<double>(one.objects * (one.seeds - 1));
+    EXPECT_NEAR(app::interval_of(values, objects) * std::sqrt(freedom), one.t, 5e-4) << freedom;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 9U);
+  // A run an object says nothing of other seeds.
+  EXPECT_TRUE(
+      std::isnan(app::interval_of(std::vector<double>{1, 2}, std::vector<std::size_t>{0, 1})));
+}
+
 TEST(Statistics, MediansAreInTheMiddle) {
   EXPECT_EQ(app::median_of({3, HUGE_VAL, 1}), 3);
   EXPECT_EQ(app::median_of({4, 1, 3, HUGE_VAL}), 3.5);

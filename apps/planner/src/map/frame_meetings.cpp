@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "map/frame_meetings.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/support/text.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+constexpr std::size_t kPoints = 500;  // of a frame that are looked for in the others
+constexpr double kGate = 0.04;        // of the range: farther off is another surface
+constexpr double kParallax = 0.05;    // of the range: frames that are nearer tell nothing of poses
+
+Pose optical_of_body(const Pose& T) {
+  Eigen::Matrix3d R;  // its columns: x right, y down, z forward in axes forward, left, up
+  R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return {T.rotation() * R, T.translation()};
+}
+Pose optical_of_upward(const Pose& T) {
+  return {T.rotation() * Eigen::Vector3d(1, -1, -1).asDiagonal(), T.translation()};
+}
+Pose inverse_of(const Pose& T) { return T.inverse(); }
+Pose in_metres(const Pose& T) { return {T.rotation(), 1e-3 * T.translation()}; }
+Pose w_first(const Pose& T) {
+  const Eigen::Quaterniond q(T.rotation());
+  return {Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()).toRotationMatrix(), T.translation()};
+}
+
+}  // namespace
+
+std::vector<Reading> other_readings() {
+  std::vector<Reading> all{
+      {"world_to_camera", "the poses are world to camera, not camera to world", 1, false,
+       inverse_of},
+      {"quaternion_order", "the quaternions have w first, not last", 1, false, w_first},
+      {"body_frame", "the poses are of a body frame (x forward, z up), not of the optical one", 1,
+       false, optical_of_body},
+      {"upward_camera", "the poses' camera looks along -z with y up, not along z with y down", 1,
+       false, optical_of_upward},
+      {"pose_millimetres", "the poses are in millimetres", 1, false, in_metres},
+  };
+  // Cameras have units of 0.1, 0.2, 0.25, 0.5 and 1 mm.
+  for (const double factor : {2.0, 2.5, 4.0, 5.0, 10.0, 1000.0}) {
+    const std::string times = "the depth scale is " + short_text(factor) + " times ";
+    all.push_back({kScale, times + "larger", factor});
+    all.push_back({kScale, times + "smaller", 1 / factor});
+  }
+  for (const double factor : {0.5, 0.67, 0.75, 0.8, 0.9, 1.1, 1.25, 1.33, 1.5, 2.0}) {
+    all.push_back({.kind = kFocalLength,
+                   .what = "the focal length is " + short_text(factor) + " times the stated one",
+                   .focal_factor = factor});
+  }
+  return all;
+}
+
+FrameMeetings::FrameMeetings(const Sensor& sensor, std::span<const DepthFrame> frames,
+                             std::span<const Pose> poses)
+    : sensor_(sensor),
+      frames_(frames.begin(), frames.end()),
+      poses_(poses),
+      rays_(sensor.camera.ray_table()) {
+  const JumpEdgeFilter filter(sensor.camera);
+  for (DepthFrame& frame : frames_) filter.apply(frame);
+  const std::size_t pixels = rays_.size();
+  const std::size_t step = std::max<std::size_t>(1, pixels / (3 * kPoints));
+  for (const DepthFrame& frame : frames_) {
+    std::vector<std::size_t>& own = samples_.emplace_back();
+    for (std::size_t i = step / 2; i < pixels; i += step) {
+      if (frame.depth[i] > 0 && std::isfinite(frame.depth[i]) && rays_[i].allFinite()) {
+        own.push_back(i);
+      }
+    }
+  }
+}
+
+Meetings FrameMeetings::under(const Reading& reading) const {
+  std::vector<Pose> T_world, T_camera;
+  for (const Pose& pose : poses_) {
+    T_world.push_back(reading.pose == nullptr ? pose : reading.pose(pose));
+    T_camera.push_back(T_world.back().inverse());
+  }
+  const double parallax = kParallax * std::clamp(1 / reading.depth_factor, 1.0, 10.0);
+  Meetings sum;
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    for (const std::size_t pixel : samples_[i]) {
+      const std::optional<double> z = depth(reading, i, pixel);
+      if (!z) continue;
+      ++sum.points;
+      const Eigen::Vector3d p_world = T_world[i] * (*z * ray(reading, pixel));
+      for (std::size_t j = 0; j < frames_.size(); ++j) {
+        // Frames from one place agree however poses and depths are read.
+        const double baseline = (T_world[j].translation() - T_world[i].translation()).norm();
+        if (!(baseline > parallax * *z)) continue;
+        const std::optional<double> farther = beyond(reading, j, T_camera[j] * p_world);
+        if (!farther || *farther < -1) continue;  // it looks elsewhere, or the point is hidden
+        ++(*farther > 1 ? sum.seen_past : sum.met);
+        sum.close += std::abs(*farther) < 0.25 ? 1 : 0;
+      }
+    }
+  }
+  return sum;
+}
+
+std::optional<double> FrameMeetings::share_better(const Reading& reading) const {
+  const Reading as_said;
+  std::vector<Pose> T_camera;
+  for (const Pose& pose : poses_) T_camera.push_back(pose.inverse());
+  std::size_t better = 0, all = 0;
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    for (const std::size_t pixel : samples_[i]) {
+      const std::optional<double> z = depth(as_said, i, pixel), other_z = depth(reading, i, pixel);
+      if (!z || !other_z) continue;
+      for (std::size_t j = 0; j < frames_.size(); ++j) {
+        if (j == i) continue;
+        const Pose T = T_camera[j] * poses_[i];
+        const auto one = beyond(as_said, j, T * (*z * rays_[pixel]), true);
+        const auto other = beyond(reading, j, T * (*other_z * ray(reading, pixel)), true);
+        if (!one || !other) continue;
+        const double a = std::abs(*one), b = std::abs(*other);
+        if (std::min(a, b) > 0.5 || std::abs(a - b) < 0.1) continue;
+        ++all;
+        better += b < a ? 1 : 0;
+      }
+    }
+  }
+  if (all < kLeastMeetings) return std::nullopt;
+  return static_cast<double>(better) / static_cast<double>(all);
+}
+
+Eigen::Vector3d FrameMeetings::ray(const Reading& reading, std::size_t pixel) const {
+  const Eigen::Vector3d& stated = rays_[pixel];
+  return {stated.x() / reading.focal_factor, stated.y() / reading.focal_factor, 1};
+}
+
+std::optional<double> FrameMeetings::depth(const Reading& reading, std::size_t frame,
+                                           std::size_t pixel) const {
+  double z = static_cast<double>(frames_[frame].depth[pixel]) * reading.depth_factor;
+  const double length = ray(reading, pixel).norm();
+  if (reading.is_along_ray) z /= length;
+  const double range = z * length;
+  if (!(range >= sensor_.min_range && range <= sensor_.max_range)) return std::nullopt;
+  return z;
+}
+
+std::optional<double> FrameMeetings::depth(const Reading& reading, std::size_t frame, double u,
+                                           double v, bool is_flat) const {
+  const int width = sensor_.camera.width, height = sensor_.camera.height;
+  const auto at = [&](double x, double y) -> std::optional<double> {
+    if (!(x >= 0 && y >= 0 && x < width && y < height)) return std::nullopt;
+    const auto pixel =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    if (!rays_[pixel].allFinite()) return std::nullopt;
+    return depth(reading, frame, pixel);
+  };
+  const std::optional<double> nearest = at(std::round(u), std::round(v));
+  if (!nearest) return std::nullopt;
+  const double x = std::floor(u), y = std::floor(v);
+  const double gate = *nearest * (is_flat ? 2 / sensor_.camera.fx : kGate);
+  double z = 0;
+  for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
+    const std::optional<double> corner = at(x + dx, y + dy);
+    if (!corner || std::abs(*corner - *nearest) > gate) return is_flat ? std::nullopt : nearest;
+    z += *corner * (dx == 0 ? 1 - (u - x) : u - x) * (dy == 0 ? 1 - (v - y) : v - y);
+  }
+  return z;
+}
+
+std::optional<double> FrameMeetings::beyond(const Reading& reading, std::size_t frame,
+                                            const Eigen::Vector3d& p, bool is_flat) const {
+  if (!(p.z() > 0)) return std::nullopt;
+  const PinholeCamera& camera = sensor_.camera;
+  const Eigen::Vector2d at =
+      camera.project({reading.focal_factor * p.x(), reading.focal_factor * p.y(), p.z()});
+  const std::optional<double> z = depth(reading, frame, at.x(), at.y(), is_flat);
+  if (!z) return std::nullopt;
+  return (*z - p.z()) / (kGate * *z + 3 * *z / camera.fx);
+}
+
+}  // namespace viewgain::detail
