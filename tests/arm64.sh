@@ -26,7 +26,7 @@ cmake -B build/arm64 -G Ninja -DCMAKE_TOOLCHAIN_FILE=cmake/aarch64-linux-gnu.cma
   -DVIEWGAIN_BUILD_PYTHON=OFF -DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/configure.log 2>&1 ||
   { cat /configure.log; exit 1; }
 cmake --build build/arm64 -j "$1" --target viewgain_program raycast_test surface_gain_test c_api_test -- -k 0
-file -L build/arm64/bin/viewgain | grep aarch64
+aarch64-linux-gnu-readelf -h build/arm64/bin/viewgain | grep AArch64
 ctest --test-dir build/arm64 --output-on-failure -j "$1" -R "$2"
 INSIDE
 chroot "$root" bash /inside.sh "${VIEWGAIN_JOBS:-$(nproc)}" 'Oracle|Capi'
