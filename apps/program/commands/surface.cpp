@@ -82,14 +82,15 @@ QualityFigures figures_of(const SurfaceScene& mesh, const MapOfSensor& map,
   const GroundTruth truth(mesh.mesh(), kSamples, kSeed, exec);
   const PointArrays arrays = arrays_of(points);
   const std::vector<double> distances = truth.distances_to(surface.vertices);
+  const double tolerance = covered_within(map.grid.voxel_size());
   QualityFigures figures;
-  figures.coverage = coverage(distances, kCovered);
+  figures.coverage = coverage(distances, tolerance);
   figures.coverage_visible = std::numeric_limits<double>::quiet_NaN();
   figures.coverage_2_5mm = coverage(distances, kCovered / 2);
   if (map.sensor && !map.grid.views().empty()) {
     const auto seen = seen_samples(truth, mesh, map.grid.views(), *map.sensor, exec);
     if (std::find(seen.begin(), seen.end(), 1) != seen.end()) {
-      figures.coverage_visible = coverage(distances, kCovered, seen);
+      figures.coverage_visible = coverage(distances, tolerance, seen);
     }
   }
   figures.surface_error = truth.error(surface.vertices);
@@ -98,12 +99,13 @@ QualityFigures figures_of(const SurfaceScene& mesh, const MapOfSensor& map,
   return figures;
 }
 
-void print(const QualityFigures& figures) {
-  std::printf("of the truth %.2f %% within 5 mm, %.2f %% within 2.5 mm", 100 * figures.coverage,
-              100 * figures.coverage_2_5mm);
+void print(const QualityFigures& figures, double voxel_size) {
+  const double tolerance = 1e3 * covered_within(voxel_size);  // [mm]
+  std::printf("of the truth %.2f %% within %g mm, %.2f %% within 2.5 mm", 100 * figures.coverage,
+              tolerance, 100 * figures.coverage_2_5mm);
   if (!std::isnan(figures.coverage_visible)) {
-    std::printf("; of what the map's views have in sight %.2f %% within 5 mm",
-                100 * figures.coverage_visible);
+    std::printf("; of what the map's views have in sight %.2f %% within %g mm",
+                100 * figures.coverage_visible, tolerance);
   }
   std::printf("\nsurface off by %.2f mm (RMS), %.2f mm (95 %%); points by %.2f mm, %.2f mm\n",
               1e3 * figures.surface_error.rms, 1e3 * figures.surface_error.p95,
@@ -169,7 +171,7 @@ void surface(const Options& options, const App& app) {
               with_commas(surface.triangles.size()).c_str(), mesh_area(surface));
   if (median) std::printf(", sigma %.2f mm (median)", 1e3 * *median);
   std::printf("\n");
-  if (figures) print(*figures);
+  if (figures) print(*figures, map.grid.voxel_size());
   for (const std::string& file : {options.out, options.points}) {
     if (!file.empty()) std::printf("%s\n", file.c_str());
   }

@@ -179,7 +179,7 @@ Json settings_json(const ReconstructOptions& o, const RunSetup& setup) {
             {"stop_idle", o.stop_idle},
             {"stop_promises", o.stop_promises},
             {"stop_coverage", o.stop_coverage},
-            {"tolerance", o.covered_within()},
+            {"tolerance", o.coverage_tolerance()},
             {"cost_per_metre", o.cost_per_metre},
             {"reach", or_null(o.reach)},
             {"support_plane", o.sensing.support_plane},
@@ -248,7 +248,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
                       setup.reach,
                       options.sensing.support_plane,
                       nullptr,
-                      options.covered_within()};
+                      options.coverage_tolerance()};
   setup.simulation = simulation_config(options.sensing, setup.sensor);
   setup.pose_noise = parse_pose_sigma("--pose-noise", options.sensing.pose_noise);
   setup.registration = registration_sigma(options.registration, setup.pose_noise);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -74,9 +73,8 @@ struct ReconstructOptions {
   std::string refine = "on";
   RunOutputs outputs;
 
-  /// --tolerance, or what a study takes: what is finer than a voxel judges the voxels.
-  [[nodiscard]] double covered_within() const {
-    return tolerance.value_or(std::max(kCovered, voxel));
+  [[nodiscard]] double coverage_tolerance() const {
+    return tolerance.value_or(covered_within(voxel));
   }
 };
 

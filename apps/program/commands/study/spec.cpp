@@ -13,6 +13,7 @@
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/literature/classic_gains.hpp"
+#include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/hash64.hpp"
 #include "viewgain/support/toml_table.hpp"
@@ -225,8 +226,7 @@ StudySpec read_study_spec(const fs::path& path) {
   spec.max_views = static_cast<std::size_t>(
       whole_number(reader, reader.require("max_views"), "max_views", 1, kMostViews));
   spec.flags = flags_of(reader);
-  // Coverage that is finer than the voxels says more of these than of the views.
-  spec.tolerance = std::max(spec.tolerance, *std::max_element(voxels.begin(), voxels.end()));
+  spec.tolerance = covered_within(*std::max_element(voxels.begin(), voxels.end()));
   if (reader.find("tolerance") != nullptr) {
     spec.tolerance = reader.number("tolerance");
     if (!(spec.tolerance > 0)) reader.fail("tolerance", "must be a positive number [m]");

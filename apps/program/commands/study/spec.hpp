@@ -43,8 +43,8 @@ struct StudySpec {
   std::vector<StudyObject> objects;
   std::vector<StudyPolicy> policies;
   std::size_t max_views = 0;
-  /// A point is covered where the surface is within this [m]; default: that, not under the voxels.
-  double tolerance = 5e-3;
+  /// A point is covered where the surface is within this [m]; default: covered_within() the voxels.
+  double tolerance = 0;
   std::size_t against = 0;          ///< index of the policy that the others are paired with
   std::vector<std::string> flags;   ///< further ones of `reconstruct`, for all runs
   std::size_t kept_candidates = 0;  ///< at most so many of each view's are left in candidates.txt

@@ -128,8 +128,9 @@ TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
   // Where results go, how fast; the seed is beside the settings, the body in the sensor; obstacles
   // are there where there are any.
   const std::set<std::string> elsewhere{
-      "help",     "json",  "threads", "out",         "save_maps", "pictures", "seed",   "body",
-      "obstacle", "quiet", "config",  "save_config", "report",    "trace",    "resume", "poses"};
+      "help",   "json",  "threads",  "out",   "save_maps", "pictures",
+      "seed",   "body",  "obstacle", "quiet", "config",    "save_config",
+      "report", "trace", "resume",   "poses", "beside"};
   const std::string both = run_well({"reconstruct", "--help"});
   std::istringstream help(both.substr(0, both.rfind("Usage: ")));  // the other is of frames
   std::size_t flags = 0;

@@ -58,6 +58,11 @@ struct VIEWGAIN_EXPORT Stage {
 /// A sample is covered by a point that is within this of it, unless a run says otherwise [m].
 inline constexpr double kCovered = 5e-3;
 
+/// The same for a map of such voxels [m]: what is finer than these judges them, not the views [m].
+[[nodiscard]] constexpr double covered_within(double voxel_size) {
+  return voxel_size > kCovered ? voxel_size : kCovered;
+}
+
 /// How good one model is, against a ground truth. Lengths in [m].
 struct VIEWGAIN_EXPORT QualityFigures {
   double coverage = 0;              ///< share of all samples that the surface covers
