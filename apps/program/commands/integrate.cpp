@@ -245,7 +245,9 @@ void check_flags(const Options& options, const App& app) {
 // A map without a reading comes of a wrong scale, sensor or workspace.
 void refuse_empty(const Options& options, const ReadingSource& source, const Totals& totals) {
   if (totals.skipped > 0) return totals.tally.name_left_out();
-  if (options.clouds.empty()) return totals.tally.require_any(*source.folder(), source.grid());
+  if (options.clouds.empty()) {
+    return totals.tally.require_any(*source.folder(), source.grid(), options.support_plane);
+  }
   const IntegrationReport& sum = totals.sum;
   warn_if_out_of_range(options.clouds.front(), sum);
   if (!options.map.empty()) return;

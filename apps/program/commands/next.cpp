@@ -70,7 +70,8 @@ void next(const Options& options) {
   CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});
   const GainEvaluator evaluator = evaluator_of(options.proposal, model, sensor, exec);
-  NextViews views = best_views(evaluator, proposal, options.proposal, model.grid(), options.top);
+  NextViews views = best_views(evaluator, proposal, options.proposal, model.grid(), options.top,
+                               options.common.quiet);
   if (options.explain) explain(views, proposal, evaluator);
   if (!options.out.empty()) write_tum(options.out, poses_of(views));
   if (options.common.json) {

@@ -186,11 +186,11 @@ the pose must be reachable and not taken already. Outside the workspace nothing 
 Parameters
 ----------
 scene : VoxelScene
-body_size : array_like, (3,)
-    Width, height, depth of the housing, flange frame [m]. It is centred on the flange's z axis and reaches from
+body_size : array_like, (3,), optional
+    Width, height, depth of the housing, flange frame [m]; default: the sensor's, or an SR4000's. It is centred on the flange's z axis and reaches from
     z = 0 to its depth; without T_flange_camera the camera is the middle of its front face.
 T_flange_camera : array_like, (4, 4), optional
-    Where the camera is mounted on the flange.
+    Where the camera is mounted on the flange; default: the sensor's.
 clearance : float
     The body is grown by this on each side [m].
 reach : ReachRegion, optional
@@ -211,18 +211,25 @@ Methods may run in many threads at once and leave the GIL while they work. Cost:
                        const GivenOrNone<ReachRegion>& reach, const GivenOrNone<Sensor>& sensor,
                        double max_near_share, int num_threads) {
              FeasibilityConfig config;
-             const Eigen::Vector3d size = vector3(body_size, "body_size");
-             config.body.size = {size.x(), size.y(), size.z()};
-             config.body.T_flange_camera = optional_pose(T_flange_camera, "T_flange_camera");
+             if (sensor.value != nullptr) {
+               config.sensor = *sensor.value;
+               config.body.size = config.sensor->body_size.value_or(config.body.size);
+               config.body.T_flange_camera = config.sensor->T_flange_camera;
+             }
+             if (!body_size.is_none()) {
+               const Eigen::Vector3d size = vector3(body_size, "body_size");
+               config.body.size = {size.x(), size.y(), size.z()};
+             }
+             if (!T_flange_camera.is_none()) {
+               config.body.T_flange_camera = optional_pose(T_flange_camera, "T_flange_camera");
+             }
              config.clearance = clearance;
              if (reach.value != nullptr) config.reach = *reach.value;
-             if (sensor.value != nullptr) config.sensor = *sensor.value;
              config.max_near_share = max_near_share;
              return FeasibilityChecker(scene->scene, config, ExecConfig{num_threads});
            }),
-           "scene"_a, py::kw_only(), "body_size"_a = defaults.body.size,
-           "T_flange_camera"_a = py::none(), "clearance"_a = defaults.clearance,
-           "reach"_a = py::none(), "sensor"_a = py::none(),
+           "scene"_a, py::kw_only(), "body_size"_a = py::none(), "T_flange_camera"_a = py::none(),
+           "clearance"_a = defaults.clearance, "reach"_a = py::none(), "sensor"_a = py::none(),
            "max_near_share"_a = defaults.max_near_share, "num_threads"_a = 0)
       .def(
           "with_scene",

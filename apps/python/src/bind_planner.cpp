@@ -373,7 +373,8 @@ RayOutcomes)")
               return std::make_shared<SharedGrid>(planner.grid().clone());
             });
           },
-          "BeliefGrid: a copy of the map as it is")
+          "BeliefGrid: a copy of the map as it is; what is changed in it does not reach the "
+          "planner")
       .def_property_readonly(
           "seconds",
           [](Planner& self) {

@@ -340,3 +340,15 @@ def test_reach_and_collisions(grid, sensor):
         viewgain.ReachRegion(predicate=3)
     with pytest.raises(ValueError, match="body"):
         viewgain.FeasibilityChecker(scene, body_size=(0, 0, 0))
+
+
+def test_the_housing_is_the_sensors_unless_told_otherwise(grid, sensor):
+    scene = viewgain.VoxelScene(grid)
+    large = viewgain.Sensor(camera=sensor.camera, min_range=sensor.min_range, max_range=sensor.max_range,
+                            working_distance=sensor.working_distance, noise=sensor.noise, body_size=(0.5, 0.5, 0.9))
+    poses = viewgain.sphere_poses(60, 0.4) @ np.diag([-1.0, 1, -1, 1])  # looking away: the housing is before the object
+    of_sensor = viewgain.FeasibilityChecker(scene, sensor=large).reasons(poses)
+    told = viewgain.FeasibilityChecker(scene, sensor=large, body_size=(0.5, 0.5, 0.9)).reasons(poses)
+    small = viewgain.FeasibilityChecker(scene, sensor=large, body_size=(0.01, 0.01, 0.01)).reasons(poses)
+    assert (of_sensor == told).all()
+    assert (told == viewgain.Infeasibility.COLLISION).any() and not (small == viewgain.Infeasibility.COLLISION).any()

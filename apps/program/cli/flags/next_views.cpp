@@ -172,7 +172,10 @@ std::string text_of(const NextViews& next) {
                       axis.x(), axis.y(), axis.z(), why(view).c_str());
     if (view.rays) text.append("     ").append(text_of(*view.rays)).append("\n");
   }
-  if (next.views.size() > 1) text += "gain and area are what each view adds to the others\n";
+  if (next.views.size() > 1) {
+    text += has_area ? "gain and area are" : "gain is";
+    text += " what each view adds to the others\n";
+  }
   if (next.plan_metres) text += formatted("%.3f m by straight ways\n", *next.plan_metres);
   if (next.views.front().worth <= 0) text += "no view is worth its way\n";
   return text + unworthy;

@@ -127,6 +127,16 @@ PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {
   return {std::move(list.poses), list.orthonormalized};
 }
 
+std::optional<Eigen::Vector3d> begin_of_ways(const CostOptions& options, const BeliefGrid& grid) {
+  if (!grid.views().empty()) return grid.views().back().translation();
+  if (options.per_metre > 0) {
+    refuse(
+        "--cost-per-metre: the map has no view, which would say where the camera is; --costs takes "
+        "a cost for each pose");
+  }
+  return std::nullopt;
+}
+
 std::vector<Pose> poses_in(const std::string& file) {
   PoseOptions options;
   options.file = file;

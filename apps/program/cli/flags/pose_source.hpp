@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "program/cli/app.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/grid/belief_grid.hpp"
 
 namespace viewgain::app {
 
@@ -45,6 +48,11 @@ struct CostOptions {
 
   [[nodiscard]] bool none() const { return file.empty() && per_metre == 0; }
 };
+
+/// Where ways begin: at the map's last view. Throws Error(invalid_argument) where ways cost and the
+/// map has none.
+[[nodiscard]] std::optional<Eigen::Vector3d> begin_of_ways(const CostOptions& options,
+                                                           const BeliefGrid& grid);
 
 inline constexpr const char* kCostPerMetreHelp =
     "subtracted for each metre of the way from the map's last view, in the gain's unit";

@@ -139,6 +139,14 @@ bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const
   return true;
 }
 
+// Of another planner's map: no reading is known of what is occupied.
+bool has_states_alone(const BeliefGrid& grid) {
+  if (!grid.views().empty() || grid.statistics().occupied == 0) return false;
+  bool is_measured = false;
+  grid.for_each_belief([&](Index3, const Belief&) { is_measured = true; });
+  return !is_measured;
+}
+
 SensedMap load_sensed_map(const std::string& path, const std::string& sensor_flag,
                           const ExecConfig& exec) {
   std::optional<Sensor> asked;
@@ -148,7 +156,7 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
     refuse(path + ": does not say which sensor its readings come from; give --sensor");
   }
   if (asked) warn_of_other_sensor(path, map, *asked);
-  if (is_octomap(path)) {
+  if (is_octomap(path) || has_states_alone(map.grid)) {
     std::fprintf(stderr,
                  "viewgain: note: %s has states alone: known surface counts as never measured "
                  "(--gain surface leaves that out), and views that were taken are not known\n",

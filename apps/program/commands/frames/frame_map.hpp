@@ -54,7 +54,7 @@ class FrameMap {
 
   /// Throws as FrameTally::require_any().
   void require_frames(bool needs_surface = false) const {
-    tally_.require_any(folder_, model_.grid(), needs_surface);
+    tally_.require_any(folder_, model_.grid(), config().surroundings.support_plane, needs_surface);
   }
 
   [[nodiscard]] const FrameCounts& counts() const noexcept { return tally_.counts(); }

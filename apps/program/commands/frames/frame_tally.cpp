@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/frames/frame_tally.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -28,7 +29,30 @@ std::string frames_text(const FrameCounts& counts) {
   return frames_text(count_of(counts, FrameVerdict::carved), bad_frames(counts));
 }
 
-std::string suspicion_of(const FrameFolder& folder) {
+namespace {
+
+// Under a table nothing is seen.
+std::string suspect_plane(const Sensor& sensor, const std::vector<DepthFrame>& frames,
+                          const std::vector<Pose>& poses, double plane) {
+  constexpr double kUnder = 0.05;  // no noise [m]
+  const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
+  std::size_t under = 0, all = 0;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const double z = static_cast<double>(frames[k].depth[i]);
+      if (!(z > 0 && std::isfinite(z) && rays[i].allFinite())) continue;
+      ++all;
+      under += (poses[k] * (z * rays[i])).z() < plane - kUnder ? 1 : 0;
+    }
+  }
+  if (10 * under <= all) return {};
+  return formatted("%.0f %% of the readings lie more than %g m under the support plane at %g m",
+                   100 * static_cast<double>(under) / static_cast<double>(all), kUnder, plane);
+}
+
+}  // namespace
+
+std::string suspicion_of(const FrameFolder& folder, const std::optional<double>& support_plane) {
   constexpr std::size_t kFrames = 12;
   std::vector<DepthFrame> frames;
   std::vector<Pose> poses;
@@ -39,7 +63,11 @@ std::string suspicion_of(const FrameFolder& folder) {
     frames.push_back(std::move(reading.frame));
     poses.push_back(folder.T_world_camera(i));
   }
-  return suspect_frames(folder.sensor(), frames, poses).what;
+  std::string what = suspect_frames(folder.sensor(), frames, poses).what;
+  if (what.empty() && support_plane) {
+    what = suspect_plane(folder.sensor(), frames, poses, *support_plane);
+  }
+  return what;
 }
 
 void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum) {
@@ -76,8 +104,8 @@ std::string FrameTally::none_inside(const FrameFolder& folder) const {
 }
 
 void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
-                             bool needs_surface) const {
-  const std::string suspicion = suspicion_of(folder);
+                             const std::optional<double>& support_plane, bool needs_surface) const {
+  const std::string suspicion = suspicion_of(folder, support_plane);
   if (counts_.empty() || is_in_map(counts_.begin()->first)) {
     name_left_out();
     const bool has_surface = sees_plane_ || map.statistics().occupied > 0;

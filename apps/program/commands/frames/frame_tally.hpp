@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,11 @@ namespace viewgain::app {
 [[nodiscard]] std::string frames_text(std::size_t carved,
                                       const std::map<std::string, std::size_t>& bad);
 
-/// What is probably wrong with the frames of the folder (suspect_frames()); empty: nothing. Reads a
+/// What is probably wrong with the frames of the folder (suspect_frames()), or with a support plane
+/// [m] that they see far below; empty: nothing. Reads a
 /// dozen of them.
-[[nodiscard]] std::string suspicion_of(const FrameFolder& folder);
+[[nodiscard]] std::string suspicion_of(const FrameFolder& folder,
+                                       const std::optional<double>& support_plane = {});
 
 /// Warns where clouds have points and none is in the sensor's range, as in millimetres.
 void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum);
@@ -50,7 +53,7 @@ class FrameTally {
   /// and where no voxel of their `map` is occupied and no frame shows the support plane: which is
   /// an error where the caller `needs_surface`.
   void require_any(const FrameFolder& folder, const BeliefGrid& map,
-                   bool needs_surface = false) const;
+                   const std::optional<double>& support_plane, bool needs_surface = false) const;
 
   /// Names the first of each kind that was left out, unless quiet.
   void name_left_out() const;

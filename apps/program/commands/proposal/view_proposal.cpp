@@ -8,6 +8,7 @@
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/scene_sources.hpp"
+#include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/planner/pose_sets.hpp"
@@ -179,18 +180,21 @@ void warn_of_set_up(const ProposalOptions& options, const Obstacles& obstacles,
 }
 
 NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
-                     const ProposalOptions& options, const BeliefGrid& grid, std::size_t top) {
+                     const ProposalOptions& options, const BeliefGrid& grid, std::size_t top,
+                     bool quiet) {
+  Progress progress("pose", quiet);
+  BatchControl control;
+  control.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
   const std::vector<double> costs = costs_of(options, proposal);
   const RankConfig config{
       .costs = costs, .cost_per_metre = options.costs.per_metre, .together = true};
   const std::vector<Pose> poses = poses_of(proposal.candidates);
-  const std::vector<Pose>& seen_from = grid.views();
-  std::optional<Eigen::Vector3d> here;
-  if (!seen_from.empty()) here = seen_from.back().translation();
+  const std::optional<Eigen::Vector3d> here = begin_of_ways(options.costs, grid);
   PlanAhead ahead = options.plan.ahead();
   ahead.least_share = 0;  // what adds little is named, too
-  Ranking ranking = ahead.is_on() ? plan_views(evaluator, poses, ahead, 0.0, config, here)
-                                  : rank_views(evaluator, poses, top, config, here);
+  Ranking ranking = ahead.is_on() ? plan_views(evaluator, poses, ahead, 0.0, config, here, control)
+                                  : rank_views(evaluator, poses, top, config, here, control);
+  progress.wipe();
   leave_out_gainless(ranking, config);
   const std::size_t found = ranking.views.size();
   const std::size_t most = ahead.is_on() ? ahead.take : top;

@@ -84,6 +84,6 @@ void warn_of_set_up(const ProposalOptions& options, const Obstacles& obstacles,
 /// Throws Error(invalid_argument), naming the file and the line, for costs that are not one a pose.
 [[nodiscard]] NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
                                    const ProposalOptions& options, const BeliefGrid& grid,
-                                   std::size_t top);
+                                   std::size_t top, bool quiet);
 
 }  // namespace viewgain::app

@@ -145,7 +145,8 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   if (options.common.json) {
     print_json(json);
   } else {
-    std::printf("%s", report.text(result.reason).c_str());
+    std::printf("%s%s", report.text(result.reason).c_str(),
+                beside_text(beside, run["settings"]).c_str());
     if (setup.visibility.tolerance < options.voxel) {
       std::printf(
           "coverage at %g mm, less than a voxel: what is rebuilt right may count as missed "

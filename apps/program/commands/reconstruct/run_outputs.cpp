@@ -90,6 +90,28 @@ Json beside_json(const RunOutputs& outputs) {
   return {{"name", outputs.beside}, {"settings", run["settings"]}, {"per_view", run["per_view"]}};
 }
 
+std::string beside_text(const Json& beside, const Json& own) {
+  if (beside.is_null()) return {};
+  const Json& views = beside["per_view"];
+  const auto last = [&](const char* key) {
+    const Json value = views.back().is_object() ? views.back().value(key, Json()) : Json();
+    return value.is_number() ? value.get<double>() : std::nan("");
+  };
+  std::string text =
+      beside["name"].get<std::string>() + " beside it: " + std::to_string(views.size()) + " views";
+  if (const double visible = last("coverage_visible"); !std::isnan(visible)) {
+    text += formatted(", %.2f %% visible, RMS %.2f mm", 100 * visible, 1e3 * last("rms_error"));
+  }
+  if (const double way = last("travelled"); !std::isnan(way)) text += formatted(", %.2f m", way);
+  std::string others;
+  for (const char* key : {"mesh", "size", "sensor", "voxel", "noise", "tolerance"}) {
+    const Json& settings = beside["settings"];
+    if (!settings.is_object() || settings.value(key, Json()) == own.value(key, Json())) continue;
+    others += (others.empty() ? "; other settings: " : ", ") + std::string(key);
+  }
+  return text + others + "\n";
+}
+
 void commit(RunFolder& folder, const Json& run, const App& app) {
   write_file_atomically(folder.file("config.toml"),
                         config_text(app, {"out", "resume", "json", "quiet", "threads"}));

@@ -43,6 +43,10 @@ StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPa
 /// Throws Error(io) and Error(format), naming the file.
 [[nodiscard]] Json beside_json(const RunOutputs& outputs);
 
+/// What the run of beside_json() came to, and which of its settings are others than `own`, for
+/// people; empty for null.
+[[nodiscard]] std::string beside_text(const Json& beside, const Json& own);
+
 /// Writes the flags of the call into config.toml, for --config, and puts the folder in its place;
 /// `run` is what run.json holds.
 void commit(RunFolder& folder, const Json& run, const App& app);

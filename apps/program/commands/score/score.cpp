@@ -108,10 +108,8 @@ std::vector<double> costs_of(const Options& options, const PoseSource& source,
                              const BeliefGrid& grid) {
   std::vector<double> costs;
   if (!options.costs.file.empty()) costs = read_costs(options.costs.file, source.poses.size());
-  std::optional<Eigen::Vector3d> here;
-  if (!grid.views().empty()) here = grid.views().back().translation();
   return view_costs(source.poses, {.costs = costs, .cost_per_metre = options.costs.per_metre},
-                    here);
+                    begin_of_ways(options.costs, grid));
 }
 
 // Calls work(control), which shows how far it is. Returns how long it took [s].

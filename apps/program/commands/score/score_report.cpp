@@ -108,7 +108,7 @@ void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel mod
   if (has_costs) std::printf(" %12s", "worth");
   if (by_paper) std::printf(" %12s %12s", "exploration", "refinement");
   if (!by_paper) std::printf(" %12s", "area [m^2]");
-  if (refines) std::printf(" %12s", "refinement");
+  if (refines) std::printf(" %20s", "refinement_saturated");
   std::printf(" %8s", "hits");
   if (by_paper) std::printf(" %9s %9s", "unknown", "occupied");
   std::printf("  %-26s %s\n", "eye x y z [m]", "status");
@@ -120,7 +120,7 @@ void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel mod
     if (has_costs) std::printf(" %12.6g", poses.worth(i, r.gain));
     if (by_paper) std::printf(" %12.6g %12.6g", r.exploration, r.refinement);
     if (!by_paper) std::printf(" %12.6g", r.area);
-    if (refines) std::printf(" %12.6g", r.refinement_saturated);
+    if (refines) std::printf(" %20.6g", r.refinement_saturated);
     std::printf(" %8u", r.hits);
     if (by_paper) std::printf(" %9u %9u", r.unknown_voxels, r.occupied_voxels);
     std::printf("  %8.3f %8.3f %8.3f %s\n", eye.x(), eye.y(), eye.z(),

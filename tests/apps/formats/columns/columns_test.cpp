@@ -29,6 +29,8 @@ class Columns : public test::ProgramTest {
     for (int x = -3; x < 3; ++x) {
       for (int y = -3; y < 3; ++y) grid.set({x, y, 4}, 0.85F);
     }
+    // Another planner's map would have none.
+    grid.set({0, 0, 4}, 0.85F, Belief{{1e4F, 1e4F, 1e4F, 0, 0, 0}, {0, 0, 0}, 1});
     save_vdb(grid, dir / "map.vdb");
   }
 

@@ -63,7 +63,7 @@ TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
     call.emplace_back("--json");
     const auto result = run(call);
     EXPECT_EQ(result.exit_code, 0);
-    EXPECT_NE(result.err.find("tree.ot has states alone"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(call[1] + " has states alone"), std::string::npos) << result.err;
     return json::parse(result.out);
   };
   const json prior = scored({"score", "tree.ot", "--sphere", "20,0.6", "--sensor", "small.toml"});
@@ -71,9 +71,16 @@ TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
   const json from_tree = scored({"score", "tree.ot", "--sphere", "20,0.6", "--sensor", "small.toml",
                                  "--prior-sigma", "0.03"});
   run_well({"convert", "tree.ot", "small.vdb"});
-  const json from_map = run_json({"score", "small.vdb", "--sphere", "20,0.6", "--sensor",
-                                  "small.toml", "--prior-sigma", "0.03"});
+  const json from_map = scored({"score", "small.vdb", "--sphere", "20,0.6", "--sensor",
+                                "small.toml", "--prior-sigma", "0.03"});
   EXPECT_EQ(from_tree.at("best"), from_map.at("best"));
+  for (const char* what : {"score", "next"}) {
+    Strings call{what, "small.vdb", "--sensor", "small.toml", "--cost-per-metre", "1"};
+    if (call[0] == "score") call.insert(call.end(), {"--sphere", "20,0.6"});
+    const auto result = run(call);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.err.find("the map has no view"), std::string::npos) << result.err;
+  }
   expect_refused({"convert", "map.vdb", "x.ot", "--sensor", "small.toml"}, "--sensor");
   // A prior that is surer than a reading is pointed out.
   Strings score{"score", "map.vdb", "--sphere", "20,0.6", "--prior-sigma", "0.0001"};

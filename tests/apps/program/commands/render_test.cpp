@@ -248,6 +248,11 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
   run_well({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel", "0.01",
             "--out", "second", "--max-views", "2", "--policy", "random", "--beside", "run",
             "--quiet"});
+  const std::string text =
+      run_well({"reconstruct", "cube.off", "--size", "0.25", "--sensor", "tof.toml", "--voxel",
+                "0.01", "--out", "other", "--max-views", "1", "--beside", "run", "--quiet"});
+  EXPECT_NE(text.find("run beside it: 3 views, "), std::string::npos) << text;
+  EXPECT_NE(text.find("; other settings: size\n"), std::string::npos) << text;
   const json beside = data("second/report.html").at("beside");
   EXPECT_EQ(beside.at("name"), "run");
   EXPECT_EQ(beside.at("settings"), run_json.at("settings"));

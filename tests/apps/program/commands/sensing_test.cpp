@@ -120,6 +120,22 @@ TEST_F(Sensing, AMeshUnderTheTableIsToldOf) {
   EXPECT_FALSE(warns("0.1"));
 }
 
+TEST_F(Sensing, ReadingsFarUnderTheTableAreToldOf) {
+  run_well({"simulate", "cube.off", "--orbit", "6,0.6,20", "--sensor", "small.toml", "--size",
+            "0.2", "--recenter", "on", "--background", "0", "--out", "free", "--quiet"});
+  const auto warns = [this](const char* z) {
+    const test::ProgramResult result =
+        run({"integrate", "free", "--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+             "--support-plane", z, "--out", "map.vdb"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.err.find("under the support plane at ") != std::string::npos;
+  };
+  EXPECT_TRUE(warns("0.05"));  // the cube is from -0.1 to 0.1
+  EXPECT_TRUE(warns("0"));
+  EXPECT_FALSE(warns("-0.06"));  // what is under it is within 5 cm
+  EXPECT_FALSE(warns("-0.1"));
+}
+
 TEST_F(Sensing, AScaleErrorIsInTheFrames) {
   EXPECT_EQ(simulate("exact").at("scale_error"), 0.0);
   EXPECT_EQ(simulate("off", {"--scale-error", "0.05"}).at("scale_error"), 0.05);
