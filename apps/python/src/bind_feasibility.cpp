@@ -182,6 +182,7 @@ void bind_feasibility(py::module_& module) {
 
 The sensor's housing, a box, must not overlap voxels that are not free, obstacles or the scene's support plane;
 the pose must be reachable and not taken already. Outside the workspace nothing is known to block.
+What follows the scene goes by keyword.
 
 Parameters
 ----------

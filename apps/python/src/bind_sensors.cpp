@@ -160,7 +160,7 @@ py::object to_object(const RangeCalibration& calibration) {
 
 void bind_sensors(py::module_& module) {
   auto type = bound_class<Sensor>(module, "Sensor",
-                                  R"(A depth camera: intrinsics, range limits, noise. Immutable.
+                                  R"(A depth camera: intrinsics, range limits, noise. Immutable. All parameters go by keyword.
 
 Parameters
 ----------

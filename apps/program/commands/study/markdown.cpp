@@ -239,8 +239,10 @@ std::string results_markdown(const StudySpec& spec, const std::vector<ResultRow>
       "objects; "
       "fewer than about 5 seeds make it wide.\n- ± of a difference: " +
       (objects.size() > 1
-           ? "standard errors by object, for runs on one object are not independent; p is of these "
-             "objects, by runs.\n"
+           ? "standard errors by object, for runs on one object are not independent" +
+                 std::string(objects.size() == 2 ? " (of two: no more than how alike these are)"
+                                                 : "") +
+                 "; p is of these objects, by runs.\n"
            : "standard errors over the runs on the one object, which say nothing of others.\n");
   // The runs come sorted by sensor, voxel and size.
   for (std::size_t first = 0, last = 0; first < rows.size(); first = last) {
