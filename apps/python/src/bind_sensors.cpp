@@ -159,8 +159,9 @@ py::object to_object(const RangeCalibration& calibration) {
 }  // namespace
 
 void bind_sensors(py::module_& module) {
-  auto type = bound_class<Sensor>(module, "Sensor",
-                                  R"(A depth camera: intrinsics, range limits, noise. Immutable. All parameters go by keyword.
+  auto type = bound_class<Sensor>(
+      module, "Sensor",
+      R"(A depth camera: intrinsics, range limits, noise. Immutable. All parameters go by keyword.
 
 Parameters
 ----------
