@@ -34,8 +34,8 @@ Pose w_first(const Pose& T) {
 
 }  // namespace
 
-std::vector<Reading> other_readings() {
-  std::vector<Reading> all{
+std::vector<Convention> other_readings() {
+  std::vector<Convention> all{
       {"world_to_camera", "the poses are world to camera, not camera to world", 1, false,
        inverse_of},
       {"quaternion_order", "the quaternions have w first, not last", 1, false, w_first},
@@ -79,7 +79,7 @@ FrameMeetings::FrameMeetings(const Sensor& sensor, std::span<const DepthFrame> f
   }
 }
 
-Meetings FrameMeetings::under(const Reading& reading) const {
+Meetings FrameMeetings::under(const Convention& reading) const {
   std::vector<Pose> T_world, T_camera;
   for (const Pose& pose : poses_) {
     T_world.push_back(reading.pose == nullptr ? pose : reading.pose(pose));
@@ -107,8 +107,8 @@ Meetings FrameMeetings::under(const Reading& reading) const {
   return sum;
 }
 
-std::optional<double> FrameMeetings::share_better(const Reading& reading) const {
-  const Reading as_said;
+std::optional<double> FrameMeetings::share_better(const Convention& reading) const {
+  const Convention as_said;
   std::vector<Pose> T_camera;
   for (const Pose& pose : poses_) T_camera.push_back(pose.inverse());
   std::size_t better = 0, all = 0;
@@ -133,12 +133,12 @@ std::optional<double> FrameMeetings::share_better(const Reading& reading) const 
   return static_cast<double>(better) / static_cast<double>(all);
 }
 
-Eigen::Vector3d FrameMeetings::ray(const Reading& reading, std::size_t pixel) const {
+Eigen::Vector3d FrameMeetings::ray(const Convention& reading, std::size_t pixel) const {
   const Eigen::Vector3d& stated = rays_[pixel];
   return {stated.x() / reading.focal_factor, stated.y() / reading.focal_factor, 1};
 }
 
-std::optional<double> FrameMeetings::depth(const Reading& reading, std::size_t frame,
+std::optional<double> FrameMeetings::depth(const Convention& reading, std::size_t frame,
                                            std::size_t pixel) const {
   double z = static_cast<double>(frames_[frame].depth[pixel]) * reading.depth_factor;
   const double length = ray(reading, pixel).norm();
@@ -148,7 +148,7 @@ std::optional<double> FrameMeetings::depth(const Reading& reading, std::size_t f
   return z;
 }
 
-std::optional<double> FrameMeetings::depth(const Reading& reading, std::size_t frame, double u,
+std::optional<double> FrameMeetings::depth(const Convention& reading, std::size_t frame, double u,
                                            double v, bool is_flat) const {
   const int width = sensor_.camera.width, height = sensor_.camera.height;
   const auto at = [&](double x, double y) -> std::optional<double> {
@@ -171,7 +171,7 @@ std::optional<double> FrameMeetings::depth(const Reading& reading, std::size_t f
   return z;
 }
 
-std::optional<double> FrameMeetings::beyond(const Reading& reading, std::size_t frame,
+std::optional<double> FrameMeetings::beyond(const Convention& reading, std::size_t frame,
                                             const Eigen::Vector3d& p, bool is_flat) const {
   if (!(p.z() > 0)) return std::nullopt;
   const PinholeCamera& camera = sensor_.camera;

@@ -16,7 +16,7 @@
 namespace viewgain::detail {
 
 /// A way in which frames may have been meant.
-struct Reading {
+struct Convention {
   const char* kind = "";
   std::string what{};  ///< "... if WHAT"
   double depth_factor = 1;
@@ -29,7 +29,7 @@ inline constexpr const char* kScale = "depth_scale";
 inline constexpr const char* kFocalLength = "focal_length";
 
 /// What may be meant instead: poses first, then scales, then focal lengths.
-[[nodiscard]] std::vector<Reading> other_readings();
+[[nodiscard]] std::vector<Convention> other_readings();
 
 /// Of fewer nothing is said.
 inline constexpr std::size_t kLeastMeetings = 100;
@@ -57,24 +57,24 @@ class FrameMeetings {
   FrameMeetings(const Sensor& sensor, std::span<const DepthFrame> frames,
                 std::span<const Pose> poses);
   /// Cost: 10 ms for a dozen frames.
-  [[nodiscard]] Meetings under(const Reading& reading) const;
+  [[nodiscard]] Meetings under(const Convention& reading) const;
   /// Of pairs that fit either way and not equally well, where the surface is not steep, the share
   /// that fits better under the reading, which leaves poses as they are; nothing for too few pairs.
-  [[nodiscard]] std::optional<double> share_better(const Reading& reading) const;
+  [[nodiscard]] std::optional<double> share_better(const Convention& reading) const;
 
  private:
   /// Distortion goes with it, as for the intrinsics of another resolution.
-  [[nodiscard]] Eigen::Vector3d ray(const Reading& reading, std::size_t pixel) const;
+  [[nodiscard]] Eigen::Vector3d ray(const Convention& reading, std::size_t pixel) const;
   /// Along z; nothing out of range.
-  [[nodiscard]] std::optional<double> depth(const Reading& reading, std::size_t frame,
+  [[nodiscard]] std::optional<double> depth(const Convention& reading, std::size_t frame,
                                             std::size_t pixel) const;
   /// Between the four pixels round a place of the image. Where they do not make one surface: of the
   /// nearest one, or nothing if it is to be flat.
-  [[nodiscard]] std::optional<double> depth(const Reading& reading, std::size_t frame, double u,
+  [[nodiscard]] std::optional<double> depth(const Convention& reading, std::size_t frame, double u,
                                             double v, bool is_flat) const;
   /// How much farther than the point the frame sees in its direction, in gates; nothing where it
   /// does not look.
-  [[nodiscard]] std::optional<double> beyond(const Reading& reading, std::size_t frame,
+  [[nodiscard]] std::optional<double> beyond(const Convention& reading, std::size_t frame,
                                              const Eigen::Vector3d& p, bool is_flat = false) const;
 
   const Sensor& sensor_;

@@ -18,7 +18,7 @@ namespace viewgain {
 namespace {
 
 using detail::FrameMeetings, detail::kFocalLength, detail::kScale, detail::Meetings,
-    detail::Reading;
+    detail::Convention;
 
 constexpr double kOffCentre = 0.12;  // of the image's side
 constexpr double kAlike = 0.1;       // what fits less well than the best by this is named, too
@@ -73,7 +73,7 @@ bool is_better(const Meetings& other, const Meetings& as_said) {
 }
 
 struct Fit {
-  Reading reading;
+  Convention reading;
   double agreement = 0;  // how much of the readings, in any unit
   Meetings met{};
 };
@@ -88,9 +88,9 @@ std::vector<Fit> best_of(std::vector<Fit> fits, double slack) {
 }
 
 std::vector<Fit> fits_by_meetings(const FrameMeetings& meeting, const Meetings& as_said,
-                                  const std::vector<Reading>& readings) {
+                                  const std::vector<Convention>& readings) {
   std::vector<Fit> fits;
-  for (const Reading& reading : readings) {
+  for (const Convention& reading : readings) {
     if (reading.kind == kFocalLength) continue;
     const Meetings other = meeting.under(reading);
     if (is_better(other, as_said)) {
@@ -106,7 +106,7 @@ std::optional<Fit> fit_by_focal_length(const FrameMeetings& meeting, const Meeti
   constexpr double kMostBetter = 0.65;  // 3 % off: up to 0.6
   Fit best;
   best.met = as_said;
-  for (Reading& reading : detail::other_readings()) {
+  for (Convention& reading : detail::other_readings()) {
     if (reading.kind != kFocalLength) continue;
     const Meetings other = meeting.under(reading);
     if (!is_possible(other, as_said) || !(other.share_close() > best.met.share_close())) continue;
@@ -149,7 +149,7 @@ Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames
   const double now = share_in_range(sensor, frames, 1);
   if (now > 0.1) return {};
   std::vector<Fit> fits;
-  for (const Reading& reading : detail::other_readings()) {
+  for (const Convention& reading : detail::other_readings()) {
     const double share = share_in_range(sensor, frames, reading.depth_factor);
     if (share > 0.8) fits.push_back({reading, share});
   }
@@ -157,7 +157,7 @@ Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames
   if (fits.empty()) return {};
   const std::string text = percent(1 - now) + " of the depths are out of the sensor's range, " +
                            percent(1 - fits[0].agreement) + " if ";
-  std::vector<Reading> scales;
+  std::vector<Convention> scales;
   for (const Fit& fit : fits) scales.push_back(fit.reading);
   if (auto met = fits_by_meetings(meeting, {}, scales); !met.empty()) fits = std::move(met);
   return {kScale, text + words_of(fits)};
@@ -211,7 +211,7 @@ Suspicion suspect_poses(const std::shared_ptr<const VoxelScene>& scene, const Se
   const double pixels = static_cast<double>(sensor.camera.width) * sensor.camera.height;
   const auto stride = static_cast<int>(std::max(1.0, std::sqrt(pixels / kRays)));
   const GainEvaluator evaluator(scene, sensor, {.model = GainModel::paper, .pixel_stride = stride});
-  const auto share_seeing = [&](const Reading& reading) {
+  const auto share_seeing = [&](const Convention& reading) {
     std::size_t seeing = 0;
     for (const Pose& pose : poses) {
       const Pose& meant = reading.pose == nullptr ? pose : reading.pose(pose);
@@ -226,7 +226,7 @@ Suspicion suspect_poses(const std::shared_ptr<const VoxelScene>& scene, const Se
   const bool is_far = poses[0].translation().norm() > 10 * sensor.max_range;
   const std::string text = percent(1 - now) + " of the poses see no voxel of the map";
   std::vector<Fit> fits;
-  for (const Reading& reading : detail::other_readings()) {
+  for (const Convention& reading : detail::other_readings()) {
     if (reading.pose == nullptr ||
         (!is_far && std::string_view(reading.kind) == "pose_millimetres"))
       continue;
