@@ -36,6 +36,8 @@ HEAVY = {"openvdb": 10, "CGAL": 4}
 FLOORS = {"program", "show"}
 SUFFIXES = {".cpp", ".hpp", ".c", ".h", ".py"}
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
+NAMESPACE = re.compile(r"(?:inline )?namespace ?([\w:]*) ?\{|\}  // namespace ?([\w:]*)$")
+TYPE = re.compile(r"(?:struct|class|enum class|enum)\s+(?:alignas\(\d+\) )?(?:VIEWGAIN_EXPORT\s+)?([\w:]*\w)(?: final)?(?: : [^;]*)? ?\{")
 
 
 class Source:
@@ -205,6 +207,25 @@ def check_heavy(all_sources, faults):
             faults.append(f"{cpp[-1]}:1: {len(cpp)} sources include {library}, {most} are the most: {', '.join(cpp)}")
 
 
+def check_types(product, faults):
+    """No type's name is defined twice in one namespace: the linker would take two for one, and say nothing."""
+    first = {}
+    for source in product:
+        inside = []
+        for number, line in enumerate(source.lines, 1):
+            match = NAMESPACE.match(line)
+            if match and line.startswith("}"):
+                inside = inside[:-1]
+            elif match:
+                inside.append(match[1])
+            match = TYPE.match(line)
+            if match and "" not in inside:
+                name = "::".join([*inside, match[1]])
+                if name in first:
+                    faults.append(f"{source.path}:{number}: {name} is in {first[name]}, too")
+                first[name] = f"{source.path}:{number}"
+
+
 def faults_of(root):
     faults = []
     for module in ROOMS | LIBRARIES:
@@ -213,6 +234,7 @@ def faults_of(root):
     check_privates(root, product, faults)
     check_modules(product, faults)
     check_sizes(product, faults)
+    check_types([s for s in product if s.path.parts[0] != "perf"], faults)  # perf: programs of their own
     check_heavy(product + sources(root, "tests"), faults)
     return faults
 
