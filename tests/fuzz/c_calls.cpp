@@ -3,106 +3,38 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <stdexcept>
-#include <utility>
+#include <string_view>
 #include <vector>
 
+#include "fuzz/call_bytes.hpp"
 #include "readers/readers.hpp"
 #include "viewgain/viewgain.h"
 
 namespace viewgain::test {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = HUGE_VAL;
 constexpr std::size_t kMostVoxels = std::size_t{1} << 16U, kMostCalls = 60;
 
-/// Places for objects of a kind; what is in one is released when another comes.
-template <typename Object, void (*kRelease)(Object*)>
-class Slots {
+class Calls : CallBytes {
  public:
-  ~Slots() {
-    for (unsigned i = 0; i < objects_.size(); ++i) (void)fresh(i);
-  }
-  Object** fresh(unsigned place) {
-    Object*& object = objects_[place % objects_.size()];
-    kRelease(object);
-    object = nullptr;
-    return &object;
-  }
-  Object* operator[](unsigned place) const { return objects_[place % objects_.size()]; }
-
- private:
-  std::array<Object*, 3> objects_{};
-};
-
-template <typename Struct>
-Struct made(void (*init)(Struct*, std::size_t)) {
-  Struct one;
-  init(&one, sizeof one);
-  return one;
-}
-
-class Calls {
- public:
-  explicit Calls(std::string_view bytes) : bytes_(bytes), sensor_(made(vg_sensor_init)) {
-    expect(vg_sensor_preset("sr4000", &sensor_));
-    sensor_.width = 12, sensor_.height = 9;
-    sensor_.fx = sensor_.fy = 14, sensor_.cx = 5.5, sensor_.cy = 4;
-  }
+  using CallBytes::CallBytes;
 
   std::size_t run() {
-    const std::string_view own = std::exchange(bytes_, {});
+    const std::string_view own = swap({});
     for (const unsigned one_of_each : {0U, 1U, 2U, 3U, 4U}) call(one_of_each);
     require(evaluators_[0] != nullptr && feasibilities_[0] != nullptr, vg_last_error());
-    bytes_ = own;
-    for (std::size_t i = 0; i < kMostCalls && !bytes_.empty(); ++i) call(byte());
-    return succeeded_;
+    swap(own);
+    for (std::size_t i = 0; i < kMostCalls && !empty(); ++i) call(byte());
+    return succeeded();
   }
 
  private:
-  unsigned byte() {
-    if (bytes_.empty()) return 12;  // what is usual
-    const auto value = static_cast<unsigned char>(bytes_.front());
-    bytes_.remove_prefix(1);
-    return value;
-  }
-  std::int32_t below(unsigned end) { return static_cast<std::int32_t>(byte() % end); }
-  double number() {
-    constexpr std::array kSpecial{0.0, 1e-300, 1e300, kInfinity, -kInfinity, 1e-6,
-                                  1e9, -1e9,   1e-3,  1e154,     kNan};
-    const unsigned value = byte();
-    return value < kSpecial.size() ? kSpecial[value] : (static_cast<double>(value) - 128) / 64;
-  }
-  double usually(double value) { return byte() % 8 == 0 ? number() : value; }
-
-  bool expect(vg_status status) {
-    require(status >= VG_OK && status <= VG_STOPPED && status != VG_BACKEND, vg_last_error());
-    succeeded_ += status == VG_OK ? 1 : 0;
-    return status == VG_OK;
-  }
-  static void require(bool is_so, const char* what) {
-    if (!is_so) throw std::logic_error(what);
-  }
-
-  std::array<double, 16> pose() {
-    std::array<double, 16> pose{};
-    const std::array eye{number(), number(), number()}, at{0.1 * number(), 0.0, 0.0};
-    expect(vg_look_at(eye.data(), at.data(), nullptr, pose.data()));
-    return pose;
-  }
   std::vector<std::uint8_t> labels(std::int32_t x, std::int32_t y, std::int32_t z) {
     std::vector<std::uint8_t> all(static_cast<std::size_t>(x * y * z) + 1);
     const unsigned kind = byte() | 1U;
     for (std::size_t i = 0; i < all.size(); ++i)
       all[i] = static_cast<std::uint8_t>(i * kind / 7 % 3);
     all[byte() % all.size()] = static_cast<std::uint8_t>(byte() % 4);
-    return all;
-  }
-  std::vector<float> depth() {
-    std::vector<float> all(static_cast<std::size_t>(sensor_.width * sensor_.height),
-                           static_cast<float>(0.5 * number()));
-    all[byte() % all.size()] = static_cast<float>(number());
     return all;
   }
   vg_grid_info info(unsigned grid) {
@@ -123,7 +55,7 @@ class Calls {
         auto config = made(vg_integrator_config_init);
         config.num_threads = 1, config.support_plane = usually(kNan);
         config.carve = below(3), config.occupancy = below(3), config.coarsest = below(5);
-        expect(vg_integrator_create(&sensor_, &config, integrators_.fresh(a)));
+        expect(vg_integrator_create(&sensor(), &config, integrators_.fresh(a)));
         return;
       }
       case 2: {
@@ -148,14 +80,14 @@ class Calls {
         config.prior_sigma = usually(kNan), config.min_range = usually(kNan),
         config.max_range = usually(kNan);
         config.weights = &region, config.weight_count = byte() % 4 == 1 ? 1 : 0;
-        expect(vg_evaluator_create(scenes_[a], &sensor_, &config, evaluators_.fresh(b)));
+        expect(vg_evaluator_create(scenes_[a], &sensor(), &config, evaluators_.fresh(b)));
         return;
       }
       case 4: {
         auto config = made(vg_feasibility_config_init);
         config.num_threads = 1, config.clearance = usually(0),
         config.body_size[byte() % 3] = usually(0.06);
-        config.sensor = byte() % 2 == 0 ? &sensor_ : nullptr;
+        config.sensor = byte() % 2 == 0 ? &sensor() : nullptr;
         expect(vg_feasibility_create(scenes_[a], &config, feasibilities_.fresh(b)));
         return;
       }
@@ -251,16 +183,11 @@ class Calls {
     if (count > 0) expect(vg_sphere_poses(count, usually(0.6), origin_.data(), &poses[16]));
     std::vector<std::size_t> indices(8);
     std::size_t found = 0;
-    int left = static_cast<int>(byte());
-    auto watch = made(vg_watch_init);
-    watch.poll = [](std::size_t, std::size_t, void* user) {
-      return (*static_cast<int*>(user))-- <= 0 ? 1 : 0;
-    };
-    watch.user = &left;
+    Watch until(byte());
     if (which == 16) {
       std::vector<vg_view_gain> views(count + 1);
       if (!expect(vg_evaluate_views(evaluator, poses.data(), views.size(), views.data(),
-                                    sizeof views[0], &watch)))
+                                    sizeof views[0], &until.watch)))
         return;
       for (const vg_view_gain& view : views) {
         require((view.status == VG_VIEW_BAD_POSE) == std::isnan(view.gain) && !(view.gain < 0),
@@ -269,7 +196,7 @@ class Calls {
     } else if (which == 17) {
       const auto best = byte() % 2 == 0 ? vg_best : vg_best_set;
       expect(best(evaluator, poses.data(), count + 1, k, indices.data(), gains.data(), &found,
-                  &watch));
+                  &until.watch));
     } else if (which == 18) {
       expect(vg_race(evaluator, poses.data(), count + 1, k, byte(), indices.data(), gains.data(),
                      &found, nullptr));
@@ -277,7 +204,7 @@ class Calls {
       expect(
           vg_feasibility_check(feasibility, poses.data(), count + 1, at.data(), 1, reasons.data()));
     } else {
-      std::vector<float> image(static_cast<std::size_t>(sensor_.width * sensor_.height));
+      std::vector<float> image(pixels());
       expect(vg_depth_image(evaluator, at.data(), image.data(), nullptr, image.size()));
       std::vector<vg_contribution> parts(16);
       std::size_t all = 0;
@@ -294,9 +221,6 @@ class Calls {
     for (std::size_t i = 0; i < found; ++i) require(indices[i] <= count, "a pose that is none");
   }
 
-  std::string_view bytes_;
-  std::size_t succeeded_ = 0;
-  vg_sensor sensor_;
   const std::array<double, 3> origin_{};
   Slots<vg_grid, vg_grid_release> grids_;
   Slots<vg_integrator, vg_integrator_release> integrators_;

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // libFuzzer for what the environment names as VIEWGAIN_FUZZED: a reader of readers.cpp, which reads
-// its input or throws Error, or c_calls. With --seeds FOLDER it writes the readers' good files
+// its input or throws Error, or calls of C. With --seeds FOLDER it writes the readers' good files
 // there to begin with, a folder each.
 
 #include <zlib.h>
 
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mesh/files/mesh_dialects.hpp"
@@ -24,6 +26,9 @@ namespace viewgain::test {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::array<std::pair<const char*, std::size_t (*)(std::string_view)>, 2> kCalls{
+    {{"c_calls", c_calls}, {"planner_calls", planner_calls}}};
 
 void write_seeds(const fs::path& seeds) {
   const auto write = [&](const std::string& reader, const std::string& name,
@@ -43,10 +48,18 @@ void write_seeds(const fs::path& seeds) {
     const std::string reader = "mesh" + fs::path(row.file).extension().string();
     if (fs::exists(seeds / reader)) write(reader, row.file, row.bytes);
   }
-  write("c_calls", "0", std::string(200, '\x01'));
+  for (const auto& [name, calls] : kCalls) write(name, "0", std::string(200, '\x01'));
 }
 
 std::string fuzzed() { return std::getenv("VIEWGAIN_FUZZED"); }
+
+// What takes the bytes for calls, or null: a reader takes them for a file.
+auto fuzzed_calls() {
+  for (const auto& [name, calls] : kCalls) {
+    if (fuzzed() == name) return calls;
+  }
+  return decltype(kCalls.front().second)(nullptr);
+}
 
 const Reader& the_reader() {
   static const std::vector<Reader> all = all_readers();
@@ -85,7 +98,7 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t most, unsigned) {
   size = LLVMFuzzerMutate(data, size, most);
-  if (fuzzed() == "c_calls") return size;
+  if (fuzzed_calls() != nullptr) return size;
   std::string_view bytes(reinterpret_cast<const char*>(data), size);
   if (!damaged_name(the_reader(), bytes).ends_with(".png")) return size;
   mend_checksums(data + (size - bytes.size()), bytes.size());
@@ -94,7 +107,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  if (fuzzed() == "c_calls") return c_calls(bytes), 0;
+  if (const auto calls = fuzzed_calls()) return calls(bytes), 0;
   static const TemporaryFolder folder;
   static const bool is_first = (the_reader().write(folder), true);
   (void)is_first;

@@ -165,18 +165,24 @@ TEST(FuzzedBytes, AreReadOrRefused) {
   EXPECT_GE(files, 8U);
 }
 
-TEST(FuzzedCalls, AreTakenOrRefused) {
+// Those of the corpus and some at random; returns how many calls succeeded.
+std::size_t fuzzed_calls(const std::string& name, std::size_t (*call)(std::string_view)) {
   std::size_t calls = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(VIEWGAIN_FUZZ_CORPUS) / "c_calls")) {
-    calls += test::c_calls(read_all(entry.path()));
+  for (const auto& entry : fs::directory_iterator(fs::path(VIEWGAIN_FUZZ_CORPUS) / name)) {
+    calls += call(read_all(entry.path()));
   }
   std::mt19937 random(11);
   for (int i = 0; i < 20; ++i) {
     std::string bytes;
     for (int k = 0; k < 300; ++k) bytes += static_cast<char>(random());
-    calls += test::c_calls(bytes);
+    calls += call(bytes);
   }
-  EXPECT_GT(calls, 400U);
+  return calls;
+}
+
+TEST(FuzzedCalls, AreTakenOrRefused) {
+  EXPECT_GT(fuzzed_calls("c_calls", test::c_calls), 400U);
+  EXPECT_GT(fuzzed_calls("planner_calls", test::planner_calls), 400U);
 }
 
 TEST(DamagedJson, IsReadOrRefused) {

@@ -37,5 +37,7 @@ void read_in_place(const Reader& reader, const TemporaryFolder& folder, std::str
 /// made, used and released in any order. Returns how many calls succeeded; throws std::logic_error
 /// where a status is a defect of the library, or what came back cannot be.
 std::size_t c_calls(std::string_view bytes);
+/// The same of a planner's calls.
+std::size_t planner_calls(std::string_view bytes);
 
 }  // namespace viewgain::test

@@ -251,9 +251,16 @@ void refuse_empty(const Options& options, const ReadingSource& source, const Tot
   const IntegrationReport& sum = totals.sum;
   warn_if_out_of_range(options.clouds.front(), sum);
   if (!options.map.empty()) return;
-  if (sum.readings_inside + sum.plane_readings + sum.voxels_crossed > 0) return;
-  refuse(options.clouds.front() + ": none of " + with_commas(sum.readings) +
-         " readings lies in the workspace");
+  if (sum.readings_inside + sum.plane_readings + sum.voxels_crossed == 0) {
+    refuse(options.clouds.front() + ": none of " + with_commas(sum.readings) +
+           " readings lies in the workspace");
+  }
+  if (sum.readings > 0 && sum.readings_inside + sum.plane_readings == 0) {
+    std::fprintf(stderr,
+                 "viewgain: warning: %s: none of %s readings lies in the workspace, they carve "
+                 "alone: are --poses and --workspace right?\n",
+                 options.clouds.front().c_str(), with_commas(sum.readings).c_str());
+  }
 }
 
 void integrate(const Options& options, const App& app) {

@@ -121,7 +121,8 @@ control : BatchControl, optional
 Returns
 -------
 indices : ndarray, (k,), int64
-    Into the poses with their leading axes flattened, best first, ties to the lower index.
+    Into the poses with their leading axes flattened, best first, ties to the lower index. Fewer than k
+    where fewer poses have a gain: bad ones are never chosen.
 gains : ndarray, (k,), structured
     As from ``evaluate_detailed``; only if return_gains: a named tuple ``ChosenViews`` then.)";
 

@@ -228,7 +228,7 @@ Parameters
 ----------
 k : int
 poses : array_like, (n, 4, 4), optional
-    T_world_camera, instead of the proposal; nobody looks whether they are possible. Bad ones are last, with NaN.
+    T_world_camera, instead of the proposal; nobody looks whether they are possible. Bad ones are left out.
     Says nothing to ``should_stop``.
 costs : array_like, (n,), optional
     Subtracted from the gains, in their unit.

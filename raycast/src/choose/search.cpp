@@ -172,7 +172,7 @@ class Search {
       worth_of_scored.push_back(worth[j]);
     }
     for (const std::size_t j : largest(worth_of_scored, k)) {
-      if (!best_.complete && std::isnan(worth_of_scored[j])) continue;
+      if (std::isnan(worth_of_scored[j])) continue;  // a bad pose is no choice
       best_.indices.push_back(best_.scored_indices[j]);
       if (by_gain_) best_.gains.push_back(best_.scored_gains[j]);
       best_.worth.push_back(worth_of_scored[j]);

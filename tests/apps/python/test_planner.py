@@ -218,7 +218,7 @@ def test_refused(sensor, camera, poses):
         planner.add_generator(3)
     assert len(planner.grid.views()) == 0
     ranked = planner.rank(3, poses=[nan, poses[1]])
-    assert ranked["index"].tolist() == [1, 0] and np.isnan(ranked["gain"][1])
+    assert ranked["index"].tolist() == [1] and ranked["gain"][0] >= 0
     with pytest.raises(ValueError, match="cost"):
         planner.rank(poses=poses, costs=[1.0])
     with pytest.raises(ValueError, match="cost"):

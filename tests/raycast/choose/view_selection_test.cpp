@@ -61,7 +61,8 @@ Sensor small_sensor() {
 
 void expect_exact(const GainEvaluator& evaluator, const std::vector<Pose>& poses, std::size_t k) {
   const std::vector<ViewGain> all = evaluator.evaluate(poses);
-  const std::vector<std::size_t> expected = best_indices(all, k);
+  std::vector<std::size_t> expected = best_indices(all, k);
+  std::erase_if(expected, [&](std::size_t i) { return std::isnan(all[i].gain); });
   const BestViews best = evaluator.best(poses, k);
   ASSERT_EQ(best.indices, expected);
   ASSERT_EQ(best.gains.size(), expected.size());
@@ -79,6 +80,16 @@ TEST(BestViews, AreThoseOfTheLargestGainsTheFirstOfEqualOnes) {
   for (const std::size_t k : {1U, 7U, 118U, 123U}) expect_exact(evaluator, poses, k);
   const std::vector<std::size_t> first = evaluator.best(poses, 2).indices;
   EXPECT_EQ(first[1], first[0] + 60);  // the same pose
+  EXPECT_EQ(evaluator.best(poses, 120).indices.size(), 119U);
+
+  // No view is chosen that cannot be.
+  for (Pose& pose : poses) pose.m[7] = std::nan("");
+  for (const BestViews& none : {evaluator.best(poses, 3), evaluator.race(poses, 3)}) {
+    EXPECT_TRUE(none.indices.empty());
+    EXPECT_TRUE(none.gains.empty());
+    EXPECT_TRUE(none.complete);
+    EXPECT_EQ(none.scored_gains.size(), none.scored_indices.size());
+  }
 }
 
 TEST(BestViews, TakeOddRequestsAndStops) {

@@ -144,7 +144,7 @@ typedef struct vg_registration {
   size_t struct_size;           /* as _init() sets it */
   int32_t status;               /* VG_REGISTERED, VG_TOO_LITTLE_OVERLAP or VG_REFUSED */
   int32_t free_directions;      /* motions that the frame does not hold: as reported */
-  double T_world_camera[16];    /* corrected if registered, else as reported; rows */
+  double T_world_camera[16];    /* corrected if registered, else as reported, made rigid; rows */
   double covariance[36];        /* 6 x 6, row by row: translation [m], rotation [rad], world axes */
   double pose_sigma[2];         /* the same by the axes' mean, as vg_planner_add() takes it */
   double translation, rotation; /* of the correction that was found [m], [rad] */
@@ -185,8 +185,8 @@ VG_API vg_status vg_planner_rank(vg_planner* planner, size_t k, const double* co
                                  size_t cost_count, double cost_per_metre, vg_ranked_view* views,
                                  size_t view_size, size_t* found, const vg_watch* watch);
 
-/* The same of any poses; nobody looks whether they are possible. Bad ones are last, with NaN. Says
-   nothing to vg_planner_should_stop(). */
+/* The same of any poses; nobody looks whether they are possible. Bad ones are left out. Says nothing
+   to vg_planner_should_stop(). */
 VG_API vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses, size_t count,
                                        size_t k, const double* costs, size_t cost_count,
                                        double cost_per_metre, vg_ranked_view* views,

@@ -123,7 +123,7 @@ std::vector<double> view_costs(std::span<const Pose> poses, const RankConfig& co
   if (costs.size() != poses.size()) return costs;  // best() refuses them
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const double way = (poses[i].translation() - *here).norm();
-    // A bad pose is last whatever the way to it.
+    // A bad pose is left out whatever the way to it.
     if (std::isfinite(way)) costs[i] += config.cost_per_metre * way;
   }
   return costs;

@@ -101,6 +101,18 @@ void add_cost_options(App& app, CostOptions& options, const std::string& of) {
                  "file of one number for each of " + of +
                      ", which is subtracted from its gain, in the gain's unit");
   app.add_option("--cost-per-metre", options.per_metre, kCostPerMetreHelp);
+  app.add_option(
+      "--from", options.from,
+      "x,y,z of the camera, world [m]: where ways begin; default: at the map's last view");
+}
+
+void check(const CostOptions& options, bool has_way) {
+  check_at_least_0("--cost-per-metre", options.per_metre);
+  if (options.from.empty()) return;
+  if (options.per_metre == 0 && !has_way) {
+    refuse("--from", options.from, "goes with ways, which --cost-per-metre or a --plan asks for");
+  }
+  (void)parse_point("--from", options.from);
 }
 
 std::vector<double> read_costs(const std::string& file, std::size_t poses) {
@@ -128,11 +140,12 @@ PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {
 }
 
 std::optional<Eigen::Vector3d> begin_of_ways(const CostOptions& options, const BeliefGrid& grid) {
+  if (!options.from.empty()) return parse_point("--from", options.from);
   if (!grid.views().empty()) return grid.views().back().translation();
   if (options.per_metre > 0) {
     refuse(
-        "--cost-per-metre: the map has no view, which would say where the camera is; --costs takes "
-        "a cost for each pose");
+        "--cost-per-metre: the map has no view, which would say where the camera is; --from x,y,z "
+        "does");
   }
   return std::nullopt;
 }

@@ -44,13 +44,17 @@ void add_pose_options(App& app, PoseOptions& options);
 /// What is subtracted from gains, in their unit.
 struct CostOptions {
   std::string file;      ///< --costs: one number a pose
-  double per_metre = 0;  ///< --cost-per-metre of the way from the map's last view
+  double per_metre = 0;  ///< --cost-per-metre of the way
+  std::string from;      ///< --from x,y,z: where ways begin; empty: at the map's last view
 
   [[nodiscard]] bool none() const { return file.empty() && per_metre == 0; }
 };
 
-/// Where ways begin: at the map's last view. Throws Error(invalid_argument) where ways cost and the
-/// map has none.
+/// `has_way`: there is one whatever ways cost. Throws Error(invalid_argument), naming the flag.
+void check(const CostOptions& options, bool has_way = false);
+
+/// Where ways begin: at --from, else at the map's last view. Throws Error(invalid_argument) where
+/// ways cost and there is neither.
 [[nodiscard]] std::optional<Eigen::Vector3d> begin_of_ways(const CostOptions& options,
                                                            const BeliefGrid& grid);
 

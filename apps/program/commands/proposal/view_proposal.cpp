@@ -116,8 +116,8 @@ void check(const ProposalOptions& options) {
   if (options.overlap) check_inside_0_1("--overlap", *options.overlap);
   if (options.region_depth) check_positive("--region-depth", *options.region_depth);
   if (options.distance) check_positive("--distance", *options.distance);
-  check_at_least_0("--cost-per-metre", options.costs.per_metre);
   check(options.plan);
+  check(options.costs, options.plan.ahead().is_on());
   if (!options.poses.empty() && options.generator.empty() &&
       (options.count || options.distance || !options.center.empty())) {
     refuse("--count, --distance and --center go with --generator, not with --poses alone");

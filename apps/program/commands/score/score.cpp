@@ -39,7 +39,7 @@ void check_feasibility(const Options& options) {
   if (options.deadline) check_at_least_0("--deadline", *options.deadline);
   if (!options.body.empty() && options.feasible == "off") refuse("--body goes with --feasible on");
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
-  check_at_least_0("--cost-per-metre", options.costs.per_metre);
+  check(options.costs);
   if (options.set && !options.costs.none()) {
     refuse("--costs and --cost-per-metre do not go with --set");
   }

@@ -219,11 +219,11 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// thrown for it. Costs two traces of the pose and a PinholeCamera::ray() for each ray.
   [[nodiscard]] RayOutcomes outcomes(const Pose& T_world_camera) const;
 
-  /// The k best poses: best_indices() of evaluate()'s results and those results, ties to the lower
-  /// index, NaN last, k clamped; nothing for k = 0 or no poses. `config` may subtract costs and put
-  /// a measure of the user's own in the gain's place. All poses are scored, so it costs what
-  /// evaluate() does. If a stop is requested or the deadline passes the result is the best of those
-  /// scored so far that are not NaN, and not `complete`. Throws Error(invalid_argument) if there
+  /// The k best poses and evaluate()'s results of them, ties to the lower index; fewer where fewer
+  /// have a gain: bad poses, and those of which a measure says NaN, are never chosen. `config` may
+  /// subtract costs and put a measure of the user's own in the gain's place. All poses are scored,
+  /// so it costs what evaluate() does. If a stop is requested or the deadline passes the result is
+  /// the best of those scored so far, and not `complete`. Throws Error(invalid_argument) if there
   /// are costs but not one a pose, for one that is not finite, for a deadline that is not >= 0 and
   /// for two measures; and as evaluate() with the measure.
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,

@@ -80,6 +80,8 @@ TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
     const auto result = run(call);
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_NE(result.err.find("the map has no view"), std::string::npos) << result.err;
+    call.insert(call.end(), {"--from", "0,0,1", "--json"});
+    EXPECT_EQ(run(call).exit_code, 0) << run(call).err;
   }
   expect_refused({"convert", "map.vdb", "x.ot", "--sensor", "small.toml"}, "--sensor");
   // A prior that is surer than a reading is pointed out.
@@ -169,6 +171,12 @@ TEST_F(ForeignMaps, CloudsAreIntegrated) {
                       "--sensor", "small.toml", "--out", "s.vdb"})
                 .find("1 clouds (small), 1,681 readings"),
             std::string::npos);
+  // A workspace that ends before the wall has nothing but free space, and that is said.
+  const auto carved =
+      run({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--voxel", "0.02", "--sensor",
+           "small.toml", "--workspace", "-0.1,-1,-1,0.8,1,1", "--out", "carved.vdb"});
+  EXPECT_EQ(carved.exit_code, 0);
+  EXPECT_NE(carved.err.find("they carve alone"), std::string::npos) << carved.err;
 }
 
 TEST_F(ForeignMaps, WrongUseIsRefused) {

@@ -160,6 +160,13 @@ TEST_F(ScoreCandidates, CostsRank) {
     EXPECT_EQ(view["index"], best);
     EXPECT_NEAR(view["worth"].get<double>(), worth[best], 1e-6 * std::abs(worth[best]));
   }
+  // Ways begin where the camera is said to be.
+  const Eigen::Vector3d here(0.25, -0.5, 0.75);
+  const json from = score({"--cost-per-metre", "200", "--from", "0.25,-0.5,0.75"})["best"][0];
+  const std::size_t i = from["index"];
+  EXPECT_NEAR(from["worth"].get<double>(),
+              free.at(i) - 200 * (poses[i].translation() - here).norm(), 1e-6 * free.at(i));
+  EXPECT_NE(from["worth"], score({"--cost-per-metre", "200"})["best"][0]["worth"]);
   // Tables and reports show it where there are costs.
   Strings as_text = arguments({"--approximate", "0.5"});
   std::erase(as_text, "--json");
@@ -183,6 +190,8 @@ TEST_F(ScoreCandidates, CostsRank) {
   expect_refused_with(arguments({}), {{{"--costs", "few.txt"}, "2 costs for 40 poses"},
                                       {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"},
                                       {{"--cost-per-metre", "1", "--set", "2"}, "--set"},
+                                      {{"--from", "0,0,1"}, "--from 0,0,1"},
+                                      {{"--from", "0,0", "--cost-per-metre", "1"}, "--from 0,0"},
                                       {{"--costs", "costs.txt", "--out", "costs.txt"}, "--costs"}});
 }
 

@@ -158,10 +158,10 @@ VG_API vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* 
 
 /* ---- Choosing views ---- */
 
-/* The k best poses, exactly those of the largest gains, best first, ties to the lower index, NaN
-   last; all poses are scored. `indices` and `gains` (null: not wanted) have room for
-   k, *found says how many there are (fewer than k if there are fewer poses). VG_STOPPED: the best
-   of those scored so far, which *found counts. */
+/* The k best poses, exactly those of the largest gains, best first, ties to the lower index; all
+   poses are scored. `indices` and `gains` (null: not wanted) have room for k, *found says how many
+   there are: fewer than k where fewer poses have a gain, as bad ones are never chosen. VG_STOPPED:
+   the best of those scored so far, which *found counts. */
 VG_API vg_status vg_best(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          size_t* indices, double* gains, size_t* found, const vg_watch* watch);
 

@@ -88,10 +88,9 @@ struct VIEWGAIN_EXPORT Ranking {
     const std::optional<Eigen::Vector3d>& here);
 
 /// The k best of the poses, at least one of them wanted, whether they are possible or not. Ties go
-/// to the earlier one; bad poses are last, with NaN, or, together, left out with those that add
-/// nothing. `here` is where the camera is, from which
-/// cost_per_metre counts; nothing: it does not. Throws Error(invalid_argument) for a cost that is
-/// negative or not finite, and as GainEvaluator::best().
+/// to the earlier one; bad poses are left out and, together, those that add nothing. `here` is
+/// where the camera is, from which cost_per_metre counts; nothing: it does not. Throws
+/// Error(invalid_argument) for a cost that is negative or not finite, and as GainEvaluator::best().
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  std::size_t k, const RankConfig& config,

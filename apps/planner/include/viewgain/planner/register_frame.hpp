@@ -40,7 +40,7 @@ struct VIEWGAIN_EXPORT FrameRegistration {
   /// Whether the correction was found, and why not.
   RegistrationStatus status = RegistrationStatus::too_little_overlap;
   std::string reason;   ///< of the status, for people; empty if registered
-  Pose T_world_camera;  ///< corrected if registered, else as reported
+  Pose T_world_camera;  ///< corrected if registered, else as reported, made rigid
   /// The correction, of a frame that is not registered the one that was tried last: the way of the
   /// camera's centre [m] and the angle [rad].
   double translation = 0;

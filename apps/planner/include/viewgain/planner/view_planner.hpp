@@ -149,7 +149,7 @@ class VIEWGAIN_EXPORT ViewPlanner {
   [[nodiscard]] Ranking rank(std::size_t k = 1, const RankConfig& config = {},
                              const BatchControl& control = {});
   /// The same of any poses, `T_world_camera` in any order; nobody looks whether they are possible.
-  /// Bad ones are last, with NaN. Says nothing to should_stop().
+  /// Bad ones are left out. Says nothing to should_stop().
   [[nodiscard]] Ranking rank(std::span<const Pose> T_world_camera, std::size_t k = 1,
                              const RankConfig& config = {}, const BatchControl& control = {});
 
