@@ -7,11 +7,11 @@
 #include <cstdlib>
 #include <new>
 
-/// Called before each allocation: the program's own, which may throw.
-void on_allocation();
+/// Called before each allocation of so many bytes: the program's own, which may throw.
+void on_allocation(std::size_t size);
 
 void* operator new(std::size_t size, std::align_val_t alignment) {
-  on_allocation();
+  on_allocation(size);
   const auto step = static_cast<std::size_t>(alignment);
   const std::size_t whole = (size + step - 1) / step * step;
   if (void* memory = std::aligned_alloc(step, whole == 0 ? step : whole)) return memory;

@@ -227,7 +227,7 @@ class PlannerCalls : CallBytes {
     const auto at = pose();
     std::vector<double> poses(at.begin(), at.end());
     poses.insert(poses.end(), now_.poses.begin(), now_.poses.end());
-    std::vector<double> costs(poses.size() / 16, usually(1));
+    std::vector<double> costs(poses.size() / 16, std::fabs(usually(1)));
     const std::size_t k = byte() % 4;
     Ranked ranked{VG_OK, std::vector<vg_ranked_view>(k)};
     std::size_t found = 0;

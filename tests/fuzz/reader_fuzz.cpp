@@ -27,8 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::pair<const char*, std::size_t (*)(std::string_view)>, 2> kCalls{
-    {{"c_calls", c_calls}, {"planner_calls", planner_calls}}};
+constexpr std::array<std::pair<const char*, std::size_t (*)(std::string_view)>, 3> kCalls{
+    {{"c_calls", c_calls}, {"planner_calls", planner_calls}, {"map.vdb", vdb_maps}}};
 
 void write_seeds(const fs::path& seeds) {
   const auto write = [&](const std::string& reader, const std::string& name,
@@ -48,7 +48,10 @@ void write_seeds(const fs::path& seeds) {
     const std::string reader = "mesh" + fs::path(row.file).extension().string();
     if (fs::exists(seeds / reader)) write(reader, row.file, row.bytes);
   }
-  for (const auto& [name, calls] : kCalls) write(name, "0", std::string(200, '\x01'));
+  for (const char* calls : {"c_calls", "planner_calls"})
+    write(calls, "0", std::string(200, '\x01'));
+  const std::vector<std::string> maps = vdb_seeds();
+  for (std::size_t i = 0; i < maps.size(); ++i) write("map.vdb", std::to_string(i), maps[i]);
 }
 
 std::string fuzzed() { return std::getenv("VIEWGAIN_FUZZED"); }
@@ -86,6 +89,9 @@ void mend_checksums(std::uint8_t* data, std::size_t size) {
 }  // namespace viewgain::test
 
 using namespace viewgain::test;
+
+// OpenVDB's reader leaves nodes behind when it throws.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libopenvdb"; }
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 

@@ -40,4 +40,10 @@ std::size_t c_calls(std::string_view bytes);
 /// The same of a planner's calls.
 std::size_t planner_calls(std::string_view bytes);
 
+/// Reads the bytes behind the first one, which says by what and whether a seal that fits is put
+/// behind them, as a .vdb map. Returns whether it was one; throws what is no Error.
+std::size_t vdb_maps(std::string_view bytes);
+/// Good ones.
+std::vector<std::string> vdb_seeds();
+
 }  // namespace viewgain::test

@@ -23,6 +23,7 @@
 #include "map/grid_storage.hpp"
 #include "vdb_layout.hpp"
 #include "vdb_outline.hpp"
+#include "vdb_seal.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/thread_pool.hpp"
@@ -74,6 +75,10 @@ class ImageReader : public openvdb::io::Archive {
     }
     if (inputHasGridOffsets()) {
       pool.for_each_chunk(descriptors.size(), 1, [&](std::size_t i, std::size_t) {
+        if (!is_followed(descriptors[i].gridType())) {  // stays empty
+          grids[i]->setName(descriptors[i].gridName());
+          return;
+        }
         BytesBuffer own_buffer(bytes);
         std::istream own(&own_buffer);
         ImageReader().begin(own);
@@ -107,10 +112,11 @@ struct VdbContents {
     const auto fail = [&path](const std::string& what) {
       throw Error(ErrorCode::format, path.string() + ": " + what);
     };
-    const std::string bytes = file_bytes(path);
+    std::string bytes = file_bytes(path);
+    const SealCheck seal = check_seal(bytes);
     const std::string fault = fault_in_outline(bytes);
     if (!fault.empty()) fail(fault);
-    if (check_seal(bytes) == SealCheck::broken) fail("is corrupt: its checksum does not fit");
+    if (seal == SealCheck::broken) fail("is corrupt: its checksum does not fit");
 
     initialize_openvdb();
     try {

@@ -16,7 +16,7 @@
 #include "map/code_mask.hpp"
 #include "pose_text.hpp"
 #include "vdb_layout.hpp"
-#include "vdb_outline.hpp"
+#include "vdb_seal.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/atomic_file.hpp"

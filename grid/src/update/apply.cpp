@@ -144,7 +144,7 @@ class RegionUpdate {
       result.changed = true;
       put_hits(place, *hit_block, deltas.data(), result);
     }
-    put_codes(key, place, deltas.data(), result);
+    put_codes(key, place, deltas.data(), hit_block != nullptr, result);
   }
 
   void put_hits(const BlockPlace& place, const HitBlock& hit_block, std::int8_t* deltas,
@@ -175,7 +175,7 @@ class RegionUpdate {
     return least_sure;
   }
 
-  void put_codes(std::uint64_t key, const BlockPlace& place, const std::int8_t* deltas,
+  void put_codes(std::uint64_t key, const BlockPlace& place, const std::int8_t* deltas, bool is_hit,
                  RegionResult& result) const {
     alignas(64) std::array<std::uint8_t, kBlockVoxels> fresh;
     CodeLeaf* const leaf = place.leaf;
@@ -189,7 +189,11 @@ class RegionUpdate {
     }
     BlockUpdate update;
     kernels_.update(deltas, literal_, codes, update);
-    if (!place.whole) update.crossed = intersection(update.crossed, s_.lattice.clip(place.origin));
+    if (!place.whole) {
+      update.crossed = intersection(update.crossed, s_.lattice.clip(place.origin));
+      // All that was crossed is outside of the workspace.
+      if (leaf == nullptr && !is_hit && update.crossed == LeafMask{}) return;
+    }
     result.counts.crossed += count_bits(update.crossed);
     // What is free stays free when it is crossed.
     result.changed = result.changed || intersection(update.crossed, non_free) != LeafMask{};
@@ -207,8 +211,6 @@ class RegionUpdate {
       return;
     }
     if (leaf != nullptr) return;
-    // At the rim of the workspace perhaps only because of voxels outside.
-    result.changed = result.changed || is_non_free(place.tile_code);
     if (place.scale != s_.scale(key)) result.scales.emplace_back(key, place.scale);
     result.leaves.push_back(std::make_unique<CodeLeaf>(to_coord(place.origin), kUnknownCode, true));
     CodeLeaf& made = *result.leaves.back();

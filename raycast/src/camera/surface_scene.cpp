@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -41,7 +42,12 @@ void check(const TriangleMesh& mesh) {
   }
 }
 
-std::uint32_t lanes_of(std::size_t count) { return (1U << count) - 1U; }
+// Embree aborts the program for a ray from farther away, or with a number that is none.
+bool is_traceable(const Vector3d& origin, const SurfaceScene::Ray& ray) {
+  constexpr double kFarthest = 1e18;  // [m]
+  return (origin.array().abs() <= kFarthest).all() &&
+         (ray.direction.array().abs() <= kFarthest).all() && !std::isnan(ray.max_range);
+}
 
 }  // namespace
 
@@ -51,12 +57,14 @@ struct SurfaceScene::Impl {
   std::vector<Vector3d> normals;  // a triangle each
   std::optional<detail::TriangleScene> scene;
 
-  // At most kAtOnce.
-  void load(std::span<const SurfaceScene::Ray> rays, TriangleRays& packet) const {
+  // At most kAtOnce. Returns the lanes to be traced.
+  std::uint32_t load(std::span<const SurfaceScene::Ray> rays, TriangleRays& packet) const {
+    std::uint32_t lanes = 0;
     for (std::size_t i = 0; i < kAtOnce; ++i) {
       // Lanes that are not asked for repeat a ray.
       const SurfaceScene::Ray& ray = rays[std::min(i, rays.size() - 1)];
       const Vector3d origin = ray.origin - middle;
+      if (i < rays.size() && is_traceable(origin, ray)) lanes |= 1U << i;
       packet.ox[i] = static_cast<float>(origin.x());
       packet.oy[i] = static_cast<float>(origin.y());
       packet.oz[i] = static_cast<float>(origin.z());
@@ -65,6 +73,7 @@ struct SurfaceScene::Impl {
       packet.dz[i] = static_cast<float>(ray.direction.z());
       packet.far[i] = static_cast<float>(ray.max_range);
     }
+    return lanes;
   }
 };
 
@@ -102,8 +111,8 @@ void SurfaceScene::intersect(std::span<const SurfaceScene::Ray> rays,
   TriangleRays packet;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, rays.size() - first);
-    impl_->load(rays.subspan(first, count), packet);
-    const std::uint32_t met = impl_->scene->meet(packet, lanes_of(count));
+    const std::uint32_t lanes = impl_->load(rays.subspan(first, count), packet);
+    const std::uint32_t met = impl_->scene->meet(packet, lanes);
     for (std::size_t i = 0; i < count; ++i) {
       SurfaceScene::Hit& hit = hits[first + i];
       hit = {};
@@ -125,8 +134,8 @@ void SurfaceScene::block(std::span<const SurfaceScene::Ray> rays, std::span<bool
   TriangleRays packet;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, rays.size() - first);
-    impl_->load(rays.subspan(first, count), packet);
-    const std::uint32_t met = impl_->scene->block(packet, lanes_of(count));
+    const std::uint32_t lanes = impl_->load(rays.subspan(first, count), packet);
+    const std::uint32_t met = impl_->scene->block(packet, lanes);
     for (std::size_t i = 0; i < count; ++i) blocked[first + i] = (met >> i & 1U) != 0;
   }
 }

@@ -88,7 +88,7 @@ TEST_P(ClassicOracle, AllGainsAgreeUnderEachInstructionSet) {
   for (std::size_t g = 0; g < 10; ++g) {
     // In maps with next to nothing unknown or occupied these need not meet.
     if (GetParam() == MapFamily::salt_and_pepper_01 && needs_neighbours(g)) continue;
-    EXPECT_GT(above_zero[g], isas.size()) << classic_gain_names()[g];
+    EXPECT_GE(above_zero[g], isas.size() * (test::kSlowBuild ? 1 : 2)) << classic_gain_names()[g];
   }
 }
 

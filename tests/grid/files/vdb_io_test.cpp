@@ -119,6 +119,31 @@ TEST(VdbIo, RoundTripsAreExact) {
   check(grid);
 }
 
+// Of leaves that reach over the rim of the workspace, too, where perhaps nothing of them is known.
+TEST(VdbIo, ScalesAtTheRimAreExact) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "map.vdb";
+  const Sensor sensor = small_sensor(24, 18);
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> at(-1.5, 1.5);
+  int cases = 0, scaled = 0;
+  for (const int voxels : {9, 12, 20}) {
+    const double half = 0.025 * voxels;
+    for (int i = 0; i < 40; ++i, ++cases) {
+      BeliefGrid grid(GridConfig{0.05, {{-half, -half, -half}, {half, half, half}}, {}, 0.1});
+      FrameIntegrator integrator(sensor, {.coarsest = 2, .finest = 1 + i % 2});
+      const Pose pose = look_at({at(random), at(random), at(random)}, {0, 0, 0});
+      const float depth = 0.3F + 0.05F * static_cast<float>(i % 20);
+      integrator.integrate(grid, {24, 18, std::vector<float>(24 * 18, depth)}, pose);
+      save_vdb(grid, path);
+      expect_same(load_vdb(path), grid);
+      scaled += file_bytes(path).find("scale") != std::string::npos ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(cases, 120);
+  EXPECT_GT(scaled, 30);
+}
+
 TEST(VdbIo, VdbPrintListsTheGrids) {
   if (std::system("command -v vdb_print > /dev/null") != 0) GTEST_SKIP() << "no vdb_print";
   const TemporaryFolder folder;

@@ -24,7 +24,7 @@ std::atomic<long> allocations_left{-1};
 
 }  // namespace
 
-void on_allocation() {
+void on_allocation(std::size_t /*size*/) {
   if (allocations_left.load() >= 0 && allocations_left.fetch_sub(1) <= 0) throw std::bad_alloc();
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -112,6 +113,38 @@ TEST(ObstacleView, WhereTheOriginIsDoesNotMatter) {
   Pose off = pose;
   for (const std::size_t k : {0U, 4U, 8U}) off.m[k] *= 1 + 4e-4;
   EXPECT_EQ(depths({0, 0, 0}, off), depths({0, 0, 0}, orthonormalized(off)));
+}
+
+// Embree, as Debian builds it, aborts for a ray that is none.
+TEST(ObstacleView, WhatCannotBeTracedMeetsNothing) {
+  const Sensor sensor = small();
+  const Box box{{-0.1, -0.1, 0.9}, {0.1, 0.1, 1.1}};
+  DepthFrame frame{44, 36, std::vector<float>(44 * 36, 1.0F)};
+  const ObstacleView view({{box}, {}}, sensor);
+  for (const double far : {1e17, 1e19, 1e154, 1e300}) {
+    view.mark(frame, Pose(Eigen::Matrix3d::Identity(), {0, -far, 0}));
+    for (const float depth : frame.known_depth) ASSERT_TRUE(std::isinf(depth)) << far;
+  }
+
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const SurfaceScene scene(mesh_of({{box}, {}}));
+  const SurfaceScene::Ray good{{0, 0, 0}, {0, 0, 1}};
+  std::vector<SurfaceScene::Ray> rays{good};
+  for (const double wrong : {kNan, kInfinity, -kInfinity, 1e19}) {
+    rays.insert(rays.end(), {{{0, wrong, 0}, {0, 0, 1}}, good, {{0, 0, 0}, {wrong, 0, 1}}});
+  }
+  rays.insert(rays.end(), {{{0, 0, 0}, {0, 0, 1}, kNan}, good});
+  std::vector<SurfaceScene::Hit> hits(rays.size());
+  scene.intersect(rays, hits);
+  std::array<bool, 15> blocked{};
+  ASSERT_EQ(rays.size(), blocked.size());
+  scene.block(rays, blocked);
+  std::size_t met = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(std::isfinite(hits[i].range), blocked[i]) << i;
+    met += blocked[i] ? 1 : 0;
+  }
+  EXPECT_EQ(met, 6U);  // the good ones
 }
 
 TEST(ObstacleView, WithoutObstaclesNothingIsKnown) {

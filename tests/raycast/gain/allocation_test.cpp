@@ -15,7 +15,7 @@ std::atomic<std::size_t> allocations{0};
 
 }  // namespace
 
-void on_allocation() { allocations.fetch_add(1, std::memory_order_relaxed); }
+void on_allocation(std::size_t /*size*/) { allocations.fetch_add(1, std::memory_order_relaxed); }
 
 namespace viewgain {
 namespace {

@@ -23,7 +23,7 @@ std::atomic<long> failures{0};
 
 }  // namespace
 
-void on_allocation() {
+void on_allocation(std::size_t /*size*/) {
   if (allocations_left.load() >= 0 && allocations_left.fetch_sub(1) <= 0) {
     if (!fails_once) allocations_left = 0;
     ++failures;

@@ -42,7 +42,8 @@ class VIEWGAIN_EXPORT SurfaceScene {
   SurfaceScene(SurfaceScene&&) noexcept;
   SurfaceScene& operator=(SurfaceScene&&) noexcept;
 
-  /// First hits in (0, max_range], hit i of ray i; as many as rays. Checks nothing. Fastest if rays
+  /// First hits in (0, max_range], hit i of ray i; as many as rays. A ray that has a number that is
+  /// none, or comes from over 1e18 m away, meets nothing; else checks nothing. Fastest if rays
   /// that follow on one another start and look alike, since 4 to 16 are traced together; O(log n)
   /// of the triangles a ray.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;

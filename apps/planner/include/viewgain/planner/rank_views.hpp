@@ -90,7 +90,7 @@ struct VIEWGAIN_EXPORT Ranking {
 /// The k best of the poses, at least one of them wanted, whether they are possible or not. Ties go
 /// to the earlier one; bad poses are left out and, together, those that add nothing. `here` is
 /// where the camera is, from which cost_per_metre counts; nothing: it does not. Throws
-/// Error(invalid_argument) for a cost that is negative or not finite, and as GainEvaluator::best().
+/// Error(invalid_argument) for a cost_per_metre as view_costs(), and as GainEvaluator::best().
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  std::size_t k, const RankConfig& config,
