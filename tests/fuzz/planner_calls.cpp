@@ -19,6 +19,7 @@ namespace viewgain::test {
 namespace {
 
 constexpr std::size_t kMostVoxels = std::size_t{1} << 14U, kMostCalls = 24, kMostPoses = 40;
+constexpr int kMostFiles = 3;  // which take most of the time
 
 // A planner, what it was made with, and what it was told: what it answers must add up with that.
 struct Planned {
@@ -278,6 +279,7 @@ class PlannerCalls : CallBytes {
 
   // The planner that was loaded answers as the one that was saved.
   void save_and_load() {
+    if (++files_ > kMostFiles) return;
     const std::string path = (folder_.path() / "state.vdb").string();
     if (!expect(vg_planner_save(now_.planner(), path.c_str()))) return;
     vg_planner** other = now_.slots.fresh(1 - now_.current);
@@ -328,14 +330,22 @@ class PlannerCalls : CallBytes {
     expect(vg_grid_get_info(*grid, &info));
     require(found <= info.occupied, "more occupied voxels than there are");
 
+    check_file(*grid);
+    check_order();
+  }
+
+  void check_file(const vg_grid* grid) {
+    if (++files_ > kMostFiles) return;
     const std::string path = (folder_.path() / "map.vdb").string();
-    require(expect(vg_grid_save(*grid, path.c_str())), vg_last_error());
+    require(expect(vg_grid_save(grid, path.c_str())), vg_last_error());
     require(expect(vg_grid_load(path.c_str(), grids_.fresh(1))), vg_last_error());
     std::array<char, 17> hash{}, loaded{};
-    expect(vg_grid_hash(*grid, hash.data()));
+    expect(vg_grid_hash(grid, hash.data()));
     expect(vg_grid_hash(grids_[1], loaded.data()));
     require(hash == loaded, "another map after a file");
+  }
 
+  void check_order() {
     const std::size_t stops = byte() % 5;
     std::vector<double> costs((stops + 1) * stops);
     for (double& cost : costs) cost = std::fabs(usually(1));
@@ -349,6 +359,7 @@ class PlannerCalls : CallBytes {
   }
 
   TemporaryFolder folder_;
+  int files_ = 0;
   Planned now_;
   Slots<vg_grid, vg_grid_release> grids_;
 };
