@@ -179,6 +179,10 @@ TEST_F(Candidates, NextChoosesAmongGivenPosesByTheirWorth) {
     EXPECT_NEAR(paid[i]["worth"].get<double>(), free[i]["gain"].get<double>() - 70, 1e-6);
   }
   EXPECT_LT(next({"--cost-per-metre", "50"})[0]["worth"], free[0]["worth"]);
+  // From elsewhere; all views are 0.6 m round the origin.
+  const json there = next({"--cost-per-metre", "0.5", "--from", "99,0,0"});
+  ASSERT_FALSE(there.empty());
+  EXPECT_NEAR(free[0]["gain"].get<double>() - there[0]["worth"].get<double>(), 49.5, 0.5);
   write("few.txt", "1\n2\n");
   write("word.txt", "1\ncheap\n");
   expect_refused_with({"next", "run/map.vdb", "--sensor", "tof.toml"},
