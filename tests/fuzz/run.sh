@@ -19,7 +19,7 @@ for target in "${targets[@]}"; do
   mkdir -p "$inputs" "$found"
   from=("$inputs" "$work/seeds/$target")
   [ -d "tests/fuzz/corpus/$target" ] && from+=("tests/fuzz/corpus/$target")
-  VIEWGAIN_FUZZED=$target "$fuzzer" -max_total_time="$(awk "BEGIN { print int(60 * $minutes) }")" -timeout=20 \
+  VIEWGAIN_FUZZED=$target "$fuzzer" -max_total_time="$(awk "BEGIN { print int(60 * $minutes) }")" -timeout=20 -report_slow_units=20 \
     -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$found/" "${from[@]}" >"$work/$target.log" 2>&1 || true
   executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$work/$target.log")
   edges=$(grep -oE 'cov: [0-9]+' "$work/$target.log" | tail -n 1 || true)
