@@ -185,8 +185,8 @@ VG_API vg_status vg_planner_rank(vg_planner* planner, size_t k, const double* co
                                  size_t cost_count, double cost_per_metre, vg_ranked_view* views,
                                  size_t view_size, size_t* found, const vg_watch* watch);
 
-/* The same of any poses; nobody looks whether they are possible. Bad ones are left out. Says nothing
-   to vg_planner_should_stop(). */
+/* The same of any poses; nobody looks whether they are possible. Bad ones are left out. Says
+   nothing to vg_planner_should_stop(). */
 VG_API vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses, size_t count,
                                        size_t k, const double* costs, size_t cost_count,
                                        double cost_per_metre, vg_ranked_view* views,

@@ -110,7 +110,8 @@ void check(const CostOptions& options, bool has_way) {
   check_at_least_0("--cost-per-metre", options.per_metre);
   if (options.from.empty()) return;
   if (options.per_metre == 0 && !has_way) {
-    refuse("--from", options.from, "goes with ways, which --cost-per-metre or a --plan asks for");
+    refuse("--from", options.from,
+           "goes with ways that cost (--cost-per-metre) or are planned (next --plan)");
   }
   (void)parse_point("--from", options.from);
 }
