@@ -6,6 +6,7 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "program/cli/app.hpp"
@@ -125,6 +126,10 @@ int guarded_run(int argc, char** argv) {
     return report(stopped.message, kStopped);
   } catch (const std::bad_alloc&) {
     return report("out of memory", kInternalError);
+  } catch (const std::system_error& error) {
+    const bool of_thread = error.code() == std::errc::resource_unavailable_try_again;
+    const std::string what = of_thread ? "no thread can be started: " : "internal error: ";
+    return report(what + error.what(), kInternalError);
   } catch (const std::exception& error) {
     return report(std::string("internal error: ") + error.what(), kInternalError);
   }

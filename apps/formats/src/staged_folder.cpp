@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdio>
 #include <mutex>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -182,7 +183,11 @@ void StagedFolder::remove() const noexcept {
   std::error_code ignored;
   // Another thread may be putting a file into it when a signal ends the program.
   for (int tries = 0; tries < 10 && fs::exists(staging_, ignored); ++tries) {
-    fs::remove_all(staging_, ignored);
+    try {
+      fs::remove_all(staging_, ignored);
+    } catch (const std::bad_alloc&) {  // the next writer removes it
+      break;
+    }
   }
   for (const fs::path& parent : parents_) fs::remove(parent, ignored);  // if empty
 }

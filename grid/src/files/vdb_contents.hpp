@@ -13,8 +13,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <istream>
+#include <memory>
 #include <new>
-#include <stdexcept>
 #include <streambuf>
 #include <string>
 #include <string_view>
@@ -107,26 +107,26 @@ struct VdbContents {
   openvdb::GridPtrVec grids;
 
   /// Reads the grids side by side. Throws Error(io) if the file cannot be opened, Error(format),
-  /// naming it and what is wrong, if it is truncated, corrupt or no .vdb file.
-  VdbContents(const std::filesystem::path& path, ThreadPool& pool) : pool_(pool) {
-    const auto fail = [&path](const std::string& what) {
-      throw Error(ErrorCode::format, path.string() + ": " + what);
+  /// naming it and what is wrong, if it is truncated, corrupt or no .vdb file, Error(capacity) if
+  /// it does not fit into memory.
+  VdbContents(const std::filesystem::path& path, ThreadPool& pool) : VdbContents(pool) {
+    const auto fail = [&path](const std::string& what, ErrorCode code = ErrorCode::format) {
+      throw Error(code, path.string() + ": " + what);
     };
     std::string bytes = file_bytes(path);
     const SealCheck seal = check_seal(bytes);
-    const std::string fault = fault_in_outline(bytes);
-    if (!fault.empty()) fail(fault);
+    const VdbOutline outline = outline_of(bytes);
+    if (!outline.fault.empty()) fail(outline.fault);
     if (seal == SealCheck::broken) fail("is corrupt: its checksum does not fit");
 
     initialize_openvdb();
     try {
+      check_room(outline.tree_bytes);
       ImageReader().read(bytes, metadata, grids, pool);
     } catch (const std::ios_base::failure&) {
       fail("is truncated or corrupt");
     } catch (const std::bad_alloc&) {
-      fail("is corrupt: it asks for more memory than there is");
-    } catch (const std::length_error&) {
-      fail("is corrupt: it asks for more memory than there is");
+      fail("does not fit into memory", ErrorCode::capacity);
     } catch (const std::exception& error) {
       fail(std::string("cannot be read by OpenVDB: ") + error.what());
     }
@@ -146,6 +146,19 @@ struct VdbContents {
   }
 
  private:
+  // Complete, so that the grids are taken down if reading throws.
+  explicit VdbContents(ThreadPool& pool) : pool_(pool) {}
+
+  // Blosc does not look whether it got the memory that it asks for. In parts, as trees take it.
+  static void check_room(std::size_t bytes) {
+    constexpr std::size_t kBloscBytes = std::size_t{1} << 22U;  // of its blocks, on all threads
+    constexpr std::size_t kPart = std::size_t{1} << 20U;
+    std::vector<std::unique_ptr<char[]>> parts;
+    for (std::size_t room = 0; room < bytes + kBloscBytes; room += kPart) {
+      parts.push_back(std::make_unique_for_overwrite<char[]>(kPart));
+    }
+  }
+
   template <typename Grid>
   static void take_down_a(openvdb::GridBase& grid) {
     if (grid.isType<Grid>()) take_down(static_cast<Grid&>(grid).tree());

@@ -146,7 +146,8 @@ class TreeWalk {
         stored_size_(is_half ? value_size / 2 : value_size),
         is_half_(is_half) {}
 
-  void follow() {
+  // Returns how many bytes the tree takes in memory, at most.
+  std::uint64_t follow() {
     (void)reader_.number<std::int32_t>();  // buffers
     (void)reader_.take(value_size_);       // background
     const auto tiles = reader_.number<std::uint32_t>(), children = reader_.number<std::uint32_t>();
@@ -168,11 +169,16 @@ class TreeWalk {
         leaves += own;
       }
     }
-    for (; leaves > 0; --leaves) values(8 * 8 * 8, count_on(reader_.take(kLeafMask)));
+    for (; leaves > 0; --leaves) {
+      values(8 * 8 * 8, count_on(reader_.take(kLeafMask)));
+      bytes_ += 8 * 8 * 8 * value_size_ + kNodeHead;
+    }
+    return bytes_;
   }
 
  private:
   static constexpr std::size_t kLeafMask = 64;
+  static constexpr std::size_t kNodeHead = 256;  // its masks of leaf size, allocator's words
   enum : std::uint32_t { kZip = 1, kActive = 2, kBlosc = 4 };
 
   // Returns how many children it has.
@@ -182,6 +188,7 @@ class TreeWalk {
       if ((children[i] & active[i]) != 0) corrupt("a child is a tile, too");
     }
     values(places, count_on(active));
+    bytes_ += places * std::max<std::size_t>(16, value_size_) + places / 4 + kNodeHead;
     return count_on(children);
   }
 
@@ -226,22 +233,25 @@ class TreeWalk {
   std::uint32_t compression_;
   std::size_t value_size_, stored_size_;
   bool is_half_;
+  std::uint64_t bytes_ = 0;
 };
 
 std::string_view without_half(std::string_view type) {
   return type.ends_with(kHalf) ? type.substr(0, type.size() - kHalf.size()) : type;
 }
 
-void follow_grid(Reader& reader, std::string& image, std::string_view type, bool is_instance) {
+// Returns how many bytes its tree takes in memory.
+std::uint64_t follow_grid(Reader& reader, std::string& image, std::string_view type,
+                          bool is_instance) {
   const auto compression = reader.number<std::uint32_t>();
   follow_metadata(reader, image);
   follow_map(reader);
-  if (is_instance) return;
-  TreeWalk(reader, compression, size_in(kTrees, without_half(type)), type.ends_with(kHalf))
-      .follow();
+  if (is_instance) return 0;
+  const std::size_t value_size = size_in(kTrees, without_half(type));
+  return TreeWalk(reader, compression, value_size, type.ends_with(kHalf)).follow();
 }
 
-void follow_file(std::string& image) {
+std::uint64_t follow_file(std::string& image) {
   const std::string_view file(image);
   Reader reader(file, 0);
   if (!file.starts_with(kMagic) || reader.number<std::int64_t>() != 0x56444220) {
@@ -256,6 +266,7 @@ void follow_file(std::string& image) {
   follow_metadata(reader, image);
   const auto grids = reader.number<std::int32_t>();
   if (grids < 0) corrupt("it has a negative number of grids");
+  std::uint64_t bytes = 0;
   for (std::int32_t i = 0; i < grids; ++i) {
     (void)reader.text();  // name
     const std::string_view type = reader.text(), parent = reader.text();
@@ -265,7 +276,7 @@ void follow_file(std::string& image) {
     const bool is_known = is_followed(without_half(type));
     if (!has_positions) {
       if (!is_known) throw Fault("has a grid of type " + std::string(type) + " of unknown length");
-      follow_grid(reader, image, type, !parent.empty());
+      bytes += follow_grid(reader, image, type, !parent.empty());
       continue;
     }
     const std::size_t begin = reader.position();
@@ -275,20 +286,20 @@ void follow_file(std::string& image) {
     (void)reader.take(static_cast<std::size_t>(end) - begin);
     if (!is_known) continue;
     Reader own(file.substr(0, reader.position()), begin);
-    follow_grid(own, image, type, !parent.empty());
+    bytes += follow_grid(own, image, type, !parent.empty());
   }
+  return bytes;
 }
 
 }  // namespace
 
 bool is_followed(std::string_view grid_type) { return size_in(kTrees, grid_type) != 0; }
 
-std::string fault_in_outline(std::string& image) {
+VdbOutline outline_of(std::string& image) {
   try {
-    follow_file(image);
-    return {};
+    return {{}, follow_file(image)};
   } catch (const Fault& fault) {
-    return fault.of_file;
+    return {fault.of_file, 0};
   }
 }
 

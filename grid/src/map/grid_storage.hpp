@@ -52,6 +52,13 @@ void take_down(Tree& tree) noexcept {
   tree.root().clear();
 }
 
+/// A tree that is taken down so, whatever throws.
+struct OwnCodeTree : CodeTree {
+  using CodeTree::CodeTree;
+  OwnCodeTree(const OwnCodeTree&) = default;
+  ~OwnCodeTree() override { take_down(*this); }
+};
+
 /// What a BeliefGrid holds.
 struct GridStorage {
   double voxel_size = 0;
@@ -66,7 +73,7 @@ struct GridStorage {
   /// Unknown fills the workspace grown outward to multiples of 2048 voxels, so that only tiles of
   /// the root arise; whoever reads the tree clips to the workspace. Voxels outside it hold no
   /// meaning.
-  CodeTree tree{kUnknownCode};
+  OwnCodeTree tree{kUnknownCode};
 
   BeliefMap beliefs;
 
@@ -110,7 +117,6 @@ struct GridStorage {
   GridStorage(double voxel_size, const Pose& T_world_grid, double prior_sigma, Index3 min_index,
               Index3 dims);
   GridStorage(const GridStorage&) = default;
-  ~GridStorage() { take_down(tree); }
   [[nodiscard]] std::unique_ptr<GridStorage> copy() const;
 
   [[nodiscard]] const BeliefBlock* find_beliefs(std::uint64_t key) const {

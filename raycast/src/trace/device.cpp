@@ -4,6 +4,8 @@
 
 #include <array>
 #include <atomic>
+#include <new>
+#include <string>
 
 #include "viewgain/core/error.hpp"
 
@@ -32,8 +34,6 @@ const char* error_text(RTCError code) {
       return "invalid argument";
     case RTC_ERROR_INVALID_OPERATION:
       return "invalid operation";
-    case RTC_ERROR_OUT_OF_MEMORY:
-      return "out of memory";
     case RTC_ERROR_UNSUPPORTED_CPU:
       return "unsupported CPU";
     case RTC_ERROR_CANCELLED:
@@ -41,6 +41,11 @@ const char* error_text(RTCError code) {
     default:
       return "unknown error";
   }
+}
+
+[[noreturn]] void fail(RTCError code, const std::string& what) {
+  if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  throw Error(ErrorCode::backend, what + ": Embree: " + error_text(code));
 }
 
 }  // namespace
@@ -56,27 +61,24 @@ RTCDevice shared_device(Isa isa) {
   }
   const std::string config = std::string("isa=") + embree_isa(isa);
   RTCDevice made = rtcNewDevice(config.c_str());
-  if (made == nullptr) {
-    throw Error(ErrorCode::backend,
-                std::string("Embree gives no device: ") + error_text(rtcGetDeviceError(nullptr)));
-  }
+  if (made == nullptr) fail(rtcGetDeviceError(nullptr), "no device");
   if (kept.compare_exchange_strong(device, made, std::memory_order_acq_rel)) return made;
   rtcReleaseDevice(made);  // another thread was faster
   return device;
 }
 
-void commit_scene(RTCDevice device, RTCScene scene, const std::string& what) {
-  rtcJoinCommitScene(scene);
-  check_device(device, what);
+void commit_scene(RTCDevice device, ScenePtr& scene, const std::string& what) {
+  rtcJoinCommitScene(scene.get());
+  const RTCError code = rtcGetDeviceError(device);
+  if (code == RTC_ERROR_NONE) return;
+  // Not released: that would wait, for ever, for tasks that there was no memory to start.
+  (void)scene.release();
+  fail(code, what);
 }
 
 void check_device(RTCDevice device, const std::string& what) {
   const RTCError code = rtcGetDeviceError(device);
-  if (code == RTC_ERROR_OUT_OF_MEMORY) {
-    throw Error(ErrorCode::capacity, what + ": Embree is out of memory");
-  }
-  if (code != RTC_ERROR_NONE)
-    throw Error(ErrorCode::backend, what + ": Embree: " + error_text(code));
+  if (code != RTC_ERROR_NONE) fail(code, what);
 }
 
 }  // namespace viewgain::detail

@@ -25,7 +25,7 @@ struct alignas(64) TriangleRays {
 class TriangleScene {
  public:
   /// Three numbers a vertex, three indices a triangle; copies them. Throws Error(backend), also
-  /// where Embree has no ray packets, and Error(capacity); `what` says what was being built.
+  /// where Embree has no ray packets; `what` says what was being built.
   TriangleScene(Isa isa, std::span<const float> vertices, std::span<const unsigned> indices,
                 const std::string& what);
 

@@ -30,7 +30,7 @@ struct PacketKernels {
 
 /// A scene's primitives in Embree's BVH, for packets of this instruction set; boxes count as larger
 /// by `margin` [voxels], against rounding. About 0.5 ms per 1,000 primitives. Throws
-/// Error(backend), also where Embree has no such packets, Error(capacity).
+/// Error(backend), also where Embree has no such packets.
 [[nodiscard]] ScenePtr build_bvh(const SceneData& data, Isa isa, float margin);
 
 }  // namespace viewgain::detail

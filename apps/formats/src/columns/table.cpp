@@ -75,6 +75,11 @@ using nlohmann::json;
 
 constexpr std::uint64_t kMostFieldBytes = std::uint64_t{1} << 20U;
 
+// No number with a point or an exponent, which get() would cast.
+std::uint64_t count_of(const json& number) {
+  return number.get_ref<const json::number_unsigned_t&>();
+}
+
 class NpyFile {
  public:
   explicit NpyFile(const std::filesystem::path& path)
@@ -136,7 +141,7 @@ class NpyFile {
     const json said = header();
     const json &type = said.at("descr"), &shape = said.at("shape");
     if (said.at("fortran_order").get<bool>()) fail("is in Fortran's order");
-    rows_ = shape.at(0).get<std::size_t>();
+    rows_ = count_of(shape.at(0));
     if (type.is_array() && shape.size() == 1) {
       find_columns(type);
     } else if (type == "<f8" && shape.size() == 3 && shape[1] == 4 && shape[2] == 4) {
@@ -159,8 +164,8 @@ class NpyFile {
       const char* const digits = type.data() + std::min<std::size_t>(2, type.size());
       std::from_chars(digits, type.data() + type.size(), bytes);
       if (type.find('U') == 1) bytes *= 4;  // numpy counts characters
-      for (const json& count : field.size() > 2 ? field[2] : json(1)) {
-        bytes *= std::min(count.get<std::uint64_t>(), kMostFieldBytes);
+      for (const json& count : field.size() > 2 ? field[2] : json(1U)) {
+        bytes *= std::min(count_of(count), kMostFieldBytes);
         if (bytes == 0 || bytes > kMostFieldBytes) fail(columns.back() + " is not read here");
       }
       row_bytes_ += bytes;

@@ -126,7 +126,7 @@ void AskedViews::recall(const fs::path& next_json, const std::set<std::string>& 
     const Json next = Json::parse(file_bytes(next_json));
     for (const Json& name : next.at("left_out")) left_out_.insert(name.get<std::string>());
     // Else the map has grown since, or is another one.
-    if (next.at("asked").get<bool>() && next.at("frames").get<std::size_t>() == identities.size()) {
+    if (next.at("asked").get<bool>() && next.at("frames") == identities.size()) {
       for (const Json& view : next.at("next")) {
         Pose pose;
         for (std::size_t k = 0; k < pose.m.size(); ++k) {

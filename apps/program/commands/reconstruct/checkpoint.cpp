@@ -54,7 +54,7 @@ std::optional<Decision> Checkpoint::decision(std::size_t index) const {
   if (index >= decisions.size()) return std::nullopt;
   const Json& json = decisions.at(index);
   Decision decision;
-  decision.candidate = json.at("candidate").get<std::size_t>();
+  decision.candidate = json.at("candidate").get_ref<const Json::number_unsigned_t&>();
   for (const auto& [key, figure] : kFigures) {
     if (!json.at(key).is_null()) decision.*figure = json.at(key).get<double>();
   }

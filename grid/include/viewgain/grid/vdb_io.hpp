@@ -32,9 +32,9 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 /// has the saved one's content_hash(). Throws Error(io) if it cannot be opened and Error(format),
 /// naming the file and what is missing or out of bounds, if it is truncated, of another version of
 /// the layout or no viewgain map; Error(capacity) if tiles hold more than 2^27 occupied voxels, or
-/// the file is over 16 GiB. `notes`, if not null, becomes the file's VdbWriteConfig::notes: both
-/// are of one state of the file, whoever rewrites it meanwhile. Cost: grows with the leaves and
-/// beliefs of the map, shared by the threads; the file is read once.
+/// the file is over 16 GiB or does not fit into memory. `notes`, if not null, becomes the file's
+/// VdbWriteConfig::notes: both are of one state of the file, whoever rewrites it meanwhile. Cost:
+/// grows with the leaves and beliefs of the map, shared by the threads; the file is read once.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid
 load_vdb(const std::filesystem::path& path, std::map<std::string, std::string>* notes = nullptr,
          const ExecConfig& exec = {});

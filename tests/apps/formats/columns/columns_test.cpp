@@ -135,6 +135,8 @@ TEST_F(Columns, BadColumnsOfPosesAreNamed) {
   write_npy("nested.npy", "[('a', [('b', '<f8')])]", "(8,)", identity);
   write_npy("broken.npy", "[('tx', '<f8'", "(8,)", identity);
   write_npy("huge.npy", "'<f8'", "(281474976710656, 4, 4)", identity);
+  write_npy("real.npy", "'<f8'", "(3E31, 4, 4)", identity);
+  write_npy("wide.npy", "[('tx', '<f8'), ('a', '<f8', (1e30,))]", "(8,)", identity);
   write("fortran.npy", test::with(read("good.npy"), "order': False", "order': True "));
   std::vector<double> scaled = identity, row = identity, nan = identity;
   scaled[0] = 2;
@@ -155,6 +157,8 @@ TEST_F(Columns, BadColumnsOfPosesAreNamed) {
                                                         {"nested.npy", "header"},
                                                         {"broken.npy", "header"},
                                                         {"huge.npy", "cut off"},
+                                                        {"real.npy", "header"},
+                                                        {"wide.npy", "header"},
                                                         {"fortran.npy", "Fortran"},
                                                         {"scaled.npy", "row 0: the matrix is not"},
                                                         {"row.npy", "last row"},

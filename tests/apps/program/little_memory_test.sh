@@ -1,0 +1,103 @@
+#!/usr/bin/env bash
+# Each command, with memory that ends at another moment each time: it does what it does with enough, or says so
+# in one line and leaves nothing half written. It neither crashes nor waits for ever, and what goes on, goes on.
+#   little_memory_test.sh PROGRAM WORK_FOLDER [STEP]     step: how far apart the limits are [kB]
+set -euo pipefail
+program=$(realpath "$1")
+step=${3:-25000}
+here=$(realpath "$(dirname "$0")")
+if ldd "$program" | grep -q 'lib[at]san'; then
+  echo "sanitizers need more memory than there is"
+  exit 77
+fi
+rm -rf "$2"
+mkdir -p "$2"
+cd "$2"
+cp "$here/cube.off" .
+ended=0 done=0
+
+wrong() {
+  echo "$1, with $kilobytes kB:"
+  cat said.err
+  exit 1
+}
+
+# The call with so little memory; its exit code.
+limited() {
+  local code=0
+  (ulimit -v "$kilobytes" && timeout -s KILL 120 "$program" "$@" >said.out 2>said.err) || code=$?
+  case $code in
+    0) done=$((done + 1)) ;;
+    1 | 2)
+      [ "$(wc -l <said.err)" = 1 ] && grep -q '^viewgain: ' said.err || wrong "$1: not one line"
+      ended=$((ended + 1))
+      ;;
+    *) wrong "$1: ended with $code" ;;
+  esac
+  return $code
+}
+
+# same FOLDER OTHER: but for times; a map that is gone on with has the same hash
+same() {
+  diff -r --exclude run.json --exclude next.json --exclude state.vdb "$1" "$2" || wrong "$2 is another"
+  local map=run/state.vdb
+  [ ! -e "$1/$map" ] || [ "$("$program" info "$1/$map")" = "$("$program" info "$2/$map")" ] || wrong "$2/$map is another"
+}
+
+# sweep COMMAND...: writes to out/*, or nowhere
+sweep() {
+  rm -rf out whole
+  mkdir out
+  "$program" "$@" >/dev/null 2>&1
+  mv out whole
+  for ((kilobytes = 150000; kilobytes <= 400000; kilobytes += step)); do
+    mkdir out
+    if limited "$@"; then
+      same whole out
+    else
+      [ -z "$(ls -A out)" ] || wrong "$1: leaves $(ls -A out)"
+    fi
+    rm -r out
+  done
+}
+
+# goes_on COMMAND...: writes to out/run, and goes on with what an earlier call left
+goes_on() {
+  rm -rf out whole
+  mkdir out
+  "$program" "$@" >/dev/null 2>&1
+  mv out whole
+  for ((kilobytes = 150000; kilobytes <= 400000; kilobytes += step)); do
+    if limited "$@"; then
+      same whole out
+      rm -r out
+    fi
+  done
+  "$program" "$@" >/dev/null 2>&1
+  same whole out
+}
+
+workspace=--workspace=-0.15,-0.15,-0.15,0.25,0.25,0.25
+mesh="cube.off --size 0.2 --sensor sr4000"
+# shellcheck disable=SC2086
+goes_on reconstruct $mesh --voxel 0.0125 --max-views 3 --resume --quiet --threads 1 --out out/run
+cp whole/run/map.vdb .
+# shellcheck disable=SC2086
+sweep simulate $mesh --sphere 4,0.6 --quiet --threads 2 --out out/frames
+cp -r whole/frames .
+touch frames/done
+goes_on follow frames --voxel 0.0125 $workspace --quiet --threads 2 --out out/run
+sweep reconstruct frames --voxel 0.0125 $workspace --quiet --threads 2 --out out/run
+sweep integrate frames --voxel 0.0125 $workspace --quiet --threads 2 --out out/map.vdb
+sweep convert map.vdb out/map.ot
+sweep surface map.vdb --threads 2 --out out/surface.ply
+sweep candidates map.vdb --generator boundary --threads 2 --out out/poses.txt
+sweep render map.vdb --what map --threads 2 --out out/map.png
+sweep info map.vdb
+sweep next map.vdb --top 3 --threads 2
+sweep score map.vdb --sphere 200,0.6 --top 3 --threads 2
+sweep score map.vdb --sphere 200,0.6 --top 3 --threads 2 --trace embree
+sweep score map.vdb --sphere 200,0.6 --top 3 --threads 2 --race --obstacle cube.off
+
+[ "$ended" -ge 30 ] && [ "$done" -ge 20 ] || { echo "only $ended calls ended, $done were done"; exit 1; }
+echo "$ended calls ended, $done were done"
