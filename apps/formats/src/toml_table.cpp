@@ -82,12 +82,11 @@ double TableReader::number_of(const toml::node& node, std::string_view key) cons
 }
 
 int TableReader::whole_number(std::string_view key) {
-  const toml::node& node = require(key);
-  const auto value = node.value<std::int64_t>();
-  if (!node.is_integer() || !value || *value < 0 || *value > 1'000'000) {
+  const auto* number = require(key).as_integer();
+  if (number == nullptr || number->get() < 0 || number->get() > 1'000'000) {
     fail(key, "must be a whole number from 0 to 1000000");
   }
-  return static_cast<int>(*value);
+  return static_cast<int>(number->get());
 }
 
 void TableReader::check_format() {

@@ -163,6 +163,7 @@ TEST_F(Files, SensorErrorsNameTheKey) {
       {with("fx = 447.0", "fx = \"447\""), "\"camera.fx\" must be a number"},
       {with("fx = 447.0", "fx = nan"), "\"camera.fx\" must be finite"},
       {with("width = 640", "width = 640.5"), "\"camera.width\" must be a whole number"},
+      {with("width = 640", "width = 1e63"), "\"camera.width\" must be a whole number"},
       {with("width = 640", "width = -1"), "\"camera.width\""},
       {with("width = 640", "width = 0"), "width"},
       {with("distortion = [0.0, ", "distortion = ["), "\"camera.distortion\""},
