@@ -127,7 +127,7 @@ double ResultRow::counted_views_to(std::size_t goal) const {
 ResultRow row_of(const StudyRun& run, const Json& json, std::size_t max_views) {
   ResultRow row;
   row.run = &run;
-  row.views = json.at("views").get<std::size_t>();
+  row.views = json.at("views").get_ref<const Json::number_unsigned_t&>();
   row.stop_reason = json.at("stop_reason").get<std::string>();
   (void)json.at("per_view").at(0);  // there is one
   for (const Json& view : json.at("per_view")) {
