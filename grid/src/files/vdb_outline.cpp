@@ -151,6 +151,7 @@ class TreeWalk {
     (void)reader_.number<std::int32_t>();  // buffers
     (void)reader_.take(value_size_);       // background
     const auto tiles = reader_.number<std::uint32_t>(), children = reader_.number<std::uint32_t>();
+    bytes_ = kTreeHead + kRootEntry * (std::uint64_t{tiles} + children);
     for (std::uint32_t i = 0; i < tiles; ++i) {
       (void)reader_.take(3 * sizeof(std::int32_t) + value_size_);
       check_bool(reader_.number<char>());  // is it active?
@@ -178,6 +179,7 @@ class TreeWalk {
 
  private:
   static constexpr std::size_t kLeafMask = 64;
+  static constexpr std::size_t kTreeHead = 512, kRootEntry = 128;
   static constexpr std::size_t kNodeHead = 256;  // its masks of leaf size, allocator's words
   enum : std::uint32_t { kZip = 1, kActive = 2, kBlosc = 4 };
 
@@ -188,7 +190,7 @@ class TreeWalk {
       if ((children[i] & active[i]) != 0) corrupt("a child is a tile, too");
     }
     values(places, count_on(active));
-    bytes_ += places * std::max<std::size_t>(16, value_size_) + places / 4 + kNodeHead;
+    bytes_ += places * ((value_size_ + 7) / 8 * 8) + places / 4 + kNodeHead;
     return count_on(children);
   }
 

@@ -19,6 +19,7 @@
 
 #include "core/replaced_new.hpp"
 #include "core/temporary_folder.hpp"
+#include "files/vdb_outline.hpp"
 #include "grid/voxels.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/hazard.hpp"
@@ -96,6 +97,28 @@ TEST(ForgedVdb, MapsPackedInAnyWayAreRead) {
     ++cases;
   }
   EXPECT_EQ(cases, 6);
+}
+
+// There must be as much room before OpenVDB reads.
+TEST(ForgedVdb, TheOutlineKnowsHowLargeTreesAre) {
+  const TemporaryFolder folder;
+  int cases = 0;
+  for (const std::uint32_t packing : kPackings) {
+    for (const bool is_half : {false, true}) {
+      std::string image = packed_map(folder, packing, is_half);
+      const detail::VdbOutline outline = detail::outline_of(image);
+      EXPECT_EQ(outline.fault, "");
+      io::File file((folder.path() / "packed.vdb").string());
+      file.open(false);
+      std::uint64_t used = 0;
+      const openvdb::GridPtrVecPtr grids = file.getGrids();
+      for (const auto& grid : *grids) used += grid->memUsage();
+      EXPECT_GE(outline.tree_bytes, used) << packing << is_half;
+      EXPECT_LE(outline.tree_bytes, used + used / 10) << packing << is_half;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 12);
 }
 
 // OpenVDB takes what memory a size in the file asks for.
