@@ -1,7 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -26,9 +30,13 @@ constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
 constexpr int kStopped = 130;  // as shells have it for SIGINT
 
+// One thread at most says why the program ends; what comes after it waits for the end.
+std::atomic_flag is_reported = ATOMIC_FLAG_INIT;
+
 // One line, whatever a message or a file name holds.
 int report(std::string message, int exit_code) {
   wait_if_ended();
+  while (is_reported.test_and_set()) ::pause();
   for (char& c : message) {
     if (c == '\n' || c == '\r') c = ' ';
   }
@@ -113,23 +121,51 @@ int run(int argc, char** argv) {
   return end_of_output();
 }
 
+// Where memory has ended, without what exit() runs: threads of libraries may still be at what they
+// could not do.
+[[noreturn]] void leave(int exit_code) {
+  (void)std::fflush(stdout);
+  std::_Exit(exit_code);
+}
+
+// For std::terminate(): TBB does so in a thread of its own where it cannot start another.
+[[noreturn]] void end_in_one_line() {
+  if (is_reported.test_and_set()) {
+    ::sleep(1);  // another thread is at it
+    std::_Exit(kInternalError);
+  }
+  try {
+    if (std::current_exception()) throw;
+    std::fputs("viewgain: internal error\n", stderr);
+  } catch (const std::bad_alloc&) {
+    std::fputs("viewgain: out of memory\n", stderr);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "viewgain: internal error: %s\n", error.what());
+  } catch (...) {
+    std::fputs("viewgain: internal error\n", stderr);
+  }
+  remove_unfinished_files();
+  std::_Exit(kInternalError);
+}
+
 // Runs the call; what it throws becomes a line and an exit code.
 int guarded_run(int argc, char** argv) {
+  std::set_terminate(end_in_one_line);
   std::signal(SIGPIPE, SIG_IGN);  // who reads no more what a call says does not end its work
   try {
     clean_up_when_ended();
     return run(argc, argv);
   } catch (const Error& error) {
-    const bool internal = error.code() == ErrorCode::backend;
-    return report(error.what(), internal ? kInternalError : kBadInput);
+    if (error.code() == ErrorCode::backend) leave(report(error.what(), kInternalError));
+    return report(error.what(), kBadInput);
   } catch (const Stopped& stopped) {
     return report(stopped.message, kStopped);
   } catch (const std::bad_alloc&) {
-    return report("out of memory", kInternalError);
+    leave(report("out of memory", kInternalError));
   } catch (const std::system_error& error) {
     const bool of_thread = error.code() == std::errc::resource_unavailable_try_again;
-    const std::string what = of_thread ? "no thread can be started: " : "internal error: ";
-    return report(what + error.what(), kInternalError);
+    const std::string what = of_thread ? "no thread can be started" : "internal error";
+    leave(report(what + ": " + error.what(), kInternalError));
   } catch (const std::exception& error) {
     return report(std::string("internal error: ") + error.what(), kInternalError);
   }

@@ -28,7 +28,8 @@ class QuadScene {
       attach(static_cast<unsigned>(axis), quads[axis]);
       for (const Quad& quad : quads[axis]) behind_[axis].push_back(voxels_behind(quad, axis));
     }
-    detail::commit_scene(device_, scene_, "building the quads");
+    detail::commit_scene(device_, scene_, quads[0].size() + quads[1].size() + quads[2].size(),
+                         "building the quads");
   }
 
   [[nodiscard]] RTCScene get() const { return scene_.get(); }

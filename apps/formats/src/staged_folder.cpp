@@ -147,6 +147,7 @@ StagedFolder::StagedFolder(const fs::path& target, const char* taken_up) {
   const bool is_taken_up = take_leftovers(target_.parent_path(), prefix, taken_up) || is_inside;
 
   const std::lock_guard guard(list_mutex);
+  alive.reserve(alive.size() + 1);  // what is made below is listed in any case
   if (is_taken_up) {
     alive.push_back(this);
     return;

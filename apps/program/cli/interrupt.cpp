@@ -31,8 +31,7 @@ void watch(const sigset_t& signals) {
   int signal = 0;
   while (::sigwait(&signals, &signal) != 0 || asks_for_a_stop(signal)) {
   }
-  remove_temporary_files();
-  remove_staged_folders();
+  remove_unfinished_files();
   std::signal(signal, SIG_DFL);
   ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
   std::raise(signal);
@@ -52,6 +51,11 @@ void clean_up_when_ended() {
   }
   ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::thread(watch, signals).detach();
+}
+
+void remove_unfinished_files() noexcept {
+  remove_temporary_files();
+  remove_staged_folders();
 }
 
 void wait_if_ended() {

@@ -11,6 +11,10 @@ namespace viewgain::app {
 /// any other thread is started.
 void clean_up_when_ended();
 
+/// Removes what all writers of this process have half-written and is not kept for a call that goes
+/// on; they fail afterwards. Takes locks.
+void remove_unfinished_files() noexcept;
+
 /// Returns at once, unless a signal is ending the program: then not at all, so that what fails for
 /// that reason is not reported as an error.
 void wait_if_ended();

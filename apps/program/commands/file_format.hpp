@@ -11,12 +11,12 @@
 namespace viewgain::app {
 
 /// The key `format` of run.json and checkpoint.json; grows when a reader of this one would err.
-inline constexpr std::int64_t kRunFormat = 1;
+inline constexpr std::uint64_t kRunFormat = 1;
 
 /// Throws Error(format), naming file and formats, for one that is newer, and Json::exception for
 /// none.
 inline void check_format(const std::string& file, const Json& json) {
-  const auto format = json.at("format").get<std::int64_t>();
+  const auto format = json.at("format").get_ref<const Json::number_unsigned_t&>();
   if (format <= kRunFormat) return;
   throw Error(ErrorCode::format, file + ": is of format " + std::to_string(format) +
                                      "; this program reads up to format " +

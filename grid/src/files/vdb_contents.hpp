@@ -13,7 +13,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <istream>
-#include <memory>
 #include <new>
 #include <streambuf>
 #include <string>
@@ -26,6 +25,7 @@
 #include "vdb_seal.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/room.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
@@ -121,7 +121,9 @@ struct VdbContents {
 
     initialize_openvdb();
     try {
-      check_room(outline.tree_bytes);
+      // Blosc does not look whether it got the memory that it asks for.
+      const auto threads = static_cast<std::size_t>(pool.num_threads());
+      check_room(outline.tree_bytes + threads * kBloscBytes);
       ImageReader().read(bytes, metadata, grids, pool);
     } catch (const std::ios_base::failure&) {
       fail("is truncated or corrupt");
@@ -146,22 +148,16 @@ struct VdbContents {
   }
 
  private:
+  static constexpr std::size_t kBloscBytes = std::size_t{2} << 20U;  // of a node and its blocks
+
   // Complete, so that the grids are taken down if reading throws.
   explicit VdbContents(ThreadPool& pool) : pool_(pool) {}
 
-  // Blosc does not look whether it got the memory that it asks for. In parts, as trees take it.
-  static void check_room(std::size_t bytes) {
-    constexpr std::size_t kBloscBytes = std::size_t{1} << 22U;  // of its blocks, on all threads
-    constexpr std::size_t kPart = std::size_t{1} << 20U;
-    std::vector<std::unique_ptr<char[]>> parts;
-    for (std::size_t room = 0; room < bytes + kBloscBytes; room += kPart) {
-      parts.push_back(std::make_unique_for_overwrite<char[]>(kPart));
-    }
-  }
-
   template <typename Grid>
   static void take_down_a(openvdb::GridBase& grid) {
-    if (grid.isType<Grid>()) take_down(static_cast<Grid&>(grid).tree());
+    // Not isType(), which makes texts of the types.
+    const bool is_one = grid.constBaseTree().type() == Grid::TreeType::treeType();
+    if (is_one) take_down(static_cast<Grid&>(grid).tree());
   }
 
   ThreadPool& pool_;

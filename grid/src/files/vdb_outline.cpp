@@ -179,7 +179,7 @@ class TreeWalk {
 
  private:
   static constexpr std::size_t kLeafMask = 64;
-  static constexpr std::size_t kTreeHead = 512, kRootEntry = 128;
+  static constexpr std::size_t kTreeHead = 4096, kRootEntry = 128;
   static constexpr std::size_t kNodeHead = 256;  // its masks of leaf size, allocator's words
   enum : std::uint32_t { kZip = 1, kActive = 2, kBlosc = 4 };
 

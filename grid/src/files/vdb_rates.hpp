@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 
 #include "vdb_contents.hpp"
@@ -36,8 +37,10 @@ class RateReader {
         for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
           const Eigen::Vector3d p = grid.center({x, y, z});
           const openvdb::Vec3d at = rates_->worldToIndex({p.x(), p.y(), p.z()});
-          float rate = 0;
-          if (!values.probeValue(openvdb::Coord::round(at), rate)) rate = volume.outside;
+          float rate = volume.outside;
+          if (is_index(at) && !values.probeValue(openvdb::Coord::round(at), rate)) {
+            rate = volume.outside;
+          }
           volume.rates.push_back(checked(rate));
         }
       }
@@ -46,6 +49,11 @@ class RateReader {
   }
 
  private:
+  [[nodiscard]] static bool is_index(const openvdb::Vec3d& at) {
+    constexpr double kMost = std::numeric_limits<std::int32_t>::max() - 1;
+    return std::abs(at.x()) < kMost && std::abs(at.y()) < kMost && std::abs(at.z()) < kMost;
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(ErrorCode::format, path_.string() + ": " + what);
   }

@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstdio>
 #include <new>
 #include <string>
+#include <thread>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/room.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -26,26 +30,16 @@ const char* embree_isa(Isa isa) {
   return "sse2";
 }
 
-const char* error_text(RTCError code) {
-  switch (code) {
-    case RTC_ERROR_NONE:
-      return "no error";
-    case RTC_ERROR_INVALID_ARGUMENT:
-      return "invalid argument";
-    case RTC_ERROR_INVALID_OPERATION:
-      return "invalid operation";
-    case RTC_ERROR_UNSUPPORTED_CPU:
-      return "unsupported CPU";
-    case RTC_ERROR_CANCELLED:
-      return "cancelled";
-    default:
-      return "unknown error";
-  }
+// What Embree said of the last failure in this thread. An array, so that keeping it cannot fail.
+thread_local std::array<char, 256> last_message{};
+
+void keep_message(void*, RTCError, const char* message) {
+  std::snprintf(last_message.data(), last_message.size(), "%s", message == nullptr ? "" : message);
 }
 
 [[noreturn]] void fail(RTCError code, const std::string& what) {
   if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-  throw Error(ErrorCode::backend, what + ": Embree: " + error_text(code));
+  throw Error(ErrorCode::backend, what + ": Embree: " + last_message.data());
 }
 
 }  // namespace
@@ -61,17 +55,29 @@ RTCDevice shared_device(Isa isa) {
   }
   const std::string config = std::string("isa=") + embree_isa(isa);
   RTCDevice made = rtcNewDevice(config.c_str());
-  if (made == nullptr) fail(rtcGetDeviceError(nullptr), "no device");
+  if (made == nullptr) {
+    const RTCError code = rtcGetDeviceError(nullptr);
+    keep_message(nullptr, code, "no device");
+    fail(code, "tracing");
+  }
+  rtcSetDeviceErrorFunction(made, keep_message, nullptr);
   if (kept.compare_exchange_strong(device, made, std::memory_order_acq_rel)) return made;
   rtcReleaseDevice(made);  // another thread was faster
   return device;
 }
 
-void commit_scene(RTCDevice device, ScenePtr& scene, const std::string& what) {
+void commit_scene(RTCDevice device, ScenePtr& scene, std::size_t primitives,
+                  const std::string& what) {
+  // Embree does not come through a lack of memory, nor TBB, which starts its threads here: their
+  // stacks, and what trees of the largest quality take.
+  constexpr std::size_t kThreadBytes = std::size_t{8} << 20U, kBytes = std::size_t{16} << 20U;
+  constexpr std::size_t kPrimitiveBytes = 512;
+  const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
+  check_room(kBytes + threads * kThreadBytes + primitives * kPrimitiveBytes);
   rtcJoinCommitScene(scene.get());
   const RTCError code = rtcGetDeviceError(device);
   if (code == RTC_ERROR_NONE) return;
-  // Not released: that would wait, for ever, for tasks that there was no memory to start.
+  // Not released: that would wait for tasks, some of which may never have begun.
   (void)scene.release();
   fail(code, what);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
@@ -21,10 +22,11 @@ using ScenePtr = std::unique_ptr<RTCSceneTy, SceneRelease>;
 /// below.
 [[nodiscard]] RTCDevice shared_device(Isa isa);
 
-/// Builds a scene's BVH; the calling thread joins in. Throws Error(backend), of which `what` says
-/// what was being built, or std::bad_alloc where Embree has no memory; the
-/// scene is null then.
-void commit_scene(RTCDevice device, ScenePtr& scene, const std::string& what);
+/// Builds the BVH of a scene of so many primitives; the calling thread joins in. Throws
+/// Error(backend), of which `what` says what was being built, and std::bad_alloc where there is not
+/// the memory for it. If Embree has failed the scene is null, and not freed.
+void commit_scene(RTCDevice device, ScenePtr& scene, std::size_t primitives,
+                  const std::string& what);
 
 /// Throws so if the last calls on the device failed.
 void check_device(RTCDevice device, const std::string& what);

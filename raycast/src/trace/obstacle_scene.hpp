@@ -20,7 +20,7 @@ namespace viewgain::detail {
 /// scenes of a map that follow one another share it. Immutable; thread safe.
 class ObstacleScene {
  public:
-  /// Of a scene that has some. Throws Error(backend), Error(capacity).
+  /// Of a scene that has some. Throws Error(backend).
   ObstacleScene(const SceneData& data, Isa isa);
 
   /// The one of the scene before, if it is the same for this one, else a new one; null if there are

@@ -35,7 +35,7 @@ class SceneTracing {
   SceneTracing(const SceneData& data, const SceneData* before);
 
   /// The BVH of voxels, with boxes of this margin; built when first asked for. Thread safe. Throws
-  /// Error(backend), Error(capacity).
+  /// Error(backend).
   [[nodiscard]] RTCScene bvh(int level) const;
 
   /// For rays that go on through unknown voxels; built when first asked for. Thread safe. Throws

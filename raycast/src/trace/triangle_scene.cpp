@@ -100,7 +100,7 @@ TriangleScene::TriangleScene(Isa isa, std::span<const float> vertices,
     rtcReleaseGeometry(geometry);
     check_device(device, what);
   }
-  commit_scene(device, bvh_, what);
+  commit_scene(device, bvh_, indices.size() / 3, what);
 }
 
 std::uint32_t TriangleScene::meet(TriangleRays& rays, std::uint32_t lanes) const {

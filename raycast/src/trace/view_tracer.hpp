@@ -27,8 +27,7 @@ namespace viewgain::detail {
 /// Immutable; thread safe.
 class ViewTracer {
  public:
-  /// Ranges in metres. Throws Error(backend), Error(capacity) if a BVH is wanted and cannot be
-  /// built.
+  /// Ranges in metres. Throws Error(backend) if a BVH is wanted and cannot be built.
   ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays> rays, double min_range,
              double max_range, ExecConfig::Tracer tracer = ExecConfig::Tracer::automatic);
 

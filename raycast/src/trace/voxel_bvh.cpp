@@ -77,7 +77,7 @@ ScenePtr build_bvh(const SceneData& data, Isa isa, float margin) {
   attach_boxes(device, bvh.get(), kLeafGeometry, data.leaf_count, leaves, kernels.intersect_leaf);
   attach_boxes(device, bvh.get(), kBoxGeometry, data.boxes.size() - data.leaf_count, others,
                kernels.intersect_box);
-  commit_scene(device, bvh, "building the voxel scene");
+  commit_scene(device, bvh, data.boxes.size(), "building the voxel scene");
   return bvh;
 }
 

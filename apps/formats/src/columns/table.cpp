@@ -163,6 +163,7 @@ class NpyFile {
       std::uint64_t bytes = 0;
       const char* const digits = type.data() + std::min<std::size_t>(2, type.size());
       std::from_chars(digits, type.data() + type.size(), bytes);
+      bytes = std::min(bytes, kMostFieldBytes + 1);
       if (type.find('U') == 1) bytes *= 4;  // numpy counts characters
       for (const json& count : field.size() > 2 ? field[2] : json(1U)) {
         bytes *= std::min(count_of(count), kMostFieldBytes);

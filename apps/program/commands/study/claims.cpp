@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <new>
 
 #include "viewgain/core/error.hpp"
 
@@ -29,7 +30,11 @@ bool is_there_still(int file, const fs::path& path) {
 }  // namespace
 
 Claims::~Claims() {
-  while (!taken_.empty()) give_back(std::string(taken_.begin()->first));
+  try {
+    while (!taken_.empty()) give_back(std::string(taken_.begin()->first));
+  } catch (const std::bad_alloc&) {  // the next worker takes them over
+    for (const auto& [piece, file] : taken_) ::close(file);
+  }
 }
 
 bool Claims::take(const std::string& piece) {

@@ -136,6 +136,9 @@ class Workers {
     }
   }
 
+  // Ends them after what they are at.
+  void stop() { ours_.request_stop(); }
+
   // Whether all runs are there; throws what a worker has thrown.
   bool end() {
     if (failure_) std::rethrow_exception(failure_);
@@ -226,7 +229,16 @@ bool make_runs(const StudySpec& spec, const StudyFolder& folder, std::size_t job
   Workers workers(spec, folder, threads, stop, on_progress);
   {
     std::vector<std::jthread> team;
-    for (std::size_t i = 1; i < jobs; ++i) team.emplace_back([&] { workers.work(); });
+    try {
+      for (std::size_t i = 1; i < jobs; ++i) team.emplace_back([&] { workers.work(); });
+    } catch (const std::system_error& error) {
+      workers.stop();
+      throw Error(ErrorCode::capacity,
+                  "cannot start " + std::to_string(jobs) + " threads: " + error.what());
+    } catch (...) {
+      workers.stop();
+      throw;
+    }
     workers.work();
   }
   return workers.end();

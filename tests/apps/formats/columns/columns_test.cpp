@@ -132,6 +132,7 @@ TEST_F(Columns, BadColumnsOfPosesAreNamed) {
   write_npy("flat.npy", "'<f8'", "(16,)", identity);
   write_npy("lacks.npy", "[('tx', '<f8'), ('ty', '<f8')]", "(8,)", identity);
   write_npy("object.npy", "[('tx', '<f8'), ('a', '|O')]", "(8,)", identity);
+  write_npy("text.npy", "[('tx', '<f8'), ('a', '<U4611686018427387905')]", "(8,)", identity);
   write_npy("nested.npy", "[('a', [('b', '<f8')])]", "(8,)", identity);
   write_npy("broken.npy", "[('tx', '<f8'", "(8,)", identity);
   write_npy("huge.npy", "'<f8'", "(281474976710656, 4, 4)", identity);
@@ -154,6 +155,7 @@ TEST_F(Columns, BadColumnsOfPosesAreNamed) {
                                                         {"flat.npy", "(n, 4, 4)"},
                                                         {"lacks.npy", "tz"},
                                                         {"object.npy", "a of |O"},
+                                                        {"text.npy", "a of <U4611"},
                                                         {"nested.npy", "header"},
                                                         {"broken.npy", "header"},
                                                         {"huge.npy", "cut off"},

@@ -164,19 +164,21 @@ TEST_F(Resume, AnothersCheckpointIsRefusedAndStays) {
   otherwise["decisions"][0]["map_hash"] = "0";
   json cut = json::parse(good);
   cut["decisions"][0].erase("area");
-  json real = json::parse(good);
+  json real_format = json::parse(good), real = real_format;
+  real_format["format"] = 3e31;
   real["decisions"][0]["candidate"] = 3e31;
   std::size_t cases = 0;
   for (const auto& [text, word] :
        {std::pair{newer.dump(), "is of format 7; this program reads up to format 1"},
         std::pair{cut.dump(), "checkpoint.json: no checkpoint: "},
+        std::pair{real_format.dump(), "checkpoint.json: no checkpoint: "},
         std::pair{real.dump(), "checkpoint.json: no checkpoint: "},
         std::pair{good.substr(0, good.size() / 2), "checkpoint.json: no checkpoint: "}}) {
     write(name, text);
     expect_refused(run_of("out"), word);
     ++cases;
   }
-  EXPECT_EQ(cases, 4U);
+  EXPECT_EQ(cases, 5U);
   write(name, otherwise.dump());
   const test::ProgramResult result = run(run_of("out"));
   EXPECT_EQ(result.exit_code, 2);
