@@ -37,11 +37,9 @@ class RateReader {
         for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
           const Eigen::Vector3d p = grid.center({x, y, z});
           const openvdb::Vec3d at = rates_->worldToIndex({p.x(), p.y(), p.z()});
-          float rate = volume.outside;
-          if (is_index(at) && !values.probeValue(openvdb::Coord::round(at), rate)) {
-            rate = volume.outside;
-          }
-          volume.rates.push_back(checked(rate));
+          float rate = 0;
+          const bool is_set = is_index(at) && values.probeValue(openvdb::Coord::round(at), rate);
+          volume.rates.push_back(checked(is_set ? rate : volume.outside));
         }
       }
     }
