@@ -11,6 +11,7 @@
 #include <new>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "program/cli/app.hpp"
@@ -37,10 +38,7 @@ std::atomic_flag is_reported = ATOMIC_FLAG_INIT;
 int report(std::string message, int exit_code) {
   wait_if_ended();
   while (is_reported.test_and_set()) ::pause();
-  for (char& c : message) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  std::fprintf(stderr, "viewgain: %s\n", message.c_str());
+  std::fprintf(stderr, "viewgain: %s\n", printable(std::move(message)).c_str());
   return exit_code;
 }
 

@@ -307,6 +307,11 @@ TEST(FileBytes, OfAPipeUpToALimit) {
   const TemporaryFolder folder;
   const fs::path pipe = folder.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  // Nobody has named it: not waited for.
+  for (const char* file : {pipe.c_str(), "/dev/zero"}) {
+    expect_error(ErrorCode::io, "is not a regular file", [&] { (void)folder_file_bytes(file); });
+    expect_error(ErrorCode::io, "is not a regular file", [&] { (void)file_head(file, 3); });
+  }
   const std::string bytes = some_bytes(3'000'000);
   const auto write = [&] { std::ofstream(pipe, std::ios::binary) << bytes; };
   {
@@ -329,7 +334,7 @@ TEST(FileBytes, RefusesWhatHasNoEndOrIsNoFile) {
   fs::create_symlink("/dev/zero", endless);
   expect_error(ErrorCode::io, "poses.txt: cannot be read: it is neither a file nor a pipe",
                [&] { (void)file_bytes(endless); });
-  expect_error(ErrorCode::io, "neither a file nor a pipe", [&] { (void)file_head(endless, 10); });
+  expect_error(ErrorCode::io, "not a regular file", [&] { (void)file_head(endless, 10); });
   expect_error(ErrorCode::io, "neither a file nor a pipe", [&] { (void)read_tum(endless); });
   expect_error(ErrorCode::io, "is a directory", [&] { (void)file_bytes(folder.path()); });
   expect_error(ErrorCode::io, "No such file", [&] { (void)file_bytes(folder.path() / "none"); });

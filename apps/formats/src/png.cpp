@@ -163,7 +163,7 @@ Image read_image(const std::filesystem::path& path, const Wanted& wanted, Image 
              " px");
   }
   PngState state;
-  state.bytes = file_bytes(path);
+  state.bytes = folder_file_bytes(path);
   state.message.resize(160);
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &state, on_error, on_warning);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;

@@ -80,7 +80,7 @@ struct Dropped {
 std::vector<RecordedFrame> read_frames(const fs::path& source, double max_time_gap,
                                        Dropped& dropped) {
   const fs::path list = source / "depth.txt";
-  const std::string bytes = file_bytes(list);
+  const std::string bytes = folder_file_bytes(list);
   const TimedPoses poses = read_timed_poses(source / "groundtruth.txt");
   std::vector<RecordedFrame> frames;
   std::uint64_t number = 0;
@@ -113,7 +113,10 @@ std::vector<RecordedFrame> read_frames(const fs::path& source, double max_time_g
 void refuse_links_out(const fs::path& source) {
   std::error_code ignored;
   const fs::path root = fs::canonical(source, ignored) / "";
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source, ignored)) {
+  // What may not be listed can be read by nobody, so nothing leads out of it.
+  constexpr auto kSkip = fs::directory_options::skip_permission_denied;
+  for (const fs::directory_entry& entry :
+       fs::recursive_directory_iterator(source, kSkip, ignored)) {
     if (!entry.is_symlink(ignored)) continue;
     std::error_code code;  // of one that leads nowhere, too
     const std::string to = fs::canonical(entry.path(), code).string();
@@ -149,7 +152,7 @@ std::vector<fs::path> imported_files(const fs::path& dir) {
   if (files.empty()) return files;
   std::set<std::string> own;
   if (is_there(dir / kImported)) {
-    std::istringstream lines(file_bytes(dir / kImported));
+    std::istringstream lines(folder_file_bytes(dir / kImported));
     std::string line;
     if (std::getline(lines, line) && line == kImportedText) {
       own.insert(kImported);

@@ -63,7 +63,9 @@ std::vector<fs::path> leftovers(const fs::path& folder, const std::string& prefi
 void remove_half_written(const fs::path& folder) {
   std::vector<fs::path> found;
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, ignored)) {
+  constexpr auto kSkip = fs::directory_options::skip_permission_denied;
+  for (const fs::directory_entry& entry :
+       fs::recursive_directory_iterator(folder, kSkip, ignored)) {
     const bool is_hidden = entry.path().filename().string().starts_with(".");
     if (is_hidden || entry.is_symlink(ignored)) found.push_back(entry.path());
   }

@@ -141,6 +141,21 @@ std::string formatted(const char* format, ...) {
   return text.data();
 }
 
+std::string printable(std::string text) noexcept {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const auto before = static_cast<unsigned char>(i > 0 ? text[i - 1] : 0);
+    if (c == '\n' || c == '\r') {
+      text[i] = ' ';
+    } else if (c < 0x20 || c == 0x7F) {
+      text[i] = '?';
+    } else if (before == 0xC2 && c >= 0x80 && c < 0xA0) {
+      text[i - 1] = text[i] = '?';
+    }
+  }
+  return text;
+}
+
 std::string with_commas(unsigned long long value) {
   const std::string digits = std::to_string(value);
   std::string text;

@@ -123,7 +123,7 @@ void info(const Options& options) {
               options.criterion.c_str());
   std::printf("prior sigma      %g m\n", grid.prior_sigma());
   std::printf("views            %zu\n", grid.views().size());
-  if (map.sensor) std::printf("sensor           %s\n", map.sensor->name.c_str());
+  if (map.sensor) std::printf("sensor           %s\n", printable(map.sensor->name).c_str());
   if (const HazardCounters& counters = grid.hazard_counters(); !counters.empty()) {
     std::printf("hazard factors  ");
     for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {

@@ -189,7 +189,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   }
   std::printf(
       "%zu %ss (%s), %s readings, %s of them in the workspace; %s out of range, %s invalid\n",
-      taken, part_name(options), source.sensor().name.c_str(),
+      taken, part_name(options), printable(source.sensor().name).c_str(),
       with_commas(totals.sum.readings).c_str(), with_commas(totals.sum.readings_inside).c_str(),
       with_commas(totals.sum.out_of_range).c_str(), with_commas(totals.sum.invalid).c_str());
   if (const std::string text = frames_text(totals.tally.counts()); !text.empty()) {

@@ -11,6 +11,7 @@
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
+#include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/frames/frame_map.hpp"
 #include "program/commands/map_json.hpp"
@@ -88,8 +89,8 @@ void next(const Options& options) {
     return;
   }
   if (frames) print_map(model.grid(), model.grid().statistics());
-  std::printf("%zu views so far, %s; %s\n", model.grid().views().size(), sensor.name.c_str(),
-              summary_of(views).c_str());
+  std::printf("%zu views so far, %s; %s\n", model.grid().views().size(),
+              printable(sensor.name).c_str(), summary_of(views).c_str());
   if (const std::string text = frames ? frames_text(frames->counts) : ""; !text.empty()) {
     std::printf("%s\n", text.c_str());
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -45,7 +46,7 @@ void print_row(const Sensor& sensor) {
   const PinholeCamera& camera = sensor.camera;
   const MeasurementSigmas sigmas = sensor.sigmas(sensor.working_distance);
   std::printf("%-18s %4d x %-4d %5.1f x %-5.1f %4g - %-5g %8g %7.2f %7.2f  %s\n",
-              sensor.name.c_str(), camera.width, camera.height,
+              printable(sensor.name).c_str(), camera.width, camera.height,
               field_of_view(camera.width, camera.fx, camera.cx),
               field_of_view(camera.height, camera.fy, camera.cy), sensor.min_range,
               sensor.max_range, sensor.working_distance, 1e3 * sigmas.axial, 1e3 * sigmas.lateral,

@@ -187,7 +187,7 @@ void simulate(const Options& options) {
     return;
   }
   std::printf("%zu frames of %dx%d px (%s) of %s triangles in %.2f s: %s\n", poses.size(),
-              sensor.camera.width, sensor.camera.height, sensor.name.c_str(),
+              sensor.camera.width, sensor.camera.height, printable(sensor.name).c_str(),
               with_commas(triangles).c_str(), seconds, options.out.c_str());
   std::printf("pixels: %s readings, %s out of range, %s invalid\n",
               with_commas(counts.readings).c_str(), with_commas(counts.out_of_range).c_str(),

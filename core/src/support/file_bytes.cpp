@@ -22,13 +22,14 @@ constexpr std::size_t kPart = std::size_t{1} << 20U;  // [bytes]
 /// A regular file or a pipe, open for reading.
 class Input {
  public:
-  explicit Input(const std::filesystem::path& path) : path_(path) {
+  Input(const std::filesystem::path& path, bool may_be_a_pipe) : path_(path) {
     // Before it is opened: opening a device may already do something.
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0) fail("cannot be opened", errno);
     if (S_ISDIR(status.st_mode)) fail("cannot be read: it is a directory");
-    if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) {
-      fail("cannot be read: it is neither a file nor a pipe");
+    if (!S_ISREG(status.st_mode) && !(may_be_a_pipe && S_ISFIFO(status.st_mode))) {
+      fail(may_be_a_pipe ? "cannot be read: it is neither a file nor a pipe"
+                         : "cannot be read: it is not a regular file");
     }
     size_ = S_ISREG(status.st_mode) ? static_cast<std::uint64_t>(status.st_size) : 0;
     file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -69,10 +70,7 @@ class Input {
   int file_ = -1;
 };
 
-}  // namespace
-
-std::string file_bytes(const std::filesystem::path& path, std::uint64_t most) {
-  Input input(path);
+std::string bytes_of(Input& input, std::uint64_t most) {
   if (input.size() == 0) most = std::min(most, kMostPipeBytes);
   const auto refuse = [&] {
     input.fail_capacity("has more than " + std::to_string(most) + " bytes");
@@ -95,8 +93,20 @@ std::string file_bytes(const std::filesystem::path& path, std::uint64_t most) {
   input.fail_capacity("does not fit into memory");
 }
 
+}  // namespace
+
+std::string file_bytes(const std::filesystem::path& path, std::uint64_t most) {
+  Input input(path, true);
+  return bytes_of(input, most);
+}
+
+std::string folder_file_bytes(const std::filesystem::path& path, std::uint64_t most) {
+  Input input(path, false);
+  return bytes_of(input, most);
+}
+
 std::string file_head(const std::filesystem::path& path, std::size_t count) {
-  Input input(path);
+  Input input(path, false);
   std::string bytes(count, '\0');
   bytes.resize(input.read(bytes.data(), count));
   return bytes;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluator_core.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -19,6 +20,8 @@ constexpr double kMinPriorSigma = 1e-6;
 constexpr double kMaxPriorSigma = 1e3;
 // Determinants of Λ_r lose about the square of this ratio of a sensor's sigmas in digits.
 constexpr double kMaxSigmaRatio = 1e4;
+// What a smaller sigma [m] tells has a square that single precision does not hold.
+constexpr double kMinSigma = 1e-8;
 
 void check_range(const char* name, double value) {
   if (!std::isfinite(value) || value < 0) {
@@ -52,6 +55,10 @@ void check(const GainConfig& config, const Sensor& sensor) {
       refuse("the sensor's sigmas at " + short_text(t) + " m, " + short_text(sigma.axial) +
              " m along the ray and " + short_text(sigma.lateral) +
              " m across, differ by more than a factor of " + short_text(kMaxSigmaRatio));
+    }
+    if (const double least = std::min(sigma.axial, sigma.lateral); least < kMinSigma) {
+      refuse("the sensor's sigma at " + short_text(t) + " m is " + short_text(least) +
+             " m; the least is " + short_text(kMinSigma) + " m");
     }
   }
   for (const GainConfig::WeightRegion& region : config.weights) {

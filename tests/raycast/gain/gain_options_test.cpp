@@ -191,6 +191,12 @@ TEST(GainOptions, PriorsAndSigmasThatDoublePrecisionCannotWeighAreRefused) {
   }
   sensor.noise = ConstantNoise{1e-9, 1e-2};
   EXPECT_THROW(GainEvaluator(scene, sensor), Error);
+  sensor.noise = ConstantNoise{0.9e-8, 1e-7};
+  EXPECT_THROW(GainEvaluator(scene, sensor), Error);
+  sensor.noise = ConstantNoise{1e-7, 0.9e-8};
+  EXPECT_THROW(GainEvaluator(scene, sensor), Error);
+  sensor.noise = ConstantNoise{1e-8, 1e-8};
+  EXPECT_NO_THROW(GainEvaluator(scene, sensor));
 }
 
 TEST(GainOptions, BadArgumentsAreNamed) {

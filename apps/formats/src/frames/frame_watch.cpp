@@ -98,7 +98,7 @@ struct Listing {
 
 bool has_end(const fs::path& png) {
   constexpr std::string_view kEnd("\0\0\0\0IEND\xae\x42\x60\x82", 12);
-  return file_bytes(png).ends_with(kEnd);
+  return folder_file_bytes(png).ends_with(kEnd);
 }
 
 }  // namespace
@@ -136,7 +136,7 @@ struct FrameWatch::Impl {
     if (!is.pose_file.is_there()) return is.line;
     const fs::path path = dir / (name + std::string(kPoseSuffix));
     try {
-      if (!is_stable && !file_bytes(path).ends_with('\n')) return std::nullopt;
+      if (!is_stable && !folder_file_bytes(path).ends_with('\n')) return std::nullopt;
     } catch (const Error&) {  // read_pose_file() says why
     }
     return read_pose_file(path);

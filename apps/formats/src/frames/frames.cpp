@@ -38,6 +38,8 @@ std::uint64_t apply(const Gray8Image& mask, int width, int height, std::vector<V
 namespace fs = std::filesystem;
 
 constexpr std::uint16_t kOutOfRangeValue = 65535;
+// More than 2^24 pixels of 16 bits take where nothing can be packed.
+constexpr std::uint64_t kMostImageBytes = std::uint64_t{1} << 28U;
 
 void check_index(std::size_t index, std::size_t count) {
   if (index < count) return;
@@ -49,7 +51,7 @@ void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorCode::format, path.string() + ": " + what);
   };
-  const std::string bytes = file_bytes(path);
+  const std::string bytes = folder_file_bytes(path);
   std::vector<double> k;
   for (LineReader line(path.string(), bytes); line.next();) {
     for (std::size_t i = 0; i < line.words().size(); ++i) k.push_back(line.finite_number(i));
@@ -73,7 +75,7 @@ void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
 std::optional<double> said_scale(const fs::path& dir) {
   const fs::path path = dir / kScale;
   if (!is_there(path)) return std::nullopt;
-  const std::string bytes = file_bytes(path);
+  const std::string bytes = folder_file_bytes(path);
   LineReader line(path.string(), bytes);
   if (!line.next() || line.words().size() != 1) {
     throw Error(ErrorCode::format, path.string() + ": needs one number, the metres per unit");
@@ -295,8 +297,10 @@ std::string frame_identity(const FrameSequence& frames, std::size_t index) {
   check_index(index, frames.poses.size());
   Hash64 hash;
   const fs::path& image = frames.images[index];
-  hash.add_bytes(file_bytes(image));
-  if (is_there(amplitude_path(image))) hash.add_bytes(file_bytes(amplitude_path(image)));
+  hash.add_bytes(folder_file_bytes(image, kMostImageBytes));
+  if (is_there(amplitude_path(image))) {
+    hash.add_bytes(folder_file_bytes(amplitude_path(image), kMostImageBytes));
+  }
   for (const double value : frames.poses[index].m) hash.add_number(value);
   return hash.hex() + ' ' + image.filename().string();
 }

@@ -213,7 +213,8 @@ Ranking rank_in_turn(const GainEvaluator& evaluator, std::span<const Pose> T_wor
   return ranking;
 }
 
-DecisionMaking::Decision decision_of(const Ranking& ranking, GainModel model) {
+std::optional<DecisionMaking::Decision> decision_of(const Ranking& ranking, GainModel model) {
+  if (ranking.views.empty()) return std::nullopt;
   const RankedView& first = ranking.views.front();
   const auto& indices = ranking.scored_indices;
   const auto scored = std::lower_bound(indices.begin(), indices.end(), first.index);

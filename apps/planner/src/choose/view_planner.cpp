@@ -221,13 +221,9 @@ struct ViewPlanner::Impl {
         plans ? plan(poses, rank_config, here, control)
               : rank_views(by, poses, std::max<std::size_t>(k, 1), rank_config, here, control);
     if (from != nullptr && ranking.complete) {
-      std::optional<DecisionMaking::Decision> decision;
       state.promised.reset();
-      if (!ranking.views.empty()) {
-        decision = decision_of(ranking, by.model());
-        state.promised = ranking.views.front().T_world_camera;
-      }
-      remember(decision, *from);
+      if (!ranking.views.empty()) state.promised = ranking.views.front().T_world_camera;
+      remember(decision_of(ranking, by.model()), *from);
     }
     if (from != nullptr) leave_out_gainless(ranking, rank_config);
     if (plans && !is_of_plan && ranking.complete) {

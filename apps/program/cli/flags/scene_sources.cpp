@@ -134,8 +134,8 @@ bool is_same_sensor(const Sensor& a, const Sensor& b) { return readings_of(a) ==
 bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor) {
   if (!map.sensor || is_same_sensor(*map.sensor, sensor)) return false;
   std::fprintf(stderr, "viewgain: warning: the readings in %s come from %s, not from this %s: %s\n",
-               path.c_str(), map.sensor->name.c_str(), sensor.name.c_str(),
-               difference(*map.sensor, sensor).c_str());
+               path.c_str(), printable(map.sensor->name).c_str(), printable(sensor.name).c_str(),
+               printable(difference(*map.sensor, sensor)).c_str());
   return true;
 }
 

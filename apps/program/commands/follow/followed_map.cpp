@@ -123,7 +123,7 @@ void AskedViews::recall(const fs::path& next_json, const std::set<std::string>& 
   std::error_code ignored;
   if (!fs::exists(next_json, ignored)) return;
   try {
-    const Json next = Json::parse(file_bytes(next_json));
+    const Json next = Json::parse(folder_file_bytes(next_json));
     for (const Json& name : next.at("left_out")) left_out_.insert(name.get<std::string>());
     // Else the map has grown since, or is another one.
     if (next.at("asked").get<bool>() && next.at("frames") == identities.size()) {

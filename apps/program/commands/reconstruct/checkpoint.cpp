@@ -30,7 +30,7 @@ Checkpoint::Checkpoint(RunFolder& folder, const Json& head, bool resume)
   if (!file_.empty()) {
     Json last;
     try {
-      last = Json::parse(file_bytes(file_));
+      last = Json::parse(folder_file_bytes(file_));
       check_format(file_, last);
       for (std::size_t i = 0; i < last.at("decisions").size(); ++i) {
         const Json& decided = last.at("decisions").at(i);

@@ -181,9 +181,17 @@ class Recording {
     head["isa"] = isa_name(select_isa());
     const FrameSequence& frames = map_->folder().frames();
     for (std::size_t i = 0; i < frames.poses.size(); ++i) {
-      head["frames"].push_back(frame_identity(frames, i));
+      head["frames"].push_back(identity_or_none(frames, i));
     }
     return head;
+  }
+  // A frame that cannot be read is counted when its turn comes; the run is another when it can be.
+  [[nodiscard]] static std::string identity_or_none(const FrameSequence& frames, std::size_t i) {
+    try {
+      return frame_identity(frames, i);
+    } catch (const Error&) {
+      return "unreadable " + frames.images[i].filename().string();
+    }
   }
   [[nodiscard]] const NextViews& next() const { return next_; }
   [[nodiscard]] const FrameCounts& counts() const { return map_->counts(); }

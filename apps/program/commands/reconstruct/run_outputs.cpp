@@ -83,10 +83,13 @@ Json run_head(const Json& settings) {
 Json beside_json(const RunOutputs& outputs) {
   if (outputs.beside.empty()) return nullptr;
   const std::filesystem::path file = std::filesystem::path(outputs.beside) / "run.json";
-  const Json run = Json::parse(file_bytes(file), nullptr, false);
+  const Json run = Json::parse(folder_file_bytes(file), nullptr, false);
   const bool has_views = run.is_object() && run.contains("settings") && run.contains("per_view") &&
                          run["per_view"].is_array() && !run["per_view"].empty();
-  if (!has_views) throw Error(ErrorCode::format, file.string() + ": is not a run's");
+  if (!has_views || !run.contains("format") || !run["format"].is_number_unsigned()) {
+    throw Error(ErrorCode::format, file.string() + ": is not a run's");
+  }
+  check_format(file.string(), run);
   return {{"name", outputs.beside}, {"settings", run["settings"]}, {"per_view", run["per_view"]}};
 }
 

@@ -133,7 +133,7 @@ void ClassicScores::print_json(std::size_t top) const {
 
 void ClassicScores::print_table(std::size_t top) const {
   const std::vector<ClassicGain>& asked = evaluator.config().gains;
-  std::printf("classic gains, sensor %s\n", sensor.name.c_str());
+  std::printf("classic gains, sensor %s\n", printable(sensor.name).c_str());
   if (!dropped.empty()) {
     std::printf("%zu of %zu poses; dropped: %s\n", numbers.size(), source.poses.size(),
                 counts_text(dropped).c_str());

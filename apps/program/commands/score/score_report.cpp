@@ -213,8 +213,9 @@ void ScoreReport::print_json() const {
 
 void ScoreReport::print_table() const {
   std::printf("%s gain, %s, sensor %s, prior sigma %.4g m, gains in %s\n",
-              std::string(gain_model_name(model)).c_str(), criterion.c_str(), sensor.name.c_str(),
-              evaluator.prior_sigma(), std::string(gain_unit(model, criterion)).c_str());
+              std::string(gain_model_name(model)).c_str(), criterion.c_str(),
+              printable(sensor.name).c_str(), evaluator.prior_sigma(),
+              std::string(gain_unit(model, criterion)).c_str());
   print_mended(source.orthonormalized);
   if (!scores.dropped.empty()) {
     std::printf("%zu of %zu poses; dropped: %s\n", scores.candidates, source.poses.size(),

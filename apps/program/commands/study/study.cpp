@@ -79,7 +79,7 @@ class StudyFolder {
   // run.json. Throws Error(format) that names the file if it is not that of this run.
   [[nodiscard]] Json read(const StudyRun& run) const {
     const fs::path path = file(run, "run.json");
-    Json json = parse_or_null(file_bytes(path));
+    Json json = parse_or_null(folder_file_bytes(path));
     if (!json.is_object() || !json.contains("configuration") ||
         json["configuration"] != run.configuration) {
       throw Error(ErrorCode::format,

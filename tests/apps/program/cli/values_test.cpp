@@ -94,6 +94,22 @@ TEST(PoseSource, EverySetRoundItsCentre) {
             orbit_poses(3, 0.6, std::numbers::pi / 2, 0, std::numbers::pi, {1, 2, 3}));
 }
 
+TEST(Printable, AStrangersTextCommandsNoTerminal) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"", ""},
+      {"sr4000, 2 m~", "sr4000, 2 m~"},
+      {"a\nhash  0\r\n", "a hash  0  "},
+      {"\x1b[31mred\a\t\x7f", "?[31mred???"},
+      {std::string("nul\0", 4), "nul?"},
+      {"\xC2\x9B"
+       "31m",
+       "??31m"},                                     // CSI in one character
+      {"\xC3\xA9 \xC2\xB5m", "\xC3\xA9 \xC2\xB5m"},  // e acute, micro
+      {"\x9B", "\x9B"},
+      {"\xC2", "\xC2"}};
+  for (const auto& [text, safe] : cases) EXPECT_EQ(printable(text), safe);
+}
+
 TEST(PoseSource, ErrorsNameTheFlag) {
   struct Case {
     std::string PoseOptions::*set;

@@ -11,6 +11,7 @@
 #include "program/cli/json.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/png.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain {
 namespace {
@@ -98,6 +99,18 @@ TEST_F(Render, MapsRememberTheirSensor) {
   EXPECT_NE(two.err.find("not from this d435: "), std::string::npos) << two.err;
   EXPECT_NE(two.err.find(" there, "), std::string::npos) << two.err;
   EXPECT_TRUE(json::parse(run_well({"info", "two.vdb", "--json"})).at("sensor").is_null());
+
+  // A stranger's name writes no line of its own.
+  std::string hostile = sensor_toml(sensor_preset("d435"));
+  const std::string name = "\"d435\"";
+  ASSERT_NE(hostile.find(name), std::string::npos);
+  hostile.replace(hostile.find(name), name.size(), "\"d435\\nhash  0\\u001b[31m\"");
+  write("hostile.toml", hostile);
+  run_well({"integrate", "frames", "--sensor", "hostile.toml", "--voxel", "0.02", "--out",
+            "hostile.vdb"});
+  const std::string text = run_well({"info", "hostile.vdb"});
+  EXPECT_NE(text.find(" d435 hash  0?[31m\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find('\x1b'), std::string::npos) << text;
 
   // It does not go into a tree.
   run_well({"convert", "run/map.vdb", "tree.ot"});
@@ -261,6 +274,12 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
   expect_refused({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
                   "0.01", "--out", "third", "--beside", "none"},
                  "none/run.json: is not a run's");
+  json newer = run_json;
+  newer["format"] = 2;
+  write("none/run.json", newer.dump());
+  expect_refused({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
+                  "0.01", "--out", "third", "--beside", "none"},
+                 "none/run.json: is of format 2; this program reads up to format 1");
 
   // A later run in the folder takes the report of the one before with it.
   ASSERT_EQ(reconstruct("off").exit_code, 0);

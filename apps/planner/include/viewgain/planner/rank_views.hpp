@@ -120,10 +120,10 @@ VIEWGAIN_EXPORT void keep_worth(const GainEvaluator& evaluator, const PlanAhead&
                                                    const std::optional<Eigen::Vector3d>& here,
                                                    const BatchControl& control = {});
 
-/// What the stopping rules want to know of a ranking, in which there must be a view: of the first
-/// one what it promises by itself, whatever views it goes with.
-[[nodiscard]] VIEWGAIN_EXPORT DecisionMaking::Decision decision_of(const Ranking& ranking,
-                                                                   GainModel model);
+/// What the stopping rules want to know of a ranking: of its first view what that promises by
+/// itself, whatever views it goes with; nothing where no view has a gain.
+[[nodiscard]] VIEWGAIN_EXPORT std::optional<DecisionMaking::Decision> decision_of(
+    const Ranking& ranking, GainModel model);
 
 /// Takes the views out that gain nothing, unless a measure of the user's own ranked them.
 VIEWGAIN_EXPORT void leave_out_gainless(Ranking& ranking, const RankConfig& config);
