@@ -4,6 +4,7 @@
 //
 // three.js and esbuild are looked for in node_modules/ beside this file: run `npm ci --ignore-scripts`
 // in a copy of this folder first, then this file of the copy. esbuild needs none of its install scripts.
+import { createHash } from "node:crypto";
 import { readFileSync, renameSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -38,9 +39,12 @@ const style = await build({
 
 const notice = readFileSync(join(here, "node_modules/three/LICENSE"), "utf8").trim();
 const inText = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;");
+const script = bundle.outputFiles[0].text.trim();
 const parts = {
   STYLE: style.outputFiles[0].text.trim(),
-  SCRIPT: bundle.outputFiles[0].text.trim(),
+  SCRIPT: script,
+  // The page's policy lets this script run and no other, whatever else gets into the page.
+  SCRIPT_HASH: `sha256-${createHash("sha256").update(script).digest("base64")}`,
   NOTICE: inText(notice),
 };
 

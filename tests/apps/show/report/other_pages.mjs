@@ -52,6 +52,15 @@ export async function checkHostileNames(browser, page, data) {
     check(markup, "no name becomes markup");
     check(report.errors.length === 0, `hostile names make no error: ${report.errors.join("; ")}`);
     check(report.requests.length === 0, "hostile names make no request");
+    // What would come of markup if a name became some: the page's policy lets no second script run.
+    const second = await report.page.evaluate(() => {
+      const script = document.createElement("script");
+      script.textContent = "window.hit = 2";
+      document.body.append(script);
+      document.body.insertAdjacentHTML("beforeend", "<img src='data:,' onerror='window.hit = 3'>");
+      return new Promise((resolve) => setTimeout(() => resolve(window.hit ?? null), 200));
+    });
+    check(second === null, "no other script runs");
     await report.close();
   } finally {
     rmSync(folder, { recursive: true });
