@@ -175,16 +175,30 @@ std::vector<Reader> frame_readers() {
     write_tum(folder.path() / "groundtruth.txt", std::vector(2, three_poses()[0]),
               std::vector<double>{1.0, 2.0});
   };
+  // Others' layout: a file a pose, and what the images' pixels mean.
+  const auto write_recorded = [](const TemporaryFolder& folder) {
+    write_images(folder, "frames", {"frame-000000.depth.png"});
+    folder.file("frames/frame-000000.pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0.5\n0 0 0 1\n");
+    folder.file("frames/camera-intrinsics.txt", "9.5 0 3.5\n0 9.25 2.5\n0 0 1\n");
+    folder.file("frames/depth-scale.txt", "0.0010000000000\n");
+    write_sensor_toml(folder.path() / "frames/sensor.toml", small_sensor());
+  };
+  const auto read_frames = [](const fs::path& folder) {
+    const FrameSequence frames = open_frames(folder / "frames");
+    for (std::size_t i = 0; i < frames.images.size(); ++i) {
+      const FrameFault fault = read_frame(frames, i).fault;
+      if (fault.verdict != FrameVerdict::used) throw Error(ErrorCode::format, fault.what);
+    }
+  };
   return {{"frames",
            write_frames,
            {"frames/frame-000001.depth.png", "frames/poses.txt", "frames/sensor.toml"},
-           [](const fs::path& folder) {
-             const FrameSequence frames = open_frames(folder / "frames");
-             for (std::size_t i = 0; i < frames.images.size(); ++i) {
-               const FrameFault fault = read_frame(frames, i).fault;
-               if (fault.verdict != FrameVerdict::used) throw Error(ErrorCode::format, fault.what);
-             }
-           }},
+           read_frames},
+          {"recorded",
+           write_recorded,
+           {"frames/camera-intrinsics.txt", "frames/depth-scale.txt"},
+           read_frames,
+           4},
           {"tum", write_tum_recording, {"depth.txt", "groundtruth.txt"}, load_recording, 20}};
 }
 
