@@ -58,7 +58,7 @@ using viewgain::refuse;
 [[nodiscard]] __attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...);
 
 /// A stranger's text for a terminal: line ends become blanks, other control characters (C0, C1 in
-/// UTF-8, DEL) question marks. Takes no memory.
+/// UTF-8, DEL) question marks.
 [[nodiscard]] std::string printable(std::string text) noexcept;
 
 /// 2,097,152 for 2097152.

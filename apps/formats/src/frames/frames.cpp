@@ -38,8 +38,6 @@ std::uint64_t apply(const Gray8Image& mask, int width, int height, std::vector<V
 namespace fs = std::filesystem;
 
 constexpr std::uint16_t kOutOfRangeValue = 65535;
-// More than 2^24 pixels of 16 bits take where nothing can be packed.
-constexpr std::uint64_t kMostImageBytes = std::uint64_t{1} << 28U;
 
 void check_index(std::size_t index, std::size_t count) {
   if (index < count) return;
@@ -297,10 +295,8 @@ std::string frame_identity(const FrameSequence& frames, std::size_t index) {
   check_index(index, frames.poses.size());
   Hash64 hash;
   const fs::path& image = frames.images[index];
-  hash.add_bytes(folder_file_bytes(image, kMostImageBytes));
-  if (is_there(amplitude_path(image))) {
-    hash.add_bytes(folder_file_bytes(amplitude_path(image), kMostImageBytes));
-  }
+  hash.add_bytes(folder_file_bytes(image));
+  if (is_there(amplitude_path(image))) hash.add_bytes(folder_file_bytes(amplitude_path(image)));
   for (const double value : frames.poses[index].m) hash.add_number(value);
   return hash.hex() + ' ' + image.filename().string();
 }
