@@ -11,20 +11,23 @@
 namespace viewgain::detail {
 namespace {
 
+// Of a workspace, which has at most 2^16 voxels an axis, the lowest bits tell the voxels apart.
 constexpr unsigned kBits = 21;  // of a coordinate in a key
+constexpr std::uint32_t kMask = (1U << kBits) - 1;
 
 std::uint64_t key_of(Index3 v) {
   const auto bits = [](std::int32_t i) {
-    return static_cast<std::uint64_t>(i) & ((std::uint64_t{1} << kBits) - 1);
+    return std::uint64_t{static_cast<std::uint32_t>(i) & kMask};
   };
   return bits(v.x) << 2 * kBits | bits(v.y) << kBits | bits(v.z);
 }
-Index3 voxel_of(std::uint64_t key) {
-  const auto number = [key](unsigned shift) {
-    const auto bits = static_cast<std::uint32_t>(key >> shift) << (32 - kBits);
-    return static_cast<std::int32_t>(bits) >> (32 - kBits);
+/// `lowest` is no higher than the voxel along any axis.
+Index3 voxel_of(std::uint64_t key, Index3 lowest) {
+  const auto number = [key](unsigned shift, std::int32_t from) {
+    const auto above = static_cast<std::uint32_t>(key >> shift) - static_cast<std::uint32_t>(from);
+    return from + static_cast<std::int32_t>(above & kMask);
   };
-  return {number(2 * kBits), number(kBits), number(0)};
+  return {number(2 * kBits, lowest.x), number(kBits, lowest.y), number(0, lowest.z)};
 }
 
 }  // namespace
@@ -158,12 +161,13 @@ void SurfaceSet::choose(std::size_t i, const Pose& T_world_camera, ViewDriver::L
   const std::shared_ptr<const Look> held = look_of(i, T_world_camera, lease.workspace());
   const Look& look = *held;
   if (missed_.empty()) missed_.assign(surface_.rate_places(), 1.0F);
+  const Index3 lowest = surface_.voxel_at(0, 0, 0);
   for (const Reached& one : look.cells) {
     Cell& cell = cells_[one.key];
     cell.worth = one.worth;
     cell.missed *= 1 - one.share;
     cell.largest = std::max(cell.largest, one.share);
-    if (const auto place = surface_.rate_place(voxel_of(one.key))) {
+    if (const auto place = surface_.rate_place(voxel_of(one.key, lowest))) {
       missed_[*place] = static_cast<float>(cell.missed);
     }
   }

@@ -86,10 +86,11 @@ TEST(Limits, AMillionNeedlesLeaveGainsThatAreNumbers) {
 
 struct Counts {
   double unknown, occupied, gain;
+  ViewSet set;
 };
 
-/// What four frames of an object of 48 voxels leave, all lengths as the voxel is, and the gain of a
-/// view.
+/// What four frames of an object of 48 voxels leave, all lengths as the voxel is, the gain of a
+/// view, and three views chosen together.
 Counts counts_of(double voxel, const Eigen::Vector3d& shift) {
   const double scale = voxel / (0.4 / 48);
   Sensor sensor = small_sensor(96, 72);
@@ -102,21 +103,24 @@ Counts counts_of(double voxel, const Eigen::Vector3d& shift) {
   const Pose T_world_grid(Eigen::Matrix3d::Identity(), shift);
   BeliefGrid grid({voxel, {{-half, -half, -half}, {half, half, half}}, T_world_grid, voxel});
   FrameIntegrator integrator(sensor);
-  Pose pose;
-  for (int i = 0; i < 5; ++i) {
-    pose = {ring_view(i).rotation(), scale * ring_view(i).translation() + shift};
+  std::vector<Pose> poses;
+  for (int i = 0; i < 10; ++i) {
+    const Pose pose(ring_view(i).rotation(), scale * ring_view(i).translation() + shift);
+    poses.push_back(pose);
     if (i < 4) integrator.integrate(grid, see_spheres(sensor, pose, spheres), pose);
   }
   const BeliefGrid::Statistics statistics = grid.statistics();
-  const GainEvaluator evaluator(VoxelScene::build(grid), sensor, kPaper);
+  const auto scene = VoxelScene::build(grid);
   return {static_cast<double>(statistics.unknown), static_cast<double>(statistics.occupied),
-          evaluator.evaluate(pose).gain};
+          GainEvaluator(scene, sensor, kPaper).evaluate(poses[4]).gain,
+          GainEvaluator(scene, sensor, {.model = GainModel::combined}).best_set(poses, 3)};
 }
 
 TEST(Limits, MapsOfAnyScaleAndPlaceAreAlike) {
   const Eigen::Vector3d far(1e6, -1e6, 1e6);
   const Counts expected = counts_of(1, Eigen::Vector3d::Zero());
   EXPECT_GT(expected.occupied, 1000);
+  ASSERT_EQ(expected.set.indices.size(), 3U);
   for (const auto& [voxel, shift] : {std::pair<double, Eigen::Vector3d>{1e-4, {0, 0, 0}},
                                      {10, {0, 0, 0}},
                                      {1e-4, far},
@@ -127,6 +131,8 @@ TEST(Limits, MapsOfAnyScaleAndPlaceAreAlike) {
     EXPECT_NEAR(counts.unknown, expected.unknown, 0.001 * expected.unknown);
     EXPECT_NEAR(counts.occupied, expected.occupied, 0.005 * expected.occupied);
     EXPECT_NEAR(counts.gain, expected.gain, 0.005 * expected.gain);
+    EXPECT_EQ(counts.set.indices, expected.set.indices);
+    EXPECT_NEAR(counts.set.gain, expected.set.gain, 0.005 * expected.set.gain);
   }
 }
 
