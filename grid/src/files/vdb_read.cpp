@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "map/belief_blocks.hpp"
+#include "map/belief_sum.hpp"
 #include "pose_text.hpp"
 #include "vdb_contents.hpp"
 #include "vdb_layout.hpp"
@@ -365,7 +366,7 @@ class Loader {
       if (s.tree.getValue(at) == kUnknownCode) {
         fail("grid 'hits' has a voxel that is unknown in 'state'");
       }
-      block->beliefs.push_back(belief);
+      block->beliefs.push_back(definite(belief));
     });
     return block;
   }

@@ -8,12 +8,12 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "belief_blocks.hpp"
+#include "belief_sum.hpp"
 #include "grid_layout.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -80,39 +80,11 @@ void set_in_block(GridStorage& s, std::span<const KeyedValue> values) {
     const unsigned offset = cell_offset(block_offset(value->voxel), scale);
     // A later value of the same voxel may have none.
     if (value->belief && test_bit(mask, offset)) {
-      changed->beliefs[changed->rank(offset)] = *value->belief;
+      changed->beliefs[changed->rank(offset)] = definite(*value->belief);
     }
   }
   s.beliefs[key] = std::move(changed);
 }
-
-// A belief on its way to another centre, in double precision.
-struct Moved {
-  std::array<double, 6> information{};
-  Eigen::Vector3d vector = Eigen::Vector3d::Zero();
-  double hits = 0;
-
-  // `way`: from the new centre to the belief's own [m].
-  void add(const Belief& belief, const Eigen::Vector3d& way) {
-    for (std::size_t i = 0; i < 6; ++i)
-      information[i] += static_cast<double>(belief.information[i]);
-    const auto& v = belief.information_vector;
-    vector += Eigen::Vector3d(v[0], v[1], v[2]) + belief.information_matrix() * way;
-    hits += belief.hits;
-  }
-  [[nodiscard]] Belief rounded() const {
-    constexpr double kLimit = std::numeric_limits<float>::max();
-    const auto narrow = [&](double v) {
-      return static_cast<float>(std::clamp(v, -kLimit, kLimit));
-    };
-    Belief belief;
-    std::transform(information.begin(), information.end(), belief.information.begin(), narrow);
-    std::transform(vector.begin(), vector.end(), belief.information_vector.begin(), narrow);
-    constexpr double kMostHits = std::numeric_limits<std::int32_t>::max();
-    belief.hits = static_cast<std::uint32_t>(std::min(hits, kMostHits));
-    return belief;
-  }
-};
 
 // The offset of the smaller cell in which the mean of a cell's readings lies, or comes nearest to.
 unsigned mean_offset(const Belief& belief, unsigned lowest, int from, int to, double voxel_size) {
@@ -173,7 +145,7 @@ void detail::resample_block(Index3 origin, double voxel_size, int from, int to, 
   LeafMask emptied{};  // what was occupied and has given its belief away
   if (beliefs != nullptr) {
     std::array<std::uint16_t, kBlockVoxels> place{};  // 1 + position among the sums
-    std::vector<Moved> sums;
+    std::vector<BeliefSum> sums;
     LeafMask mask{};
     std::size_t rank = 0;
     for_each_bit(beliefs->mask, [&](unsigned offset) {

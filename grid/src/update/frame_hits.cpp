@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "map/belief_sum.hpp"
 #include "viewgain/core/noise.hpp"
 
 namespace viewgain::detail {
@@ -99,11 +100,6 @@ void sort_by_block(std::vector<Hit>& hits, std::vector<Hit>& scratch) {
     for (const Hit& hit : hits) scratch[position[hit.block >> shift & (kBuckets - 1)]++] = hit;
     hits.swap(scratch);
   }
-}
-
-void add(float& sum, double term) {
-  constexpr double kLimit = std::numeric_limits<float>::max();
-  sum = static_cast<float>(std::clamp(sum + term, -kLimit, kLimit));
 }
 
 }  // namespace
@@ -283,31 +279,30 @@ std::span<const HitBlock> FrameHits::in_region(std::uint64_t region) const {
 std::shared_ptr<const BeliefBlock> with_hits(const BeliefBlock* block, std::span<const Hit> hits,
                                              const Readings& pixels, const Pose& T_grid_readings,
                                              Index3 origin, double voxel_size, int scale) {
-  LeafMask mask = block != nullptr ? block->mask : LeafMask{};
-  for (const Hit& hit : hits) set_bit(mask, hit.offset);
+  LeafMask mask = block != nullptr ? block->mask : LeafMask{}, hit_mask{};
+  for (const Hit& hit : hits) set_bit(hit_mask, hit.offset);
+  for (std::size_t w = 0; w < mask.size(); ++w) mask[w] |= hit_mask[w];
   auto result = reshaped(block, mask);
   result->scale = static_cast<std::uint8_t>(scale);
 
+  std::array<std::uint16_t, kBlockVoxels> place;  // among the sums, of voxels that are hit
+  std::vector<BeliefSum> sums;
+  sums.reserve(count_bits(hit_mask));
+  for_each_bit(hit_mask, [&](unsigned offset) {
+    place[offset] = static_cast<std::uint16_t>(sums.size());
+    sums.emplace_back().add(result->beliefs[result->rank(offset)], Eigen::Vector3d::Zero());
+  });
   const Eigen::Matrix3d R_grid_readings = T_grid_readings.rotation();
   for (const Hit& hit : hits) {
     const Index3 voxel = offset_voxel(origin, hit.offset);
-    const Eigen::Vector3d offset =
-        T_grid_readings * pixels.point(hit.pixel) - voxel_center(voxel, voxel_size, scale);
-    const SymmetricMatrix3 information = measurement_information(
-        R_grid_readings * pixels.direction(hit.pixel), pixels.sigmas(hit.pixel));
-    const Eigen::Vector3d vector = information * offset;
-
-    Belief& belief = result->beliefs[result->rank(hit.offset)];
-    const double terms[6] = {information.xx, information.yy, information.zz,
-                             information.xy, information.xz, information.yz};
-    for (std::size_t i = 0; i < 6; ++i) add(belief.information[i], terms[i]);
-    for (std::size_t i = 0; i < 3; ++i) {
-      add(belief.information_vector[i], vector[static_cast<Eigen::Index>(i)]);
-    }
-    // The files hold the count as a signed integer.
-    constexpr std::uint32_t kMostHits = std::numeric_limits<std::int32_t>::max();
-    if (belief.hits < kMostHits) ++belief.hits;
+    sums[place[hit.offset]].add(
+        measurement_information(R_grid_readings * pixels.direction(hit.pixel),
+                                pixels.sigmas(hit.pixel)),
+        T_grid_readings * pixels.point(hit.pixel) - voxel_center(voxel, voxel_size, scale));
   }
+  for_each_bit(hit_mask, [&](unsigned offset) {
+    result->beliefs[result->rank(offset)] = sums[place[offset]].rounded();
+  });
   return result;
 }
 

@@ -119,8 +119,8 @@ class FrameHits {
 };
 
 /// The block (may be null) after the hits, all its own, in their order: Λ_v += Λ_r (the paper's eq.
-/// 4), η_v += Λ_r (p_r - centre), each sum rounded to single precision. A new block: snapshots may
-/// hold the old one.
+/// 4), η_v += Λ_r (p_r - centre), summed in double precision and rounded once (BeliefSum). A new
+/// block: snapshots may hold the old one.
 [[nodiscard]] std::shared_ptr<const BeliefBlock> with_hits(
     const BeliefBlock* block, std::span<const Hit> hits, const Readings& pixels,
     const Pose& T_grid_readings, Index3 origin, double voxel_size, int scale);

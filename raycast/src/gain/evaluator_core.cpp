@@ -18,8 +18,8 @@ namespace {
 // they stay far from the ends of double precision.
 constexpr double kMinPriorSigma = 1e-6;
 constexpr double kMaxPriorSigma = 1e3;
-// Determinants of Λ_r lose about the square of this ratio of a sensor's sigmas in digits.
-constexpr double kMaxSigmaRatio = 1e4;
+// Beliefs lose the square of this ratio of a sensor's sigmas in digits, of single precision's 2^24.
+constexpr double kMaxSigmaRatio = 1e3;
 // What a smaller sigma [m] tells has a square that single precision does not hold.
 constexpr double kMinSigma = 1e-8;
 

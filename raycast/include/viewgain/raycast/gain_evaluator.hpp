@@ -152,7 +152,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// Undoes the lens distortion once. By ExecConfig::tracer `embree` the first evaluator of a scene
   /// builds the scene's BVH, 0.5 ms per 1,000 primitives. Throws Error(backend)
   /// if it cannot be built, Error(invalid_argument), naming the value, for a null scene, a sensor
-  /// that is not valid or whose sigmas are below 1e-8 m or a factor over 1e4 apart, a stride below
+  /// that is not valid or whose sigmas are below 1e-8 m or a factor over 1e3 apart, a stride below
   /// 1, a prior outside 1e-6..1e3 m, a weight or range that is negative or not finite, min_range >=
   /// max_range, or a weight box inside out.
   GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
