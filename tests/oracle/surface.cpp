@@ -77,6 +77,8 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
   const std::vector<Ray> rays =
       view_rays(grid.T_world_grid(), V, sensor.camera, config.pixel_stride, T_world_camera);
   const int columns = (sensor.camera.width - 1) / config.pixel_stride + 1;
+  const double pixels_a_ray = static_cast<double>(sensor.camera.width) * sensor.camera.height /
+                              static_cast<double>(rays.size());
   RayLimits limits = limits_of(map, sensor, config);
   int undecided = 0;
   double undecided_area = 0;
@@ -85,7 +87,7 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
     if (!ray.direction.allFinite()) continue;
     const int u = static_cast<int>(i) % columns * config.pixel_stride;
     const int v = static_cast<int>(i) / columns * config.pixel_stride;
-    const double angle = stride * stride * pixel_angle(sensor.camera, u, v);
+    const double angle = pixels_a_ray * pixel_angle(sensor.camera, u, v);
     const double last = std::min(limits.max_range, obstacle_range(map, obstacles, ray));
     double passed = 1;
     std::optional<Run> run;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,6 +47,9 @@ vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3], cons
                       .workspace = {},
                       .T_world_grid = {Eigen::Matrix3d::Identity(), vector_of(origin)},
                       .prior_sigma = prior_sigma};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(origin[axis])) refuse("the origin must be finite");
+    }
     // A grid checks its own size, too, but not before it has been given all of the array.
     constexpr std::int32_t kMaxEdge = 65'536;
     std::size_t count = 1;

@@ -83,6 +83,7 @@ std::vector<RecordedFrame> read_frames(const fs::path& source, double max_time_g
   const std::string bytes = folder_file_bytes(list);
   const TimedPoses poses = read_timed_poses(source / "groundtruth.txt");
   std::vector<RecordedFrame> frames;
+  std::set<fs::path> names;
   std::uint64_t number = 0;
   for (LineReader line(list.string(), bytes); line.next();) {
     if (line.words().empty() || line.words().front().front() == '#') continue;
@@ -95,11 +96,17 @@ std::vector<RecordedFrame> read_frames(const fs::path& source, double max_time_g
     if (image.is_absolute() || *image.begin() == "..") {
       line.fail("the image " + quoted(line.words()[1]) + " is outside of the recording");
     }
-    const ReadPose* const pose = nearest(poses, line.finite_number(0), max_time_gap);
+    const double time = line.finite_number(0);
+    const ReadPose* const pose = nearest(poses, time, max_time_gap);
+    const std::string where = list.string() + ":" + std::to_string(line.line());
     if (pose == nullptr) {
-      dropped.add({FrameVerdict::no_pose, {}});
+      dropped.add({FrameVerdict::no_pose, where + ": " + short_text(time) +
+                                              " s has no pose within " + short_text(max_time_gap) +
+                                              " s (--max-time-gap)"});
     } else if (pose->fault.verdict != FrameVerdict::used) {
       dropped.add(pose->fault);
+    } else if (!names.insert(image).second) {
+      dropped.add({FrameVerdict::changed, where + ": an earlier line has named this image"});
     } else {
       frames.push_back({number, source / image, *pose});
     }

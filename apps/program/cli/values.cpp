@@ -116,7 +116,7 @@ std::vector<std::string> names_in(std::string_view text) {
   std::vector<std::string> names;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    names.emplace_back(text.substr(begin, end - begin));
+    names.emplace_back(trimmed(text.substr(begin, end - begin)));
     begin = end + 1;
   }
   return names;
@@ -126,7 +126,7 @@ std::string describe(const Box& box) {
   std::string text;
   for (const auto& corner : {box.min, box.max}) {
     for (const double value : corner) {
-      text.append(text.empty() ? "" : ",").append(general_text(value, 6));
+      text.append(text.empty() ? "" : ",").append(general_text(value, 10));
     }
   }
   return text;

@@ -156,7 +156,7 @@ void put_hits_rest(const GridStorage& s, GridSet& set) {
 void put_covariances(const GridStorage& s, GridSet& set) {
   auto& covariance = set.add<Vec3SGrid>("covariance_diagonal");
   auto& off_covariance = set.add<Vec3SGrid>("covariance_offdiagonal");
-  auto& position = set.add<Vec3SGrid>("position");
+  auto& mean_offset = set.add<Vec3SGrid>("mean_offset");
   for (const auto& [key, block_pointer] : s.beliefs) {
     const Index3 origin = s.lattice.origin(key);
     const int scale = s.scale(key);
@@ -169,14 +169,13 @@ void put_covariances(const GridStorage& s, GridSet& set) {
       const auto& eta = belief.information_vector;
       const Eigen::Vector3d shift = sigma * Eigen::Vector3d(eta[0], eta[1], eta[2]);
       const Index3 v = offset_voxel(origin, at);
-      const Eigen::Vector3d p = voxel_center(v, s.voxel_size, scale) + shift;
       const auto narrow = [](double x, double y, double z) {
         return Vec3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
       };
       covariance.setValueOn(to_coord(v),
                             narrow(sigma.xx + floor, sigma.yy + floor, sigma.zz + floor));
       off_covariance.setValueOn(to_coord(v), narrow(sigma.xy, sigma.xz, sigma.yz));
-      position.setValueOn(to_coord(v), narrow(p.x(), p.y(), p.z()));
+      mean_offset.setValueOn(to_coord(v), narrow(shift.x(), shift.y(), shift.z()));
     });
   }
 }

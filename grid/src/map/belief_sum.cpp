@@ -8,15 +8,10 @@
 #include <cstdint>
 #include <limits>
 
+#include "viewgain/support/hash64.hpp"
+
 namespace viewgain::detail {
 namespace {
-
-/// The finaliser of splitmix64 (Steele, Lea, Flood, OOPSLA 2014): all bits depend on all bits.
-std::uint64_t mixed(std::uint64_t bits) {
-  bits = (bits ^ bits >> 30U) * 0xBF58476D1CE4E5B9U;
-  bits = (bits ^ bits >> 27U) * 0x94D049BB133111EBU;
-  return bits ^ bits >> 31U;
-}
 
 /// `salt` parts the chances of numbers with the same bits.
 float rounded_by_chance(double value, std::uint64_t salt) {
@@ -26,7 +21,7 @@ float rounded_by_chance(double value, std::uint64_t salt) {
   // as they are a part of a step.
   constexpr std::uint64_t kLost = (std::uint64_t{1} << 29U) - 1;
   const auto bits = std::bit_cast<std::uint64_t>(value);
-  const std::uint64_t chance = mixed(bits + 0x9E3779B97F4A7C15U * (salt + 1)) & kLost;
+  const std::uint64_t chance = mix64(bits + kMixStep * salt) & kLost;
   return static_cast<float>(std::bit_cast<double>((bits + chance) & ~kLost));
 }
 

@@ -43,7 +43,7 @@ TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
   image_columns_ = columns;
   const std::vector<Eigen::Vector3d> table = camera.ray_table();
   const std::vector<double> angles = camera.solid_angles(table);
-  const double pixels = static_cast<double>(pixel_stride) * pixel_stride;  // that a ray stands for
+  const double pixels = static_cast<double>(table.size()) / static_cast<double>(ray_count());
   fill([&](int column, int row) -> Ray {
     const std::size_t pixel =
         static_cast<std::size_t>(row * pixel_stride) * static_cast<std::size_t>(camera.width) +
@@ -65,7 +65,8 @@ TileTable::TileTable(const TileTable& full, const RayLattice& lattice)
       part_(lattice),
       image_columns_(full.columns) {
   const auto tile_columns = static_cast<int>(full.tile_columns());
-  const auto pixels = static_cast<float>(lattice.step * lattice.step);
+  const auto pixels =
+      static_cast<float>(static_cast<double>(full.ray_count()) / static_cast<double>(ray_count()));
   fill([&](int column, int row) -> Ray {
     const int u = lattice.column + column * lattice.step, v = lattice.row + row * lattice.step;
     const auto tile = static_cast<std::size_t>(v / kTileEdge * tile_columns + u / kTileEdge);

@@ -278,6 +278,18 @@ TEST_F(Files, FramesHaveNumbersOfAnyLength) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(read_frame(frames, i).fault.verdict, FrameVerdict::used) << frames.images[i];
   }
+  // As of clocks in nanoseconds.
+  for (const char* number : {"1700000000123456789", "18446744073709551615"}) {
+    const fs::path late = folder / ("frame-" + std::string(number) + ".depth.png");
+    fs::copy(folder / "frame-1.depth.png", late);
+    EXPECT_EQ(open_frames(folder).images.back(), late);
+    fs::remove(late);
+  }
+  const fs::path beyond = folder / "frame-18446744073709551616.depth.png";
+  fs::copy(folder / "frame-1.depth.png", beyond);
+  expect_error(ErrorCode::format, "frame-18446744073709551616 has a number of more than 64 bits",
+               [&] { (void)open_frames(folder); });
+  fs::remove(beyond);
   fs::copy(folder / "frame-1.depth.png", folder / "frame-01.depth.png");
   expect_error(ErrorCode::format, "are of one number", [&] { (void)open_frames(folder); });
 }

@@ -221,8 +221,19 @@ TEST_F(Recordings, WhatCannotBeUsedIsDroppedAndCounted) {
   // Within 4.1 ms each has its pose, within 3.9 ms none.
   EXPECT_EQ(import_json({"--max-time-gap", "0.0041"})["frames"], kFrames - 1);
   expect_refused(call({"--max-time-gap", "0.0039"}), "7 no_pose");
+  expect_refused(call({"--max-time-gap", "0.0039"}),
+                 "has no pose within 0.0039 s (--max-time-gap)");
   const std::string text = run_well(call());
   EXPECT_NE(text.find("left out: 2 no_pose, 1 wrong_size"), std::string::npos) << text;
+}
+
+TEST_F(Recordings, AnImageThatIsListedTwiceIsOneFrame) {
+  write_plain_recording();
+  const std::string list = read("rec/depth.txt");
+  write("rec/depth.txt", list + list);
+  const json result = import_json();
+  EXPECT_EQ(result["dropped"], (json{{"changed", kFrames}}));
+  EXPECT_EQ(result["frames"], kFrames);
 }
 
 TEST_F(Recordings, OneDamagedPoseOrImageIsOneFrameLess) {

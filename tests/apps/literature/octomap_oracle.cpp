@@ -120,9 +120,12 @@ std::array<double, 10> OctomapOracle::gains(const Sensor& sensor, const ClassicC
   std::vector<SeenRay> rays;
   const auto angles = sensor.camera.solid_angles(sensor.camera.ray_table());
   const int columns = (sensor.camera.width - 1) / config.pixel_stride + 1;
+  const std::vector<oracle::Ray> image_rays =
+      oracle::view_rays(map_.T_world_grid, V, sensor.camera, config.pixel_stride, T_world_camera);
+  const double pixels_a_ray =
+      static_cast<double>(angles.size()) / static_cast<double>(image_rays.size());
   int number = 0;
-  for (const oracle::Ray& ray : oracle::view_rays(map_.T_world_grid, V, sensor.camera,
-                                                  config.pixel_stride, T_world_camera)) {
+  for (const oracle::Ray& ray : image_rays) {
     const int row = number / columns, column = number % columns;
     ++number;
     if (!ray.direction.allFinite()) continue;
@@ -136,7 +139,7 @@ std::array<double, 10> OctomapOracle::gains(const Sensor& sensor, const ClassicC
     rays.push_back({visits(ray, near, far, true),
                     angles[static_cast<std::size_t>((row * sensor.camera.width + column) *
                                                     config.pixel_stride)] *
-                        config.pixel_stride * config.pixel_stride});
+                        pixels_a_ray});
   }
 
   const auto p_of = [&](const Visit& v) {

@@ -105,6 +105,25 @@ TEST_F(ForeignVdb, WellFormedFilesAreRead) {
   }
 }
 
+// In meters from the voxel's centre, so that single precision serves maps far from the origin.
+TEST_F(ForeignVdb, MeansOfReadingsAreExactAnywhere) {
+  const auto path = folder_.path() / "map.vdb";
+  BeliefGrid grid(GridConfig{0.02, {{5e5, 4e6, 0}, {5e5 + 1, 4e6 + 1, 1}}, {}, 0.1});
+  const Index3 voxel{grid.min_index().x + 1, grid.min_index().y + 2, grid.min_index().z + 3};
+  const Belief belief{{1e4F, 2e4F, 3e4F, 5.0F, 6.0F, 7.0F}, {1.0F, 2.0F, 3.0F}, 4};
+  grid.set(voxel, 1.0F, belief);
+  save_vdb(grid, path, {.with_covariance = true});
+  Contents contents = Contents::of(path);
+  const auto& means = contents.grid<openvdb::Vec3SGrid>("mean_offset");
+  ASSERT_EQ(means.activeVoxelCount(), 1U);
+  const openvdb::Vec3f mean = means.tree().getValue({voxel.x, voxel.y, voxel.z});
+  const Eigen::Vector3d expected =
+      belief.information_matrix().matrix().inverse() * Eigen::Vector3d(1, 2, 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(double{mean[axis]}, expected[axis], 1e-7 * expected.norm());
+  }
+}
+
 TEST_F(ForeignVdb, HitsBeyondWhatAFloatHoldsAreKept) {
   const auto names = [&] {
     std::string all;

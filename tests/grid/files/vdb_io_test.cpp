@@ -168,7 +168,7 @@ TEST(VdbIo, VdbPrintListsTheGrids) {
   }
   EXPECT_EQ(plain.find("covariance"), std::string::npos);
   const std::string full = listing({.with_covariance = true});
-  for (const char* part : {"covariance_diagonal", "covariance_offdiagonal", "position"}) {
+  for (const char* part : {"covariance_diagonal", "covariance_offdiagonal", "mean_offset"}) {
     EXPECT_NE(full.find(part), std::string::npos) << part;
   }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cinttypes>
 #include <cstdio>
 #include <limits>
@@ -82,11 +83,19 @@ std::optional<std::string> frame_number(const std::string& name, std::string_vie
   if (name.size() <= kFramePrefix.size() + suffix.size()) return std::nullopt;
   const std::string digits =
       name.substr(kFramePrefix.size(), name.size() - kFramePrefix.size() - suffix.size());
-  if (digits.size() > 18 || !std::all_of(digits.begin(), digits.end(),
-                                         [](unsigned char c) { return std::isdigit(c) != 0; })) {
-    return std::nullopt;
+  const bool are_digits = std::all_of(digits.begin(), digits.end(),
+                                      [](unsigned char c) { return std::isdigit(c) != 0; });
+  return are_digits ? std::optional(digits) : std::nullopt;
+}
+
+std::uint64_t frame_index(const std::string& digits) {
+  std::uint64_t index = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+  if (error != std::errc{} || end != digits.data() + digits.size()) {
+    throw Error(ErrorCode::format,
+                std::string(kFramePrefix) + digits + " has a number of more than 64 bits");
   }
-  return digits;
+  return index;
 }
 
 std::map<std::uint64_t, std::string> list_frames(const std::vector<std::string>& names) {
@@ -94,7 +103,7 @@ std::map<std::uint64_t, std::string> list_frames(const std::vector<std::string>&
   for (const std::string& name : names) {
     if (const auto digits = frame_number(name, kDepthSuffix)) {
       const std::string frame = std::string(kFramePrefix) + *digits;
-      const auto [other, is_new] = frames.emplace(std::stoull(*digits), frame);
+      const auto [other, is_new] = frames.emplace(frame_index(*digits), frame);
       if (is_new) continue;
       throw Error(ErrorCode::format, frame + " and " + other->second + " are of one number");
     }

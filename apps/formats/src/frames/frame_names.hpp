@@ -66,8 +66,11 @@ inline constexpr std::array kNames{kPoses, kSensor, kIntrinsics, kSimulated, kSc
 [[nodiscard]] std::optional<std::string> frame_number(const std::string& name,
                                                       std::string_view suffix);
 
+/// 50 of "000050". Throws Error(format) if it does not fit.
+[[nodiscard]] std::uint64_t frame_index(const std::string& digits);
+
 /// The depth images among the names in a folder by their number, as "frame-NNNNNN", of however many
-/// digits. Throws Error(format) for two of one number.
+/// digits. Throws Error(format) for two of one number and for numbers of more than 64 bits.
 [[nodiscard]] std::map<std::uint64_t, std::string> list_frames(
     const std::vector<std::string>& names);
 

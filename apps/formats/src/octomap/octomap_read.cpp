@@ -264,7 +264,7 @@ BeliefGrid grid_from_octomap_bytes(std::string_view bytes, const OctomapConfig& 
   const Header header = read_header(bytes, name);
   const std::optional<Box> known = check_tree(bytes, header, name);
   if (!known && !config.workspace) {
-    throw Error(ErrorCode::format, name + ": has no known voxel, so a workspace is needed");
+    throw Error(ErrorCode::format, name + ": has no known voxel, and no workspace is given");
   }
   BeliefGrid grid = empty_grid({header.resolution,
                                 config.workspace ? *config.workspace : *known,

@@ -35,6 +35,7 @@ Suspicion suspect_camera(const PinholeCamera& camera) {
                               " of the image's pixels have no ray by the lens's distortion: are k1 "
                               "k2 p1 p2 k3 those of this camera?"};
   }
+  if (camera.width == 1 || camera.height == 1) return {};  // such an image has no middle
   const double u = camera.cx / (camera.width - 1), v = camera.cy / (camera.height - 1);
   if (std::abs(u - 0.5) < kOffCentre && std::abs(v - 0.5) < kOffCentre) return {};
   return {

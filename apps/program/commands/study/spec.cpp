@@ -23,7 +23,7 @@ namespace viewgain::app {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kRunFormat = 4;  // of run.json; grows when that changes
+constexpr int kStudyRunFormat = 4;  // of run.json; grows when that changes
 constexpr std::size_t kMostRuns = 1'000'000;
 constexpr std::int64_t kMostViews = 1000, kMostCandidates = 100'000;
 
@@ -258,7 +258,7 @@ StudySpec read_study_spec(const fs::path& path) {
                            {},     {}};
               run.configuration = {
                   {"version", VIEWGAIN_VERSION},
-                  {"format", kRunFormat},
+                  {"format", kStudyRunFormat},
                   {"object", spec.objects[object].name},
                   {"mesh", meshes[object]},
                   {"policy", spec.policies[policy].name},

@@ -203,7 +203,7 @@ Parameters
 path : path-like
     Any name that does not end in .ot or .bt; ``save_octomap`` writes those.
 with_covariance : bool
-    Adds covariances and positions, for viewers.)");
+    Adds covariances and mean places, for viewers.)");
 }
 
 }  // namespace viewgain::python

@@ -22,7 +22,7 @@ enum class FrameVerdict : std::uint8_t {
   nothing_in_range,  ///< no pixel says anything
   outside,           ///< it shows nothing of the workspace
   contradicts,       ///< registered, it contradicts the map or the other frames
-  changed,           ///< its number was taken with other contents
+  changed,           ///< its number, or its image in a recording's list, was taken before
   no_mask,           ///< the mask that it needs never came
 };
 

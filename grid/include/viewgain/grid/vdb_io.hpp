@@ -15,7 +15,7 @@ namespace viewgain {
 
 /// What goes into the file besides the map.
 struct VIEWGAIN_EXPORT VdbWriteConfig {
-  /// Adds covariance_diagonal, covariance_offdiagonal and position, for viewers.
+  /// Adds covariance_diagonal, covariance_offdiagonal and mean_offset, for viewers.
   bool with_covariance = false;
   /// Texts of the writer's own by name, kept in the file's metadata as note_<name>.
   std::map<std::string, std::string> notes{};

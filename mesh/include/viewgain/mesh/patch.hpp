@@ -17,8 +17,9 @@ namespace viewgain {
 /// it, w along the normal. The lengths origin, u, v and w are in metres. Members check nothing.
 struct VIEWGAIN_EXPORT QuadraticPatch {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< world
-  Eigen::Matrix3d axes =
-      Eigen::Matrix3d::Identity();       ///< columns u, v, w in the world; right-handed
+  /// Columns u, v, w in the world; right-handed. By columns in memory, whatever a program's Eigen
+  /// does by default.
+  Eigen::Matrix<double, 3, 3, Eigen::ColMajor> axes = Eigen::Matrix3d::Identity();
   std::array<double, 6> coefficients{};  ///< a b c d e f
   bool planar = false;                   ///< the points did not determine a quadric: a = b = c = 0
   double rms = 0;                        ///< of the residuals along w [m]
