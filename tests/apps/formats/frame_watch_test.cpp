@@ -406,6 +406,38 @@ TEST_F(WatchedFolder, RefusedOnesAreBadUntilTheyChange) {
   EXPECT_TRUE(watched.bad().empty());
 }
 
+// That which was taken, or else the first by name; the other is told of once.
+TEST_F(WatchedFolder, OfTwoImagesOfANumberOneCounts) {
+  const auto put_twin = [&](const std::string& digits) {
+    put("frame-" + digits + ".depth.png", png(600));
+    put("frame-" + digits + ".pose.txt", matrix_text(pose_of(5)));
+  };
+  put("camera-intrinsics.txt", "11 0 3\n0 12 2\n0 0 1\n");
+  for (const int number : {0, 1}) put_frame(number);
+  FrameWatch watched = watch();
+  EXPECT_EQ(complete(watched), (Numbers{0, 1}));
+  put_twin("0");
+  put_twin("0000001");
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(complete_after(watched, 3s).empty());
+  ASSERT_EQ(bad.size(), 2U);
+  EXPECT_EQ(bad[0].name, "frame-0.depth.png");
+  EXPECT_EQ(bad[1].name, "frame-0000001.depth.png");
+  EXPECT_EQ(bad[0].fault.verdict, FrameVerdict::changed);
+  EXPECT_EQ(watched.bad(), (Counts{{"changed", 2}}));
+  EXPECT_EQ(watched.taken_count(), 2U);
+  EXPECT_EQ(watched.waiting(), 0U);
+
+  FrameWatch fresh = watch();
+  EXPECT_EQ(complete(fresh), (Numbers{0, 1}));
+  EXPECT_EQ(fresh.taken_count(), 2U);
+  EXPECT_EQ(fresh.bad(), (Counts{{"changed", 2}}));
+
+  std::filesystem::remove(dir.path() / "frame-0.depth.png");
+  std::filesystem::remove(dir.path() / "frame-0000001.depth.png");
+  EXPECT_TRUE(complete_after(watched, 3s).empty());
+  EXPECT_TRUE(watched.bad().empty());
+}
+
 TEST_F(WatchedFolder, TheSensorIsNeededWithTheFirstCompleteFrame) {
   fs::remove(dir.path() / "sensor.toml");
   FrameWatch watched = watch();

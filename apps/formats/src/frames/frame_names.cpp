@@ -98,14 +98,19 @@ std::uint64_t frame_index(const std::string& digits) {
   return index;
 }
 
-std::map<std::uint64_t, std::string> list_frames(const std::vector<std::string>& names) {
+std::map<std::uint64_t, std::string> list_frames(const std::vector<std::string>& names,
+                                                 std::map<std::string, std::uint64_t>* twins) {
   std::map<std::uint64_t, std::string> frames;
   for (const std::string& name : names) {
     if (const auto digits = frame_number(name, kDepthSuffix)) {
       const std::string frame = std::string(kFramePrefix) + *digits;
-      const auto [other, is_new] = frames.emplace(frame_index(*digits), frame);
+      const std::uint64_t number = frame_index(*digits);
+      const auto [other, is_new] = frames.emplace(number, frame);
       if (is_new) continue;
-      throw Error(ErrorCode::format, frame + " and " + other->second + " are of one number");
+      if (twins == nullptr) {
+        throw Error(ErrorCode::format, frame + " and " + other->second + " are of one number");
+      }
+      twins->emplace(frame, number);
     }
   }
   return frames;

@@ -70,9 +70,10 @@ inline constexpr std::array kNames{kPoses, kSensor, kIntrinsics, kSimulated, kSc
 [[nodiscard]] std::uint64_t frame_index(const std::string& digits);
 
 /// The depth images among the names in a folder by their number, as "frame-NNNNNN", of however many
-/// digits. Throws Error(format) for two of one number and for numbers of more than 64 bits.
+/// digits. Of two of one number the later name goes to `twins`. Throws Error(format) if there is no
+/// such map, and for numbers of more than 64 bits.
 [[nodiscard]] std::map<std::uint64_t, std::string> list_frames(
-    const std::vector<std::string>& names);
+    const std::vector<std::string>& names, std::map<std::string, std::uint64_t>* twins = nullptr);
 
 /// The amplitude image that belongs to a depth image, whether there is one or not.
 [[nodiscard]] std::filesystem::path amplitude_path(const std::filesystem::path& depth_image);

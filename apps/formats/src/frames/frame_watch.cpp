@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/formats/frame_watch.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
+#include <set>
 #include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "folders.hpp"
+#include "frames/file_stamp.hpp"
 #include "frames/frame_names.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/file_bytes.hpp"
@@ -19,22 +19,6 @@ namespace viewgain {
 namespace {
 
 namespace fs = std::filesystem;
-
-// What the file system says of a file; all 0 where there is none.
-struct FileStamp {
-  std::uint64_t device = 0, inode = 0, size = 0;
-  std::int64_t seconds = 0, nanoseconds = 0;  // of the last change
-
-  bool operator==(const FileStamp&) const = default;
-  [[nodiscard]] bool is_there() const { return *this != FileStamp{}; }
-};
-
-FileStamp stamp_of(const fs::path& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return {};
-  return {status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size),
-          status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
-}
 
 // What a frame's files are like. A line of poses.txt counts, and not the file, which grows.
 struct Signature {
@@ -110,6 +94,7 @@ struct FrameWatch::Impl {
   std::map<std::string, std::string> taken;  // by file name, as frame_identity() has them
   std::map<std::uint64_t, Entry> entries;
   Listing listing;
+  std::set<std::string> twins;     // images of numbers that others have
   Time looked{};                   // when it was looked at last
   std::size_t quiet_listings = 0;  // in a row, with which nothing new was found
   FileStamp poses_stamp;
@@ -232,16 +217,41 @@ struct FrameWatch::Impl {
     FolderLook found;
     if (listing.looks < kAgain) look_on(now, found);
     if (found.frame) return found;
-    list();
+    list(found);
     look_on(now, found);
     return found;
   }
 
-  void list() {
+  // Of two images of one number one counts: that which was taken, or else the first by name.
+  void list_numbers(const std::vector<std::string>& names, FolderLook& found) {
+    std::map<std::string, std::uint64_t> others;
+    listing.frames = list_frames(names, &others);
+    std::set<std::string> left;
+    for (const auto& [name, number] : others) {
+      std::string& own = listing.frames.at(number);
+      std::string other = name;
+      const auto is_taken = [&](const std::string& frame) {
+        return taken.contains(frame + std::string(kDepthSuffix));
+      };
+      if (is_taken(other) && !is_taken(own)) std::swap(own, other);
+      const std::string image = other + std::string(kDepthSuffix);
+      if (!twins.contains(image)) {
+        found.bad.push_back(
+            {number,
+             {FrameVerdict::changed, (dir / image).string() + ": is of the number of " + own +
+                                         "; a number is one frame's"},
+             image});
+      }
+      left.insert(image);
+    }
+    twins = std::move(left);
+  }
+
+  void list(FolderLook& found) {
     const std::vector<std::string> names = names_in(dir);
     const std::uint64_t begin = listing.again_end;
     listing = {};
-    listing.frames = list_frames(names);
+    list_numbers(names, found);
     listing.needs_amplitude = std::any_of(names.begin(), names.end(), [](const std::string& name) {
       return frame_number(name, kAmplitudeSuffix).has_value();
     });
@@ -371,6 +381,7 @@ std::map<std::string, std::size_t> FrameWatch::bad() const {
   for (const auto& [number, entry] : impl_->entries) {
     if (entry.state == State::bad) ++counts[entry.verdict];
   }
+  if (!impl_->twins.empty()) counts[FrameVerdict::changed] += impl_->twins.size();
   return bad_frames(counts);
 }
 

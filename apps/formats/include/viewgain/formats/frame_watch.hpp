@@ -47,7 +47,8 @@ struct VIEWGAIN_EXPORT WatchedFrame {
 /// A frame that cannot be used as its files are.
 struct VIEWGAIN_EXPORT BadFrame {
   std::uint64_t number = 0;  ///< in its files' names
-  /// unreadable, wrong_size, lost_pose, changed; no_pose and no_mask of give_up().
+  /// unreadable, wrong_size, lost_pose, changed; no_pose and no_mask of give_up(). Of two images
+  /// of one number one is `changed`.
   FrameFault fault{};
   std::string name{};                    ///< of its depth image
   std::optional<Pose> T_world_camera{};  ///< where it was taken, if that is known
@@ -56,8 +57,9 @@ struct VIEWGAIN_EXPORT BadFrame {
 /// What a look at the folder found.
 struct VIEWGAIN_EXPORT FolderLook {
   std::optional<WatchedFrame>
-      frame{};                  ///< the complete one that is next in the list, if there is one
-  std::vector<BadFrame> bad{};  ///< bad since the look before; numbers rising
+      frame{};  ///< the complete one that is next in the list, if there is one
+  /// Bad since the look before; numbers rising, those first whose number another has.
+  std::vector<BadFrame> bad{};
 };
 
 /// A folder of frames of either layout (open_frames()) into which somebody else writes, file by
