@@ -311,6 +311,7 @@ TEST(FileBytes, OfAPipeUpToALimit) {
   for (const char* file : {pipe.c_str(), "/dev/zero"}) {
     expect_error(ErrorCode::io, "is not a regular file", [&] { (void)folder_file_bytes(file); });
     expect_error(ErrorCode::io, "is not a regular file", [&] { (void)file_head(file, 3); });
+    expect_error(ErrorCode::io, "is not a regular file", [&] { (void)read_pose_matrix(file); });
   }
   const std::string bytes = some_bytes(3'000'000);
   const auto write = [&] { std::ofstream(pipe, std::ios::binary) << bytes; };

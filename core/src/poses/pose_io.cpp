@@ -120,7 +120,7 @@ void write_tum(const fs::path& path, std::span<const Pose> poses,
 }
 
 Pose read_pose_matrix(const fs::path& path, bool* orthonormalized) {
-  const std::string contents = file_bytes(path, kMaxFileSize);
+  const std::string contents = folder_file_bytes(path, kMaxFileSize);
   LineReader line(path.string(), contents);
   std::array<double, 16> values{};
   std::size_t count = 0;

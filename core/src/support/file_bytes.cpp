@@ -100,9 +100,9 @@ std::string file_bytes(const std::filesystem::path& path, std::uint64_t most) {
   return bytes_of(input, most);
 }
 
-std::string folder_file_bytes(const std::filesystem::path& path) {
+std::string folder_file_bytes(const std::filesystem::path& path, std::uint64_t most) {
   Input input(path, false);
-  return bytes_of(input, kMostFileBytes);
+  return bytes_of(input, most);
 }
 
 std::string file_head(const std::filesystem::path& path, std::size_t count) {

@@ -153,6 +153,24 @@ TEST_F(Files, ATreeIsReadFromAPipeAsFromAFile) {
   EXPECT_EQ(from_pipe->prior_sigma(), default_prior_sigma(0.05, sensor));
 }
 
+// Nobody has named them, so they are not waited for.
+TEST_F(Files, PipesInAFolderOfFramesAreRefused) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.width = 4, sensor.camera.height = 2;
+  FramesWriter writer(dir / "frames");
+  writer.write_frame(0, {4, 2, std::vector<float>(8, 0.5F)});
+  writer.commit(std::vector<Pose>(1), sensor);
+  for (const char* name : {"poses.txt", "sensor.toml"}) {
+    const fs::path file = dir / "frames" / name, away = dir / "away";
+    fs::rename(file, away);
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    expect_error(ErrorCode::io, std::string(name) + ": cannot be read: it is not a regular file",
+                 [&] { (void)open_frames(dir / "frames"); });
+    fs::rename(away, file);
+  }
+  EXPECT_EQ(open_frames(dir / "frames").images.size(), 1U);
+}
+
 TEST_F(Files, SensorErrorsNameTheKey) {
   const std::string good = sensor_toml(sensor_preset("d435"));
   const auto with = [&good](const std::string& from, const std::string& to) {

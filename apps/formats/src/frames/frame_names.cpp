@@ -28,7 +28,7 @@ ReadPose unknown_pose(FrameVerdict verdict, std::string what) {
 
 std::vector<ReadPose> read_pose_lines(const fs::path& path, bool whole_lines_alone,
                                       std::vector<double>* times) {
-  std::string text = file_bytes(path);
+  std::string text = folder_file_bytes(path);
   if (whole_lines_alone) text.resize(text.rfind('\n') + 1);  // none: 0
   std::vector<ReadPose> poses;
   for (LineReader line(path.string(), text); line.next();) {

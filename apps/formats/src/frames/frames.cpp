@@ -201,7 +201,9 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
   if (sensor.empty() && !has_sensor) {
     refuse(dir.string() + ": has no sensor.toml, so a sensor is needed");
   }
-  frames.sensor = sensor.empty() ? read_sensor_toml(dir / kSensor) : load_sensor(sensor);
+  const fs::path own = dir / kSensor;
+  frames.sensor = sensor.empty() ? parse_sensor_toml(folder_file_bytes(own), own.string())
+                                 : load_sensor(sensor);
   if (frames.recorded && is_there(dir / kIntrinsics)) {
     apply_intrinsics_file(dir / kIntrinsics, frames.sensor.camera);
   }

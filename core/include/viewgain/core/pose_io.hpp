@@ -52,8 +52,8 @@ VIEWGAIN_EXPORT void write_tum(const std::filesystem::path& path, std::span<cons
 /// Reads one 4x4 row-major matrix of T_world_camera [m] (16 numbers, as RGB-D data sets have it). A
 /// rotation that is off by 1e-9 to 1e-2 is orthonormalised; *orthonormalized says whether by over
 /// 1e-5. A larger error, a last row that is not 0 0 0 1 (1e-6), another count of numbers or a word
-/// that is no finite number throws Error(format), naming the file. Throws Error(io) if it cannot be
-/// read, Error(capacity) beyond 1 GiB. A byte order mark is skipped.
+/// that is no finite number throws Error(format), naming the file. Throws Error(io) if it is no
+/// regular file or cannot be read, Error(capacity) beyond 1 GiB. A byte order mark is skipped.
 [[nodiscard]] VIEWGAIN_EXPORT Pose read_pose_matrix(const std::filesystem::path& path,
                                                     bool* orthonormalized = nullptr);
 

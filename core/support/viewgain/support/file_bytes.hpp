@@ -24,7 +24,8 @@ inline constexpr std::uint64_t kMostPipeBytes = std::uint64_t{1} << 30U;
 
 /// The same of a file that was found in a folder: a regular one, since a pipe would wait for
 /// somebody to write, and nobody has named it. Throws Error(io) for all others, too. Thread safe.
-[[nodiscard]] VIEWGAIN_EXPORT std::string folder_file_bytes(const std::filesystem::path& path);
+[[nodiscard]] VIEWGAIN_EXPORT std::string folder_file_bytes(const std::filesystem::path& path,
+                                                            std::uint64_t most = kMostFileBytes);
 
 /// At most the first `count` bytes of a regular file. Throws Error(io) and costs as file_bytes().
 /// Thread safe.
