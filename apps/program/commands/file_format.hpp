@@ -10,7 +10,8 @@
 
 namespace viewgain::app {
 
-/// The key `format` of run.json and checkpoint.json; grows when a reader of this one would err.
+/// The key `format` of run.json, checkpoint.json and next.json; grows when a reader of this one
+/// would err.
 inline constexpr std::uint64_t kRunFormat = 1;
 
 /// Throws Error(format), naming file and formats, for one that is newer, and Json::exception for

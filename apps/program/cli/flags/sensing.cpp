@@ -83,6 +83,9 @@ void add_registration_options(App& app, RegistrationOptions& options) {
 std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,
                                             const PoseSigma& noise) {
   if (options.is_on != "on") {
+    if (options.on_contradiction == "keep") {
+      refuse("--on-contradiction keep goes with --register on");
+    }
     if (options.pose_sigma.empty()) return std::nullopt;
     refuse("--pose-sigma " + options.pose_sigma + " goes with --register on");
   }

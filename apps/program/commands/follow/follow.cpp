@@ -22,6 +22,7 @@
 #include "program/cli/interrupt.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
+#include "program/commands/file_format.hpp"
 #include "program/commands/follow/followed_map.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "viewgain/core/error.hpp"
@@ -293,7 +294,8 @@ class Following {
 
   void write_json() {
     said_ = counts();
-    Json json = said_;
+    Json json{{"format", kRunFormat}};
+    json.update(said_);
     json.update(views_.json());
     json.update(to_json(next_));
     write_file_atomically(out_ / "next.json", json_text(json));

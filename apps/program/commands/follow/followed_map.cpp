@@ -16,6 +16,7 @@
 
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
+#include "program/commands/file_format.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
@@ -124,6 +125,7 @@ void AskedViews::recall(const fs::path& next_json, const std::set<std::string>& 
   if (!fs::exists(next_json, ignored)) return;
   try {
     const Json next = Json::parse(folder_file_bytes(next_json));
+    check_format(next_json.string(), next);
     for (const Json& name : next.at("left_out")) left_out_.insert(name.get<std::string>());
     // Else the map has grown since, or is another one.
     if (next.at("asked").get<bool>() && next.at("frames") == identities.size()) {
@@ -135,7 +137,10 @@ void AskedViews::recall(const fs::path& next_json, const std::set<std::string>& 
         asked_.push_back(pose);
       }
     }
-  } catch (const std::exception&) {
+  } catch (const Json::exception&) {
+    asked_.clear();
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::format) throw;  // a newer program's
     asked_.clear();
   }
   known_ = judged(identities);

@@ -135,6 +135,9 @@ std::vector<StudyObject> objects_of(TableReader& reader, const fs::path& folder)
     if (!fs::is_regular_file(object.mesh)) {
       reader.fail("objects", "holds \"" + file + "\": no file at " + object.mesh.string());
     }
+    if (printable(object.name) != object.name) {
+      reader.fail("objects", "holds \"" + file + "\", a name that a table cannot show");
+    }
     if (!names.insert(object.name).second) {
       reader.fail("objects", "holds two objects of the name \"" + object.name + "\"");
     }

@@ -332,6 +332,17 @@ TEST_F(Follow, SaysWhereToLookNext) {
   EXPECT_EQ(end["ended_by"], "done");
   EXPECT_EQ(end["hash"], load_map_of_sensor(dir / "plan/state.vdb").grid.content_hash());
   EXPECT_EQ(read("plan/next.json"), before);
+
+  // One of a newer program's, and one that is damaged, of which the views are made again.
+  json newer = json::parse(before);
+  newer["format"] = 2;
+  write("plan/next.json", newer.dump());
+  expect_refused(follow({}), "next.json: is of format 2; this program reads up to format 1");
+  for (const char* damaged : {"", "{", "{}", "{\"format\": -1}"}) {
+    write("plan/next.json", damaged);
+    (void)run_well(follow({"--top", "5"}));
+    EXPECT_EQ(read("plan/next.json"), before) << damaged;
+  }
 }
 
 TEST_F(Follow, AnEmptyViewBreaksItsPromise) {

@@ -212,6 +212,7 @@ TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
        {test::joined(frames, {"--pose-noise", "0.01,1"}), "--pose-noise"},
        {test::joined(frames, {"--pose-sigma", "0.01,1"}), "--pose-sigma"},
        {test::joined(frames, {"--pose-sigma", "0,1", "--register", "on"}), "--pose-sigma"},
+       {test::joined(frames, {"--on-contradiction", "keep"}), "goes with --register on"},
        {test::joined(frames, {"--gain", "frontier_count"}), "--gain"},
        {test::joined(frames, {"--mask", "empty"}), "empty"},
        {{"reconstruct", "empty", "--voxel", "0.01", "--out", "new"}, "empty"},

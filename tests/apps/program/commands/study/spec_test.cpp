@@ -134,6 +134,7 @@ TEST_F(StudySpecTest, WhatIsWrongIsNamedWithItsLine) {
       {"seeds = [3, 1]", "seeds = 3", {"line 4", "list"}},
       {"more/ball.off", "ball.off", {"line 1", "ball.off"}},
       {"more/ball.off", "./cube.off", {"line 1", "two objects", "cube"}},
+      {"more/ball.off", "more/a\\nb.off", {"line 1", "a table cannot show"}},
       {"\"frontier\", ", "\"gain\", ", {"line 2", "\"gain\"", "gain:NAME"}},
       {"\"frontier\", ", "\"frontier:x\", ", {"line 2", "frontier:x"}},
       {"against = \"frontier\"", "against = \"random\"", {"line 3", "none of the policies"}},
@@ -157,6 +158,7 @@ TEST_F(StudySpecTest, WhatIsWrongIsNamedWithItsLine) {
       {"max_views", "kept_candidates = 0\nmax_views", {"line 7", "kept_candidates"}},
       {"max_views", "max_view", {"max_view"}},
   };
+  std::filesystem::copy_file(dir / "cube.off", dir / "more/a\nb.off");
   for (const Case& each : wrong) {
     const std::string error = error_of(with(each.from, each.to));
     for (const std::string& word : each.words) {
