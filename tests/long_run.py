@@ -4,9 +4,10 @@
 """Puts many frames of an object into one map, from the same 100 poses again and again, brings scene and evaluator up
 to date after each and scores four views, and looks for what grows when there is nothing left to see.
 
-    PYTHONPATH=build/release/python tests/long_run.py [--views 2000] [--voxels 512] [--csv FILE]
+    PYTHONPATH=build/release/python tests/long_run.py [--views 2000] [--voxels 512] [--csv FILE] [--plot FILE.png]
 
-Writes the memory [MB] and CPU time [s] of every view into FILE. Ends with 1 where, from the second quarter to the last,
+Writes the memory [MB] and CPU time [s] of every view into FILE, and draws them. Ends with 1 where, from the second quarter to the
+last,
 memory grows by more than 4 kB a view, or a view takes half as much CPU time again.
 """
 import argparse
@@ -46,11 +47,27 @@ def resident():
         return int(file.read().split()[1]) * 4096
 
 
+def draw(file, rows, voxels):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    table = np.array(rows)
+    figure, (memory, seconds) = pyplot.subplots(2, sharex=True, figsize=(7, 4), layout="constrained")
+    memory.plot(table[:, 0], table[:, 1] / 1e6, linewidth=0.8)
+    memory.set(ylabel="resident [MB]", ylim=(0, None), title=f"{voxels}³ voxels, the same {POSES} poses again and again")
+    seconds.plot(table[:, 0], table[:, 2], ".", markersize=1)
+    seconds.set(ylabel="CPU time a view [s]", ylim=(0, None), xlabel="view")
+    figure.savefig(file, dpi=110)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--views", type=int, default=2000)
     parser.add_argument("--voxels", type=int, default=512)
     parser.add_argument("--csv", default="")
+    parser.add_argument("--plot", default="")
     options = parser.parse_args()
     sensor = viewgain.sensor_preset("sr4000")
     half = SIZE / 2
@@ -74,6 +91,8 @@ def main():
             writer = csv.writer(file)
             writer.writerow(("view", "resident_mb", "seconds"))
             writer.writerows((i, f"{memory / 1e6:.3f}", f"{seconds:.4f}") for i, memory, seconds in rows)
+    if options.plot:
+        draw(options.plot, rows, options.voxels)
     table = np.array(rows)
     second, last = (table[options.views * k // 4:options.views * (k + 1) // 4] for k in (1, 3))
     # Scenes come and go, by 10 MB either way.

@@ -87,7 +87,7 @@ run_part() {
     fuzz) ./apps/install_dependencies.sh --fuzz; build fuzz; ./tests/fuzz/run.sh "$minutes" | tee build/fuzz.log ;;
     long)
       build release
-      PYTHONPATH=build/release/python /usr/bin/python3 tests/long_run.py --csv build/long.csv | tee build/long.log
+      PYTHONPATH=build/release/python /usr/bin/python3 tests/long_run.py --csv build/long.csv --plot tests/long.png | tee build/long.log
       ./tests/long_follow.py build/release/bin/viewgain build/release/meshes/camel.off --work build/long | tee -a build/long.log
       ;;
   esac
