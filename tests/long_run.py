@@ -6,9 +6,8 @@ to date after each and scores four views, and looks for what grows when there is
 
     PYTHONPATH=build/release/python tests/long_run.py [--views 2000] [--voxels 512] [--csv FILE] [--plot FILE.png]
 
-Writes the memory [MB] and CPU time [s] of every view into FILE, and draws them. Ends with 1 where, from the second quarter to the
-last,
-memory grows by more than 4 kB a view, or a view takes half as much CPU time again.
+Writes the memory [MB] and CPU time [s] of every view into FILE, and draws them. Ends with 1 where,
+from the second quarter to the last, memory grows by more than 4 kB a view, or a view takes half as much CPU time again.
 """
 import argparse
 import csv
