@@ -15,6 +15,7 @@
 #include "support/meshes.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain {
 namespace {
@@ -52,6 +53,27 @@ TEST(SimulatedSensor, ScaleErrorsAreThoseOfEveryReading) {
     test::expect_error(ErrorCode::invalid_argument, "scale error",
                        [&] { SimulatedSensor(plane_at(0.75), sensor, {.scale_error = bad}); });
   }
+}
+
+// Embree's packets are as wide as an instruction set has them, and each width rounds in its own
+// way.
+TEST(SimulatedSensor, InstructionSetsDifferInTheLastDigits) {
+  const auto ball = test::sphere_mesh(0.1, 64);
+  const Sensor sensor = sensor_without_distortion();
+  std::vector<DepthFrame> frames;
+  for (const std::string& isa : available_isas()) {
+    const test::ScopedIsa scoped(isa);
+    const SimulatedSensor simulated(std::make_shared<const SurfaceScene>(ball), sensor,
+                                    {.background_radius = 1.5});
+    frames.push_back(simulated.acquire(look_at({0.6, 0, 0}, {0, 0, 0})));
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < frames.front().depth.size(); ++i) {
+      const double depth = double{frames.front().depth[i]};
+      far += std::abs(double{frames.back().depth[i]} - depth) > 1e-5 * depth ? 1 : 0;
+    }
+    EXPECT_LE(far, 3U) << isa;  // a ray that just meets the ball's edge, or just not
+  }
+  EXPECT_EQ(frames.size(), available_isas().size());
 }
 
 // How sure poses are is nothing that the camera knows.

@@ -4,11 +4,14 @@
 // Batches: bad poses among good ones, progress, cancellation, ranking.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <cstdint>
 #include <limits>
 #include <mutex>
+#include <span>
 #include <stop_token>
 
 #include "raycast/scene_makers.hpp"
@@ -273,19 +276,51 @@ TEST(Determinism, OnePoseOnSeveralThreadsUnderEveryCriterionAndWeight) {
   EXPECT_GT(both_classes, 60);
 }
 
+/// All that an evaluator says of poses, in bits.
+std::vector<std::uint64_t> said_of(const GainEvaluator& evaluator, std::span<const Pose> poses) {
+  std::vector<std::uint64_t> all;
+  const auto say = [&](double value) { all.push_back(std::bit_cast<std::uint64_t>(value)); };
+  for (const RayHit& hit : evaluator.trace(poses[0])) {
+    say(static_cast<double>(hit.kind)), say(hit.voxel.x), say(hit.voxel.y), say(hit.voxel.z);
+    say(static_cast<double>(hit.range));
+  }
+  for (const VoxelContribution& part : evaluator.contributions(poses[0])) {
+    say(part.voxel.x), say(part.voxel.y), say(part.voxel.z), say(part.rays);
+    say(part.expected_rays), say(part.gain);
+  }
+  std::vector<ApproximateGain> estimates(poses.size());
+  (void)evaluator.approximate(poses, estimates);
+  for (const ApproximateGain& one : estimates) say(one.gain), say(one.standard_error);
+  const ViewSet set = evaluator.best_set(poses, 3);
+  for (const std::size_t i : set.indices) say(static_cast<double>(i));
+  for (const ViewGain& view : set.marginal) say(view.gain);
+  say(set.gain), say(set.gain_by_best_alone);
+  for (const std::size_t i : evaluator.race(poses, 3).indices) say(static_cast<double>(i));
+  return all;
+}
+
 TEST(Determinism, SameBitsAcrossInstructionSets) {
+  std::size_t cases = 0;
   for (const test::MapFamily family : kFamilies) {
     const test::RandomCase made = test::random_case(13, family, 40);
-    std::vector<std::vector<ViewGain>> by_isa;
-    for (const std::string& isa : available_isas()) {
-      const test::ScopedIsa scoped(isa);
-      const GainEvaluator evaluator(VoxelScene::build(made.map.grid), made.sensor, test::kPaper);
-      EXPECT_EQ(evaluator.scene().isa(), isa);
-      by_isa.push_back(evaluator.evaluate(made.poses));
-      EXPECT_TRUE(test::same_bits(by_isa.front(), by_isa.back())) << isa;
-      EXPECT_GT(test::gaining(by_isa.back()), made.poses.size() / 2) << isa;
+    for (const GainModel model : {GainModel::paper, GainModel::surface, GainModel::combined}) {
+      std::vector<std::vector<ViewGain>> by_isa;
+      std::vector<std::vector<std::uint64_t>> said;
+      for (const std::string& isa : available_isas()) {
+        const test::ScopedIsa scoped(isa);
+        const GainEvaluator evaluator(VoxelScene::build(made.map.grid), made.sensor,
+                                      {.model = model});
+        EXPECT_EQ(evaluator.scene().isa(), isa);
+        by_isa.push_back(evaluator.evaluate(made.poses));
+        EXPECT_TRUE(test::same_bits(by_isa.front(), by_isa.back())) << isa;
+        EXPECT_GT(test::gaining(by_isa.back()), made.poses.size() / 2) << isa;
+        said.push_back(said_of(evaluator, made.poses));
+        EXPECT_TRUE(said.back() == said.front()) << isa;
+        ++cases;
+      }
     }
   }
+  EXPECT_EQ(cases, std::size(kFamilies) * 3 * available_isas().size());
 }
 
 }  // namespace
