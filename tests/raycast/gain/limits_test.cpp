@@ -22,6 +22,8 @@ namespace {
 
 using namespace test;
 
+constexpr int kFusedFrames = kSlowBuild ? 10 : 100;
+
 /// A million readings of one point, 10,000 a frame, from a cone round +z or a side that is `tilt`
 /// off it [rad]; their sum is known in double precision, too.
 struct Fusions {
@@ -31,9 +33,9 @@ struct Fusions {
     sensor.noise = noise;
     FrameIntegrator integrator(sensor);
     const Eigen::Vector3d point(0.5, 0.5, 0.5);
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < kFusedFrames; ++i) {
       const Eigen::AngleAxisd turn(tilt > 0 ? 0.7 : 2.4 * i, Eigen::Vector3d::UnitZ());
-      const Eigen::AngleAxisd away(cone * i / 100 + tilt, Eigen::Vector3d::UnitX());
+      const Eigen::AngleAxisd away(cone * i / kFusedFrames + tilt, Eigen::Vector3d::UnitX());
       pose = look_at(point + turn * away * Eigen::Vector3d(0, 0, 2), point);
       integrator.integrate(grid, {100, 100, std::vector<float>(10'000, 2.0F)}, pose);
       for (const Eigen::Vector3d& ray : sensor.camera.ray_table()) {
@@ -64,8 +66,8 @@ TEST(Limits, AMillionFusionsStayPositiveDefinite) {
   for (const double axial : {0.004, 0.1}) {
     SCOPED_TRACE(axial);
     const Fusions fusions({axial, 0.002}, 1.0);
-    EXPECT_EQ(fusions.grid.belief({0, 0, 0})->hits, 1'000'000U);
-    EXPECT_LT(fusions.off(), 100 * 0x1p-23);
+    EXPECT_EQ(fusions.grid.belief({0, 0, 0})->hits, 10'000U * kFusedFrames);
+    EXPECT_LT(fusions.off(), kFusedFrames * 0x1p-23);
     EXPECT_GT(fusions.information.inverse().inverse().xx, 0);
     const std::vector<FusedPoint> points = fused_points(fusions.grid);
     ASSERT_EQ(points.size(), 1U);
@@ -84,13 +86,13 @@ TEST(Limits, AMillionReadingsOfOneSideKeepTheirWeakAxis) {
         SCOPED_TRACE(testing::Message() << ratio << ", " << tilt << ", " << along);
         const ConstantNoise noise{along ? 1e-3 * ratio : 1e-3, along ? 1e-3 : 1e-3 * ratio};
         const Fusions fusions(noise, 0, tilt);
-        EXPECT_LT(fusions.off(), 100 * 0x1p-23);
+        EXPECT_LT(fusions.off(), kFusedFrames * 0x1p-23);
         const auto weakest = [](const Eigen::Matrix3d& information) {
           return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(information).eigenvalues()[0];
         };
         const double expected = weakest(fusions.expected);
         EXPECT_NEAR(weakest(fusions.information.matrix()), expected,
-                    4 * std::sqrt(100) * 0x1p-24 * ratio * ratio * expected);
+                    4 * std::sqrt(kFusedFrames) * 0x1p-24 * ratio * ratio * expected);
         EXPECT_EQ(fused_points(fusions.grid).size(), 1U);
         const auto scene = VoxelScene::build(fusions.grid);
         for (const GainModel model : {GainModel::paper, GainModel::combined}) {

@@ -130,7 +130,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// afterwards. Throws Error(invalid_argument) outside the workspace, for a log-odds that is NaN,
   /// or for a belief that no readings make: a number that is not finite, information that is not
   /// positive semidefinite (but for the rounding of `hits` sums), or a place Λ⁻¹η that is absurdly
-  /// far (2^28 voxels) from the voxel. The grid is unchanged then.
+  /// far (2^28 voxels) from the voxel. The grid is unchanged then. What rounding has left short of
+  /// positive definite has its diagonal raised until it is.
   void set(Index3 voxel, float log_odds, const std::optional<Belief>& belief = {});
   /// Sets many voxels: as one by one in their order, but faster, and all or none if one of them is
   /// refused. Costs a sort of them by blocks, and a copy of each block that they change.
