@@ -16,8 +16,7 @@
 namespace viewgain {
 
 toml::table read_toml(const std::filesystem::path& path) {
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 24U;  // [bytes]
-  return parse_toml(file_bytes(path, kMost), path.string());
+  return parse_toml(file_bytes(path, kMostTomlBytes), path.string());
 }
 
 toml::table parse_toml(std::string_view text, const std::string& name) {

@@ -16,6 +16,7 @@
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/hash64.hpp"
 #include "viewgain/support/text.hpp"
+#include "viewgain/support/toml_table.hpp"
 
 namespace viewgain {
 namespace {
@@ -202,8 +203,9 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
     refuse(dir.string() + ": has no sensor.toml, so a sensor is needed");
   }
   const fs::path own = dir / kSensor;
-  frames.sensor = sensor.empty() ? parse_sensor_toml(folder_file_bytes(own), own.string())
-                                 : load_sensor(sensor);
+  frames.sensor = sensor.empty()
+                      ? parse_sensor_toml(folder_file_bytes(own, kMostTomlBytes), own.string())
+                      : load_sensor(sensor);
   if (frames.recorded && is_there(dir / kIntrinsics)) {
     apply_intrinsics_file(dir / kIntrinsics, frames.sensor.camera);
   }

@@ -4,6 +4,7 @@
 
 #include <toml++/toml.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -12,6 +13,9 @@
 #include "viewgain/core/export.hpp"
 
 namespace viewgain {
+
+/// The largest file that is read as one of TOML [bytes].
+inline constexpr std::uint64_t kMostTomlBytes = std::uint64_t{1} << 24U;
 
 /// Throws Error(io) if the file cannot be read, Error(format) with the line if it is no TOML.
 [[nodiscard]] VIEWGAIN_EXPORT toml::table read_toml(const std::filesystem::path& path);
