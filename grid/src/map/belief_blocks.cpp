@@ -46,11 +46,11 @@ std::string has(const char* what, const std::string& value) {
 }
 
 /// Bound on how far the sum of `hits` readings may be from positive semidefinite, its information
-/// scaled to a unit diagonal. Each sum was rounded to single precision `hits` times, by at most
-/// 2^-24 of itself, and |Λ_ij| <= √(Λ_ii Λ_jj): that is hits · 2^-24 an entry, three times as much
-/// for the matrix. Importers round once. From 2^24 readings on sums stand still, each within a
-/// factor of 2 of the others. Twice the bound, so that the matrix that is factored below is
-/// regular.
+/// scaled to a unit diagonal. Whoever rounds each of the readings' sums to single precision, to the
+/// nearest, is off by at most 2^-24 each time, and |Λ_ij| <= √(Λ_ii Λ_jj): that is hits · 2^-24 an
+/// entry, three times as much for the matrix. From 2^24 readings on such sums stand still, each
+/// within a factor of 2 of the others. Twice the bound, so that the matrix that is factored below
+/// is regular, and for BeliefSum, which rounds by up to 2^-23 but less often.
 double rounding(std::uint32_t hits) { return 6.0 * std::min((hits + 1.0) * 0x1p-24, 1.0); }
 
 }  // namespace

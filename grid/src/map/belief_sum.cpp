@@ -50,7 +50,8 @@ void BeliefSum::add(const SymmetricMatrix3& information, const Eigen::Vector3d& 
 
 Belief BeliefSum::rounded() const {
   Belief belief;
-  std::uint64_t salt = 0;
+  // With the count, or a sum that chance has left where it was would stay there for ever.
+  std::uint64_t salt = 9 * static_cast<std::uint64_t>(hits_);
   const auto narrow = [&](double value) { return rounded_by_chance(value, salt++); };
   std::transform(information_.begin(), information_.end(), belief.information.begin(), narrow);
   std::transform(vector_.begin(), vector_.end(), belief.information_vector.begin(), narrow);

@@ -20,8 +20,9 @@ class BeliefSum {
   /// Each number is rounded up or down by chance, the nearer more often, so that the errors of
   /// many sums grow with the root of their count, not with the count: to the nearest, readings from
   /// one side would always be rounded the same way, and that hides a weak axis. The chance is a
-  /// hash of the number's bits, hence the same everywhere. A number that single precision holds
-  /// stays as it is; one beyond its largest is that. The information is made definite().
+  /// hash of the number's bits and the count of readings, hence the same everywhere. A number that
+  /// single precision holds stays as it is; one beyond its largest is that. The information is made
+  /// definite().
   [[nodiscard]] Belief rounded() const;
 
  private:
@@ -32,7 +33,8 @@ class BeliefSum {
 
 /// The belief with an information that is positive definite, where rounding has made it another: 2t
 /// of its diagonal is added to it, t the smallest power of two, 2^-24 or more, with t of which it
-/// is. As it is where it is positive definite, or a zero on its diagonal lets nothing help.
+/// is. As it is where it is positive definite, or a zero or the largest number on its diagonal
+/// lets nothing help.
 [[nodiscard]] Belief definite(const Belief& belief);
 
 }  // namespace viewgain::detail

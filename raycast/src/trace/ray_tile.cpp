@@ -65,8 +65,7 @@ TileTable::TileTable(const TileTable& full, const RayLattice& lattice)
       part_(lattice),
       image_columns_(full.columns) {
   const auto tile_columns = static_cast<int>(full.tile_columns());
-  const auto pixels =
-      static_cast<float>(static_cast<double>(full.ray_count()) / static_cast<double>(ray_count()));
+  const auto pixels = static_cast<float>(lattice.step * lattice.step);
   fill([&](int column, int row) -> Ray {
     const int u = lattice.column + column * lattice.step, v = lattice.row + row * lattice.step;
     const auto tile = static_cast<std::size_t>(v / kTileEdge * tile_columns + u / kTileEdge);

@@ -33,7 +33,8 @@ struct TileTable {
   std::size_t tile_count = 0;
   std::vector<float> directions;     ///< 48 a tile
   std::vector<std::uint16_t> valid;  ///< one bit a lane
-  /// 16 a tile: what each ray stands for [sr], its pixel's times pixels over rays of the image.
+  /// 16 a tile: what each ray stands for [sr], its pixel's times pixels over rays of the image; of
+  /// a lattice step² times that, which the estimate corrects (SampledViews).
   std::vector<float> solid_angle;
   std::vector<float> cosine;              ///< the largest of a tile's rays with the optical axis
   std::vector<std::uint32_t> first_lane;  ///< ray index (row by row) of lane 0 of each tile

@@ -427,6 +427,13 @@ TEST_F(WatchedFolder, OfTwoImagesOfANumberOneCounts) {
   EXPECT_EQ(watched.taken_count(), 2U);
   EXPECT_EQ(watched.waiting(), 0U);
 
+  put("frame-99999999999999999999.depth.png", png(600));
+  EXPECT_TRUE(complete_after(watched, 3s).empty());
+  ASSERT_EQ(bad.size(), 3U);
+  EXPECT_EQ(bad[2].fault.what.substr(dir.path().string().size() + 1),
+            "frame-99999999999999999999.depth.png: has a number of more than 64 bits");
+  std::filesystem::remove(dir.path() / "frame-99999999999999999999.depth.png");
+
   FrameWatch fresh = watch();
   EXPECT_EQ(complete(fresh), (Numbers{0, 1}));
   EXPECT_EQ(fresh.taken_count(), 2U);

@@ -44,6 +44,37 @@ TEST(GainOptions, StrideTakesEverySthPixelFromTheFirst) {
   }
 }
 
+// A slab of unknown space fills the image, so that whichever rays are traced show the same: strides
+// and samples that do not divide the image stand for all of it, and for no more.
+TEST(GainOptions, TheRaysThatAreTracedStandForAllPixels) {
+  BeliefGrid grid = BeliefGrid(GridConfig{0.01, {{-1, -1, 0}, {1, 1, 0.2}}, {}, 0.01});
+  Sensor sensor = test::lattice_sensor(101, 83);
+  sensor.camera.fx = sensor.camera.fy = 200;
+  const Pose pose = look_at({0, 0, -1}, {0, 0, 0});
+  const auto scene = VoxelScene::build(grid);
+  const GainConfig config{.model = GainModel::surface};
+  const GainEvaluator all(scene, sensor, config);
+  const double area = all.evaluate(pose).area;
+  EXPECT_GT(area, 1e-4);
+  int cases = 0;
+  for (const int stride : {2, 3, 7, 9}) {
+    GainConfig some = config;
+    some.pixel_stride = stride;
+    EXPECT_NEAR(GainEvaluator(scene, sensor, some).evaluate(pose).area, area, 0.02 * area)
+        << stride;
+    ++cases;
+  }
+  for (const double share : {0.3, 0.1, 0.02, 0.01}) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      ApproximateGain estimate;
+      (void)all.approximate({&pose, 1}, {&estimate, 1}, {.share = share, .seed = seed});
+      EXPECT_NEAR(estimate.gain, area, 0.02 * area) << share << ' ' << estimate.rays;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 44);
+}
+
 TEST(GainOptions, WeightsMultiplyVoxelsByTheLastRegionThatHoldsTheirCentre) {
   int weighed = 0;
   for (std::uint64_t seed = 100; seed < 110; ++seed) {

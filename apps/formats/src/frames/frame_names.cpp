@@ -88,29 +88,27 @@ std::optional<std::string> frame_number(const std::string& name, std::string_vie
   return are_digits ? std::optional(digits) : std::nullopt;
 }
 
-std::uint64_t frame_index(const std::string& digits) {
+std::optional<std::uint64_t> frame_index(const std::string& digits) {
   std::uint64_t index = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
-  if (error != std::errc{} || end != digits.data() + digits.size()) {
-    throw Error(ErrorCode::format,
-                std::string(kFramePrefix) + digits + " has a number of more than 64 bits");
-  }
-  return index;
+  const bool is_whole = error == std::errc{} && end == digits.data() + digits.size();
+  return is_whole ? std::optional(index) : std::nullopt;
 }
 
 std::map<std::uint64_t, std::string> list_frames(const std::vector<std::string>& names,
-                                                 std::map<std::string, std::uint64_t>* twins) {
+                                                 FramesLeftOut* left_out) {
   std::map<std::uint64_t, std::string> frames;
   for (const std::string& name : names) {
     if (const auto digits = frame_number(name, kDepthSuffix)) {
       const std::string frame = std::string(kFramePrefix) + *digits;
-      const std::uint64_t number = frame_index(*digits);
-      const auto [other, is_new] = frames.emplace(number, frame);
-      if (is_new) continue;
-      if (twins == nullptr) {
-        throw Error(ErrorCode::format, frame + " and " + other->second + " are of one number");
+      const std::optional<std::uint64_t> number = frame_index(*digits);
+      if (number && frames.emplace(*number, frame).second) continue;
+      if (left_out == nullptr) {
+        throw Error(ErrorCode::format,
+                    number ? frame + " and " + frames.at(*number) + " are of one number"
+                           : frame + " has a number of more than 64 bits");
       }
-      twins->emplace(frame, number);
+      left_out->emplace(frame, number);
     }
   }
   return frames;

@@ -66,14 +66,17 @@ inline constexpr std::array kNames{kPoses, kSensor, kIntrinsics, kSimulated, kSc
 [[nodiscard]] std::optional<std::string> frame_number(const std::string& name,
                                                       std::string_view suffix);
 
-/// 50 of "000050". Throws Error(format) if it does not fit.
-[[nodiscard]] std::uint64_t frame_index(const std::string& digits);
+/// 50 of "000050"; nothing if it needs more than 64 bits.
+[[nodiscard]] std::optional<std::uint64_t> frame_index(const std::string& digits);
+
+/// By "frame-NNNNNN" the number that another has, too; nothing: it needs more than 64 bits.
+using FramesLeftOut = std::map<std::string, std::optional<std::uint64_t>>;
 
 /// The depth images among the names in a folder by their number, as "frame-NNNNNN", of however many
-/// digits. Of two of one number the later name goes to `twins`. Throws Error(format) if there is no
-/// such map, and for numbers of more than 64 bits.
+/// digits. Of two of one number the later name goes to `left_out`, as do numbers of more than 64
+/// bits. Throws Error(format) instead if there is no such map.
 [[nodiscard]] std::map<std::uint64_t, std::string> list_frames(
-    const std::vector<std::string>& names, std::map<std::string, std::uint64_t>* twins = nullptr);
+    const std::vector<std::string>& names, FramesLeftOut* left_out = nullptr);
 
 /// The amplitude image that belongs to a depth image, whether there is one or not.
 [[nodiscard]] std::filesystem::path amplitude_path(const std::filesystem::path& depth_image);

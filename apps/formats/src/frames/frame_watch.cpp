@@ -3,6 +3,7 @@
 #include "viewgain/formats/frame_watch.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <span>
 #include <string_view>
@@ -94,7 +95,7 @@ struct FrameWatch::Impl {
   std::map<std::string, std::string> taken;  // by file name, as frame_identity() has them
   std::map<std::uint64_t, Entry> entries;
   Listing listing;
-  std::set<std::string> twins;     // images of numbers that others have
+  std::set<std::string> twins;     // images of numbers that others have, or too large
   Time looked{};                   // when it was looked at last
   std::size_t quiet_listings = 0;  // in a row, with which nothing new was found
   FileStamp poses_stamp;
@@ -224,23 +225,24 @@ struct FrameWatch::Impl {
 
   // Of two images of one number one counts: that which was taken, or else the first by name.
   void list_numbers(const std::vector<std::string>& names, FolderLook& found) {
-    std::map<std::string, std::uint64_t> others;
+    const std::string end(kDepthSuffix);
+    FramesLeftOut others;
     listing.frames = list_frames(names, &others);
     std::set<std::string> left;
     for (const auto& [name, number] : others) {
-      std::string& own = listing.frames.at(number);
-      std::string other = name;
-      const auto is_taken = [&](const std::string& frame) {
-        return taken.contains(frame + std::string(kDepthSuffix));
-      };
-      if (is_taken(other) && !is_taken(own)) std::swap(own, other);
-      const std::string image = other + std::string(kDepthSuffix);
+      std::string image = name + end, what = ": has a number of more than 64 bits";
+      if (number) {
+        std::string& own = listing.frames.at(*number);
+        if (taken.contains(image) && !taken.contains(own + end)) {
+          image = own + end;
+          own = name;
+        }
+        what = ": is of the number of " + own + "; a number is one frame's";
+      }
       if (!twins.contains(image)) {
-        found.bad.push_back(
-            {number,
-             {FrameVerdict::changed, (dir / image).string() + ": is of the number of " + own +
-                                         "; a number is one frame's"},
-             image});
+        found.bad.push_back({number.value_or(std::numeric_limits<std::uint64_t>::max()),
+                             {FrameVerdict::changed, (dir / image).string() + what},
+                             image});
       }
       left.insert(image);
     }

@@ -50,7 +50,7 @@ std::vector<fs::path> simulated_files(const fs::path& dir) {
                   !name.ends_with(kPoseSuffix);
     for (const std::string_view suffix : {kDepthSuffix, kAmplitudeSuffix}) {
       const auto digits = frame_number(name, suffix);
-      if (digits) is_own = is_own && frame_index(*digits) < count;
+      if (digits) is_own = is_own && frame_index(*digits).value_or(count) < count;
     }
     if (is_own) continue;
     refuse((dir / file).string() + ": no frames of simulate (" + kSimulated +

@@ -199,6 +199,7 @@ class Following {
       say(bad.fault.what + " (" + std::string(frame_verdict_name(bad.fault.verdict)) +
           "); left out");
       // One that was taken is in the map, whatever has become of its files.
+      if (bad.fault.verdict == FrameVerdict::changed) views_.ignore(bad.name);
       if (!map_ || bad.fault.verdict == FrameVerdict::changed) continue;
       if (!views_.leave_out(bad.name)) continue;  // it was counted
       map_->answer(views_.answered_by(bad.name), bad.T_world_camera);

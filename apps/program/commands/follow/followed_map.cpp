@@ -114,6 +114,7 @@ std::optional<SavedFrames> saved_frames(const fs::path& state, const ExecConfig&
 
 std::set<std::string> AskedViews::judged(const std::set<std::string>& identities) const {
   std::set<std::string> names = left_out_;
+  names.insert(ignored_.begin(), ignored_.end());
   for (const std::string& identity : identities) {
     names.insert(identity.substr(identity.find(' ') + 1));
   }

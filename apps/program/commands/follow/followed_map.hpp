@@ -75,6 +75,8 @@ class AskedViews {
 
   /// The frame is left out; false if that was known.
   bool leave_out(const std::string& name) { return left_out_.insert(name).second; }
+  /// Nobody will use the image as it is, and it is no view.
+  void ignore(const std::string& name) { ignored_.insert(name); }
   /// The frame is in the map after all.
   void take(const std::string& name) { left_out_.erase(name); }
 
@@ -91,6 +93,7 @@ class AskedViews {
   std::vector<Pose> asked_;
   std::set<std::string> known_;     // images that were there
   std::set<std::string> left_out_;  // of bad frames
+  std::set<std::string> ignored_;
   bool is_asked_ = false;
 };
 

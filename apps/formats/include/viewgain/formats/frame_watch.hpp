@@ -48,7 +48,7 @@ struct VIEWGAIN_EXPORT WatchedFrame {
 struct VIEWGAIN_EXPORT BadFrame {
   std::uint64_t number = 0;  ///< in its files' names
   /// unreadable, wrong_size, lost_pose, changed; no_pose and no_mask of give_up(). Of two images
-  /// of one number one is `changed`.
+  /// of one number one is `changed`, and so is one whose number needs more than 64 bits.
   FrameFault fault{};
   std::string name{};                    ///< of its depth image
   std::optional<Pose> T_world_camera{};  ///< where it was taken, if that is known
