@@ -302,12 +302,21 @@ void BeliefGrid::for_each_occupied(
 }
 
 void put_block(BeliefGrid& grid, Index3 origin, const std::uint8_t* codes) {
-  GridAccess::storage(grid).put_block(origin, codes);
+  GridStorage& s = GridAccess::storage(grid);
+  s.mark_changed(s.lattice.key(origin));
+  s.put_block(origin, codes);
+  ++s.time;
 }
 
 void fill_cube(BeliefGrid& grid, Index3 origin, std::int32_t size, std::uint8_t code) {
   GridStorage& s = GridAccess::storage(grid);
   if (!s.lattice.overlaps(origin, size)) return;
+  if (size <= kRegionSize) {
+    s.mark_changed(s.lattice.key(block_origin(clipped(s.lattice, origin, size).min)));
+    ++s.time;
+  } else {
+    s.forget_snapshots();  // a mark for each region of a large cube would cost more than it saves
+  }
   // Whole blocks, of large cubes whole nodes, round the part in the workspace.
   const std::int32_t unit = may_be_tile(code) && size > kNodeSize ? kNodeSize : kBlockSize;
   const VoxelBox part = clipped(s.lattice, origin, size);

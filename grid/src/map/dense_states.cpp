@@ -82,7 +82,7 @@ BeliefGrid BeliefGrid::from_states(const GridConfig& config, std::span<const std
                          row[k] = kCodes[states[at + k]];
                        }
                      });
-        if (any) put_block(grid, {x, y, z}, codes.data());
+        if (any) grid.storage_->put_block({x, y, z}, codes.data());
       }
     }
   }

@@ -7,6 +7,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,7 +19,10 @@
 #include "raycast/scene_makers.hpp"
 #include "raycast/trace/oracle_tally.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/generators.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/support/block_lattice.hpp"
+#include "viewgain/support/log_odds_code.hpp"
 
 namespace viewgain {
 namespace {
@@ -206,6 +211,50 @@ INSTANTIATE_TEST_SUITE_P(
                     Chain{"WithAnObstacle", 96, {0, 0.03, 0, 0.07, 0, 0}, false, true, false},
                     Chain{"Cells", kFine, {0.011, 0, 0, 0, 0.023, 0}, false, false, true}),
     [](const auto& chosen) { return std::string(chosen.param.name); });
+
+// Importers put whole blocks and cubes into a map, which scenes of it must follow, too.
+TEST(SceneUpdateOfImports, FollowsBlocksAndCubesOfImporters) {
+  const GridConfig config{0.01, {{0, 0, 0}, {1.6, 1.6, 1.6}}, {}, 0.005};
+  BeliefGrid grid(config);
+  std::array<std::uint8_t, 512> solid;
+  solid.fill(detail::log_odds_code(0.85));
+  const std::uint8_t free = detail::log_odds_code(-0.4);
+  const std::vector<std::function<void()>> changes{[&] {
+                                                     put_block(grid, {64, 64, 64}, solid.data());
+                                                   },
+                                                   [&] {
+                                                     fill_cube(grid, {0, 0, 0}, 8, free);
+                                                   },
+                                                   [&] {
+                                                     fill_cube(grid, {64, 0, 64}, 32, solid[0]);
+                                                   },
+                                                   [&] {
+                                                     fill_cube(grid, {0, 0, 64}, 64, free);
+                                                   },
+                                                   [&] {
+                                                     fill_cube(grid, {128, 128, 128}, 128, free);
+                                                   },  // beyond the workspace
+                                                   [&] {
+                                                     fill_cube(grid, {0, 0, 0}, 256, free);
+                                                   }};
+  auto scene = VoxelScene::build(grid, {}, {.num_threads = 1});
+  Sensor sensor = test::small_sensor(48, 36);
+  sensor.min_range = 0.01, sensor.max_range = 5;
+  const std::vector<Pose> poses = sphere_poses(6, 2.0, {0.8, 0.8, 0.8});
+  std::vector<ViewGain> last(poses.size());
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    changes[i]();
+    scene = VoxelScene::update(scene, grid, {.num_threads = 1});
+    const auto anew = VoxelScene::build(grid, {}, {.num_threads = 1});
+    EXPECT_EQ(scene->primitive_count(), anew->primitive_count()) << i;
+    const GainEvaluator updated(scene, sensor), built(anew, sensor);
+    const std::vector<ViewGain> gains = built.evaluate(poses);
+    EXPECT_TRUE(test::same_bits(updated.evaluate(poses), gains)) << i;
+    for (const Pose& pose : poses) test::expect_same_hits(updated.trace(pose), built.trace(pose));
+    EXPECT_FALSE(test::same_bits(gains, last)) << i;  // each change is seen
+    last = gains;
+  }
+}
 
 // An evaluator that follows a map: with_scene() gives what an evaluator made for the scene gives.
 

@@ -126,7 +126,8 @@ namespace viewgain {
 // The voxels of a grid by blocks, for importers and exporters that do not include OpenVDB. Codes
 // are those of log_odds_code.hpp; what lies outside the workspace holds no meaning.
 
-/// Writes the 512 codes of the block at `origin`, which must overlap the workspace.
+/// Writes the 512 codes of the block at `origin`, which must overlap the workspace. Beliefs and
+/// scales stay. Marks the block as changed, as fill_cube() does, for snapshots and scenes.
 VIEWGAIN_EXPORT void put_block(BeliefGrid& grid, Index3 origin, const std::uint8_t* codes);
 
 /// Sets all voxels of a cube to one code; `size` is a power of two, 8 or more, and `origin` a
