@@ -104,7 +104,7 @@ TEST(Sensor, ValidateNamesTheField) {
   expect_bad("focal", [](Sensor& s) { s.noise = StereoNoise{.focal = -1}; });
   // Small values keep their digits.
   expect_bad("not -1e-09", [](Sensor& s) { s.min_range = -1e-9; });
-  expect_bad("offset", [](Sensor& s) { s.noise = QuadraticNoise{.offset = 0}; });
+  expect_bad("offset", [](Sensor& s) { s.noise = QuadraticNoise{.offset = -1e-3}; });
   expect_bad("sigma_lateral", [](Sensor& s) { s.noise = ConstantNoise{.sigma_lateral = 0}; });
   expect_bad("T_flange_camera", [](Sensor& s) {
     s.T_flange_camera = Pose(2 * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
@@ -119,6 +119,32 @@ TEST(Sensor, ValidateNamesTheField) {
   touching.min_range = 0;
   touching.T_flange_camera = look_at({0, 0, 1}, {0, 0, 0});
   EXPECT_NO_THROW(touching.validate());
+}
+
+// What only adds to a sigma may be 0, as long as no reading within the ranges is exact.
+TEST(Sensor, ASigmaMayLackAPartThatOthersMakeUpFor) {
+  const auto expect = [](bool is_valid, const NoiseModel& noise, double min_range = 0.2) {
+    Sensor sensor = sensor_preset("sr4000");
+    sensor.min_range = min_range;
+    sensor.noise = noise;
+    if (!is_valid)
+      return expect_error(ErrorCode::invalid_argument, "sigma along the ray is 0",
+                          [&] { sensor.validate(); });
+    EXPECT_NO_THROW(sensor.validate());
+    for (const double t : {min_range, 0.4, 0.7, sensor.max_range}) {
+      EXPECT_GT(sensor.noise_sigmas(t).axial, 0) << t;
+    }
+  };
+  expect(true, QuadraticNoise{.offset = 0});
+  expect(true, QuadraticNoise{.offset = 0}, 0.0);  // as at kMinNoiseRange
+  expect(true, QuadraticNoise{.offset = 0, .quadratic = 0, .linear = 0.005});
+  expect(true, QuadraticNoise{.offset = 1e-3, .quadratic = 0});
+  expect(false, QuadraticNoise{.offset = 0, .quadratic = 0});
+  expect(true, StructuredLightNoise{.offset = 0, .vertex = 0});
+  expect(true, StructuredLightNoise{.offset = 0, .vertex = 0.4}, 0.41);
+  expect(false, StructuredLightNoise{.offset = 0, .vertex = 0.4});  // exact at its vertex
+  expect(false, StructuredLightNoise{.offset = 0, .quadratic = 0});
+  expect(true, StructuredLightNoise{.quadratic = 0, .grazing = 0, .lateral_grazing_px = 0});
 }
 
 // Against C + J Σ Jᵀ with J = [I, -[p]x], p the reading's place.

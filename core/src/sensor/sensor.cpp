@@ -53,6 +53,13 @@ const std::vector<Sensor>& presets() {
   return sensors;
 }
 
+// Within the sensor's ranges, of a surface seen frontally [m].
+double range_of_least_sigma(const Sensor& sensor) {
+  const auto* structured = std::get_if<StructuredLightNoise>(&sensor.noise);
+  if (structured == nullptr) return sensor.min_range;  // the others do not fall with the range
+  return std::clamp(structured->vertex, sensor.min_range, sensor.max_range);
+}
+
 }  // namespace
 
 void Sensor::validate() const {
@@ -75,6 +82,11 @@ void Sensor::validate() const {
            (field.may_be_0 ? "not negative" : "positive") + " and finite, not " +
            short_text(value));
   });
+  const double least = range_of_least_sigma(*this);
+  if (!(noise_sigmas(least).axial > 0)) {
+    refuse("noise: sigma along the ray is 0 at a range of " + short_text(least) +
+           " m; a reading there would be exact: offset, linear or quadratic must be positive");
+  }
   if (T_flange_camera && !rigid_pose(*T_flange_camera)) {
     fail("T_flange_camera is not a rigid transform");
   }

@@ -76,7 +76,8 @@ struct VIEWGAIN_EXPORT Sensor {
 
   /// Throws Error(invalid_argument), naming the field: camera as in PinholeCamera::validate(),
   /// 0 <= min_range < max_range, working_distance > 0 and within them, all noise parameters
-  /// positive and finite (modulation frequency and least amplitude may be 0), T_flange_camera
+  /// positive and finite (what only adds to a sigma may be 0 as long as the sigma along the ray is
+  /// positive within the ranges; modulation frequency and least amplitude, too), T_flange_camera
   /// rigid (1e-3), body_size positive and finite, pose_sigma and scale_sigma not negative
   /// and finite, range_calibration as in RangeCalibration::validate() with ranges that are
   /// positive, measured and corrected.

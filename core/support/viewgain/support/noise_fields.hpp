@@ -15,7 +15,7 @@ struct NoiseField {
   double Model::*member;
   bool optional = false;     ///< in files: then the model's default holds
   bool unsaid_at_0 = false;  ///< in files: 0 is no value of its own
-  bool may_be_0 = optional;  ///< else positive
+  bool may_be_0 = optional;  ///< else positive; Sensor::validate() looks at the sum
 };
 
 /// What a model is called in files, and its parameters in the order of C's vg_sensor::noise.
@@ -36,12 +36,12 @@ template <>
 struct NoiseLayout<StructuredLightNoise> {
   static constexpr const char* kName = "structured_light";
   static constexpr std::array<NoiseField<StructuredLightNoise>, 6> kFields{
-      {{"offset", &StructuredLightNoise::offset},
-       {"quadratic", &StructuredLightNoise::quadratic},
-       {"vertex", &StructuredLightNoise::vertex},
-       {"grazing", &StructuredLightNoise::grazing},
+      {{"offset", &StructuredLightNoise::offset, false, false, true},
+       {"quadratic", &StructuredLightNoise::quadratic, false, false, true},
+       {"vertex", &StructuredLightNoise::vertex, false, false, true},
+       {"grazing", &StructuredLightNoise::grazing, false, false, true},
        {"lateral_px", &StructuredLightNoise::lateral_px},
-       {"lateral_grazing_px", &StructuredLightNoise::lateral_grazing_px}}};
+       {"lateral_grazing_px", &StructuredLightNoise::lateral_grazing_px, false, false, true}}};
 };
 template <>
 struct NoiseLayout<StereoNoise> {
@@ -55,7 +55,7 @@ template <>
 struct NoiseLayout<QuadraticNoise> {
   static constexpr const char* kName = "quadratic";
   static constexpr std::array<NoiseField<QuadraticNoise>, 3> kFields{
-      {{"offset", &QuadraticNoise::offset},
+      {{"offset", &QuadraticNoise::offset, false, false, true},
        {"quadratic", &QuadraticNoise::quadratic, false, false, true},
        {"linear", &QuadraticNoise::linear, true, true}}};
 };
