@@ -56,6 +56,7 @@ Json to_json(const TraceOptions& options, const TraceRun& run) {
     json["wrong"][name] = entry->agreement.wrong();
   }
   json["agree"] = run.agrees();
+  json["faults_of_others"] = run.faults_of_others();
   return json;
 }
 
@@ -86,7 +87,11 @@ void print_table(const Json& json) {
   for (const auto& [name, ratio] : json["ratios"].items()) {
     std::printf("%-36s %10.3f\n", name.c_str(), ratio.get<double>());
   }
-  std::printf("\n%s\n", json["agree"].get<bool>() ? "all agree" : "THEY DO NOT AGREE");
+  const auto others = json["faults_of_others"].get<std::string>();
+  std::printf("\n%s%s%s\n",
+              json["agree"].get<bool>() ? "viewgain agrees with the oracle"
+                                        : "VIEWGAIN DOES NOT AGREE WITH THE ORACLE",
+              others.empty() ? "" : "; of the others, ", others.c_str());
 }
 
 }  // namespace

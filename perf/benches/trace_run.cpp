@@ -99,11 +99,11 @@ double TraceRun::rate(const std::string& name) const {
   return median(row->entry->rates);
 }
 
-std::string TraceRun::disagreement() const {
+std::string TraceRun::wrong_rays(bool of_ours) const {
   std::string names;
   for (const TraceEntry& entry : entries) {
     const Agreement& a = entry.agreement;
-    if (!entry.counts() || a.agrees()) continue;
+    if (entry.is_ours() != of_ours || !entry.counts() || a.agrees()) continue;
     names += names.empty() ? "wrong rays: " : ", ";
     names += entry.name;
     names += ' ';

@@ -24,6 +24,8 @@ struct TraceEntry {
   Agreement agreement;
   RayShares shares;
 
+  /// A way of viewgain's own, and none that it is compared with.
+  [[nodiscard]] bool is_ours() const { return name.starts_with("viewgain_"); }
   /// One of Embree's quad variants.
   [[nodiscard]] bool is_embree() const;
   /// Embree's variants that are not watertight let a ray in some millions slip through; they are
@@ -50,9 +52,15 @@ struct TraceRun {
 
   /// Median rays per second of a row.
   [[nodiscard]] double rate(const std::string& name) const;
-  /// The methods that count and do not agree with the oracle, and their wrong rays; empty: none.
-  [[nodiscard]] std::string disagreement() const;
+  /// Viewgain's own methods that do not agree with the oracle, and their wrong rays; empty: none.
+  [[nodiscard]] std::string disagreement() const { return wrong_rays(true); }
+  /// The same of the methods that it is compared with and that count: their fault, a figure in
+  /// their rows.
+  [[nodiscard]] std::string faults_of_others() const { return wrong_rays(false); }
   [[nodiscard]] bool agrees() const { return disagreement().empty(); }
+
+ private:
+  [[nodiscard]] std::string wrong_rays(bool of_ours) const;
 };
 
 /// Makes the map, checks every method against the oracle, times them in turns. Throws Error.

@@ -42,6 +42,9 @@ def main():
             said = json.loads(done.stdout)
             assert done.returncode == (1 if False in values_of("pass", said) else 0), f"{call}: {done.returncode} {done.stderr}"
             assert all(values_of("agree", said)), f"{call}: its ways do not agree: {done.stdout}"
+            if call.startswith("trace"):  # a competitor's wrong ray is a figure, and no failure of ours
+                ours = [wrong for name, wrong in said["wrong"].items() if name.startswith("viewgain_")]
+                assert len(ours) > 3 and sum(ours) == 0
         for wrong in ("", "trace --poses 0", "bars --only nothing", "armadillo --data none", "trace --mesh none.off"):
             assert subprocess.run([bench, *wrong.split()], cwd=folder, capture_output=True).returncode == 2, wrong
     parts = subprocess.run([micro, "--benchmark_min_time=0.0001", "--benchmark_format=json"], capture_output=True, check=True).stdout
