@@ -18,7 +18,7 @@ import viewgain
 
 
 def test_all_is_of_the_package_that_users_import():
-    modules = ["viewgain"] + ["viewgain.mesh"] * (importlib.util.find_spec("viewgain.mesh") is not None)
+    modules = ["viewgain"] + ["viewgain.mesh"] * (importlib.util.find_spec("viewgain.mesh").submodule_search_locations is not None)
     checked = 0
     for name in modules:
         module = importlib.import_module(name)

@@ -14,7 +14,7 @@ import pytest
 import viewgain
 
 MODULES = ["viewgain._viewgain"]
-if importlib.util.find_spec("viewgain.mesh") is not None:
+if importlib.util.find_spec("viewgain.mesh").submodule_search_locations is not None:  # a package: it was built
     MODULES.append("viewgain.mesh._mesh")
 
 

@@ -6,5 +6,11 @@ Stands on parts of CGAL that are GPL-3.0-or-later, and so is what imports it; ``
 is Apache-2.0 and loads none of this.
 """
 
-from ._mesh import *
+try:
+    from ._mesh import *
+except ModuleNotFoundError as error:
+    from .._missing import MESH as _text
+    if error.name != __name__ + "._mesh":
+        raise
+    raise ImportError(_text, name=__name__) from None
 from .results import BoundaryCandidates, BoundaryClass, ViewRecord
