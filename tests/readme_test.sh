@@ -36,7 +36,7 @@ block sh | grep -q '^\./tests/run\.sh'
 
 cd "$work"
 "$source/apps/extract_mesh.sh" camel.off build/meshes
-commands=$(block sh | sed ':a; /\\$/ {N; s/\\\n *//; ta}' | grep '^viewgain' | sed 's/--voxel 0.003125/--voxel 0.01 --max-views 3 --save-maps on/')
+commands=$(block sh | sed ':a; /\\$/ {N; s/\\\n *//; ta}' | grep '^viewgain' | sed 's/--voxel 0.003125/--voxel 0.01 --max-views 3/')
 test "$(wc -l <<<"$commands")" -eq 3
 if [ ! -s "$bin/../apps/show/report/report_page.html" ]; then  # built without npm
   commands=$(sed 's/--report on//; s/--report score.html//' <<<"$commands")

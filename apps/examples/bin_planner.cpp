@@ -27,6 +27,10 @@ PlannerConfig bin_cell() {
   return config;
 }
 
+// Stands for the robot: drives the camera there and says whether it got there. These frames were
+// recorded before, so it does.
+bool drive_to(const Pose&) { return true; }
+
 int main(int argc, char** argv) try {
   if (argc != 5)
     throw std::runtime_error("usage: bin_planner SENSOR.toml FRAMES STATE.vdb MOST_FRAMES");
@@ -43,11 +47,13 @@ int main(int argc, char** argv) try {
     std::printf("view %zu: %.1f cm2 of new surface, %.0f nat", i, 1e4 * view.update.new_area,
                 view.entropy_removed);
     const std::size_t possible = planner.propose().candidates.size();
-    for (const RankedView& best : planner.rank(1, {.cost_per_metre = 20}).views) {  // [nat/m]
+    for (const RankedView& best : planner.rank(3, {.cost_per_metre = 20}).views) {  // [nat/m]
       const Eigen::Vector3d at = best.T_world_camera.translation();
       std::printf("; of %zu views the best is %zu at (%.3f, %.3f, %.3f) m, %.1f nat", possible,
                   best.index, at.x(), at.y(), at.z(), best.gain.gain);
-      planner.tried(best.T_world_camera, false);  // the robot could not go there
+      const bool reached = drive_to(best.T_world_camera);
+      planner.tried(best.T_world_camera, reached);
+      if (reached) break;  // else the next best
     }
     if (const auto reason = planner.should_stop()) {
       std::printf("; enough: %s", std::string(stop_reason_name(*reason)).c_str());

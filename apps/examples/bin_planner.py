@@ -4,6 +4,13 @@ import sys
 
 import viewgain
 
+
+
+def drive_to(pose):
+    """Stands for the robot: drives the camera there and says whether it got there. Recorded frames: it does."""
+    return True
+
+
 if len(sys.argv) != 5:
     sys.exit("usage: bin_planner.py SENSOR.toml FRAMES STATE.vdb MOST_FRAMES")
 sensor = viewgain.Sensor.load(sys.argv[1])
@@ -28,11 +35,14 @@ for i in range(first, min(len(frames), first + most)):
     view = planner.add(depth, T_world_camera, amplitude=amplitude)
     print(f"view {i}: {1e4 * view.new_area:.1f} cm2 of new surface, {view.entropy_removed:.0f} nat", end="")
     proposal = planner.propose()
-    best = planner.rank(1, cost_per_metre=20)  # [nat/m]
+    best = planner.rank(3, cost_per_metre=20)  # [nat/m]
     for index, pose, gain in zip(best.index, best.T_world_camera, best.gain):
         x, y, z = pose[:3, 3]
         print(f"; of {len(proposal.T_world_camera)} views the best is {index} at ({x:.3f}, {y:.3f}, {z:.3f}) m, "
               f"{gain:.1f} nat", end="")
-        planner.tried(pose, reached=False)  # the robot could not go there
+        reached = drive_to(pose)
+        planner.tried(pose, reached)
+        if reached:
+            break  # else the next best
     print(f"; enough: {planner.should_stop()}" if planner.should_stop() else "")
     planner.save(state)

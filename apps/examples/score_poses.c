@@ -8,6 +8,7 @@ static double poses[kPoses * 16]; /* T_world_camera, rows [m] */
 
 int main(int argc, char** argv) {
   const double radius = 0.6, center[3] = {0, 0, 0};
+  const uint64_t seed = 1;
   vg_sensor sensor;
   vg_grid* grid = NULL; /* whatever a call cannot make stays null, which may be released */
   vg_scene* scene = NULL;
@@ -21,8 +22,8 @@ int main(int argc, char** argv) {
       vg_sensor_preset("sr4000", &sensor) == VG_OK && vg_scene_build(grid, NULL, &scene) == VG_OK &&
       vg_evaluator_create(scene, &sensor, NULL, &evaluator) == VG_OK && /* by `combined` */
       vg_sphere_poses(kPoses, radius, center, poses) == VG_OK &&
-      vg_best(evaluator, poses, kPoses, kBest, best, gains, &found, NULL) == VG_OK) {
-    status = 0; /* all cores have scored them */
+      vg_race(evaluator, poses, kPoses, kBest, seed, best, gains, &found, NULL) == VG_OK) {
+    status = 0; /* on all cores */
   } else {
     fprintf(stderr, "%s\n", vg_last_error());
   }

@@ -6,9 +6,9 @@ int main(int argc, char** argv) try {
   const viewgain::GainEvaluator evaluator(scene, viewgain::sensor_preset("sr4000"),
                                           {.model = viewgain::GainModel::combined});
   const auto poses = viewgain::sphere_poses(2000, 0.6);  // T_world_camera [m]
-  const auto views = evaluator.evaluate(poses);          // on all cores
-  for (const auto i : viewgain::best_indices(views, 3))
-    std::printf("pose %zu: %.1f nat\n", i, views[i].gain);
+  const auto best = evaluator.race(poses, 3);            // on all cores
+  for (std::size_t i = 0; i < best.indices.size(); ++i)
+    std::printf("pose %zu: %.1f nat\n", best.indices[i], best.gains[i].gain);
 } catch (const viewgain::Error& error) {
   return std::fprintf(stderr, "%s\n", error.what()), 2;
 }

@@ -252,11 +252,13 @@ Ranking
 inline constexpr const char* kTriedDoc =
     R"(A pose was commanded: it is not proposed again, and goes out of the proposal as it stands.
 
+Call it for each pose that the robot was sent to, and for no other.
+
 Parameters
 ----------
 T_world_camera : array_like, (4, 4)
 reached : bool
-    Whether the camera got there.)";
+    True if the camera got there: the pose counts as taken; False if it did not: as missed.)";
 
 inline constexpr const char* kShouldStopDoc =
     R"(Why to end, if there is a reason.

@@ -26,6 +26,8 @@
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
+#include "viewgain/grid/hazard.hpp"
+#include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/grid/voxel.hpp"

@@ -335,6 +335,18 @@ TEST(ViewPlanner, VoxelsInMillimetresAreRefused) {
   expect_error(ErrorCode::invalid_argument, "lengths are in metres", make);
 }
 
+TEST(ViewPlanner, ATableThatIsStatedTwiceIsTheSame) {
+  const BinScene scene;
+  PlannerConfig config = scene.config();
+  const auto make = [&] { ViewPlanner(scene.sensor, config, {1}); };
+  config.surroundings.support_plane = config.integration.support_plane = 0.0;
+  EXPECT_NO_THROW(make());
+  config.integration.support_plane = 0.01;
+  expect_error(ErrorCode::invalid_argument, "surroundings", make);
+  config.surroundings.support_plane.reset();
+  expect_error(ErrorCode::invalid_argument, "surroundings", make);
+}
+
 TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
   const BinScene scene;
   ViewPlanner planner(scene.sensor, scene.config(), {1});
@@ -362,7 +374,7 @@ TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
     refuses("rigid", [&] { planner.tried(bad, false); });
     refuses("pose 1 of the set \"mine\"", [&] { planner.add_poses({"mine", {{}, bad}}); });
   }
-  refuses("OctoMap's", [&] { planner.save("state.ot"); });
+  refuses("end in .vdb", [&] { planner.save("state.ot"); });
   refuses("without a frame", [&] { planner.add(std::span<const DepthFrame>(), scene.views[0]); });
   refuses("null", [&] { planner.add_generation(nullptr); });
   (void)planner.propose();

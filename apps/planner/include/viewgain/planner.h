@@ -41,7 +41,8 @@ typedef struct vg_planner_config {
   double voxel_size;             /* [m]; must be given */
   double box_min[3], box_max[3]; /* the workspace, in the grid's frame [m]; must be given */
   double T_world_grid[16];       /* identity */
-  double prior_sigma;            /* of an unknown voxel [m]; 0: vg_default_prior_sigma() */
+  double prior_sigma;            /* of an unknown voxel [m]; NaN (the default):
+                                    vg_default_prior_sigma() */
   double support_plane;          /* height of the table, world z [m]; NaN (the default): none */
   /* Known obstacles, as in vg_scene_config: they block rays and the body, and readings of them
      carve but do not hit. */
@@ -196,8 +197,8 @@ VG_API vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses,
 VG_API vg_status vg_planner_outcomes(vg_planner* planner, const double T_world_camera[16],
                                      vg_ray_outcomes* outcomes);
 
-/* The pose was commanded: it is not proposed again, whether the camera got there (nonzero) or not,
-   and goes out of the proposal as it stands. */
+/* The pose was commanded; reached: nonzero if the camera got there. In both cases it is not proposed
+   again and goes out of the proposal as it stands. Only for poses that were commanded. */
 VG_API vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16],
                                   int32_t reached);
 

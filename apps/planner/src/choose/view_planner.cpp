@@ -346,9 +346,6 @@ std::optional<StopReason> ViewPlanner::should_stop() const noexcept {
 }
 
 void ViewPlanner::save(const std::filesystem::path& path, VdbWriteConfig config) const {
-  if (path.extension() == ".ot" || path.extension() == ".bt") {
-    refuse(path.string() + ": the state is an OpenVDB file, and this name is OctoMap's");
-  }
   config.notes[kNote] = detail::text_of(impl_->state);
   save_vdb(impl_->map.grid(), path, config);
 }

@@ -20,7 +20,12 @@ bool sees_plane(const Sensor& sensor, const Eigen::Vector3d& point, const Eigen:
 }
 
 MapModelConfig with_plane(MapModelConfig config) {
-  config.integration.support_plane = config.surroundings.support_plane;
+  auto& own = config.integration.support_plane;
+  if (own && own != config.surroundings.support_plane) {
+    refuse("integration.support_plane is " + short_text(*own) +
+           " m, and surroundings.support_plane is not: state the table once, in surroundings");
+  }
+  own = config.surroundings.support_plane;
   return config;
 }
 

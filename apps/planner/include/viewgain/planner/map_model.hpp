@@ -52,9 +52,9 @@ class VIEWGAIN_EXPORT RealisedArea {
 
 /// What changes the map.
 struct VIEWGAIN_EXPORT MapModelConfig {
-  GridConfig grid{};  ///< how the map is laid out
-  IntegrationConfig
-      integration{};  ///< how frames change it; support_plane is ignored: surroundings has it
+  GridConfig grid{};                ///< how the map is laid out
+  IntegrationConfig integration{};  ///< how frames change it; support_plane stands in surroundings,
+                                    ///< another here is refused
   /// Takes flying pixels out of the frames; nothing: they are taken as they are.
   std::optional<JumpEdgeFilter::Config> jump_edges = JumpEdgeFilter::Config{};
   /// They block rays and bodies, and readings of them carve but do not hit.

@@ -37,7 +37,7 @@ struct VIEWGAIN_EXPORT PlannerConfig {
   /// A workspace that begins at the table has no voxels under it that stay unknown, which the
   /// paper's gain would count.
   GridConfig grid{};
-  /// How frames change the map; support_plane is ignored: surroundings has it.
+  /// How frames change the map. State support_plane in surroundings; another here is refused.
   IntegrationConfig integration{};
   Surroundings surroundings{};  ///< the table, known obstacles
   std::optional<JumpEdgeFilter::Config> jump_edges =
@@ -153,8 +153,9 @@ class VIEWGAIN_EXPORT ViewPlanner {
   [[nodiscard]] Ranking rank(std::span<const Pose> T_world_camera, std::size_t k = 1,
                              const RankConfig& config = {}, const BatchControl& control = {});
 
-  /// The pose was commanded: it is not proposed again, whether the camera got there or not, and
-  /// goes out of the proposal as it stands, whose later candidates move up. Throws
+  /// The pose was commanded. `reached`: did the camera get there? It counts as taken then, else as
+  /// missed. In both cases it is not proposed again, and goes out of the proposal as it stands,
+  /// whose later candidates move up. Call it only for poses that were commanded. Throws
   /// Error(invalid_argument) for a pose that is not rigid (1e-3).
   void tried(const Pose& T_world_camera, bool reached);
 
