@@ -101,7 +101,7 @@ class PlannerCalls : CallBytes {
     vg_planner_config& config = now_.config;
     config = made(vg_planner_config_init);
     config.num_threads = 1, config.gain = below(3);
-    config.voxel_size = usually(0.05), config.prior_sigma = usually(0);
+    config.voxel_size = usually(0.05), config.prior_sigma = usually(kNan);
     for (std::size_t k = 0; k < 3; ++k) {
       config.box_min[k] = usually(-0.3), config.box_max[k] = usually(0.3);
     }

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "convert.hpp"
-#include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats.h"
 #include "viewgain/formats/octomap_io.hpp"
+#include "viewgain/formats/pose_files.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 
 using namespace viewgain;
@@ -35,7 +35,7 @@ vg_status vg_range_calibration_load(const char* preset_or_file,
 vg_status vg_poses_load(const char* path, double* T_world_camera, double* timestamps,
                         size_t capacity, size_t* found) {
   return guarded("path found", {path, found}, [&] {
-    const PoseList list = read_tum(path);
+    const PoseList list = load_poses(path);
     const std::size_t count = std::min(capacity, list.poses.size());
     if (T_world_camera != nullptr) write_poses(std::span(list.poses).first(count), T_world_camera);
     if (timestamps != nullptr) std::copy_n(list.timestamps.begin(), count, timestamps);
@@ -49,9 +49,9 @@ vg_status vg_poses_save(const char* path, const double* T_world_camera, const do
     if (count == 0) refuse("count is 0: a file of poses has at least one");
     const std::vector<Pose> poses = poses_of(T_world_camera, count);
     if (timestamps == nullptr) {
-      write_tum(path, poses);
+      save_poses(path, poses);
     } else {
-      write_tum(path, poses, {timestamps, count});
+      save_poses(path, poses, {timestamps, count});
     }
   });
 }
@@ -59,7 +59,7 @@ vg_status vg_poses_save(const char* path, const double* T_world_camera, const do
 vg_status vg_grid_load_octomap(const char* path, double prior_sigma, vg_grid** grid) {
   return make_handle(grid, "grid path", {path}, [&] {
     OctomapConfig config;
-    if (prior_sigma != 0) config.prior_sigma = prior_sigma;
+    config.prior_sigma = given(prior_sigma);
     return load_octomap(path, config);
   });
 }

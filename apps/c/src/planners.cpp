@@ -40,7 +40,7 @@ PlannerConfig settings_of(const vg_planner_config& config) {
                    {std::to_array(config.box_min), std::to_array(config.box_max)},
                    rigid_pose_of(config.T_world_grid),
                    {}};
-  if (config.prior_sigma != 0) settings.grid.prior_sigma = config.prior_sigma;
+  settings.grid.prior_sigma = given(config.prior_sigma);
   settings.surroundings = surroundings_of(config);
   set_scales(config, settings.integration);
   settings.jump_edges.reset();
@@ -124,7 +124,7 @@ vg_planner_config viewgain::c_api::defaults() noexcept {
   vg_planner_config config{};
   config.gain = static_cast<std::int32_t>(own.gain.model);
   write_pose(Pose{}, config.T_world_grid);
-  config.support_plane = kNone;
+  config.prior_sigma = config.support_plane = kNone;
   config.jump_edge_angle = own.jump_edges->angle;
   config.check_feasibility = 1;
   std::copy(body.size.begin(), body.size.end(), config.body_size);

@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/formats/file_names.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/file_names.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
@@ -79,10 +79,10 @@ VdbWriteConfig noting_frames(const std::set<std::string>& frames, VdbWriteConfig
 }
 
 void check_map_name(const std::filesystem::path& path) {
-  const std::string end = small_ending(path);
-  if (end == ".bt") refuse(path.string() + ": .bt files are read but not written; .ot ones are");
-  if (end == ".vdb" || end == ".ot" || is_special_file(path)) return;
-  refuse(path.string() + ": the name of a map to write must end in .vdb or .ot");
+  if (small_ending(path) == ".bt") {
+    refuse(path.string() + ": .bt files are read but not written; .ot ones are");
+  }
+  require_ending(path, "a map to write", {".vdb", ".ot"});
 }
 
 LostInTree save_map(const BeliefGrid& grid, const std::filesystem::path& path,

@@ -7,6 +7,7 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_names.hpp"
 
 namespace viewgain {
 namespace {
@@ -21,6 +22,7 @@ void append(std::string& bytes, Value value) {
 }  // namespace
 
 void write_ply(const std::filesystem::path& path, const PlyArrays& arrays) {
+  require_ending(path, "a surface or of points", {".ply"});
   const auto& [points, normals, sigma, triangles] = arrays;
   const auto refuse = [&](const std::string& what) {
     viewgain::refuse(path.string() + ": " + what);

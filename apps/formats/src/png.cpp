@@ -16,6 +16,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/file_names.hpp"
 
 namespace viewgain {
 namespace {
@@ -145,6 +146,7 @@ std::string encoded(int width, int height, int color_type, const std::vector<Val
 template <typename Value>
 void write_image(const std::filesystem::path& path, int width, int height, int color_type,
                  const std::vector<Value>& pixels, std::size_t channels) {
+  require_ending(path, "a picture", {".png"});
   std::string bytes;
   try {
     bytes = encoded(width, height, color_type, pixels, channels);

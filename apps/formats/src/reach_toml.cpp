@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/core/pose_io.hpp"
-#include "viewgain/formats/file_names.hpp"
+#include "viewgain/formats/pose_files.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_names.hpp"
 #include "viewgain/support/toml_table.hpp"
 
 namespace viewgain {
@@ -86,7 +86,7 @@ ReachRegion read_reach_toml(const std::filesystem::path& path) {
   region.shells = read_parts(reader, "shell", read_shell);
   region.half_spaces = read_parts(reader, "half_space", read_half_space);
   if (reader.find("poses") != nullptr) {
-    region.poses = read_tum(path.parent_path() / reader.text("poses")).poses;
+    region.poses = load_poses(path.parent_path() / reader.text("poses")).poses;
     // No poses at all would mean that every pose is in reach.
     if (region.poses.empty()) reader.fail("poses", "names a file without poses");
   }
@@ -104,14 +104,15 @@ ReachRegion read_reach_toml(const std::filesystem::path& path) {
 
 void write_reach_toml(const std::filesystem::path& path, const ReachRegion& region) {
   region.validate();
+  require_ending(path, "a file of a region", {".toml"});
   if (region.predicate) refuse(path.string() + ": a region with a predicate cannot be written");
   const auto xyz = [](const auto& v) { return toml::array{v[0], v[1], v[2]}; };
   toml::table root{{"format", kTomlFormat}};
   std::filesystem::path poses = path;
   poses.replace_extension(".poses.txt");
   if (!region.poses.empty()) {
-    if (small_ending(path) != ".toml" || is_special_file(path)) {
-      refuse(path.string() + ": the name of a region with poses must end in .toml");
+    if (is_special_file(path)) {
+      refuse(path.string() + ": a region with poses, which go beside it, needs a regular file");
     }
     root.insert("poses", poses.filename().string());
   }

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/formats/file_names.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_names.hpp"
 #include "viewgain/support/noise_fields.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/toml_table.hpp"
@@ -110,8 +110,12 @@ Sensor sensor_of(const toml::table& root, const std::string& file) {
     const std::vector<double> size = reader.numbers("body", *node, 3);
     sensor.body_size = {size[0], size[1], size[2]};
   }
-  if (const toml::node* node = reader.find("pose_sigma"); node != nullptr) {
-    const std::vector<double> sigmas = reader.numbers("pose_sigma", *node, 2);
+  // The unit is in the name since the flag --pose-sigma is in degrees; 0.1.0 left it out.
+  for (const char* key : {"pose_sigma", "pose_sigma_rad"}) {
+    const toml::node* node = reader.find(key);
+    if (node == nullptr) continue;
+    if (sensor.pose_sigma != PoseSigma{}) reader.fail(key, "stands beside pose_sigma");
+    const std::vector<double> sigmas = reader.numbers(key, *node, 2);
     sensor.pose_sigma = {sigmas[0], sigmas[1]};
   }
   if (reader.find("scale_sigma") != nullptr) sensor.scale_sigma = reader.number("scale_sigma");
@@ -172,7 +176,7 @@ std::string sensor_toml(const Sensor& sensor) {
          << toml_float(size[2]) << "]  # width, height, depth [m]\n";
   }
   if (sensor.pose_sigma != PoseSigma{}) {
-    text << "pose_sigma = [" << toml_float(sensor.pose_sigma.translation) << ", "
+    text << "pose_sigma_rad = [" << toml_float(sensor.pose_sigma.translation) << ", "
          << toml_float(sensor.pose_sigma.rotation) << "]  # of the poses of frames [m], [rad]\n";
   }
   if (sensor.scale_sigma > 0) {
@@ -217,6 +221,7 @@ std::string_view noise_model_name(const NoiseModel& noise) {
 
 void write_sensor_toml(const std::filesystem::path& path, const Sensor& sensor) {
   sensor.validate();
+  require_ending(path, "a sensor file", {".toml"});
   write_file_atomically(path, sensor_toml(sensor));
 }
 

@@ -16,12 +16,13 @@
 
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
-#include "viewgain/formats/file_names.hpp"
 #include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/pose_files.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/formats/staged_folder.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_names.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -36,8 +37,6 @@ enum class Kind {
   frames,  // a folder of them, or a file in their place
   run,
   output,
-  picture,
-  page,
   frames_output,
   run_output,
   plan_output
@@ -53,9 +52,9 @@ constexpr auto kFileOptions =
                                {"--poses", Kind::input},    {"--sensor", Kind::input},
                                {"--reach", Kind::reach},    {"--hazard", Kind::input},
                                {"--obstacle", Kind::input}, {"FRAMES_DIR", Kind::frames},
-                               {"OUT", Kind::output},       {"--picture", Kind::picture},
+                               {"OUT", Kind::output},       {"--picture", Kind::output},
                                {"--out", Kind::output},     {"--save-config", Kind::output},
-                               {"INPUT", Kind::run},        {"--report", Kind::page},
+                               {"INPUT", Kind::run},        {"--report", Kind::output},
                                {"SPEC", Kind::input},       {"--truth", Kind::input},
                                {"--points", Kind::output},  {"SOURCE", Kind::folder},
                                {"--mask", Kind::folder},    {"--confidence", Kind::folder},
@@ -72,7 +71,6 @@ struct NamedFile {
 Kind kind_of(const FileOption& option, const std::string& subcommand) {
   if (option.name != "--out") return option.kind;
   if (subcommand == "simulate" || subcommand == "import") return Kind::frames_output;
-  if (subcommand == "render") return Kind::picture;
   if (subcommand == "follow") return Kind::plan_output;
   return subcommand == "reconstruct" || subcommand == "study" ? Kind::run_output : option.kind;
 }
@@ -161,6 +159,23 @@ void check_not_read(const NamedFile& output, const std::vector<NamedFile>& files
   }
 }
 
+// What is wrong with the ending of a file that the call writes, known before the work; empty:
+// nothing, or, of maps, what check_map_name() says.
+std::string fault_of_output(const NamedFile& file, const std::string& subcommand) {
+  if (file.kind != Kind::output) return "";
+  const fs::path& path = file.path;
+  if (file.option == "--picture") return fault_of_ending(path, "a picture", {".png"});
+  if (file.option == "--report") return fault_of_ending(path, "a report", {".html"});
+  if (file.option == "--save-config") return fault_of_ending(path, "a file of flags", {".toml"});
+  if (file.option == "--points") return fault_of_ending(path, "a file of points", {".ply"});
+  if (subcommand == "render") return fault_of_ending(path, "a picture", {".png"});
+  if (subcommand == "surface") return fault_of_ending(path, "a surface", {".ply"});
+  if (subcommand == "score") return fault_of_ending(path, "a table", {".csv", ".npy"});
+  if (subcommand == "calibrate") return fault_of_ending(path, "a sensor file", {".toml"});
+  if (subcommand == "candidates" || subcommand == "next") return fault_of_poses_name(path);
+  return "";
+}
+
 }  // namespace
 
 void check_call(const App& subcommand) {
@@ -171,18 +186,12 @@ void check_call(const App& subcommand) {
     if (file.path == "-") {
       refuse(file.option, "-", "is no file's name; /dev/stdout writes to the standard output");
     }
-    if (file.kind == Kind::picture && small_ending(file.path) != ".png" &&
-        !is_special_file(file.path)) {
-      refuse(file.option, file.path.string(), "the name of a picture must end in .png");
-    }
-    if (file.kind == Kind::page && small_ending(file.path) != ".html" &&
-        !is_special_file(file.path)) {
-      refuse(file.option, file.path.string(), "the name of a report must end in .html");
-    }
+    const std::string fault = fault_of_output(file, name_of(subcommand));
+    if (!fault.empty()) refuse(file.option, file.path.string(), fault);
     check_not_read(file, files);
   }
   for (const NamedFile& file : files) {
-    if (file.kind == Kind::output || file.kind == Kind::picture || file.kind == Kind::page) {
+    if (file.kind == Kind::output) {
       const AtomicFile writable(file.path);  // known now rather than after the work
     }
   }

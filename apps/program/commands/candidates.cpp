@@ -14,7 +14,7 @@
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
-#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/pose_files.hpp"
 #include "viewgain/planner/pose_sets.hpp"
 #include "viewgain/planner/rank_views.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -98,7 +98,7 @@ void candidates(const Options& options) {
   const Order ranking = rank(options.proposal, model, sensor, exec, proposal.candidates);
   std::vector<Pose> poses;
   for (const std::size_t i : ranking.order) poses.push_back(proposal.candidates[i].T_world_camera);
-  if (!poses.empty()) write_tum(options.out, poses);
+  if (!poses.empty()) save_poses(options.out, poses);
 
   const EstimatedViews& estimated = generation.estimated();
   if (options.common.json) {
@@ -177,7 +177,9 @@ Command add_candidates(App& program) {
   app->add_option("--gain", o.proposal.gain,
                   "paper, surface or combined, as in score: order the poses by it, best first")
       ->check(one_of_gain_models());
-  app->add_option("--out", o.out, "TUM file of camera-to-world poses")->required();
+  app->add_option("--out", o.out,
+                  "file of camera-to-world poses to write (.txt or .tum: TUM text; .npy)")
+      ->required();
   add_trace_option(*app, o.common);
   add_common_options(*app, o.common);
   add_help(*app, kViewsGroup,

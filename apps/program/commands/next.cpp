@@ -16,7 +16,7 @@
 #include "program/commands/frames/frame_map.hpp"
 #include "program/commands/map_json.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
-#include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/pose_files.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -74,7 +74,7 @@ void next(const Options& options) {
   NextViews views = best_views(evaluator, proposal, options.proposal, model.grid(), options.top,
                                options.common.quiet);
   if (options.explain) explain(views, proposal, evaluator);
-  if (!options.out.empty()) write_tum(options.out, poses_of(views));
+  if (!options.out.empty()) save_poses(options.out, poses_of(views));
   if (options.common.json) {
     Json json{{"views", model.grid().views().size()}};
     if (frames) {
@@ -100,8 +100,10 @@ void next(const Options& options) {
 
 void add_options(App& app, Options& o) {
   add_next_view_options(app, o.proposal, o.top);
-  app.add_option("--out", o.out,
-                 "TUM file of camera-to-world poses to write, best first, or in the plan's order");
+  app.add_option(
+      "--out", o.out,
+      "file of camera-to-world poses to write (.txt or .tum: TUM text; .npy), best first, or in "
+      "the plan's order");
   app.add_flag("--explain", o.explain,
                "say of each view what becomes of its rays: how many come to unknown space, end in "
                "known surface, leave the map, ...; where no view gains, of all candidates'");

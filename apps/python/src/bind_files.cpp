@@ -15,8 +15,8 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
-#include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/pose_files.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/planner/suspect_frames.hpp"
@@ -62,7 +62,7 @@ py::array_t<double> pose_array(std::span<const Pose> poses) {
 
 py::object read_poses(const py::object& path, bool return_timestamps) {
   const std::string file = readable_file(path);
-  const PoseList list = outside_gil([&] { return read_tum(file); });
+  const PoseList list = outside_gil([&] { return load_poses(file); });
   py::object poses = pose_array(list.poses);
   if (!return_timestamps) return poses;
   return named("TimedPoses", poses, to_array_1d<double>(list.timestamps));
@@ -100,9 +100,9 @@ void write_poses(const py::object& path, const py::object& T_world_camera,
   }
   const WithoutGil without_gil;
   if (timestamps.is_none()) {
-    write_tum(file, poses);
+    save_poses(file, poses);
   } else {
-    write_tum(file, poses, times);
+    save_poses(file, poses, times);
   }
 }
 
@@ -143,7 +143,7 @@ Runs without the GIL. Cost: a file of some lines, 1 ms.
 Parameters
 ----------
 path : path-like
-    ``load`` takes names that end in .toml.)");
+    Must end in .toml.)");
   class_of<ReachRegion>(module, "ReachRegion")
       .def_static(
           "load",
@@ -169,13 +169,14 @@ ReachRegion)")
           "path"_a,
           R"(Writes a .toml file; poses go into NAME.poses.txt beside it, replacing one of that name.
 
-A region with a predicate is refused, and one with poses under a name that does not end in .toml.
+A region with a predicate is refused.
 
 Runs without the GIL. Cost: linear in the poses, 2 µs each, and 1 ms.
 
 Parameters
 ----------
-path : path-like)");
+path : path-like
+    Must end in .toml.)");
 }
 
 void bind_frames(py::module_& module) {
@@ -276,13 +277,15 @@ void bind_files(py::module_& module) {
   bind_toml(module);
   bind_frames(module);
   module.def("read_poses", &read_poses, "path"_a, py::kw_only(), "return_timestamps"_a = false,
-             R"(Poses of a file in the TUM format: time tx ty tz qx qy qz qw.
+             R"(Poses of a file: TUM text (time tx ty tz qx qy qz qw), or a .npy.
 
 Runs without the GIL. Cost: linear in the poses, 1 µs each.
 
 Parameters
 ----------
 path : path-like
+    A name in .npy: rows with tx, ty, tz, qx, qy, qz, qw and perhaps timestamp, or (n, 4, 4)
+    matrices, float64 or float32. Any other: TUM text.
 return_timestamps : bool
 
 Returns
@@ -291,13 +294,14 @@ T_world_camera : ndarray, (n, 4, 4), float64
 timestamps : ndarray, (n,), float64
     [s]; only if return_timestamps: a named tuple ``TimedPoses`` of the two then.)");
   module.def("write_poses", &write_poses, "path"_a, "T_world_camera"_a, "timestamps"_a = py::none(),
-             R"(Writes poses in the TUM format, whole or not at all.
+             R"(Writes poses as TUM text or .npy, by the name's ending, whole or not at all.
 
 Runs without the GIL. Cost: linear in the poses, 2 µs each.
 
 Parameters
 ----------
 path : path-like
+    Must end in .txt or .tum (TUM text), or .npy (rows with timestamp, tx, ty, tz, qx, qy, qz, qw).
 T_world_camera : array_like, (n, 4, 4)
 timestamps : array_like, (n,), optional
     [s]; 0, 1, 2, ... unless given.)");

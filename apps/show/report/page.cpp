@@ -12,6 +12,7 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_names.hpp"
 
 // What viewer/ was bundled to when the program was built (page_bytes.S); empty without npm.
 extern "C" const char viewgain_report_page_begin[], viewgain_report_page_end[];
@@ -56,6 +57,7 @@ std::string report_page(const Json& data, std::string_view page) {
 std::string report_page(const Json& data) { return report_page(data, built_page()); }
 
 void write_report(const std::filesystem::path& path, const Json& data) {
+  require_ending(path, "a report", {".html"});
   write_file_atomically(path, report_page(data));
 }
 

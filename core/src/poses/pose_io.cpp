@@ -12,6 +12,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/file_names.hpp"
 #include "viewgain/support/pose_numbers.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -79,6 +80,10 @@ Pose tum_line_pose(const LineReader& line, bool* orthonormalized) {
 
 PoseList read_tum(const fs::path& path) {
   const std::string contents = file_bytes(path, kMaxFileSize);
+  if (contents.starts_with("\x93NUMPY")) {
+    throw Error(ErrorCode::format,
+                path.string() + ": is an array of numpy's; its name must end in .npy");
+  }
   LineReader line(path.string(), contents);
   PoseList list;
   while (line.next()) {
@@ -98,13 +103,12 @@ void write_tum(const fs::path& path, std::span<const Pose> poses) {
   write_tum(path, poses, timestamps);
 }
 
-void write_tum(const fs::path& path, std::span<const Pose> poses,
-               std::span<const double> timestamps) {
+void check_writable(const fs::path& path, std::span<const Pose> poses,
+                    std::span<const double> timestamps) {
   if (timestamps.size() != poses.size()) {
     refuse(path.string() + ": " + std::to_string(poses.size()) + " poses but " +
            std::to_string(timestamps.size()) + " timestamps");
   }
-  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!(orthonormality_error(poses[i]) <= kMendable)) {
       refuse(path.string() + ": pose " + std::to_string(i) + " is not a rigid transform");
@@ -112,6 +116,15 @@ void write_tum(const fs::path& path, std::span<const Pose> poses,
     if (!std::isfinite(timestamps[i])) {
       refuse(path.string() + ": timestamp " + std::to_string(i) + " is not finite");
     }
+  }
+}
+
+void write_tum(const fs::path& path, std::span<const Pose> poses,
+               std::span<const double> timestamps) {
+  require_ending(path, "a TUM file of poses", {".txt", ".tum"});
+  check_writable(path, poses, timestamps);
+  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
+  for (std::size_t i = 0; i < poses.size(); ++i) {
     text += exact_text(timestamps[i]);
     for (const double value : numbers_of_pose(poses[i])) text += ' ' + exact_text(value);
     text += '\n';

@@ -243,6 +243,14 @@ void remove_temporary_files() noexcept {
   errno = error;
 }
 
+bool is_open_file(const fs::path& path) noexcept {
+  try {
+    return follow_links(path).descriptor >= 0;
+  } catch (const std::exception&) {
+    return false;  // of links in a circle
+  }
+}
+
 void sync_folder(const fs::path& folder) noexcept {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return;

@@ -21,6 +21,7 @@
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/belief_block.hpp"
+#include "viewgain/support/file_names.hpp"
 
 namespace viewgain {
 namespace {
@@ -208,6 +209,7 @@ void put_beliefs(const GridStorage& s, GridSet& set, bool with_covariance) {
 /// Writes what make_image() returns, with a seal.
 template <typename MakeImage>
 void write_sealed(const std::filesystem::path& path, MakeImage&& make_image) {
+  require_ending(path, "an OpenVDB file", {".vdb"});
   AtomicFile file(path);
   try {
     initialize_openvdb();

@@ -118,7 +118,7 @@ TEST(CFormats, OctomapsTreesComeBackAsTheyWere) {
   vg_grid *grid = nullptr, *read = nullptr;
   ASSERT_EQ(vg_grid_from_labels(labels, dims, origin, 0.025, 0.05, &grid), VG_OK);
   ASSERT_EQ(vg_grid_save_octomap(grid, path.c_str()), VG_OK) << vg_last_error();
-  ASSERT_EQ(vg_grid_load_octomap(path.c_str(), 0, &read), VG_OK) << vg_last_error();
+  ASSERT_EQ(vg_grid_load_octomap(path.c_str(), NAN, &read), VG_OK) << vg_last_error();
   vg_grid_info info;
   vg_grid_info_init(&info, sizeof info);
   ASSERT_EQ(vg_grid_get_info(read, &info), VG_OK);
@@ -127,9 +127,9 @@ TEST(CFormats, OctomapsTreesComeBackAsTheyWere) {
   EXPECT_EQ(info.occupied, 1U);
   EXPECT_EQ(info.free, 1U);
   vg_grid_release(read);
-  EXPECT_EQ(vg_grid_load_octomap(folder.file("text.ot", "no map").c_str(), 0, &read), VG_FORMAT);
+  EXPECT_EQ(vg_grid_load_octomap(folder.file("text.ot", "no map").c_str(), NAN, &read), VG_FORMAT);
   EXPECT_EQ(read, nullptr);
-  EXPECT_EQ(vg_grid_load_octomap(nullptr, 0, &read), VG_INVALID_ARGUMENT);
+  EXPECT_EQ(vg_grid_load_octomap(nullptr, NAN, &read), VG_INVALID_ARGUMENT);
   EXPECT_EQ(vg_grid_save_octomap(nullptr, path.c_str()), VG_INVALID_ARGUMENT);
   vg_grid_release(grid);
 }

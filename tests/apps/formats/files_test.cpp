@@ -197,6 +197,7 @@ TEST_F(Files, SensorErrorsNameTheKey) {
       {with("body = [0.09, ", "body = ["), "\"body\""},
       {with("[camera]", "[camera"), "line "},
       {"pose_sigma = 0.005\n" + good, "pose_sigma"},
+      {"pose_sigma = [0.1, 0.1]\npose_sigma_rad = [0.1, 0.1]\n" + good, "pose_sigma_rad"},
       {"pose_sigma = [0.005, -0.1]\n" + good, "pose_sigma"},
       {"pose_sigma = [0.1, 0.1, 0.1]\n" + good, "pose_sigma"},
       {"scale_sigma = -0.005\n" + good, "scale_sigma"},

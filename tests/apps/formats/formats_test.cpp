@@ -226,7 +226,9 @@ TEST(Formats, RegionsWithPosesNeedANameForThem) {
                      [&] { write_reach_toml(folder.path() / "none" / "cell.toml", region); });
   EXPECT_EQ(folder.entries(), 0);
   region.poses.clear();
-  write_reach_toml(folder.path() / "cell.txt", region);  // no second file
+  test::expect_error(ErrorCode::invalid_argument, "must end in .toml",
+                     [&] { write_reach_toml(folder.path() / "cell.txt", region); });
+  write_reach_toml(folder.path() / "cell.toml", region);  // no second file
   EXPECT_EQ(folder.entries(), 1);
 }
 

@@ -58,6 +58,15 @@ TEST_F(Ply, MeshComesBackExactly) {
   EXPECT_EQ(own_.entries(), 1);
 }
 
+TEST_F(Ply, OtherEndingsAreRefused) {
+  for (const std::string name : {"surface.stl", "surface.obj", "surface", "surface.ply.gz"}) {
+    test::expect_error(ErrorCode::invalid_argument, "must end in .ply",
+                       [&] { write_ply(folder_ / name, arrays_of(tetrahedron(), {})); });
+  }
+  EXPECT_EQ(own_.entries(), 0);
+  write_ply("/dev/null", arrays_of(tetrahedron(), {}));
+}
+
 TEST_F(Ply, BytesAreAsTheHeaderSays) {
   const SurfaceMesh mesh = tetrahedron();
   const std::vector<float> sigma{0.5F, 0.25F, 0.125F, 0.001F};

@@ -85,12 +85,12 @@ def test_names_of_files_are_bytes(tmp_path, grid):
     with pytest.raises(FileNotFoundError) as missing:
         viewgain.BeliefGrid.load(f"{tmp_path}/\udcfe.vdb")
     assert missing.value.filename == f"{tmp_path}/\udcfe.vdb"
-    grid.save(tmp_path / "a")
+    grid.save(tmp_path / "a.vdb")
     for call in (viewgain.BeliefGrid.load, viewgain.BeliefGrid.load_octomap, grid.save,
                  grid.save_octomap):
         with pytest.raises(ValueError, match="null"):
             call(f"{tmp_path}/a\0b.vdb")
-    assert sorted(os.listdir(folder)) == [b"a", b"m\xff.vdb"]
+    assert sorted(os.listdir(folder)) == [b"a.vdb", b"m\xff.vdb"]
 
 
 def test_limits_are_looked_at_before_labels_are_copied():

@@ -6,6 +6,7 @@ import copy
 import importlib
 import inspect
 import os
+import pathlib
 import subprocess
 import sys
 
@@ -16,6 +17,7 @@ from test_package import MODULES, stub_of
 
 import viewgain
 
+SOURCES = pathlib.Path(__file__).parents[3] / "apps" / "python"
 WORKSPACE = np.array([[-0.2] * 3, [0.2] * 3])
 UNINITIALISED = "has not been called on this object"
 
@@ -209,8 +211,38 @@ def test_saving_under_a_name_of_octomap_is_refused(tmp_path, grid):
             grid.save(path)
     assert os.listdir(tmp_path) == [] and len(names) == 4
     grid.save_octomap(tmp_path / "map.ot")
-    grid.save(tmp_path / "ot")
-    assert sorted(os.listdir(tmp_path)) == ["map.ot", "ot"]
+    grid.save(tmp_path / "ot.vdb")
+    assert sorted(os.listdir(tmp_path)) == ["map.ot", "ot.vdb"]
+
+
+def test_endings_say_the_format_or_are_refused(tmp_path, grid, sensor, poses):
+    writers = [(grid.save, ["m.h5", "m"], ".vdb"), (grid.save_octomap, ["m.bt", "m.vdb"], ".ot"),
+               (sensor.save, ["s.yaml", "s"], ".toml"), (viewgain.ReachRegion().save, ["r.json"], ".toml"),
+               (lambda path: viewgain.write_poses(path, poses), ["p.csv", "p"], ".txt, .tum or .npy")]
+    for write, names, text in writers:
+        for name in names:
+            with pytest.raises(ValueError, match=f"{name}.*must end in {text}"):
+                write(tmp_path / name)
+    assert os.listdir(tmp_path) == []
+    for name in ("p.npy", "p.txt", "p.tum"):
+        viewgain.write_poses(tmp_path / name, poses, np.arange(len(poses)) + 0.5)
+        again, times = viewgain.read_poses(tmp_path / name, return_timestamps=True)
+        assert np.allclose(again, poses, atol=1e-12) and times[1] == 1.5, name
+    assert set(np.load(tmp_path / "p.npy").dtype.names) == {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"}
+    for dtype in (np.float32, np.float64):
+        for order in "CF":
+            np.save(tmp_path / "m.npy", np.asarray(poses, dtype=dtype, order=order))
+            assert np.allclose(viewgain.read_poses(tmp_path / "m.npy"), poses, atol=1e-6), (dtype, order)
+
+
+def test_readers_of_maps_name_one_another(tmp_path, grid):
+    grid.save_octomap(tmp_path / "map.ot")
+    (tmp_path / "map.ot").rename(tmp_path / "map.bt")
+    with pytest.raises(viewgain.Error, match="map.bt.*load_octomap"):
+        viewgain.BeliefGrid.load(tmp_path / "map.bt")
+    grid.save(tmp_path / "map.vdb")
+    with pytest.raises(viewgain.Error, match="map.vdb.*BeliefGrid.load"):
+        viewgain.BeliefGrid.load_octomap(tmp_path / "map.vdb", prior_sigma=0.01)
 
 
 def test_the_prior_is_never_guessed(tmp_path, labels, grid, sensor):
@@ -239,3 +271,23 @@ except ImportError as error:
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0 and done.stderr == ""
     assert done.stdout.startswith("viewgain needs numpy")
+
+
+def test_the_mesh_part_says_when_it_was_not_built(tmp_path):
+    built = os.path.dirname(viewgain.__file__)
+    import_it = [sys.executable, "-c", "import viewgain; print(viewgain.__version__); import viewgain.mesh"]
+    # Without its folder, with an empty one, with one that lacks the extension alone.
+    for case, names in [("none", None), ("empty", []), ("python", ["__init__.py", "results.py"])]:
+        package = tmp_path / case / "viewgain"
+        package.mkdir(parents=True)
+        for entry in os.listdir(built):
+            if entry not in ("mesh", "__pycache__"):
+                (package / entry).symlink_to(os.path.join(built, entry))
+        if names is not None:
+            (package / "mesh").mkdir()
+            for name in names:
+                (package / "mesh" / name).symlink_to(SOURCES / "viewgain" / "mesh" / name)
+        done = subprocess.run(import_it, env={**os.environ, "PYTHONPATH": str(tmp_path / case)}, capture_output=True, text=True)
+        assert done.returncode != 0 and done.stdout.strip() == viewgain.__version__, case
+        assert "ImportError: viewgain.mesh was not built" in done.stderr, done.stderr
+        assert "VIEWGAIN_BUILD_MESH=ON" in done.stderr and "libcgal-dev" in done.stderr, case

@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 
 #include "viewgain/core/error.hpp"
-#include "viewgain/formats/file_names.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/file_names.hpp"
 #include "viewgain/support/pose_numbers.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -102,16 +104,34 @@ class NpyFile {
       fail("row " + std::to_string(row) + ": " + what);
     };
     std::vector<double> numbers;
-    for (const std::size_t offset : offsets_) {
-      double number = 0;
-      std::memcpy(&number, &bytes_[begin_ + row * row_bytes_ + offset], sizeof number);
-      if (!std::isfinite(number)) fail_row("holds a number that is not finite");
-      numbers.push_back(number);
+    for (const Place& place : places_) {
+      numbers.push_back(number_at(row, place));
+      if (!std::isfinite(numbers.back())) fail_row("holds a number that is not finite");
     }
     return pose_of_numbers(numbers, mended, fail_row);
   }
 
+  // The row's number where the file has no times.
+  [[nodiscard]] double time(std::size_t row) const {
+    const double time = time_ ? number_at(row, *time_) : static_cast<double>(row);
+    if (!std::isfinite(time)) {
+      fail("row " + std::to_string(row) + ": holds a number that is not finite");
+    }
+    return time;
+  }
+
  private:
+  // Where a number of each row lies.
+  struct Place {
+    std::size_t offset;  // from the row's begin [bytes]
+    bool is_single;      // float32, else float64
+  };
+
+  [[nodiscard]] double number_at(std::size_t row, const Place& place) const {
+    const char* at = &bytes_[begin_ + row * step_ + place.offset];
+    return place.is_single ? double{value_at<float>(at)} : value_at<double>(at);
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(ErrorCode::format, name_ + ": " + what);
   }
@@ -140,26 +160,39 @@ class NpyFile {
   void read_layout() {
     const json said = header();
     const json &type = said.at("descr"), &shape = said.at("shape");
-    if (said.at("fortran_order").get<bool>()) fail("is in Fortran's order");
+    const bool is_fortran = said.at("fortran_order").get<bool>();
     rows_ = count_of(shape.at(0));
     if (type.is_array() && shape.size() == 1) {
       find_columns(type);
-    } else if (type == "<f8" && shape.size() == 3 && shape[1] == 4 && shape[2] == 4) {
-      for (std::size_t i = 0; i < 16; ++i) offsets_.push_back(i * sizeof(double));
-      row_bytes_ = 16 * sizeof(double);
+    } else if (is_real(type) && shape.size() == 3 && shape[1] == 4 && shape[2] == 4) {
+      find_matrices(type == "<f4", is_fortran);
     } else {
       fail("is " + shape.dump() + " of " + type.dump() +
-           ", neither rows with tx, ty, tz, qx, qy, qz, qw nor (n, 4, 4) matrices of <f8");
+           ", neither rows with tx, ty, tz, qx, qy, qz, qw nor (n, 4, 4) matrices of <f8 or <f4");
+    }
+  }
+
+  [[nodiscard]] static bool is_real(const json& type) { return type == "<f8" || type == "<f4"; }
+
+  // In Fortran's order the first number of all matrices comes before the second of any.
+  void find_matrices(bool is_single, bool is_fortran) {
+    const std::size_t size = is_single ? sizeof(float) : sizeof(double);
+    row_bytes_ = 16 * size;
+    if (rows_ > bytes_.size() / row_bytes_) return;  // it is cut off
+    step_ = is_fortran ? size : row_bytes_;
+    for (std::size_t i = 0; i < 16; ++i) {
+      places_.push_back({is_fortran ? (i / 4 + i % 4 * 4) * rows_ * size : i * size, is_single});
     }
   }
 
   void find_columns(const json& fields) {
     std::vector<std::string> columns;  // name and type
-    std::vector<std::size_t> begins;
+    std::map<std::string, Place> found;
     for (const json& field : fields) {
       const auto type = field.at(1).get<std::string>();
       columns.push_back(field.at(0).get<std::string>() + " of " + type);
-      begins.push_back(row_bytes_);
+      const Place place{row_bytes_, type == "<f4"};
+      if (is_real(type) && field.size() == 2) found[field[0].get<std::string>()] = place;
       std::uint64_t bytes = 0;
       const char* const digits = type.data() + std::min<std::size_t>(2, type.size());
       std::from_chars(digits, type.data() + type.size(), bytes);
@@ -171,17 +204,21 @@ class NpyFile {
       }
       row_bytes_ += bytes;
     }
+    step_ = row_bytes_;
     for (const std::string name : kPoseColumns) {
-      const auto column = std::find(columns.begin(), columns.end(), name + " of <f8");
-      if (column == columns.end()) fail("has no column " + name + " of <f8");
-      offsets_.push_back(begins[static_cast<std::size_t>(column - columns.begin())]);
+      const auto column = found.find(name);
+      if (column == found.end()) fail("has no column " + name + " of <f8 or <f4");
+      places_.push_back(column->second);
     }
+    if (const auto time = found.find(kTimeColumn); time != found.end()) time_ = time->second;
   }
 
   std::string name_, bytes_;
   std::size_t begin_ = 0;  // of the first row [bytes]
   std::size_t rows_ = 0, row_bytes_ = 0;
-  std::vector<std::size_t> offsets_;  // of a pose's numbers in a row [bytes]
+  std::size_t step_ = 0;       // from a row to the next [bytes]
+  std::vector<Place> places_;  // of a pose's numbers
+  std::optional<Place> time_{};
 };
 
 }  // namespace
@@ -189,6 +226,7 @@ class NpyFile {
 bool is_npy(const std::filesystem::path& path) { return small_ending(path) == ".npy"; }
 
 void write_table(const std::filesystem::path& path, const Table& table) {
+  require_ending(path, "a table", {".csv", ".npy"});
   write_file_atomically(path, is_npy(path) ? npy_text(table) : csv_text(table));
 }
 
@@ -199,6 +237,7 @@ PoseList read_npy_poses(const std::filesystem::path& path) {
   for (std::size_t row = 0; row < file.rows(); ++row) {
     bool mended = false;
     list.poses.push_back(file.pose(row, mended));
+    list.timestamps.push_back(file.time(row));
     list.orthonormalized += mended ? 1 : 0;
   }
   return list;

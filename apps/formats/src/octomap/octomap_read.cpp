@@ -39,6 +39,11 @@ Header read_header(std::string_view bytes, const std::string& name) {
   Header header;
   if (bytes.starts_with(kOctomapBinaryMark)) {
     header.binary = true;
+  } else if (bytes.starts_with(" BDV")) {
+    throw Error(ErrorCode::format,
+                name +
+                    ": is an OpenVDB file, no OctoMap file; load_vdb reads it (in Python "
+                    "BeliefGrid.load), and the program by its ending, .vdb");
   } else if (!bytes.starts_with(kOctomapFullMark)) {
     throw Error(ErrorCode::format, name + ":1: is no OctoMap file: it does not begin with \"" +
                                        std::string(kOctomapFullMark) + "\" or \"" +

@@ -17,6 +17,7 @@
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/block_lattice.hpp"
+#include "viewgain/support/file_names.hpp"
 #include "viewgain/support/log_odds_code.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -247,6 +248,7 @@ std::string octomap_bytes(const BeliefGrid& grid) {
 bool octomap_keeps_frame(const BeliefGrid& grid) { return shift_to_world(grid).has_value(); }
 
 void save_octomap(const BeliefGrid& grid, const std::filesystem::path& path) {
+  require_ending(path, "an OctoMap file", {".ot"});
   write_file_atomically(path, octomap_bytes(grid));
 }
 

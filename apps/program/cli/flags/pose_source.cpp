@@ -10,8 +10,7 @@
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
-#include "viewgain/core/pose_io.hpp"
-#include "viewgain/support/columns/table.hpp"
+#include "viewgain/formats/pose_files.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -78,7 +77,7 @@ void add_pose_options(App& app, PoseOptions& options) {
   poses->add_option(
       "--poses", options.file,
       "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]; or .npy: rows with "
-      "tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4) matrices");
+      "tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4) matrices, float64 or float32");
   poses->add_option("--sphere", options.sphere,
                     "N,RADIUS: Fibonacci lattice on a sphere round --center, looking at it [m]");
   poses->add_option("--dome", options.dome,
@@ -136,7 +135,7 @@ PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {
   if (!options.center.empty()) {
     refuse("--center", options.center, "goes with sets of poses, not with --poses");
   }
-  PoseList list = is_npy(options.file) ? read_npy_poses(options.file) : read_tum(options.file);
+  PoseList list = load_poses(options.file);
   return {std::move(list.poses), list.orthonormalized};
 }
 

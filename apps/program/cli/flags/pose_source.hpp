@@ -67,8 +67,8 @@ void add_cost_options(App& app, CostOptions& options, const std::string& of);
 /// file, and the line or how many `poses` there are.
 [[nodiscard]] std::vector<double> read_costs(const std::string& file, std::size_t poses);
 
-/// `seed`: of the shell. Throws Error(invalid_argument), naming the flag, or what read_tum and
-/// read_npy_poses throw.
+/// `seed`: of the shell. Throws Error(invalid_argument), naming the flag, or what load_poses
+/// throws.
 [[nodiscard]] PoseSource make_poses(const PoseOptions& options, std::uint64_t seed);
 
 /// Those of a file of --poses. Throws as make_poses().

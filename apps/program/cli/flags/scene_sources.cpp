@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "program/cli/values.hpp"
-#include "viewgain/formats/file_names.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/planner/suspect_frames.hpp"
+#include "viewgain/support/file_names.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::app {

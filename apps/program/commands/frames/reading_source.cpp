@@ -10,8 +10,8 @@
 #include "program/commands/frames/frame_map.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose.hpp"
-#include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/cloud_io.hpp"
+#include "viewgain/formats/pose_files.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/planner/align_frames.hpp"
 
@@ -127,7 +127,7 @@ class CloudSource : public ReadingSource {
       origin_.emplace(at[0], at[1], at[2]);
       return;
     }
-    poses_ = read_tum(options.poses);
+    poses_ = load_poses(options.poses);
     if (poses_.poses.size() != files_.size()) {
       refuse(options.poses + ": has " + std::to_string(poses_.poses.size()) + " poses for " +
              std::to_string(files_.size()) + " clouds");

@@ -18,6 +18,7 @@
 #include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/file_names.hpp"
 
 namespace viewgain::python {
 
@@ -25,8 +26,7 @@ namespace {
 
 // A .ot that holds OpenVDB's data would be refused by all that read OctoMap's files.
 void refuse_octomap_name(const std::string& file) {
-  std::string end = std::filesystem::path(file).extension().string();
-  for (char& c : end) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const std::string end = small_ending(file);
   if (end != ".ot" && end != ".bt") return;
   refuse(file + ": save writes OpenVDB; for an OctoMap .ot call save_octomap");
 }
@@ -126,7 +126,7 @@ Cost: linear in the file, 50 ms for 4 MB. Runs without the GIL.
 Parameters
 ----------
 path : path-like
-    An OpenVDB file.
+    An OpenVDB file, .vdb; ``load_octomap`` reads OctoMap's .ot and .bt.
 
 Returns
 -------
@@ -185,7 +185,8 @@ Cost: linear in the tree, 50 ms for 128**3 voxels with 40,000 occupied ones.
 
 Parameters
 ----------
-path : path-like)")
+path : path-like
+    Must end in .ot; .bt is read, but not written.)")
       .def(
           "save",
           [](const SharedGrid& grid, const py::object& path, bool with_covariance) {
@@ -201,7 +202,7 @@ Cost: linear in the blocks of voxels, 80 ms for 128**3 voxels with 40,000 occupi
 Parameters
 ----------
 path : path-like
-    Any name that does not end in .ot or .bt; ``save_octomap`` writes those.
+    Must end in .vdb; ``save_octomap`` writes an OctoMap .ot.
 with_covariance : bool
     Adds covariances and mean places, for viewers.)");
 }

@@ -230,7 +230,7 @@ leaves the GIL, the rest holds it.)");
 Parameters
 ----------
 path : path-like
-    .ply by custom.)")
+    Must end in .ply.)")
       .def("to_trimesh", &to_trimesh, R"(The surface for trimesh, with its normals.
 
 Returns

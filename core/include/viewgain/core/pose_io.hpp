@@ -41,8 +41,9 @@ struct VIEWGAIN_EXPORT PoseList {
 
 /// Writes the TUM format, a pose a line in their order, with 17 significant digits, so that reading
 /// it back gives the same rotation to 2e-15 and the same translation exactly. Timestamps are 0, 1,
-/// 2, ... Atomic: a temporary file is renamed. Throws Error(io), and Error(invalid_argument) naming
-/// the index of a pose whose rotation is off by more than 1e-2 or not finite.
+/// 2, ... Atomic: a temporary file is renamed. Throws Error(io), and Error(invalid_argument) for a
+/// name that ends neither in .txt nor in .tum (not of pipes and devices), or naming the index of a
+/// pose whose rotation is off by more than 1e-2 or not finite.
 VIEWGAIN_EXPORT void write_tum(const std::filesystem::path& path, std::span<const Pose> poses);
 /// The same with timestamps [s], one a pose, such as read_tum gives, kept exactly. Throws
 /// Error(invalid_argument), too, for another count of them or one that is not finite.

@@ -56,6 +56,10 @@ class VIEWGAIN_EXPORT AtomicFile {
 /// fail or write into nothing afterwards.
 VIEWGAIN_EXPORT void remove_temporary_files() noexcept;
 
+/// Whether the name stands for an open file of this process, as /dev/stdout and /dev/fd/N do, which
+/// AtomicFile writes in place. Never throws.
+[[nodiscard]] VIEWGAIN_EXPORT bool is_open_file(const std::filesystem::path& path) noexcept;
+
 /// Waits until the names in the folder are on the disk, where the file system can say so.
 VIEWGAIN_EXPORT void sync_folder(const std::filesystem::path& folder) noexcept;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -15,6 +16,9 @@ namespace viewgain {
 /// What the numbers of a pose are called: translation [m] and quaternion of T_world_camera.
 inline constexpr std::array kPoseColumns{"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
 
+/// What a pose's time [s] is called beside them.
+inline constexpr const char* kTimeColumn = "timestamp";
+
 /// These numbers of a pose.
 [[nodiscard]] VIEWGAIN_EXPORT std::array<double, kPoseColumns.size()> numbers_of_pose(
     const Pose& pose);
@@ -25,5 +29,10 @@ inline constexpr std::array kPoseColumns{"tx", "ty", "tz", "qx", "qy", "qz", "qw
 [[nodiscard]] VIEWGAIN_EXPORT Pose
 pose_of_numbers(std::span<const double> numbers, bool& mended,
                 const std::function<void(const std::string&)>& fail);
+
+/// Throws Error(invalid_argument), naming the file, for poses that no file of poses can hold: not
+/// one timestamp per pose, one that is not finite, a pose that is no rigid transform (1e-2).
+VIEWGAIN_EXPORT void check_writable(const std::filesystem::path& path, std::span<const Pose> poses,
+                                    std::span<const double> timestamps);
 
 }  // namespace viewgain

@@ -23,7 +23,8 @@ struct VIEWGAIN_EXPORT VdbWriteConfig {
 
 /// Writes the map as a plain OpenVDB file (active = known; apps/docs/reference/formats.md has the
 /// layout), of types that OpenVDB's Python module reads. Atomic: a temporary file beside it is
-/// renamed. Throws Error(io). If memory runs out (std::bad_alloc), the file that was there stays.
+/// renamed. Throws Error(io), and Error(invalid_argument) for a name that does not end in .vdb (not
+/// of pipes and devices). If memory runs out (std::bad_alloc), the file that was there stays.
 /// Cost: grows with the leaves and beliefs of the map.
 VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
                               const VdbWriteConfig& config = {});
@@ -50,7 +51,8 @@ load_vdb(const std::filesystem::path& path, std::map<std::string, std::string>* 
     const std::filesystem::path& path, const BeliefGrid& grid);
 
 /// Writes rates of voxels of the map's lattice as such a file; load_hazard_vdb() reads the same.
-/// Atomic, as save_vdb(). Throws Error(invalid_argument) as HazardConfig::validate(), Error(io).
+/// Atomic; names as in save_vdb(). Throws Error(invalid_argument) as HazardConfig::validate() and
+/// for another name, Error(io).
 /// Cost: a pass over the rates.
 VIEWGAIN_EXPORT void save_hazard_vdb(const HazardConfig::Volume& volume, const BeliefGrid& grid,
                                      const std::filesystem::path& path);

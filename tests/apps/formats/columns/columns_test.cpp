@@ -16,6 +16,7 @@
 #include "core/expect_error.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/formats/pose_files.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
@@ -83,6 +84,108 @@ TEST_F(Columns, PosesInColumnsAreThoseOfText) {
   EXPECT_EQ(rows({"--poses", "matrices.npy"}), rows({"--sphere", "40,0.45"}));
 }
 
+// As numpy writes arrays that it holds as float32, by columns (order="F"), or both.
+TEST_F(Columns, SingleNumbersAndFortransOrderAreRead) {
+  const std::vector<Pose> poses = sphere_poses(40, 0.45);
+  std::vector<double> rows, by_columns(40 * 16);
+  for (const Pose& pose : poses) {
+    rows.insert(rows.end(), pose.m.begin(), pose.m.end());
+    rows.insert(rows.end(), {0, 0, 0, 1});
+  }
+  for (std::size_t n = 0; n < 40; ++n) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j < 4; ++j) {
+        by_columns[n + 40 * (i + 4 * j)] = rows[16 * n + 4 * i + j];
+      }
+    }
+  }
+  const auto in_fortran = [&](const std::string& name) {
+    write(name, test::with(read(name), "order': False", "order': True "));
+  };
+  // Pairs of float32 in the place of a float64.
+  const auto single = [](const std::vector<double>& numbers) {
+    std::vector<double> pairs(numbers.size() / 2);
+    const std::vector<float> floats(numbers.begin(), numbers.end());
+    std::memcpy(pairs.data(), floats.data(), sizeof(float) * floats.size());
+    return pairs;
+  };
+  write_npy("f4.npy", "'<f4'", "(40, 4, 4)", single(rows));
+  write_npy("fortran.npy", "'<f8'", "(40, 4, 4)", by_columns);
+  in_fortran("fortran.npy");
+  write_npy("both.npy", "'<f4'", "(40, 4, 4)", single(by_columns));
+  in_fortran("both.npy");
+  for (const std::string name : {"f4.npy", "fortran.npy", "both.npy"}) {
+    const PoseList read = load_poses(dir / name);
+    ASSERT_EQ(read.poses.size(), 40U) << name;
+    EXPECT_EQ(read.orthonormalized, 0U) << name;
+    EXPECT_EQ(read.timestamps[39], 39) << name;
+    for (std::size_t n = 0; n < 40; ++n) {
+      for (std::size_t i = 0; i < 12; ++i) {
+        EXPECT_NEAR(read.poses[n].m[i], poses[n].m[i], name == "fortran.npy" ? 1e-15 : 1e-6);
+      }
+    }
+    EXPECT_EQ(run(arguments({"--poses", name})).exit_code, 0) << name;
+  }
+  const std::string types =
+      "[('tx', '<f4'), ('ty', '<f4'), ('tz', '<f4'), ('qx', '<f4'), ('qy', '<f4'), ('qz', '<f4'), "
+      "('qw', '<f4'), ('timestamp', '<f4')]";
+  write_npy("columns.npy", types, "(2,)", single({1, 2, 3, 0, 0, 0, 1, 7, 4, 5, 6, 0, 0, 0, 1, 9}));
+  const PoseList columns = load_poses(dir / "columns.npy");
+  EXPECT_EQ(columns.timestamps, (std::vector<double>{7, 9}));
+  EXPECT_EQ(columns.poses[1].translation(), Eigen::Vector3d(4, 5, 6));
+}
+
+// The ending says the format: what is written under a name is what is read under it.
+TEST_F(Columns, FilesOfPosesAreOfTheFormatThatTheirNameSays) {
+  const std::vector<Pose> poses = sphere_poses(5, 0.45);
+  const std::vector<double> times{0.5, 1.5, 2.5, 3.5, 1e9};
+  for (const std::string name : {"p.npy", "p.txt", "p.tum", "P.NPY"}) {
+    save_poses(dir / name, poses, times);
+    const PoseList read = load_poses(dir / name);
+    EXPECT_EQ(read.timestamps, times) << name;
+    EXPECT_LT((read.poses[4].rotation() - poses[4].rotation()).norm(), 1e-14) << name;
+    EXPECT_EQ(read.poses[4].translation(), poses[4].translation()) << name;
+  }
+  EXPECT_TRUE(read("p.npy").starts_with("\x93NUMPY"));
+  EXPECT_TRUE(read("p.tum").starts_with("#"));
+  for (const std::string name : {"p.csv", "p.npz", "p.txt.gz", "p"}) {
+    test::expect_error(ErrorCode::invalid_argument, "must end in .txt, .tum or .npy",
+                       [&] { save_poses(dir / name, poses); });
+    EXPECT_FALSE(exists(dir / name));
+  }
+  save_poses("/dev/null", poses);
+  std::vector<Pose> bent = poses;
+  bent[3].m[0] += 0.5;
+  test::expect_error(ErrorCode::invalid_argument, "pose 3",
+                     [&] { save_poses(dir / "bent.npy", bent); });
+  write("poses.dat", read("p.npy"));  // numbers of numpy's under another name
+  test::expect_error(ErrorCode::format, ".npy", [&] { (void)load_poses(dir / "poses.dat"); });
+}
+
+// Of every command and every function that writes a file.
+TEST_F(Columns, EndingsThatNoWriterWritesAreRefused) {
+  const auto refuses = [&](const Strings& call, const std::string& name, const std::string& word) {
+    const test::ProgramResult result = run(call);
+    EXPECT_EQ(result.exit_code, 2) << call[0] << " " << name;
+    EXPECT_NE(result.err.find("must end in " + word), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(name), std::string::npos) << result.err;
+    EXPECT_FALSE(exists(dir / name)) << name;
+  };
+  refuses({"surface", "map.vdb", "--out", "model.stl"}, "model.stl", ".ply");
+  refuses({"surface", "map.vdb", "--points", "model.pcd"}, "model.pcd", ".ply");
+  refuses({"candidates", "map.vdb", "--generator", "sphere", "--sensor", "small.toml", "--out",
+           "p.json"},
+          "p.json", ".txt, .tum or .npy");
+  refuses({"next", "map.vdb", "--generator", "sphere", "--sensor", "small.toml", "--out", "n.csv"},
+          "n.csv", ".txt, .tum or .npy");
+  refuses(arguments({"--sphere", "4,0.45", "--out", "s.parquet"}), "s.parquet", ".csv or .npy");
+  refuses(arguments({"--sphere", "4,0.45", "--picture", "s.jpg"}), "s.jpg", ".png");
+  refuses(arguments({"--sphere", "4,0.45", "--report", "s.pdf"}), "s.pdf", ".html");
+  refuses(arguments({"--sphere", "4,0.45", "--save-config", "s.json"}), "s.json", ".toml");
+  refuses({"convert", "map.vdb", "map.ply"}, "map.ply", ".vdb or .ot");
+  refuses({"render", "map.vdb", "--what", "map", "--out", "map.svg"}, "map.svg", ".png");
+}
+
 // What the other file says in text stands behind the header, a value after the other.
 TEST_F(Columns, ScoresInColumnsAreThoseOfText) {
   for (const std::string name : {"scores.csv", "scores.npy"}) {
@@ -127,7 +230,7 @@ TEST_F(Columns, BadColumnsOfPosesAreNamed) {
   write("none.npy", "index,gain\n");
   write_npy("short.npy", "'<f8'", "(2, 4, 4)", identity);
   write_npy("empty.npy", "'<f8'", "(0, 4, 4)", {});
-  write_npy("float.npy", "'<f4'", "(2, 4, 4)", identity);
+  write_npy("half.npy", "'<f2'", "(8, 4, 4)", identity);
   write_npy("big.npy", "'>f8'", "(1, 4, 4)", identity);
   write_npy("flat.npy", "'<f8'", "(16,)", identity);
   write_npy("lacks.npy", "[('tx', '<f8'), ('ty', '<f8')]", "(8,)", identity);
@@ -138,7 +241,7 @@ TEST_F(Columns, BadColumnsOfPosesAreNamed) {
   write_npy("huge.npy", "'<f8'", "(281474976710656, 4, 4)", identity);
   write_npy("real.npy", "'<f8'", "(3E31, 4, 4)", identity);
   write_npy("wide.npy", "[('tx', '<f8'), ('a', '<f8', (1e30,))]", "(8,)", identity);
-  write("fortran.npy", test::with(read("good.npy"), "order': False", "order': True "));
+  write("fortran.npy", test::with(read("huge.npy"), "order': False", "order': True "));
   std::vector<double> scaled = identity, row = identity, nan = identity;
   scaled[0] = 2;
   row[15] = 2;
@@ -150,7 +253,7 @@ TEST_F(Columns, BadColumnsOfPosesAreNamed) {
        std::vector<std::pair<std::string, std::string>>{{"none.npy", "no .npy"},
                                                         {"short.npy", "cut off"},
                                                         {"empty.npy", "no pose"},
-                                                        {"float.npy", "<f8"},
+                                                        {"half.npy", "<f4"},
                                                         {"big.npy", ">f8"},
                                                         {"flat.npy", "(n, 4, 4)"},
                                                         {"lacks.npy", "tz"},
@@ -161,7 +264,7 @@ TEST_F(Columns, BadColumnsOfPosesAreNamed) {
                                                         {"huge.npy", "cut off"},
                                                         {"real.npy", "header"},
                                                         {"wide.npy", "header"},
-                                                        {"fortran.npy", "Fortran"},
+                                                        {"fortran.npy", "cut off"},
                                                         {"scaled.npy", "row 0: the matrix is not"},
                                                         {"row.npy", "last row"},
                                                         {"nan.npy", "row 0"},

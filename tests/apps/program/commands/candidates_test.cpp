@@ -14,6 +14,7 @@
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/pose_files.hpp"
 
 namespace viewgain {
 namespace {
@@ -46,6 +47,10 @@ TEST_F(Candidates, EveryGeneratorSaysWhatItMadeAndDropped) {
     }
     EXPECT_EQ(read_tum(dir / "poses.txt").poses.size(), result["per_candidate"].size());
   }
+  (void)run_well({"candidates", "run/map.vdb", "--generator", "rings", "--count", "80", "--sensor",
+                  "tof.toml", "--out", "poses.npy"});
+  (void)candidates("rings", {"--count", "80"});
+  EXPECT_EQ(load_poses(dir / "poses.npy").poses, read_tum(dir / "poses.txt").poses);
   EXPECT_EQ(candidates("rings", {"--count", "80"})["per_candidate"].size() +
                 candidates("rings", {"--count", "80"})["per_dropped"].size(),
             80U);

@@ -54,8 +54,8 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 /// frame where octomap_keeps_frame(grid), else in the grid's. A tree has no place for beliefs,
 /// prior, T_world_grid and views. A free voxel's log-odds of 0 is written as -0.001, since OctoMap
 /// calls 0 occupied; read back it is 0 again. Atomic: a temporary file is renamed. Throws
-/// Error(io), and Error(capacity) if a known voxel's index is not in [-32768, 32768). Cost: O(nodes
-/// of the tree).
+/// Error(io), Error(invalid_argument) for a name that does not end in .ot, Error(capacity) if a
+/// known voxel's index is not in [-32768, 32768). Cost: O(nodes of the tree).
 VIEWGAIN_EXPORT void save_octomap(const BeliefGrid& grid, const std::filesystem::path& path);
 /// The same as the contents of that file.
 [[nodiscard]] VIEWGAIN_EXPORT std::string octomap_bytes(const BeliefGrid& grid);

@@ -59,7 +59,8 @@ struct Table {
 };
 
 /// Writes a file with a line of the columns' names and one a row, or one that np.load() reads, by
-/// the ending .npy; it appears whole or not at all. Throws Error(io) that names it.
+/// the ending .npy; it appears whole or not at all. Throws Error(io) that names it, and
+/// Error(invalid_argument) for a name that ends neither in .csv nor in .npy.
 VIEWGAIN_EXPORT void write_table(const std::filesystem::path& path, const Table& table);
 
 /// Whether a file is one of columns (.npy, capitals too) rather than text.
@@ -73,8 +74,9 @@ template <typename Value>
   return value;
 }
 
-/// Poses of a .npy file: rows with kPoseColumns ("<f8", others are passed over), or matrices
-/// (n, 4, 4). Mended as read_tum() and read_pose_matrix() do; there are no timestamps. Throws
+/// Poses of a .npy file: rows with kPoseColumns and perhaps kTimeColumn ("<f8" or "<f4", others are
+/// passed over), or matrices (n, 4, 4) of either, in C's or Fortran's order. Mended as read_tum()
+/// and read_pose_matrix() do; without times the timestamps are 0, 1, 2, ... Throws
 /// Error(io), or Error(format) that names the file and, of a pose, the row.
 [[nodiscard]] VIEWGAIN_EXPORT PoseList read_npy_poses(const std::filesystem::path& path);
 
