@@ -242,7 +242,7 @@ ImportReport import_recording(const fs::path& source, const fs::path& out,
   check(source, config);
   ImportReport report;
   report.camera = config.camera;
-  Dropped dropped{report.dropped};
+  Dropped dropped{report.bad};
   const std::vector<RecordedFrame> frames = read_frames(source, config.max_time_gap, dropped);
   std::vector<MaskFolder> mask_folders;
   if (!config.masks.empty()) mask_folders.emplace_back(config.masks);
@@ -273,7 +273,7 @@ ImportReport import_recording(const fs::path& source, const fs::path& out,
   }
   if (report.frames == 0) {
     std::string reasons;
-    for (const auto& [reason, count] : bad_frames(report.dropped)) {
+    for (const auto& [reason, count] : bad_frames(report.bad)) {
       reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + ' ' + reason;
     }
     if (!dropped.fault.empty()) reasons += "; " + dropped.fault;

@@ -15,7 +15,6 @@
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/formats/file_names.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -34,14 +33,11 @@ struct Options {
 
 void calibrate(const Options& options) {
   const Stopwatch watch;
-  if (!is_sensor_file(options.out) && !is_special_file(options.out)) {
-    refuse("--out " + options.out + ": the name of a sensor file must end in .toml");
-  }
   FrameSequence frames =
       opened(&open_depth_images, options.frames, options.sensor, options.depth_scale);
   frames.out_of_range = Sensor::OutOfRange::invalid;
   NoiseCalibration calibration(frames.sensor, frames.depth_scale);
-  std::map<std::string, std::size_t> dropped;
+  std::map<std::string, std::size_t> bad;
   std::size_t used = 0;
   std::string fault;  // of the first frame that cannot be used
   Progress progress("frame", options.common.quiet);
@@ -49,7 +45,7 @@ void calibrate(const Options& options) {
     progress.update(i + 1, frames.images.size());
     const FrameReading reading = read_frame(frames, i);
     if (reading.fault.verdict != FrameVerdict::used) {
-      ++dropped[std::string(frame_verdict_name(reading.fault.verdict))];
+      ++bad[std::string(frame_verdict_name(reading.fault.verdict))];
       if (fault.empty()) fault = "; " + reading.fault.what;
       continue;
     }
@@ -72,7 +68,7 @@ void calibrate(const Options& options) {
                        {"pixels", step.pixels}});
     }
     print_json({{"frames", used},
-                {"dropped", dropped},
+                {"bad", bad},
                 {"sensor", result.sensor.name},
                 {"depth_scale", frames.depth_scale},
                 {"sigma_lateral_px", result.sigma_lateral_px},
@@ -93,7 +89,7 @@ void calibrate(const Options& options) {
   std::printf("%zu frames (%s); across the ray %.3f px, by %.0f px of edges%s\n", used,
               result.sensor.name.c_str(), result.sigma_lateral_px, result.edge_length,
               result.lateral_in_model ? "" : "; its model always has 1 px");
-  if (!dropped.empty()) std::printf("frames dropped: %s\n", counts_text(dropped).c_str());
+  if (!bad.empty()) std::printf("left out: %s\n", counts_text(bad).c_str());
   std::printf("%s: %s with this noise\n", options.out.c_str(), result.sensor.name.c_str());
 }
 

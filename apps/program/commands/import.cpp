@@ -47,10 +47,10 @@ PinholeCamera camera_of(const Options& options, const std::optional<Sensor>& sen
 void print_summary(const Options& options, const ImportReport& report,
                    const std::optional<Sensor>& sensor, double seconds) {
   const PinholeCamera& camera = report.camera;
-  const std::map<std::string, std::size_t> dropped = bad_frames(report.dropped);
+  const std::map<std::string, std::size_t> bad = bad_frames(report.bad);
   if (options.common.json) {
     Json json{{"frames", report.frames},
-              {"dropped", dropped},
+              {"bad", bad},
               {"orthonormalized_poses", report.orthonormalized},
               {"width", camera.width},
               {"height", camera.height},
@@ -65,7 +65,7 @@ void print_summary(const Options& options, const ImportReport& report,
   }
   std::printf("%zu frames of %dx%d px, %s readings: %s\n", report.frames, camera.width,
               camera.height, with_commas(report.readings).c_str(), options.out.c_str());
-  if (!dropped.empty()) std::printf("left out: %s\n", counts_text(dropped).c_str());
+  if (!bad.empty()) std::printf("left out: %s\n", counts_text(bad).c_str());
   print_mended(report.orthonormalized);
   if (!options.mask.empty() || !options.confidence.empty()) {
     std::printf("masks: of %zu frames, %s pixels taken away\n", report.masks,

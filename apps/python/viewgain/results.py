@@ -149,7 +149,7 @@ class FrameRegistration(NamedTuple):
     T_world_camera: Annotated[_Floats, "(4, 4), float64, corrected if registered, else as reported."]
     covariance: Annotated[_Floats, "(6, 6), float64, of its translation [m], then its rotation [rad], world axes."]
     translation: Annotated[float, "Way of the camera's centre by the correction that was found [m]."]
-    rotation: Annotated[float, "Its angle [rad]."]
+    rotation: Annotated[float, "Its angle [rad]; the program's JSON has rotation_deg."]
     residual_before: Annotated[float, "RMS distance of the pairs at the reported pose [m]."]
     residual_after: Annotated[float, "The same at the pose that was found [m]."]
     readings: Annotated[int, "Readings that were looked at."]

@@ -194,7 +194,7 @@ TEST_F(Recordings, ComeThroughExactly) {
   json result = json::parse(run_well({"import", "rec", "--format", "tum", "--intrinsics",
                                       "60,61,23.5,17.5", "--out", "frames", "--json"}));
   EXPECT_EQ(result["frames"], kFrames);
-  EXPECT_TRUE(result["dropped"].empty());
+  EXPECT_TRUE(result["bad"].empty());
   EXPECT_EQ(result["intrinsics"], (json{60, 61, 23.5, 17.5}));
   EXPECT_EQ(result["readings"], kFrames * (kWidth * kHeight - 2));
   EXPECT_TRUE(result["sensor"].is_null());
@@ -216,7 +216,7 @@ TEST_F(Recordings, WhatCannotBeUsedIsDroppedAndCounted) {
   write_tum_recording();
   write("rec/depth.txt", read("rec/depth.txt") + "90 depth/none.png\n200.5 depth/none.png\n");
   write_image("rec/depth/3.png", image_of(3, 40, 30));
-  EXPECT_EQ(import_json()["dropped"], (json{{"no_pose", 2}, {"wrong_size", 1}}));
+  EXPECT_EQ(import_json()["bad"], (json{{"no_pose", 2}, {"wrong_size", 1}}));
   EXPECT_FALSE(fs::exists(dir / "frames/frame-000003.depth.png"));
   // Within 4.1 ms each has its pose, within 3.9 ms none.
   EXPECT_EQ(import_json({"--max-time-gap", "0.0041"})["frames"], kFrames - 1);
@@ -232,26 +232,26 @@ TEST_F(Recordings, AnImageThatIsListedTwiceIsOneFrame) {
   const std::string list = read("rec/depth.txt");
   write("rec/depth.txt", list + list);
   const json result = import_json();
-  EXPECT_EQ(result["dropped"], (json{{"changed", kFrames}}));
+  EXPECT_EQ(result["bad"], (json{{"changed", kFrames}}));
   EXPECT_EQ(result["frames"], kFrames);
 }
 
 TEST_F(Recordings, OneDamagedPoseOrImageIsOneFrameLess) {
   write_plain_recording();
   const std::string poses = read("rec/groundtruth.txt");
-  const auto expect_dropped = [&](const json& dropped) {
+  const auto expect_bad = [&](const json& bad) {
     const json result = import_json();
-    EXPECT_EQ(result["dropped"], dropped);
+    EXPECT_EQ(result["bad"], bad);
     EXPECT_EQ(result["frames"], kFrames - 1);
   };
   for (const char* lost : {"0 0 0", "nan nan nan nan nan nan nan", "0 0 0 0 0 0 2", "lost"}) {
     write_pose_line(3, lost);
-    expect_dropped({{"lost_pose", 1}});
+    expect_bad({{"lost_pose", 1}});
   }
   write("rec/groundtruth.txt", poses);
   for (const std::string& damaged : {std::string("no picture"), std::string(), cut_png()}) {
     write("rec/depth/1.png", damaged);
-    expect_dropped({{"unreadable", 1}});
+    expect_bad({{"unreadable", 1}});
   }
 }
 

@@ -100,13 +100,13 @@ def test_what_the_camera_returns_is_checked(camera, sensor, start):
     depth, amplitude = camera.acquire(start)
     moved = start.copy()
     moved[0, 3] += 0.01
-    for answer in (depth, depth.astype(float).tolist(), (depth, None), (depth, amplitude, moved)):
+    for answer in (depth, depth.astype(float).tolist(), (depth, None), (depth, moved, amplitude)):
         result = reconstruct(camera, sensor, start, acquire=lambda pose: answer, max_views=1)
         assert result.reason == "max_views" and len(result.views) == 1
     assert np.allclose(result.grid.views()[0], moved)
-    for answer, text in [(depth[1:], r"\(143, 176\)"), ((depth, amplitude, moved, 1), "tuple of 4"),
+    for answer, text in [(depth[1:], r"\(143, 176\)"), ((depth, moved, amplitude, 1), "tuple of 4"), ((depth, amplitude, moved), "T_world_camera"),
                          (None, "depth"), ((1000 * depth).astype(np.uint16), "dtype uint16"),
-                         (1000 * depth, "metres"), ((depth, amplitude, 0 * moved), "T_world_camera"),
+                         (1000 * depth, "metres"), ((depth, 0 * moved, amplitude), "T_world_camera"),
                          (np.zeros_like(depth), "no reading")]:
         with pytest.raises(ValueError, match=text):
             reconstruct(camera, sensor, start, acquire=lambda pose: answer)

@@ -158,7 +158,7 @@ std::string text_of(const NextViews& next) {
     return view.worth != view.gain.gain;
   });
   std::string text = formatted("rank %12s  share%s%s  %-26s %-23s why\n", gain.c_str(),
-                               has_cost ? "  less cost" : "", has_area ? "   area [cm^2]" : "",
+                               has_cost ? "      worth" : "", has_area ? "    area [m^2]" : "",
                                "eye x y z [m]", "looks along x y z");
   const double total = total_gain(next);
   for (std::size_t i = 0; i < next.views.size(); ++i) {
@@ -167,7 +167,7 @@ std::string text_of(const NextViews& next) {
     const Eigen::Vector3d axis = view.T_world_camera.rotation().col(2);
     text += formatted("%4zu %12.6g %4.0f %%", i + 1, view.gain.gain, 100 * view.gain.gain / total);
     if (has_cost) text += formatted(" %10.4g", view.worth);
-    if (has_area) text += formatted(" %13.4g", 1e4 * view.gain.area);
+    if (has_area) text += formatted(" %13.4g", view.gain.area);
     text += formatted("  %8.3f %8.3f %8.3f %7.3f %7.3f %7.3f  %s\n", eye.x(), eye.y(), eye.z(),
                       axis.x(), axis.y(), axis.z(), why(view).c_str());
     if (view.rays) text.append("     ").append(text_of(*view.rays)).append("\n");

@@ -250,8 +250,8 @@ class Following {
     map_->answer(views_.answered_by(name), frame.T_world_camera);
     has_news_ = true;
     if (options_.common.quiet || !is_in_map(verdict)) return;
-    std::fprintf(stderr, "%s: %.4g cm^2 of new surface, %.4g nat\n", name.c_str(),
-                 1e4 * added.update.new_area, added.entropy_removed);
+    std::fprintf(stderr, "%s: %.4g m^2 of new surface, %.4g nat\n", name.c_str(),
+                 added.update.new_area, added.entropy_removed);
   }
 
   void propose(const std::set<std::string>& frames) {

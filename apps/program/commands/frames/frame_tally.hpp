@@ -82,7 +82,7 @@ class FrameTally {
           {"reason", registration.reason},
           {"pose", to_json(registration.T_world_camera)},
           {"translation", registration.translation},
-          {"rotation", registration.rotation * 180 / std::numbers::pi},
+          {"rotation_deg", registration.rotation * 180 / std::numbers::pi},
           {"residual_before", registration.residual_before},
           {"residual_after", registration.residual_after},
           {"overlap", registration.overlap},

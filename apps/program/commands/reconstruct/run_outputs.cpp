@@ -177,9 +177,9 @@ std::string RunReport::progress_line() const {
       100 * e.quality.coverage_visible, 1e3 * tolerance_, 1e3 * e.quality.surface_error.rms,
       with_commas(e.record.progress.unknown_voxels).c_str(), e.record.realised_gain,
       entropy_unit_.data());
-  text += formatted(", new %.0f cm^2", 1e4 * e.record.progress.new_area);
+  text += formatted(", new %.3g m^2", e.record.progress.new_area);
   if (!std::isnan(e.record.predicted_area)) {
-    text += formatted(" of %.0f predicted", 1e4 * e.record.predicted_area);
+    text += formatted(" of %.3g predicted", e.record.predicted_area);
   }
   if (e.record.chosen_as && e.record.chosen_as->boundary_class) {
     text.append("  ").append(boundary_class_name(*e.record.chosen_as->boundary_class));

@@ -56,12 +56,12 @@ class PythonAcquisition : public DataAcquisition {
     const auto parts = py::reinterpret_borrow<py::tuple>(answer);
     if (parts.size() != 2 && parts.size() != 3) {
       throw py::value_error(
-          "acquire must return depth, (depth, amplitude) or (depth, amplitude, T_world_camera), "
+          "acquire must return depth, (depth, amplitude) or (depth, T_world_camera, amplitude), "
           "not a tuple of " +
           std::to_string(parts.size()));
     }
-    measurements.frames.push_back(depth_frame(sensor_, parts[0], parts[1]));
-    if (parts.size() == 3) measurements.T_world_camera = one_pose(parts[2], "T_world_camera");
+    measurements.frames.push_back(depth_frame(sensor_, parts[0], parts[parts.size() - 1]));
+    if (parts.size() == 3) measurements.T_world_camera = one_pose(parts[1], "T_world_camera");
     return measurements;
   }
 
@@ -207,8 +207,8 @@ Parameters
 acquire : callable
     Given T_world_camera (4, 4) of the wanted view, moves the camera there and returns depth
     (height, width), floating point, along the optical axis [m] (0, NaN or masked: nothing known, inf:
-    nothing up to max_range), or (depth, amplitude), or (depth, amplitude, T_world_camera) with the pose it really
-    got to; amplitude may be None. Called on the calling thread; what it raises ends the loop and
+    nothing up to max_range), or (depth, amplitude), a ``SimulatedFrame``, or (depth, T_world_camera, amplitude), a
+    ``Frame``, with the pose it really got to; amplitude may be None. Called on the calling thread; what it raises ends the loop and
     passes through.
 sensor : viewgain.Sensor
 start : array_like, (4, 4)

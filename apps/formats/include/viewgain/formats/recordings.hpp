@@ -38,7 +38,7 @@ struct VIEWGAIN_EXPORT ImportConfig {
 struct VIEWGAIN_EXPORT ImportReport {
   std::size_t frames = 0;           ///< that were written
   PinholeCamera camera;             ///< of their images
-  FrameCounts dropped;              ///< no_pose, lost_pose, unreadable, wrong_size
+  FrameCounts bad;                  ///< left out: no_pose, lost_pose, unreadable, wrong_size
   std::size_t orthonormalized = 0;  ///< whose rotation was off by 1e-9 to 1e-2 and mended
   std::uint64_t readings = 0;       ///< pixels with a depth that were written
   std::uint64_t masked_pixels = 0;  ///< with a depth, taken away by masks or confidences
