@@ -186,9 +186,9 @@ void check_call(const App& subcommand) {
     if (file.path == "-") {
       refuse(file.option, "-", "is no file's name; /dev/stdout writes to the standard output");
     }
+    check_not_read(file, files);
     const std::string fault = fault_of_output(file, name_of(subcommand));
     if (!fault.empty()) refuse(file.option, file.path.string(), fault);
-    check_not_read(file, files);
   }
   for (const NamedFile& file : files) {
     if (file.kind == Kind::output) {
