@@ -94,6 +94,16 @@ TEST_F(Files, SensorsReadBackEqual) {
   EXPECT_EQ(cases, 205);
 }
 
+// The flag --pose-sigma is in degrees; files of 0.1.0 have the key without its unit.
+TEST_F(Files, TheSigmaOfPosesHasItsUnitInItsName) {
+  Sensor sensor = sensor_preset("d435");
+  sensor.pose_sigma = {0.004, 0.01};
+  const std::string text = sensor_toml(sensor);
+  EXPECT_NE(text.find("pose_sigma_rad = [0.004, 0.01]"), std::string::npos) << text;
+  write("old.toml", test::with(text, "pose_sigma_rad", "pose_sigma"));
+  EXPECT_TRUE(equal(read_sensor_toml(dir / "old.toml"), sensor));
+}
+
 TEST_F(Files, SensorsAreWrittenAlikeInEveryLocale) {
   Sensor sensor = sensor_preset("d435");
   sensor.camera.width = 1280;  // with a thousands separator, if one crept in

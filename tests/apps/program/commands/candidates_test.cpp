@@ -188,6 +188,14 @@ TEST_F(Candidates, NextChoosesAmongGivenPosesByTheirWorth) {
   const json there = next({"--cost-per-metre", "0.5", "--from", "99,0,0"});
   ASSERT_FALSE(there.empty());
   EXPECT_NEAR(free[0]["gain"].get<double>() - there[0]["worth"].get<double>(), 49.5, 0.5);
+  // Both tables have the same words and units.
+  for (const char* command : {"next", "score"}) {
+    const std::string table =
+        run_well({command, "run/map.vdb", "--sensor", "tof.toml", "--poses", "mine.txt",
+                  "--cost-per-metre", "0.001", "--from", "0,0,1"});
+    EXPECT_NE(table.find(" worth "), std::string::npos) << table;
+    EXPECT_NE(table.find(" area [m^2] "), std::string::npos) << table;
+  }
   write("few.txt", "1\n2\n");
   write("word.txt", "1\ncheap\n");
   expect_refused_with({"next", "run/map.vdb", "--sensor", "tof.toml"},
