@@ -126,6 +126,7 @@ TEST(Sensor, ASigmaMayLackAPartThatOthersMakeUpFor) {
   const auto expect = [](bool is_valid, const NoiseModel& noise, double min_range = 0.2) {
     Sensor sensor = sensor_preset("sr4000");
     sensor.min_range = min_range;
+    sensor.working_distance = 0.7;
     sensor.noise = noise;
     if (!is_valid)
       return expect_error(ErrorCode::invalid_argument, "sigma along the ray is 0",
