@@ -5,7 +5,6 @@
 
 #include <fstream>
 #include <ios>
-#include <map>
 #include <string>
 #include <string_view>
 
@@ -40,7 +39,7 @@ BeliefGrid small_map() {
 std::vector<std::string> vdb_seeds() {
   const TemporaryFolder folder;
   const std::string path = folder.path() / "map.vdb", again = folder.path() / "again.vdb";
-  save_vdb(small_map(), path, {.notes = {{"planner", "x"}}});
+  save_vdb(small_map(), path, {.notes = MapNotes{.others = {{"planner", "x"}}}});
   const std::string sealed = read_all(path);
   const std::string map = sealed.substr(0, sealed.size() - detail::make_seal({}).size());
   std::vector<std::string> seeds{'\0' + map, '\1' + map, '\2' + map};
@@ -72,8 +71,7 @@ std::size_t vdb_maps(std::string_view bytes) {
     if (which % 3 == 2) {
       (void)load_hazard_vdb(path, small_map());
     } else {
-      std::map<std::string, std::string> notes;
-      save_vdb(load_vdb(path, &notes, {1}), folder.path() / "again.vdb", {.notes = notes});
+      save_vdb(load_vdb(path, {1}), folder.path() / "again.vdb");
     }
     return 1;
   } catch (const Error&) {

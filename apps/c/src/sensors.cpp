@@ -45,6 +45,11 @@ Sensor sensor_of(const vg_sensor* given) {
   result.noise = noise_of(sensor);
   result.pose_sigma = {sensor.pose_sigma[0], sensor.pose_sigma[1]};
   result.scale_sigma = sensor.scale_sigma;
+  const int meaning = enum_of<int>(sensor.out_of_range, VG_OUT_OF_RANGE_INVALID, "out_of_range");
+  if (meaning != VG_OUT_OF_RANGE_BY_LAYOUT) {
+    result.out_of_range =
+        meaning == VG_OUT_OF_RANGE_CARVE ? Sensor::OutOfRange::carve : Sensor::OutOfRange::invalid;
+  }
   return result;
 }
 
@@ -69,6 +74,11 @@ void write_sensor(const Sensor& sensor, vg_sensor* out) {
   whole.pose_sigma[0] = sensor.pose_sigma.translation;
   whole.pose_sigma[1] = sensor.pose_sigma.rotation;
   whole.scale_sigma = sensor.scale_sigma;
+  if (sensor.out_of_range) {
+    whole.out_of_range = *sensor.out_of_range == Sensor::OutOfRange::carve
+                             ? VG_OUT_OF_RANGE_CARVE
+                             : VG_OUT_OF_RANGE_INVALID;
+  }
   write_struct(out, whole);
 }
 

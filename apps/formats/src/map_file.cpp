@@ -2,38 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/formats/map_file.hpp"
 
-#include <map>
-#include <sstream>
+#include <string>
+#include <utility>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/file_names.hpp"
-#include "viewgain/support/text.hpp"
 
 namespace viewgain {
-namespace {
-
-// In the metadata of a .vdb.
-constexpr const char* kSensorNote = "sensor";  // sensor_toml()
-constexpr const char* kFramesNote = "frames";  // frame_identity(), a line each
-
-std::set<std::string> frames_of_note(const std::string& note, const std::string& file) {
-  constexpr std::size_t kDigits = 16;
-  std::set<std::string> frames;
-  std::istringstream lines(note);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.size() < kDigits + 2 || line.find_first_not_of("0123456789abcdef") != kDigits ||
-        line[kDigits] != ' ') {
-      throw Error(ErrorCode::format,
-                  file + ": the note of its frames holds " + viewgain::quoted(line));
-    }
-    frames.insert(line);
-  }
-  return frames;
-}
-
-}  // namespace
 
 bool is_octomap(const std::filesystem::path& path) {
   return small_ending(path) == ".ot" || small_ending(path) == ".bt";
@@ -41,41 +18,27 @@ bool is_octomap(const std::filesystem::path& path) {
 
 BeliefGrid load_map(const std::filesystem::path& path, const Sensor* sensor, OctomapConfig config,
                     const ExecConfig& exec) {
-  return load_map_of_sensor(path, sensor, config, exec).grid;
-}
-
-MapOfSensor load_map_of_sensor(const std::filesystem::path& path, const Sensor* sensor,
-                               OctomapConfig config, const ExecConfig& exec) {
   if (!is_octomap(path)) {
-    std::map<std::string, std::string> notes;
-    MapOfSensor result{load_vdb(path, &notes, exec), std::nullopt};
-    if (const auto note = notes.find(kSensorNote); note != notes.end()) {
-      result.sensor = parse_sensor_toml(note->second, path.string());
-    }
-    if (const auto note = notes.find(kFramesNote); note != notes.end()) {
-      result.frames = frames_of_note(note->second, path.string());
-    }
-    return result;
+    BeliefGrid grid = load_vdb(path, exec);
+    MapNotes notes = grid.notes();
+    if (notes.sensor.empty()) return grid;
+    // As this version words it, so that equal sensors have equal notes.
+    notes.sensor = sensor_toml(parse_sensor_toml(notes.sensor, path.string()));
+    grid.set_notes(std::move(notes));
+    return grid;
   }
   const std::string bytes = file_bytes(path);  // once: a pipe cannot be opened again
   if (sensor != nullptr && !config.prior_sigma) {
     config.prior_sigma =
         default_prior_sigma(octomap_resolution_of_bytes(bytes, path.string()), *sensor);
   }
-  return {grid_from_octomap_bytes(bytes, config, path.string()), std::nullopt};
+  return grid_from_octomap_bytes(bytes, config, path.string());
 }
 
-VdbWriteConfig noting_sensor(const Sensor& sensor, VdbWriteConfig config) {
-  config.notes[kSensorNote] = sensor_toml(sensor);
-  return config;
-}
-
-VdbWriteConfig noting_frames(const std::set<std::string>& frames, VdbWriteConfig config) {
-  if (frames.empty()) return config;
-  std::string& note = config.notes[kFramesNote];
-  note.clear();
-  for (const std::string& frame : frames) note += frame + "\n";
-  return config;
+std::optional<Sensor> map_sensor(const BeliefGrid& grid) {
+  const std::string& note = grid.notes().sensor;
+  if (note.empty()) return std::nullopt;
+  return parse_sensor_toml(note, "the map's sensor");
 }
 
 void check_map_name(const std::filesystem::path& path) {

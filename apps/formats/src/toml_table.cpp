@@ -3,10 +3,8 @@
 #include "viewgain/support/toml_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <utility>
 
 #include "viewgain/core/error.hpp"
@@ -26,27 +24,6 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
     throw Error(ErrorCode::format, name + ": line " + std::to_string(error.source().begin.line) +
                                        ": " + std::string(error.description()));
   }
-}
-
-// A TOML float needs a point or an exponent.
-std::string toml_float(double value) {
-  std::string text = short_text(value);
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";
-  return text;
-}
-
-std::string toml_string(const std::string& value) {
-  std::string text = "\"";
-  for (const char c : value) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      std::array<char, 8> escaped{};
-      std::snprintf(escaped.data(), escaped.size(), "\\u%04X", static_cast<unsigned char>(c));
-      text += escaped.data();
-    } else {
-      text.append(c == '"' || c == '\\' ? "\\" : "").append(1, c);
-    }
-  }
-  return text + "\"";
 }
 
 TableReader::TableReader(const toml::table& table, std::string file, std::string prefix)

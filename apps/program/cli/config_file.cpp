@@ -8,8 +8,9 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/hash64.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/toml_table.hpp"
 
@@ -149,6 +150,16 @@ std::string default_of(const Option& option) {
   return kind == Kind::text ? toml_string(text) : text;
 }
 
+// Of a value as value_of() and default_of() write it. Texts come as they were given, UTF-8 or not.
+Json json_of(const std::string& value, const Option& option) {
+  if (kind_of(option) != Kind::text) {
+    const Json json = parse_or_null(value);
+    return json.is_null() ? Json(value) : json;
+  }
+  if (option.empty()) return option.get_default_str();
+  return is_repeated(option) ? Json(option.results()) : Json(option.results().back());
+}
+
 bool is_utf8(const std::string& text) {
   try {
     (void)Json(text).dump();
@@ -226,6 +237,29 @@ std::string config_text(const App& subcommand, const Words& left_out) {
     }
   }
   return text;
+}
+
+CallSettings call_settings(const App& subcommand, const Words& left_out) {
+  CallSettings settings;
+  for (const Option* option : settable_options(subcommand)) {
+    const std::string key = key_of(*option);
+    if (std::find(left_out.begin(), left_out.end(), key) != left_out.end()) continue;
+    Json& flag = settings.flags[key];
+    if (option->empty()) {
+      if (!option->get_default_str().empty()) flag = json_of(default_of(*option), *option);
+      continue;
+    }
+    flag = json_of(value_of(*option), *option);
+    if (kind_of(*option) != Kind::text) continue;
+    for (const std::string& value : option->results()) {
+      std::error_code ignored;
+      if (!std::filesystem::is_regular_file(value, ignored)) continue;
+      Hash64 hash;
+      hash.add_bytes(file_bytes(value));
+      settings.files[value] = hash.hex();
+    }
+  }
+  return settings;
 }
 
 }  // namespace viewgain::app

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "program/cli/app.hpp"
+#include "program/cli/json.hpp"
 
 namespace viewgain::app {
 
@@ -31,5 +32,15 @@ namespace viewgain::app {
 /// which TOML cannot hold, becomes a comment.
 [[nodiscard]] std::string config_text(const App& subcommand,
                                       const std::vector<std::string>& left_out = {});
+
+/// The same keys of a parsed subcommand with their values as JSON: what was given, else the
+/// default, null without one. Where a value names a regular file, `files` has its path and a hash
+/// over its bytes. Throws Error(io) if such a file cannot be read.
+struct CallSettings {
+  Json flags = Json::object();
+  Json files = Json::object();
+};
+[[nodiscard]] CallSettings call_settings(const App& subcommand,
+                                         const std::vector<std::string>& left_out);
 
 }  // namespace viewgain::app

@@ -49,12 +49,9 @@ void convert(const Options& options) {
   config.prior_sigma = options.prior_sigma;
   std::optional<Sensor> sensor;
   if (!options.sensor.empty()) sensor = load_sensor(options.sensor);
-  const MapOfSensor map =
-      load_map_of_sensor(options.in, sensor ? &*sensor : nullptr, config, exec_of(options.common));
-  const BeliefGrid& grid = map.grid;
-  VdbWriteConfig how = noting_frames(map.frames, {options.with_covariance == "on"});
-  if (map.sensor) how = noting_sensor(*map.sensor, std::move(how));
-  const LostInTree lost = save_map(grid, options.out, how);
+  const BeliefGrid grid =
+      load_map(options.in, sensor ? &*sensor : nullptr, config, exec_of(options.common));
+  const LostInTree lost = save_map(grid, options.out, {options.with_covariance == "on"});
   warn_of_lost_frame(lost, options.out);
   const BeliefGrid::Statistics statistics = grid.statistics();
   if (options.common.json) {

@@ -71,8 +71,7 @@ Json hazard_factors(const BeliefGrid& grid) {
 
 void info(const Options& options) {
   const Criterion criterion = parse_criterion(options.criterion);
-  const MapOfSensor map = load_map_of_sensor(options.map, nullptr, {}, exec_of(options.common));
-  const BeliefGrid& grid = map.grid;
+  const BeliefGrid grid = load_map(options.map, nullptr, {}, exec_of(options.common));
   if (options.hash) {
     if (options.common.json) {
       print_json({{"hash", grid.content_hash()}});
@@ -81,6 +80,7 @@ void info(const Options& options) {
     }
     return;
   }
+  const std::optional<Sensor> sensor = map_sensor(grid);
   const std::optional<Region> region = region_of(options, grid, criterion);
   const BeliefGrid::Statistics statistics = grid.statistics(criterion);
   const Index3 dims = grid.dims();
@@ -100,7 +100,7 @@ void info(const Options& options) {
               {"entropy_removed", statistics.entropy_removed},
               {"prior_sigma", grid.prior_sigma()},
               {"views", grid.views().size()},
-              {"sensor", map.sensor ? Json(map.sensor->name) : Json()},
+              {"sensor", sensor ? Json(sensor->name) : Json()},
               {"hazard_factors", hazard_factors(grid)},
               {"hash", grid.content_hash()}};
     if (region) json["region"] = region_json(*region);
@@ -123,7 +123,7 @@ void info(const Options& options) {
               options.criterion.c_str());
   std::printf("prior sigma      %g m\n", grid.prior_sigma());
   std::printf("views            %zu\n", grid.views().size());
-  if (map.sensor) std::printf("sensor           %s\n", printable(map.sensor->name).c_str());
+  if (sensor) std::printf("sensor           %s\n", printable(sensor->name).c_str());
   if (const HazardCounters& counters = grid.hazard_counters(); !counters.empty()) {
     std::printf("hazard factors  ");
     for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {

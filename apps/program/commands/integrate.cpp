@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <initializer_list>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -46,25 +45,13 @@ BeliefGrid new_map(ReadingSource& source, const Options& options) {
   return grid;
 }
 
-// The map that grows, the sensor of its readings so far and the frames that it has, as far as its
-// file says, and whether its readings were of another sensor, or of nobody knows which: then its
-// file does not say which they come from.
-struct GrownMap {
-  BeliefGrid grid;  // before the readings, which go into the source's
-  bool is_of_two = false;
-  std::optional<Sensor> sensor{};
-  std::set<std::string> frames{};
-};
-
 // An existing map keeps its layout and prior; flags that say something else are an error.
-GrownMap continued_map(const Sensor& sensor, const Options& options) {
+BeliefGrid continued_map(const Sensor& sensor, const Options& options) {
   OctomapConfig tree;  // which has no prior or workspace of its own
   tree.prior_sigma = options.prior_sigma;
   if (!options.workspace.empty()) tree.workspace = parse_box("--workspace", options.workspace);
-  MapOfSensor map = load_map_of_sensor(options.map, &sensor, tree, exec_of(options.common));
-  const bool is_of_two =
-      warn_of_other_sensor(options.map, map, sensor) || (!map.sensor && !map.grid.views().empty());
-  BeliefGrid& grid = map.grid;
+  BeliefGrid grid = load_map(options.map, &sensor, tree, exec_of(options.common));
+  warn_of_other_sensor(options.map, grid, sensor);
   const auto conflict = [&options](const std::string& flag, const std::string& given,
                                    const std::string& stored) {
     refuse(flag + " " + given + " conflicts with " + options.map + ", which has " + stored);
@@ -83,7 +70,7 @@ GrownMap continued_map(const Sensor& sensor, const Options& options) {
       conflict("--workspace", options.workspace, describe(grid.workspace()));
     }
   }
-  return {std::move(grid), is_of_two, std::move(map.sensor), std::move(map.frames)};
+  return grid;
 }
 
 // Of no values none.
@@ -106,13 +93,13 @@ struct Totals {
   std::vector<double> seconds;  // of each frame's integration, reading the image not counted
 };
 
-Totals integrate_all(ReadingSource& source, const Options& options, std::set<std::string>& frames) {
+Totals integrate_all(ReadingSource& source, const Options& options) {
   Totals totals(options.common.quiet);
   Progress progress(part_name(options), options.common.quiet);
   for (std::size_t i = 0; i < source.size(); ++i) {
     FrameFault fault;
     const std::string identity = source.identity(i, fault);
-    if (!identity.empty() && !frames.insert(identity).second) {
+    if (source.grid().notes().frames.contains(identity)) {
       ++totals.skipped;
       progress.update(i + 1, source.size());
       continue;
@@ -140,7 +127,6 @@ Totals integrate_all(ReadingSource& source, const Options& options, std::set<std
       totals.sum += update.counts;
     }
     totals.tally.add(source.file(i), fault);
-    if (!is_in_map(fault.verdict)) frames.erase(identity);  // it may be mended
     progress.update(i + 1, source.size());
   }
   return totals;
@@ -274,19 +260,12 @@ void integrate(const Options& options, const App& app) {
     refuse("--calibrate-hazard with " + options.out + ": a tree has no place for hazard counters");
   }
   const std::unique_ptr<ReadingSource> source = open_reading_source(options);
-  GrownMap map = options.map.empty() ? GrownMap{new_map(*source, options)}
-                                     : continued_map(source->sensor(), options);
-  source->start(std::move(map.grid));
+  source->start(options.map.empty() ? new_map(*source, options)
+                                    : continued_map(source->sensor(), options));
   const BeliefGrid& grid = source->grid();
-  const Totals totals = integrate_all(*source, options, map.frames);
+  const Totals totals = integrate_all(*source, options);
   refuse_empty(options, *source, totals);
-  VdbWriteConfig how = noting_frames(map.frames, {options.with_covariance == "on"});
-  if (totals.seconds.empty()) {  // its readings are what they were
-    if (map.sensor) how = noting_sensor(*map.sensor, std::move(how));
-  } else if (!map.is_of_two) {
-    how = noting_sensor(source->sensor(), std::move(how));
-  }
-  const LostInTree lost = save_map(grid, options.out, how);
+  const LostInTree lost = save_map(grid, options.out, {options.with_covariance == "on"});
   warn_of_lost_frame(lost, options.out);
   print_summary(options, *source, grid, totals, lost, watch.seconds());
 }

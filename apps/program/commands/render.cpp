@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "show/pictures/map_picture.hpp"
@@ -42,8 +43,8 @@ std::string map_file(const std::string& input) {
   std::error_code ignored;
   return fs::is_directory(input, ignored) ? (fs::path(input) / "map.vdb").string() : input;
 }
-MapOfSensor map_of(const std::string& input, const ExecConfig& exec) {
-  return load_map_of_sensor(map_file(input), nullptr, {}, exec);
+BeliefGrid map_of(const std::string& input, const ExecConfig& exec) {
+  return load_map(map_file(input), nullptr, {}, exec);
 }
 
 // The surface in a map and the points that it goes through.
@@ -52,9 +53,8 @@ struct MapSurface {
   SurfaceMesh surface;
   std::vector<double> sigmas;
 
-  MapSurface(const MapOfSensor& map, const ExecConfig& exec)
-      : points(fused_points(map.grid, {.scale_sigma = map.sensor ? map.sensor->scale_sigma : 0.0},
-                            exec)),
+  MapSurface(const BeliefGrid& map, const ExecConfig& exec)
+      : points(fused_points(map, {.scale_sigma = scale_sigma_of(map)}, exec)),
         surface(surface_of(points, exec)),
         sigmas(surface_sigmas(surface, points)) {}
 };
@@ -68,9 +68,9 @@ struct Picture {
 };
 
 Picture picture_of(const Options& options, const ExecConfig& exec) {
-  const MapOfSensor map = map_of(options.input, exec);
+  const BeliefGrid map = map_of(options.input, exec);
   const Viewer viewer = viewer_of(options);
-  if (options.what == "map") return {map_picture(map.grid.snapshot(), viewer, exec)};
+  if (options.what == "map") return {map_picture(map.snapshot(), viewer, exec)};
   MapSurface made(map, exec);
   SurfacePicture picture{made.surface};
   if (options.what == "surface") return {draw(picture, viewer, exec)};

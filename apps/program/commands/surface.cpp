@@ -74,7 +74,7 @@ std::vector<std::uint8_t> seen_samples(const GroundTruth& truth, const SurfaceSc
 }
 
 // Of the samples visible are those that the map's views have in sight; NaN without any.
-QualityFigures figures_of(const SurfaceScene& mesh, const MapOfSensor& map,
+QualityFigures figures_of(const SurfaceScene& mesh, const BeliefGrid& map,
                           const SurfaceMesh& surface, const std::vector<FusedPoint>& points,
                           const ExecConfig& exec) {
   constexpr std::size_t kSamples = 10'000;
@@ -82,13 +82,14 @@ QualityFigures figures_of(const SurfaceScene& mesh, const MapOfSensor& map,
   const GroundTruth truth(mesh.mesh(), kSamples, kSeed, exec);
   const PointArrays arrays = arrays_of(points);
   const std::vector<double> distances = truth.distances_to(surface.vertices);
-  const double tolerance = covered_within(map.grid.voxel_size());
+  const double tolerance = covered_within(map.voxel_size());
   QualityFigures figures;
   figures.coverage = coverage(distances, tolerance);
   figures.coverage_visible = std::numeric_limits<double>::quiet_NaN();
   figures.coverage_2_5mm = coverage(distances, kCovered / 2);
-  if (map.sensor && !map.grid.views().empty()) {
-    const auto seen = seen_samples(truth, mesh, map.grid.views(), *map.sensor, exec);
+  const std::optional<Sensor> sensor = map_sensor(map);
+  if (sensor && !map.views().empty()) {
+    const auto seen = seen_samples(truth, mesh, map.views(), *sensor, exec);
     if (std::find(seen.begin(), seen.end(), 1) != seen.end()) {
       figures.coverage_visible = coverage(distances, tolerance, seen);
     }
@@ -136,14 +137,14 @@ void surface(const Options& options, const App& app) {
   check(options, app);
   const ExecConfig exec{options.common.threads};
   const std::shared_ptr<const SurfaceScene> truth = truth_of(options, exec);
-  const MapOfSensor map = load_map_of_sensor(options.map, nullptr, {}, exec);
+  const BeliefGrid map = load_map(options.map, nullptr, {}, exec);
   const std::vector<FusedPoint> points =
-      fused_points(map.grid, {.scale_sigma = map.sensor ? map.sensor->scale_sigma : 0.0}, exec);
+      fused_points(map, {.scale_sigma = scale_sigma_of(map)}, exec);
   if (points.empty()) refuse(options.map + ": no voxel has readings that make a surface");
   const SurfaceMesh surface = surface_of(points, exec);
   std::optional<QualityFigures> figures;
   if (truth) {
-    warn_of_place(options, truth->mesh(), map.grid);
+    warn_of_place(options, truth->mesh(), map);
     figures = figures_of(*truth, map, surface, points, exec);
   }
   write_surfaces(surface, points, options.out, options.points);
@@ -171,7 +172,7 @@ void surface(const Options& options, const App& app) {
               with_commas(surface.triangles.size()).c_str(), mesh_area(surface));
   if (median) std::printf(", sigma %.2f mm (median)", 1e3 * *median);
   std::printf("\n");
-  if (figures) print(*figures, map.grid.voxel_size());
+  if (figures) print(*figures, map.voxel_size());
   for (const std::string& file : {options.out, options.points}) {
     if (!file.empty()) std::printf("%s\n", file.c_str());
   }

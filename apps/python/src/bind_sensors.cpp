@@ -156,6 +156,18 @@ py::object to_object(const RangeCalibration& calibration) {
                              calibration.table.front().data());
 }
 
+std::optional<Sensor::OutOfRange> out_of_range_of(const std::optional<std::string>& name) {
+  if (!name) return std::nullopt;
+  if (*name == "carve") return Sensor::OutOfRange::carve;
+  if (*name == "invalid") return Sensor::OutOfRange::invalid;
+  refuse("out_of_range is \"" + *name + "\", not carve or invalid");
+}
+
+std::optional<std::string> name_of(const std::optional<Sensor::OutOfRange>& meaning) {
+  if (!meaning) return std::nullopt;
+  return *meaning == Sensor::OutOfRange::carve ? "carve" : "invalid";
+}
+
 }  // namespace
 
 void bind_sensors(py::module_& module) {
@@ -187,19 +199,23 @@ pose_sigma : sequence of float, (2,), optional
 scale_sigma : float, optional
     Standard deviation of the factor, less 1, that all ranges are off by. No number of readings makes
     a point surer of it: ``BeliefGrid.points``.
+out_of_range : str, optional
+    What the value 65535 says in its depth images: carve (nothing up to max_range) or invalid (no
+    reading); default: as the layout of their folder has it.
 
 Notes
 -----
 Equal by value; can be pickled. Refuses parameters of the noise that are out of their bounds. Holds the GIL. Cost: some µs; linear in the rows of
 range_calibration.)");
-  pickle_by_attributes(
-      type, {"camera", "min_range", "max_range", "working_distance", "noise", "name",
-             "T_flange_camera", "body_size", "range_calibration", "pose_sigma", "scale_sigma"});
+  pickle_by_attributes(type, {"camera", "min_range", "max_range", "working_distance", "noise",
+                              "name", "T_flange_camera", "body_size", "range_calibration",
+                              "pose_sigma", "scale_sigma", "out_of_range"});
   type.def(py::init([](const Given<PinholeCamera>& camera, double min_range, double max_range,
                        double working_distance, const NoiseModel& noise, std::string name,
                        const py::object& T_flange_camera,
                        std::optional<std::array<double, 3>> body_size, const py::object& table,
-                       const std::array<double, 2>& pose_sigma, double scale_sigma) {
+                       const std::array<double, 2>& pose_sigma, double scale_sigma,
+                       const std::optional<std::string>& out_of_range) {
              Sensor sensor{std::move(name),
                            *camera,
                            min_range,
@@ -210,14 +226,15 @@ range_calibration.)");
                            body_size,
                            range_calibration(table),
                            {pose_sigma[0], pose_sigma[1]},
-                           scale_sigma};
+                           scale_sigma,
+                           out_of_range_of(out_of_range)};
              sensor.validate();
              return sensor;
            }),
            "camera"_a, py::kw_only(), "min_range"_a, "max_range"_a, "working_distance"_a, "noise"_a,
            "name"_a = "custom", "T_flange_camera"_a = py::none(), "body_size"_a = py::none(),
            "range_calibration"_a = py::none(), "pose_sigma"_a = std::array<double, 2>{0, 0},
-           "scale_sigma"_a = 0.0)
+           "scale_sigma"_a = 0.0, "out_of_range"_a = py::none())
       .def_readonly("name", &Sensor::name, "str")
       .def_readonly("camera", &Sensor::camera, "PinholeCamera")
       .def_readonly("min_range", &Sensor::min_range, "float: along the ray [m]")
@@ -248,6 +265,9 @@ range_calibration.)");
           "(float, float): of the poses of frames [m], [rad]; zeros where they are exact")
       .def_readonly("scale_sigma", &Sensor::scale_sigma,
                     "float: of the factor, less 1, that all ranges are off by; 0: none")
+      .def_property_readonly(
+          "out_of_range", [](const Sensor& sensor) { return name_of(sensor.out_of_range); },
+          "str or None: what 65535 says in its depth images, carve or invalid")
       .def(
           "corrected",
           [](const Sensor& sensor, const py::object& depth) {

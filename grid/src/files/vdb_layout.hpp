@@ -35,7 +35,7 @@ inline constexpr std::int32_t kVdbScaledVersion = 3;
 /// The grid of rates in a file of save_hazard_vdb().
 inline constexpr const char* kHazardGridName = "hazard";
 
-/// What the names of notes begin with (VdbWriteConfig::notes).
+/// What the names of notes begin with (MapNotes).
 inline const std::string kNotePrefix = "note_";
 
 /// Names of the metadata with the hazard counters of a class; maps without counters have none.
@@ -63,8 +63,9 @@ inline void initialize_openvdb() {
   return openvdb::math::Transform::createLinearTransform(m);
 }
 
-/// What save_vdb() was given as notes.
-[[nodiscard]] inline std::map<std::string, std::string> notes_of(const openvdb::MetaMap& metadata) {
+/// The map's notes by name.
+[[nodiscard]] inline std::map<std::string, std::string> note_texts(
+    const openvdb::MetaMap& metadata) {
   std::map<std::string, std::string> notes;
   for (auto entry = metadata.beginMeta(); entry != metadata.endMeta(); ++entry) {
     const std::string& name = entry->first;

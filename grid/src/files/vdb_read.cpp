@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,6 +16,7 @@
 
 #include "map/belief_blocks.hpp"
 #include "map/belief_sum.hpp"
+#include "map/map_notes.hpp"
 #include "pose_text.hpp"
 #include "vdb_contents.hpp"
 #include "vdb_layout.hpp"
@@ -46,7 +46,7 @@ class Loader {
   Loader(std::filesystem::path path, const ExecConfig& exec)
       : path_(std::move(path)), pool_(exec.num_threads) {}
 
-  [[nodiscard]] BeliefGrid load(std::map<std::string, std::string>* notes) {
+  [[nodiscard]] BeliefGrid load() {
     const VdbContents contents(path_, pool_);
     try {
       const std::int32_t version = version_of(contents.metadata);
@@ -60,7 +60,7 @@ class Loader {
         const std::string fault = take_scales(*scales_, *storage);
         if (!fault.empty()) fail("grid '" + std::string(kScaleGridName) + "': " + fault);
       }
-      if (notes != nullptr) *notes = notes_of(contents.metadata);
+      storage->notes = notes(contents.metadata);
       return GridAccess::wrap(std::move(storage));
     } catch (const openvdb::Exception& error) {
       fail(std::string("cannot be read by OpenVDB: ") + error.what());
@@ -70,6 +70,14 @@ class Loader {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(ErrorCode::format, path_.string() + ": " + what);
+  }
+
+  [[nodiscard]] MapNotes notes(const openvdb::MetaMap& metadata) const {
+    try {
+      return notes_of(note_texts(metadata));
+    } catch (const Error& error) {
+      fail(error.what());
+    }
   }
 
   template <typename Metadata>
@@ -378,9 +386,8 @@ class Loader {
 
 }  // namespace
 
-BeliefGrid load_vdb(const std::filesystem::path& path, std::map<std::string, std::string>* notes,
-                    const ExecConfig& exec) {
-  return Loader(path, exec).load(notes);
+BeliefGrid load_vdb(const std::filesystem::path& path, const ExecConfig& exec) {
+  return Loader(path, exec).load();
 }
 
 HazardConfig::Volume load_hazard_vdb(const std::filesystem::path& path, const BeliefGrid& grid) {

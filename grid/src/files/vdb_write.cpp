@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "map/code_mask.hpp"
+#include "map/map_notes.hpp"
 #include "pose_text.hpp"
 #include "vdb_layout.hpp"
 #include "vdb_seal.hpp"
@@ -242,7 +243,7 @@ void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
       }
     }
     openvdb::MetaMap metadata = make_metadata(s);
-    for (const auto& [name, text] : config.notes) {
+    for (const auto& [name, text] : texts_of(config.notes ? *config.notes : s.notes)) {
       metadata.insertMeta(kNotePrefix + name, openvdb::StringMetadata(text));
     }
     return MemoryArchive().image(set.grids(), metadata);

@@ -13,6 +13,7 @@
 #include "grid_layout.hpp"
 #include "grid_storage.hpp"
 #include "leaf_scales.hpp"
+#include "map_notes.hpp"
 #include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/block_lattice.hpp"
 
@@ -167,6 +168,12 @@ const HazardCounters& BeliefGrid::hazard_counters() const noexcept { return stor
 void BeliefGrid::set_hazard_counters(const HazardCounters& counters) {
   check_counters(counters);
   storage_->hazard = counters;
+}
+
+const MapNotes& BeliefGrid::notes() const noexcept { return storage_->notes; }
+void BeliefGrid::set_notes(MapNotes notes) {
+  detail::check_notes(notes);
+  storage_->notes = std::move(notes);
 }
 
 Box BeliefGrid::workspace() const noexcept {

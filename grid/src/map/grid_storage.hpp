@@ -69,6 +69,7 @@ struct GridStorage {
   BlockLattice lattice;
   std::vector<Pose> views;
   HazardCounters hazard;
+  MapNotes notes;
 
   /// Unknown fills the workspace grown outward to multiples of 2048 voxels, so that only tiles of
   /// the root arise; whoever reads the tree clips to the workspace. Voxels outside it hold no

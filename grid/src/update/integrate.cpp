@@ -11,6 +11,8 @@
 #include <string>
 
 #include "map/grid_layout.hpp"
+#include "map/grid_storage.hpp"
+#include "map/map_notes.hpp"
 #include "map_update.hpp"
 #include "readings.hpp"
 #include "viewgain/core/error.hpp"
@@ -194,11 +196,13 @@ struct FrameIntegrator::Impl {
   IntegrationConfig config;
   MapUpdate update;
   FramePixels pixels;
+  std::string sensor;  // for the maps' notes
 };
 
 FrameIntegrator::FrameIntegrator(const Sensor& sensor, const IntegrationConfig& config,
                                  const ExecConfig& exec)
-    : impl_(std::make_unique<Impl>(Impl{config, MapUpdate(config, exec), FramePixels(sensor)})) {
+    : impl_(std::make_unique<Impl>(
+          Impl{config, MapUpdate(config, exec), FramePixels(sensor), sensor_toml(sensor)})) {
   check_plane(config.support_plane);
 }
 FrameIntegrator::~FrameIntegrator() = default;
@@ -215,11 +219,15 @@ IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame&
   const Pose T_camera_grid = T_world_camera.inverse() * grid.T_world_grid();
   const Pose T_grid_camera = grid.T_world_grid().inverse() * T_world_camera;
   const ConeCamera camera(m.pixels.sensor().camera, T_camera_grid);
+  FrameNote note(GridAccess::storage(grid), m.sensor, frame.identity);
   m.pixels.set_pose_sigma(pose_sigma);
   m.pixels.load(frame, m.config.occupancy != IntegrationConfig::Occupancy::literal, m.update.pool(),
                 plane_seen_from(T_world_camera, m.config.support_plane));
-  return m.update.run(grid, {m.pixels, T_grid_camera, T_world_camera},
-                      m.config.carve == IntegrationConfig::Carve::cones ? &camera : nullptr);
+  const IntegrationReport report =
+      m.update.run(grid, {m.pixels, T_grid_camera, T_world_camera},
+                   m.config.carve == IntegrationConfig::Carve::cones ? &camera : nullptr);
+  note.put(GridAccess::storage(grid));
+  return report;
 }
 
 std::optional<Box> reading_bounds(const Sensor& sensor, const DepthFrame& frame,
@@ -280,11 +288,13 @@ struct CloudIntegrator::Impl {
   IntegrationConfig config;
   MapUpdate update;
   CloudPoints points;
+  std::string sensor;  // for the maps' notes
 };
 
 CloudIntegrator::CloudIntegrator(const Sensor& sensor, const IntegrationConfig& config,
                                  const ExecConfig& exec)
-    : impl_(std::make_unique<Impl>(Impl{config, MapUpdate(config, exec), CloudPoints(sensor)})) {
+    : impl_(std::make_unique<Impl>(
+          Impl{config, MapUpdate(config, exec), CloudPoints(sensor), sensor_toml(sensor)})) {
   check_plane(config.support_plane);
 }
 CloudIntegrator::~CloudIntegrator() = default;
@@ -299,8 +309,11 @@ IntegrationReport CloudIntegrator::integrate(BeliefGrid& grid,
   m.points.load(points, view.translation(),
                 m.config.occupancy != IntegrationConfig::Occupancy::literal, m.config.support_plane,
                 m.update.pool());
+  FrameNote note(GridAccess::storage(grid), m.sensor, {});
   const Pose T_grid_world = grid.T_world_grid().inverse();
-  return m.update.run(grid, {m.points, T_grid_world, view}, nullptr);
+  const IntegrationReport report = m.update.run(grid, {m.points, T_grid_world, view}, nullptr);
+  note.put(GridAccess::storage(grid));
+  return report;
 }
 
 std::optional<Box> reading_bounds(const Sensor& sensor,

@@ -24,6 +24,7 @@ TEST(CFormats, SensorsComeBackAsTheyWere) {
   sensor.distortion[1] = 0.125;
   sensor.pose_sigma[0] = 0.004, sensor.pose_sigma[1] = 0.01;
   sensor.scale_sigma = 0.005;
+  sensor.out_of_range = VG_OUT_OF_RANGE_CARVE;
   ASSERT_EQ(vg_sensor_save(&sensor, path.c_str()), VG_OK) << vg_last_error();
   ASSERT_EQ(vg_sensor_load(path.c_str(), &read), VG_OK) << vg_last_error();
   EXPECT_EQ(read.width, sensor.width);
@@ -32,6 +33,7 @@ TEST(CFormats, SensorsComeBackAsTheyWere) {
   EXPECT_EQ(read.pose_sigma[0], 0.004);
   EXPECT_EQ(read.pose_sigma[1], 0.01);
   EXPECT_EQ(read.scale_sigma, 0.005);
+  EXPECT_EQ(read.out_of_range, VG_OUT_OF_RANGE_CARVE);
   EXPECT_EQ(read.noise_model, sensor.noise_model);
   for (int i = 0; i < 6; ++i) EXPECT_EQ(read.noise[i], sensor.noise[i]) << i;
   EXPECT_EQ(folder.entries(), 1);

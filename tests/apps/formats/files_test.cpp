@@ -130,21 +130,28 @@ TEST_F(Files, StereoWithoutAFocalLengthGoesByTheCameras) {
   expect_sensor_error(text + "focal = -1.0\n", "focal");
 }
 
-TEST_F(Files, MapsRememberTheirFrames) {
+TEST_F(Files, MapsRememberTheirOrigin) {
   const std::set<std::string> frames{"0123456789abcdef frame-000000.depth.png",
                                      "fedcba9876543210 frame-000000.depth.png"};
-  save_map(octree_map(), dir / "map.vdb", noting_frames(frames));
-  EXPECT_EQ(load_map_of_sensor(dir / "map.vdb").frames, frames);
-  EXPECT_FALSE(load_map_of_sensor(dir / "map.vdb").sensor);
-  save_map(octree_map(), dir / "map.vdb", noting_frames({}, noting_sensor(sensor_preset("d435"))));
-  EXPECT_TRUE(load_map_of_sensor(dir / "map.vdb").frames.empty());
-  EXPECT_EQ(load_map_of_sensor(dir / "map.vdb").sensor->name, "d435");
-  for (const char* note : {"frame-000000.depth.png\n", "0123456789abcdef\n", "0123456789abcdef \n",
-                           "0123456789ABCDEF a.png\n", "0123456789abcdef0 a.png\n", "\n"}) {
-    save_vdb(octree_map(), dir / "bad.vdb",
-             {.with_covariance = false, .notes = {{"frames", note}}});
-    expect_error(ErrorCode::format, "bad.vdb", [&] { (void)load_map_of_sensor(dir / "bad.vdb"); });
-  }
+  BeliefGrid map = octree_map();
+  map.set_notes({.frames = frames});
+  save_map(map, dir / "map.vdb");
+  EXPECT_EQ(load_map(dir / "map.vdb").notes().frames, frames);
+  EXPECT_FALSE(map_sensor(load_map(dir / "map.vdb")));
+  Sensor sensor = sensor_preset("d435");
+  sensor.out_of_range = Sensor::OutOfRange::invalid;
+  map.set_notes({.sensor = sensor_toml(sensor)});
+  save_map(map, dir / "map.vdb");
+  EXPECT_TRUE(load_map(dir / "map.vdb").notes().frames.empty());
+  EXPECT_EQ(map_sensor(load_map(dir / "map.vdb")), sensor);
+  // Notes of another program's: in its words, or none.
+  map.set_notes({.sensor = "# mine\n" + sensor_toml(sensor)});
+  save_vdb(map, dir / "map.vdb");
+  EXPECT_EQ(load_map(dir / "map.vdb").notes().sensor, sensor_toml(sensor));
+  map.set_notes({.sensor = "name = 1\n"});
+  save_vdb(map, dir / "bad.vdb");
+  expect_error(ErrorCode::format, "bad.vdb: line 1: key \"name\"",
+               [&] { (void)load_map(dir / "bad.vdb"); });
   EXPECT_THROW((void)frame_identity(FrameSequence{}, 0), Error);
 }
 

@@ -114,7 +114,7 @@ TEST_F(WatchedFolder, GivesWhatOpenFramesGives) {
     const FolderLook look = watched.look(now);
     ASSERT_TRUE(look.frame);
     EXPECT_EQ(look.frame->image, frames.images[cases]);
-    EXPECT_EQ(look.frame->identity, frame_identity(frames, cases));
+    EXPECT_EQ(look.frame->frame.identity, frame_identity(frames, cases));
     EXPECT_EQ(look.frame->frame, load_frame(frames, cases));
     EXPECT_EQ(look.frame->T_world_camera, frames.poses[cases]);
   }

@@ -55,11 +55,9 @@ struct BinScene {
   }
 };
 
-/// The notes in a map's file.
+/// The notes in a map's file, without sensor and frames.
 inline std::map<std::string, std::string> notes_of(const std::filesystem::path& path) {
-  std::map<std::string, std::string> notes;
-  (void)load_vdb(path, &notes);
-  return notes;
+  return load_vdb(path).notes().others;
 }
 
 /// A planner's state as text, but for its last proposal; equal texts are

@@ -50,6 +50,23 @@ def test_sensors_are_equal_by_value(sensor):
     assert len({sensor, again, *others}) == 14
 
 
+def test_a_map_remembers_its_sensor(sensor, tmp_path):
+    grid = viewgain.BeliefGrid(voxel_size=0.02, workspace=[[-0.2] * 3, [0.2] * 3], sensor=sensor)
+    assert grid.sensor is None and grid.frames == []
+    depth = np.full((sensor.camera.height, sensor.camera.width), 0.5, np.float32)
+    pose = viewgain.look_at([0.5, 0, 0], [0, 0, 0])
+    viewgain.FrameIntegrator(sensor).integrate(grid, depth, pose)
+    grid.save(tmp_path / "map.vdb")
+    for again in (grid, grid.clone(), copy.copy(grid), copy.deepcopy(grid), pickle.loads(pickle.dumps(grid)),
+                  viewgain.BeliefGrid.from_bytes(grid.to_bytes()), viewgain.BeliefGrid.load(tmp_path / "map.vdb")):
+        assert again.sensor == sensor
+    # Of two sensors it is nobody's.
+    again = grid.clone()
+    other = viewgain.Sensor(sensor.camera, min_range=0.2, max_range=9.0, working_distance=0.4, noise=sensor.noise)
+    viewgain.FrameIntegrator(other).integrate(again, depth, pose)
+    assert again.sensor is None and grid.sensor == sensor
+
+
 def test_a_grid_goes_through_bytes_and_pickles(grid, sensor):
     full = grid.clone()
     viewgain.FrameIntegrator(sensor).integrate(

@@ -95,6 +95,22 @@ def test_poses_that_may_be_off(protocol, tmp_path):
         viewgain.Sensor(camera, **settings, scale_sigma=-1e-3)
 
 
+@pytest.mark.parametrize("meaning", [None, "carve", "invalid"])
+def test_what_out_of_range_says_is_kept(meaning, tmp_path):
+    base = viewgain.sensor_preset("d435")
+    names = ("min_range", "max_range", "working_distance", "noise", "name", "T_flange_camera", "body_size",
+             "range_calibration", "pose_sigma", "scale_sigma")
+    sensor = viewgain.Sensor(base.camera, **{name: getattr(base, name) for name in names}, out_of_range=meaning)
+    assert sensor.out_of_range == meaning
+    assert (sensor == base) == (meaning is None)
+    sensor.save(tmp_path / "sensor.toml")
+    for again in (copy.copy(sensor), copy.deepcopy(sensor), viewgain.Sensor.load(tmp_path / "sensor.toml"),
+                  *(pickle.loads(pickle.dumps(sensor, k)) for k in range(pickle.HIGHEST_PROTOCOL + 1))):
+        assert again == sensor and again.out_of_range == meaning
+    with pytest.raises(ValueError, match='out_of_range is "far"'):
+        viewgain.Sensor(base.camera, **{name: getattr(base, name) for name in names}, out_of_range="far")
+
+
 def test_wrong_values_are_named():
     good = {"fx": 60.0, "fy": 60.0, "cx": 31.5, "cy": 23.5}
     for width, change, text in [(0, {}, "width"), (64, {"fx": -1.0}, "fx"), (64, {"cy": np.nan}, "cy")]:

@@ -531,11 +531,11 @@ TEST(VdbThreads, AnyNumberReadsTheSame) {
   save_vdb(grid, path);
   int cases = 0;
   for (const int threads : kThreads) {
-    EXPECT_EQ(load_vdb(path, nullptr, {threads}).content_hash(), grid.content_hash()) << threads;
+    EXPECT_EQ(load_vdb(path, {threads}).content_hash(), grid.content_hash()) << threads;
     ++cases;
   }
   EXPECT_EQ(cases, 4);
-  expect_error(ErrorCode::invalid_argument, "thread", [&] { (void)load_vdb(path, nullptr, {-1}); });
+  expect_error(ErrorCode::invalid_argument, "thread", [&] { (void)load_vdb(path, {-1}); });
 }
 
 /// The map's grids, read by OpenVDB.
@@ -570,7 +570,7 @@ TEST_F(SpeckledFile, OfSeveralErrorsTheFirstIsNamed) {
   openvdb::io::File(path_.string()).write(contents_.grids, contents_.metadata);
   for (const int threads : kThreads) {
     for (int again = 0; again < 5; ++again) {
-      expect_error(ErrorCode::format, first, [&] { (void)load_vdb(path_, nullptr, {threads}); });
+      expect_error(ErrorCode::format, first, [&] { (void)load_vdb(path_, {threads}); });
     }
   }
 }
@@ -583,17 +583,17 @@ TEST_F(SpeckledFile, StreamsAndGridsThatShareATreeAreRead) {
   };
   write();
   for (const int threads : kThreads) {
-    EXPECT_EQ(load_vdb(path_, nullptr, {threads}).content_hash(), map_.content_hash());
+    EXPECT_EQ(load_vdb(path_, {threads}).content_hash(), map_.content_hash());
   }
   // One tree for two grids: written once.
   using openvdb::Vec3SGrid;
   contents_.grid<Vec3SGrid>("information_vector")
       .setTree(contents_.grid<Vec3SGrid>("information_offdiagonal").baseTreePtr());
   write();
-  const std::string hash = load_vdb(path_, nullptr, {1}).content_hash();
+  const std::string hash = load_vdb(path_, {1}).content_hash();
   EXPECT_NE(hash, map_.content_hash());
   for (const int threads : kThreads) {
-    EXPECT_EQ(load_vdb(path_, nullptr, {threads}).content_hash(), hash);
+    EXPECT_EQ(load_vdb(path_, {threads}).content_hash(), hash);
   }
 }
 

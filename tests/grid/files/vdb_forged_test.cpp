@@ -141,7 +141,7 @@ TEST(ForgedVdb, NoSizeTakesMemoryThatTheFileDoesNotHave) {
       const auto path = folder.file("forged.vdb", bytes);
       largest_allocation = 0;
       try {
-        (void)load_vdb(path, nullptr, {.num_threads = 1});
+        (void)load_vdb(path, {.num_threads = 1});
         ++read;
       } catch (const Error& error) {
         ++refused;

@@ -60,17 +60,42 @@ void expect_same(const BeliefGrid& a, const BeliefGrid& b) {
 TEST(VdbIo, NotesComeWithTheMap) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "map.vdb";
-  const BeliefGrid grid = seen_object(64);
-  const std::map<std::string, std::string> notes{
-      {"planner", "version 1\nseen 0.25\n"}, {"", "no name"}, {"empty", ""}, {"bytes", "\x01\xff"}};
-  save_vdb(grid, path, {.with_covariance = false, .notes = notes});
-  std::map<std::string, std::string> read{{"of", "before"}};
-  expect_same(load_vdb(path, &read), grid);
-  EXPECT_EQ(read, notes);
-  expect_same(load_vdb(path), grid);
+  BeliefGrid grid = seen_object(64);
+  const std::string hash = grid.content_hash();
+  const MapNotes notes{.sensor = "name = \"mine\"\n",
+                       .frames = {"0123456789abcdef a b.png", "fedcba9876543210 c.png"},
+                       .others = {{"planner", "version 1\nseen 0.25\n"},
+                                  {"", "no name"},
+                                  {"empty", ""},
+                                  {"bytes", "\x01\xff"}}};
+  grid.set_notes(notes);
+  EXPECT_EQ(grid.clone().notes(), notes);
   save_vdb(grid, path);
-  expect_same(load_vdb(path, &read), grid);
-  EXPECT_TRUE(read.empty());
+  for (int again = 0; again < 2; ++again) {
+    const BeliefGrid loaded = load_vdb(path);
+    expect_same(loaded, grid);
+    EXPECT_EQ(loaded.notes(), notes);
+    save_vdb(loaded, path);
+  }
+  save_vdb(grid, path, {.notes = MapNotes{}});  // in place of the map's own
+  EXPECT_EQ(load_vdb(path).notes(), MapNotes{});
+  EXPECT_EQ(grid.content_hash(), hash);
+}
+
+TEST(VdbIo, NotesThatCouldNotBeReadBackAreRefused) {
+  BeliefGrid grid = seen_object(64);
+  const MapNotes before = grid.notes();
+  for (const char* identity : {"", "0123456789abcdef", "0123456789abcdef ", "0123456789ABCDEF a",
+                               "0123456789abcdef0 a", "0123456789abcdef a\nb"}) {
+    expect_error(ErrorCode::invalid_argument, "the note of the frames",
+                 [&] { grid.set_notes({.frames = {identity}}); });
+  }
+  for (const char* name : {"sensor", "frames"}) {
+    expect_error(ErrorCode::invalid_argument, name, [&] {
+      grid.set_notes({.others = {{name, "x"}}});
+    });
+  }
+  EXPECT_EQ(grid.notes(), before);
 }
 
 TEST(VdbIo, RoundTripsAreExact) {

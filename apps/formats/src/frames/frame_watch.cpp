@@ -137,8 +137,8 @@ struct FrameWatch::Impl {
     one.pose_faults = {pose.fault};
     FrameReading read = read_frame(one, 0, masks);
     if (read.fault.verdict != FrameVerdict::used) return {{}, std::move(read.fault)};
-    return {WatchedFrame{number, image, frame_identity(one, 0), std::move(read.frame),
-                         pose.T_world_camera, read.masked_pixels}};
+    return {WatchedFrame{number, image, std::move(read.frame), pose.T_world_camera,
+                         read.masked_pixels}};
   }
 
   [[nodiscard]] Finding examine(std::uint64_t number, const std::string& name, const Signature& is,
@@ -299,8 +299,8 @@ struct FrameWatch::Impl {
       entry.missing_mask = finding.missing_mask;
       if (finding.frame) {
         const auto [known, is_new] =
-            taken.emplace(finding.frame->image.filename().string(), finding.frame->identity);
-        if (is_new || known->second == finding.frame->identity) entry.state = State::taken;
+            taken.emplace(finding.frame->image.filename().string(), finding.frame->frame.identity);
+        if (is_new || known->second == finding.frame->frame.identity) entry.state = State::taken;
         if (is_new) {
           found.frame = std::move(finding.frame);
           quiet_listings = 0;  // those behind it had no turn

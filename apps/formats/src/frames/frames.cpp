@@ -252,6 +252,7 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index) {
                                  ? DepthFrame::kOutOfRange
                                  : DepthFrame::kInvalid;
   DepthFrame frame{image.width, image.height, {}};
+  if (index < frames.poses.size()) frame.identity = frame_identity(frames, index);
   frame.depth.reserve(image.pixels.size());
   for (const std::uint16_t value : image.pixels) {
     frame.depth.push_back(

@@ -345,18 +345,20 @@ std::optional<StopReason> ViewPlanner::should_stop() const noexcept {
   return state.of_view ? state.of_view : state.of_choice;
 }
 
-void ViewPlanner::save(const std::filesystem::path& path, VdbWriteConfig config) const {
-  config.notes[kNote] = detail::text_of(impl_->state);
-  save_vdb(impl_->map.grid(), path, config);
+void ViewPlanner::save(const std::filesystem::path& path) const {
+  MapNotes notes = grid().notes();
+  notes.others[kNote] = detail::text_of(impl_->state);
+  save_vdb(grid(), path, {.notes = std::move(notes)});
 }
 
 ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& sensor,
                               const PlannerConfig& config, const ExecConfig& exec) {
   const MapModelConfig map = map_config(config);
-  std::map<std::string, std::string> notes;
-  BeliefGrid grid = load_vdb(path, &notes, exec);
-  const auto note = notes.find(kNote);
-  if (note == notes.end()) {
+  BeliefGrid grid = load_vdb(path, exec);
+  MapNotes notes = grid.notes();
+  const auto note = notes.others.extract(kNote);  // save() writes it anew
+  grid.set_notes(std::move(notes));
+  if (note.empty()) {
     throw Error(ErrorCode::format, path.string() + ": is a map without the state of a planner");
   }
   const BeliefGrid expected(map.grid, sensor);
@@ -366,7 +368,14 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
     refuse(path.string() + ": its map, " + layout_text(grid) +
            ", is laid out otherwise than the configuration says, " + layout_text(expected));
   }
-  detail::PlannerState state = detail::state_of(path.string() + " (note planner)", note->second);
+  detail::PlannerState state = detail::state_of(path.string() + " (note planner)", note.mapped());
+  std::size_t added = 0;
+  for (const auto& [verdict, count] : state.frames) added += is_in_map(verdict) ? count : 0;
+  if (added != grid.views().size()) {
+    refuse(path.string() + ": its map has " + std::to_string(grid.views().size()) +
+           " views, of which its planner added " + std::to_string(added) +
+           ": the map has grown since; begin a new planner");
+  }
   auto impl = std::make_unique<Impl>(config, exec, MapModel(std::move(grid), sensor, map, exec));
   impl->state = std::move(state);
   // The limits are those of today's configuration; what the last choice said stays.

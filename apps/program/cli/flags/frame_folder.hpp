@@ -57,6 +57,9 @@ class FrameFolder {
   [[nodiscard]] std::size_t size() const noexcept { return frames_.images.size(); }
   [[nodiscard]] const Pose& T_world_camera(std::size_t index) const { return frames_.poses[index]; }
 
+  /// Of --mask and --confidence.
+  [[nodiscard]] const std::vector<MaskFolder>& masks() const noexcept { return masks_; }
+
   /// Throws nothing that a frame is to blame for.
   [[nodiscard]] FrameReading load(std::size_t index) const {
     return read_frame(frames_, index, masks_);

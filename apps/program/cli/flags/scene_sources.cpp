@@ -129,13 +129,19 @@ void warn_of_poses(const std::string& file, const std::vector<Pose>& poses,
   std::fprintf(stderr, "viewgain: warning: %s: %s\n", file.c_str(), suspicion.c_str());
 }
 
+double scale_sigma_of(const BeliefGrid& grid) {
+  const std::optional<Sensor> sensor = map_sensor(grid);
+  return sensor ? sensor->scale_sigma : 0;
+}
+
 bool is_same_sensor(const Sensor& a, const Sensor& b) { return readings_of(a) == readings_of(b); }
 
-bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor) {
-  if (!map.sensor || is_same_sensor(*map.sensor, sensor)) return false;
+bool warn_of_other_sensor(const std::string& path, const BeliefGrid& grid, const Sensor& sensor) {
+  const std::optional<Sensor> noted = map_sensor(grid);
+  if (!noted || is_same_sensor(*noted, sensor)) return false;
   std::fprintf(stderr, "viewgain: warning: the readings in %s come from %s, not from this %s: %s\n",
-               path.c_str(), printable(map.sensor->name).c_str(), printable(sensor.name).c_str(),
-               printable(difference(*map.sensor, sensor)).c_str());
+               path.c_str(), printable(noted->name).c_str(), printable(sensor.name).c_str(),
+               printable(difference(*noted, sensor)).c_str());
   return true;
 }
 
@@ -151,18 +157,19 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
                           const ExecConfig& exec) {
   std::optional<Sensor> asked;
   if (!sensor_flag.empty()) asked = load_sensor(sensor_flag);
-  MapOfSensor map = load_map_of_sensor(path, asked ? &*asked : nullptr, {}, exec);
-  if (!asked && !map.sensor) {
+  BeliefGrid grid = load_map(path, asked ? &*asked : nullptr, {}, exec);
+  if (asked) warn_of_other_sensor(path, grid, *asked);
+  std::optional<Sensor> sensor = asked ? std::move(asked) : map_sensor(grid);
+  if (!sensor) {
     refuse(path + ": does not say which sensor its readings come from; give --sensor");
   }
-  if (asked) warn_of_other_sensor(path, map, *asked);
-  if (is_octomap(path) || has_states_alone(map.grid)) {
+  if (is_octomap(path) || has_states_alone(grid)) {
     std::fprintf(stderr,
                  "viewgain: note: %s has states alone: known surface counts as never measured "
                  "(--gain surface leaves that out), and views that were taken are not known\n",
                  path.c_str());
   }
-  return {std::move(map.grid), asked ? std::move(*asked) : std::move(*map.sensor)};
+  return {std::move(grid), *std::move(sensor)};
 }
 
 void require_known(const BeliefGrid& grid, const std::string& path) {

@@ -75,11 +75,14 @@ struct SensedMap {
 [[nodiscard]] SensedMap load_sensed_map(const std::string& path, const std::string& sensor_flag,
                                         const ExecConfig& exec);
 
+/// Sensor::scale_sigma of the map's sensor; 0 where that is not known.
+[[nodiscard]] double scale_sigma_of(const BeliefGrid& grid);
+
 /// Do readings of both say the same? Housing and mounting change none.
 [[nodiscard]] bool is_same_sensor(const Sensor& a, const Sensor& b);
 
 /// Warns on stderr, and returns true, if a map's readings come from another sensor than `sensor`.
-bool warn_of_other_sensor(const std::string& path, const MapOfSensor& map, const Sensor& sensor);
+bool warn_of_other_sensor(const std::string& path, const BeliefGrid& grid, const Sensor& sensor);
 
 /// Throws Error(invalid_argument) if all of the map is unknown: nothing can be said by it. `path`
 /// names it. Costs a pass over the map's blocks.

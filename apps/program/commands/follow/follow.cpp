@@ -262,7 +262,7 @@ class Following {
   // First the state: what is next takes longest, and can be made of it again.
   void write() {
     const std::set<std::string> frames = watch_->taken();
-    map_->save(frames);
+    map_->save();
     propose(frames);
     write_tum(out_ / "next.txt", poses_of(next_));
     write_json();

@@ -102,14 +102,14 @@ FolderLock::~FolderLock() {
 std::optional<SavedFrames> saved_frames(const fs::path& state, const ExecConfig& exec) {
   std::error_code code;
   if (!fs::exists(state, code)) return std::nullopt;
-  MapOfSensor map = load_map_of_sensor(state, nullptr, {}, exec);
-  if (map.frames.size() != map.grid.views().size()) {
-    throw Error(ErrorCode::format, state.string() + ": has " +
-                                       std::to_string(map.grid.views().size()) + " views of " +
-                                       std::to_string(map.frames.size()) +
+  const BeliefGrid grid = load_map(state, nullptr, {}, exec);
+  const std::set<std::string>& frames = grid.notes().frames;
+  if (frames.size() != grid.views().size()) {
+    throw Error(ErrorCode::format, state.string() + ": has " + std::to_string(grid.views().size()) +
+                                       " views of " + std::to_string(frames.size()) +
                                        " frames with names; is of another program");
   }
-  return SavedFrames{std::move(map.frames), std::move(map.sensor)};
+  return SavedFrames{frames, map_sensor(grid)};
 }
 
 std::set<std::string> AskedViews::judged(const std::set<std::string>& identities) const {
@@ -222,8 +222,6 @@ NextViews FollowedMap::next(std::size_t top, double cost_per_metre) {
                     proposal, model_);
 }
 
-void FollowedMap::save(const std::set<std::string>& frames) const {
-  planner_.save(state_, noting_frames(frames, noting_sensor(sensor_)));
-}
+void FollowedMap::save() const { planner_.save(state_); }
 
 }  // namespace viewgain::app

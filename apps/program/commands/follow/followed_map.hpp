@@ -47,7 +47,7 @@ struct SavedFrames {
 };
 
 /// Of FollowedMap::save(); nothing where there is no file. Throws Error(format), naming the file,
-/// for a map that does not say which frames all its views are of, and as load_map_of_sensor().
+/// for a map that does not say which frames all its views are of, and as load_map().
 [[nodiscard]] std::optional<SavedFrames> saved_frames(const std::filesystem::path& state,
                                                       const ExecConfig& exec);
 
@@ -136,8 +136,8 @@ class FollowedMap {
   /// Why to end, as ViewPlanner::should_stop().
   [[nodiscard]] std::optional<StopReason> should_stop() const { return planner_.should_stop(); }
 
-  /// Writes the file: map, planner and the names of the frames that are in, all at once.
-  void save(const std::set<std::string>& frames) const;
+  /// Writes the file: map and planner, all at once.
+  void save() const;
 
   [[nodiscard]] const FrameCounts& frames() const { return planner_.frames(); }
   [[nodiscard]] const BeliefGrid& grid() const { return planner_.grid(); }

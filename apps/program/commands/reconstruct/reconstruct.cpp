@@ -45,14 +45,13 @@ void add_to(StageSeconds& totals, const StageSeconds& seconds) {
   for (const auto& [stage, value] : seconds) totals[stage] += value;
 }
 
-// What a run leaves beside what it wrote after each view. Returns what run.json holds.
-Json write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t seed,
-                   const SurfaceModel& model, const std::vector<Pose>& views, const Json& report) {
-  save_vdb(model.grid(), folder.file("map.vdb"), noting_sensor(setup.sensor));
+// What a run leaves beside what it wrote after each view. `run` has the head of run.json; returns
+// all that run.json holds.
+Json write_results(const RunFolder& folder, Json run, const SurfaceModel& model,
+                   const std::vector<Pose>& views, const Json& report) {
+  save_vdb(model.grid(), folder.file("map.vdb"));
   write_surfaces(model, folder.file("surface.ply"), folder.file("points.ply"));
   write_tum(folder.file("views.txt"), views);
-  Json run = run_head(setup.settings);
-  run["seed"] = seed;
   run["map_hash"] = model.grid().content_hash();
   run.update(report);
   write_file_atomically(folder.file("run.json"), json_text(run));
@@ -95,10 +94,11 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   const SurfaceModel& model = parts.model;
 
   RunFolder folder(outputs.out, outputs.resume);
-  Json head = run_head(setup.settings);
+  Json head = run_head(setup.settings, app);
   head["seed"] = options.sensing.seed;
-  head["isa"] = isa_name(select_isa());
-  Checkpoint checkpoint(folder, head, outputs.resume);
+  Json compared = head;
+  compared["isa"] = isa_name(select_isa());
+  Checkpoint checkpoint(folder, compared, outputs.resume);
   const PolicyConfig& policy = setup.policy;
   const bool remembers = policy.ahead.is_on() || policy.policy == Policy::kriegel;
   ResumedDecision decision(checkpoint, parts.decision, remembers);
@@ -111,7 +111,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
     views.push_back(record.T_world_camera);
     add_to(seconds, record.seconds);
     if (outputs.saves_maps()) {
-      save_vdb(model.grid(), folder.map(record.index), noting_sensor(setup.sensor));
+      save_vdb(model.grid(), folder.map(record.index));
     }
     if (outputs.draws()) {
       const GainEvaluator evaluator = step_evaluator(model, setup, exec);
@@ -137,7 +137,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   for (std::size_t i = 0; i < registrations.size(); ++i) views[i] = registrations[i].T_world_camera;
   report.set_registrations(registrations);
   const Json json = report.json(result.reason);
-  const Json run = write_results(folder, setup, options.sensing.seed, model, views, json);
+  const Json run = write_results(folder, head, model, views, json);
   if (outputs.with_report()) {
     write_report(folder.file("report.html"), page.json(run, setup.stage.scene.get(), beside));
   }

@@ -33,6 +33,8 @@
 #include "viewgain/planner/align_frames.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/hash64.hpp"
 #include "viewgain/support/isa.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
@@ -101,8 +103,9 @@ std::map<std::size_t, FrameRegistration> align_folder(const FrameMap& map, const
 
 class Recording {
  public:
-  Recording(const Options& options, const std::stop_token& stop)
+  Recording(const Options& options, const App& app, const std::stop_token& stop)
       : options_(options),
+        app_(app),
         proposal_(options.proposal),
         exec_(exec_of(options.common)),
         beside_(beside_json(options.outputs)) {
@@ -131,7 +134,7 @@ class Recording {
       if (stop.stop_requested() && i >= aligned_until_) break;
       views_->add(i);
       if (options_.outputs.saves_maps()) {
-        save_vdb(map_->model().grid(), folder.map(i), noting_sensor(sensor()));
+        save_vdb(map_->model().grid(), folder.map(i));
       }
       const bool last = i + 1 == map_->folder().size();
       if (options_.outputs.draws() && shown.count(i) > 0 && !last && !views_->empty()) {
@@ -161,12 +164,11 @@ class Recording {
     if (!next_.views.empty()) last.decision = DecisionMaking::Decision{next_.views.front().index};
     show(folder, moment);
 
-    save_vdb(moment.model.grid(), folder.file("map.vdb"),
-             noting_sensor(map_->folder().sensor(), noting_frames(views_->identities())));
+    save_vdb(moment.model.grid(), folder.file("map.vdb"));
     write_surfaces(moment.model, folder.file("surface.ply"), folder.file("points.ply"));
     write_tum(folder.file("views.txt"), moment.model.grid().views());
     write_tum(folder.file("next.txt"), poses_of(next_));
-    Json run = run_head(settings());
+    Json run = run_head(settings(), app_);
     run.update(views_->json(moment.model, next_));
     write_file_atomically(folder.file("run.json"), json_text(run));
     if (options_.outputs.with_report()) {
@@ -175,13 +177,16 @@ class Recording {
     return run;
   }
 
-  // What the run's bytes depend on: settings, program, and the frames' own bytes.
+  // What the run's bytes depend on: settings, flags, program, and the bytes of frames and masks.
   [[nodiscard]] Json head() const {
-    Json head = run_head(settings());
+    Json head = run_head(settings(), app_);
     head["isa"] = isa_name(select_isa());
     const FrameSequence& frames = map_->folder().frames();
     for (std::size_t i = 0; i < frames.poses.size(); ++i) {
       head["frames"].push_back(identity_or_none(frames, i));
+      for (const MaskFolder& masks : map_->folder().masks()) {
+        head["masks"].push_back(hash_of(masks.file_of(frames.images[i])));
+      }
     }
     return head;
   }
@@ -192,6 +197,14 @@ class Recording {
     } catch (const Error&) {
       return "unreadable " + frames.images[i].filename().string();
     }
+  }
+  // Null where there is no such file.
+  [[nodiscard]] static Json hash_of(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return nullptr;
+    Hash64 hash;
+    hash.add_bytes(folder_file_bytes(file));
+    return hash.hex();
   }
   [[nodiscard]] const NextViews& next() const { return next_; }
   [[nodiscard]] const FrameCounts& counts() const { return map_->counts(); }
@@ -214,6 +227,7 @@ class Recording {
         {"frames", map_->folder().name()},
         {"sensor", sensor_toml(sensor())},
         {"depth_scale", frames.depth_scale},
+        {"out_of_range", frames.out_of_range == Sensor::OutOfRange::carve ? "carve" : "invalid"},
         {"mask", or_null(folder.mask)},
         {"confidence", or_null(folder.confidence)},
         {"least_confidence", folder.confidence.empty() ? Json() : Json(folder.least_confidence)},
@@ -238,6 +252,7 @@ class Recording {
   }
 
   const Options& options_;
+  const App& app_;
   const ProposalOptions& proposal_;
   ExecConfig exec_;
   Json beside_;  // another run that the page shows
@@ -275,7 +290,7 @@ void reconstruct(Options& options, const App& app) {
   options.frames.refine = options.refine == "on";
   if (options.outputs.with_report()) check_report_page("--report");
   const InterruptGuard interrupt;
-  Recording recording(options, interrupt.token());
+  Recording recording(options, app, interrupt.token());
   RunFolder folder(options.outputs.out, options.outputs.resume);
   // Frames are read again, which takes no longer than reading a map; what was drawn is there.
   const Checkpoint checkpoint(folder, recording.head(), options.outputs.resume);

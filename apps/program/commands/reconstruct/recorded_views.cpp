@@ -71,15 +71,6 @@ void RecordedViews::add(std::size_t index) {
   records_.push_back(std::move(record));
 }
 
-std::set<std::string> RecordedViews::identities() const {
-  std::set<std::string> frames;
-  for (const ViewRecord& record : records_) {
-    if (is_refused(record.index)) continue;
-    frames.insert(frame_identity(map_.folder().frames(), record.index));
-  }
-  return frames;
-}
-
 Json RecordedViews::entry_json(std::size_t index) const {
   const ViewRecord& record = records_[index];
   const FrameFolder& folder = map_.folder();

@@ -36,8 +36,6 @@ class RecordedViews {
 
   /// For what is chosen after it; there must be one.
   [[nodiscard]] ViewRecord& last() noexcept { return records_.back(); }
-  /// Those in the map, as its file notes them.
-  [[nodiscard]] std::set<std::string> identities() const;
   /// What run.json holds, without settings and versions. `model` is of the map as it is now.
   [[nodiscard]] Json json(const SurfaceModel& model, const NextViews& next) const;
 

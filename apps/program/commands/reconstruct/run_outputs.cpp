@@ -74,9 +74,12 @@ StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPa
   return seconds;
 }
 
-Json run_head(const Json& settings) {
+Json run_head(const Json& settings, const App& app) {
+  const CallSettings call = call_settings(app, kSameBytes);
   return {{"format", kRunFormat},
           {"settings", settings},
+          {"flags", call.flags},
+          {"files", call.files},
           {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}}};
 }
 

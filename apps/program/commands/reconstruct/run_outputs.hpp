@@ -36,8 +36,15 @@ struct ShownStep {
 StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPage& page,
                        const ShownStep& step, const ExecConfig& exec);
 
-/// `settings` and `versions`, with which run.json begins.
-[[nodiscard]] Json run_head(const Json& settings);
+/// `settings`, `flags`, `files` and `versions`, with which run.json begins: `flags` are all of the
+/// parsed call, and `files` those that they name, without what leaves the run's bytes as they are
+/// (kSameBytes).
+[[nodiscard]] Json run_head(const Json& settings, const App& app);
+
+/// Keys of flags by which a run that goes on may differ from the one that was ended: where it is
+/// written, how fast, what is shown of it, and what is made at its end.
+inline const std::vector<std::string> kSameBytes{"out",   "resume", "threads", "trace",
+                                                 "quiet", "json",   "report",  "beside"};
 
 /// What the page shows of the run of --beside: its name, settings and views; null without one.
 /// Throws Error(io) and Error(format), naming the file.

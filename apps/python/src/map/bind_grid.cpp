@@ -204,7 +204,7 @@ T_world_grid : array_like, (4, 4), optional
 prior_sigma : float, optional
     Standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional
-    As for a new grid: one of the two is needed. The map does not keep it: a program that reads the file is told it.
+    As for a new grid: one of the two is needed. Only frames make it the map's ``sensor``.
 
 Returns
 -------

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "arrays.hpp"
 #include "classes.hpp"
@@ -15,6 +16,7 @@
 #include "grid_class.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/sensor.hpp"
+#include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/octomap_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/support/file_bytes.hpp"
@@ -91,6 +93,25 @@ void bind_grid_files(GridClass& grid_class) {
     const py::object call = py::module_::import("operator").attr("methodcaller");
     return py::make_tuple(call("from_bytes", self.attr("to_bytes")()), py::make_tuple(of_self));
   });
+  grid_class
+      .def_property_readonly(
+          "sensor",
+          [](const SharedGrid& grid) {
+            return grid.read([](const BeliefGrid& g) { return map_sensor(g); });
+          },
+          "Sensor or None: that all readings come from; None if they are of several sensors or it "
+          "is "
+          "not known. Kept in files, copies and pickles.")
+      .def_property_readonly(
+          "frames",
+          [](const SharedGrid& grid) {
+            return grid.read([](const BeliefGrid& g) {
+              const auto& frames = g.notes().frames;
+              return std::vector<std::string>(frames.begin(), frames.end());
+            });
+          },
+          "list of str: identities of the frames of folders that are in the map, which "
+          "``viewgain integrate --map`` skips. Kept in files, copies and pickles.");
   grid_class
       .def(
           "to_bytes", &bytes_of,

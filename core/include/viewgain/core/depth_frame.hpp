@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "viewgain/core/camera.hpp"
@@ -28,6 +29,10 @@ struct VIEWGAIN_EXPORT DepthFrame {
   /// that is known and no part of the map, say the wall of a bin; infinity: none is. ObstacleView
   /// sets it. Such readings carve but do not hit.
   std::vector<float> known_depth{};
+  /// Tells this frame from all others, or empty: 16 hexadecimal digits over its bytes, a space and
+  /// a name, as frame_identity() of viewgain::formats makes it. A map notes the identities of the
+  /// frames in it (MapNotes).
+  std::string identity{};
 
   /// Is this pixel's reading of what is known to be there? The index, row by row, is not checked.
   [[nodiscard]] bool shows_known(std::size_t pixel) const {
@@ -39,7 +44,11 @@ struct VIEWGAIN_EXPORT DepthFrame {
     return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
                  static_cast<std::size_t>(u)];
   }
-  bool operator==(const DepthFrame&) const = default;
+  /// Are the images equal? The identity does not count.
+  bool operator==(const DepthFrame& other) const {
+    return width == other.width && height == other.height && depth == other.depth &&
+           amplitude == other.amplitude && known_depth == other.known_depth;
+  }
 };
 
 /// Throws Error(invalid_argument), with both sizes, unless the frame, and its amplitudes and known

@@ -95,6 +95,14 @@ struct VIEWGAIN_EXPORT Sensor {
 /// Throws Error(invalid_argument) that lists the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT Sensor sensor_preset(std::string_view name);
 
+/// The TOML description of a sensor; apps/docs/reference/formats.md shows the layout. Reading what
+/// was written (read_sensor_toml() of viewgain::formats) gives an equal sensor. Checks nothing.
+[[nodiscard]] VIEWGAIN_EXPORT std::string sensor_toml(const Sensor& sensor);
+
+/// What `model` is in such a file: shot, structured_light, stereo, quadratic, constant. Never
+/// throws.
+[[nodiscard]] VIEWGAIN_EXPORT std::string_view noise_model_name(const NoiseModel& noise);
+
 /// sigma_0 [m] of an unknown voxel of the edge voxel_size [m] when the map does not say: max(voxel
 /// / 2, 2 sigma_ax at the working distance, frontal). Throws Error(invalid_argument) unless
 /// voxel_size is positive, finite.

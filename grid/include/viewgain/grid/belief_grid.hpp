@@ -19,6 +19,7 @@
 #include "viewgain/grid/belief.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
 #include "viewgain/grid/hazard_counters.hpp"
+#include "viewgain/grid/map_notes.hpp"
 #include "viewgain/grid/voxel.hpp"
 
 namespace viewgain {
@@ -183,6 +184,13 @@ class VIEWGAIN_EXPORT BeliefGrid {
   [[nodiscard]] const HazardCounters& hazard_counters() const noexcept;
   /// Throws Error(invalid_argument) for a count that is negative or over 2^40.
   void set_hazard_counters(const HazardCounters& counters);
+
+  /// Its origin: FrameIntegrator and CloudIntegrator note sensor and frames, save_vdb() and clone()
+  /// keep them. No part of content_hash().
+  [[nodiscard]] const MapNotes& notes() const noexcept;
+  /// Throws Error(invalid_argument) for an identity of a frame that is none (DepthFrame::identity),
+  /// and if MapNotes::others has the name "sensor" or "frames".
+  void set_notes(MapNotes notes);
 
   /// How much is known, and how well; the entropy removed is by this criterion. Costs a pass over
   /// the map's blocks. Deterministic.

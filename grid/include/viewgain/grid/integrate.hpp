@@ -102,14 +102,15 @@ class VIEWGAIN_EXPORT FrameIntegrator {
   FrameIntegrator(FrameIntegrator&&) noexcept;
   FrameIntegrator& operator=(FrameIntegrator&&) noexcept;
 
-  /// Updates states, log-odds and beliefs, and appends the pose to the grid's views. `pose_sigma`
+  /// Updates states, log-odds and beliefs, appends the pose to the grid's views, and notes sensor
+  /// and frame (BeliefGrid::notes()). `pose_sigma`
   /// [m], [rad] is what this frame's pose may be off beside the sensor's own pose_sigma, say what
   /// is left after a registration; its readings are that much less sure (Sensor::sigmas()). Throws
-  /// Error(invalid_argument) as check_frame_size(), if the pose is not rigid (1e-3; smaller errors
-  /// are orthonormalised) or a sigma is negative or not finite; the grid is unchanged then. If
-  /// memory runs out (std::bad_alloc), part of the frame may be in the grid, which stays one that
-  /// can be saved and loaded, and the pose is not. Cost: grows with the voxels crossed; 6 ms a
-  /// frame of 176 x 144 px at 128³ voxels (perf/results/loop.md).
+  /// Error(invalid_argument) as check_frame_size(), if the frame's identity is none, the pose is
+  /// not rigid (1e-3; smaller errors are orthonormalised) or a sigma is negative or not finite; the
+  /// grid is unchanged then. If memory runs out (std::bad_alloc), part of the frame may be in the
+  /// grid, which stays one that can be saved and loaded, and the pose is not. Cost: grows with the
+  /// voxels crossed; 6 ms a frame of 176 x 144 px at 128³ voxels (perf/results/loop.md).
   IntegrationReport integrate(BeliefGrid& grid, const DepthFrame& frame, const Pose& T_world_camera,
                               const PoseSigma& pose_sigma = {});
 

@@ -3,8 +3,7 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <string>
+#include <optional>
 
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
@@ -17,28 +16,27 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT VdbWriteConfig {
   /// Adds covariance_diagonal, covariance_offdiagonal and mean_offset, for viewers.
   bool with_covariance = false;
-  /// Texts of the writer's own by name, kept in the file's metadata as note_<name>.
-  std::map<std::string, std::string> notes{};
+  /// In place of the map's own, for a writer with more to say than the map.
+  std::optional<MapNotes> notes{};
 };
 
 /// Writes the map as a plain OpenVDB file (active = known; apps/docs/reference/formats.md has the
 /// layout), of types that OpenVDB's Python module reads. Atomic: a temporary file beside it is
-/// renamed. Throws Error(io), and Error(invalid_argument) for a name that does not end in .vdb (not
-/// of pipes and devices). If memory runs out (std::bad_alloc), the file that was there stays.
+/// renamed. The map's notes are in the file's metadata, as note_<name>. Throws Error(io), and
+/// Error(invalid_argument) for a name that does not end in .vdb (not of pipes and devices) and as
+/// BeliefGrid::set_notes(). If memory runs out (std::bad_alloc), the file that was there stays.
 /// Cost: grows with the leaves and beliefs of the map.
 VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
                               const VdbWriteConfig& config = {});
 
 /// Reads a file that save_vdb wrote, or another program in the same layout; exact: the loaded map
-/// has the saved one's content_hash(). Throws Error(io) if it cannot be opened and Error(format),
-/// naming the file and what is missing or out of bounds, if it is truncated, of another version of
-/// the layout or no viewgain map; Error(capacity) if tiles hold more than 2^27 occupied voxels, or
-/// the file is over 16 GiB or does not fit into memory. `notes`, if not null, becomes the file's
-/// VdbWriteConfig::notes: both are of one state of the file, whoever rewrites it meanwhile. Cost:
-/// grows with the leaves and beliefs of the map, shared by the threads; the file is read once.
-[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid
-load_vdb(const std::filesystem::path& path, std::map<std::string, std::string>* notes = nullptr,
-         const ExecConfig& exec = {});
+/// has the saved one's content_hash() and notes. Throws Error(io) if it cannot be opened and
+/// Error(format), naming the file and what is missing or out of bounds, if it is truncated, of
+/// another version of the layout or no viewgain map; Error(capacity) if tiles hold more than 2^27
+/// occupied voxels, or the file is over 16 GiB or does not fit into memory. Cost: grows with the
+/// leaves and beliefs of the map, shared by the threads; the file is read once.
+[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_vdb(const std::filesystem::path& path,
+                                                  const ExecConfig& exec = {});
 
 /// Rates of the unknown for HazardConfig::volume, from a .vdb file of any program, say a prior of
 /// the object's shape: the grid of floats [1/m] named "hazard", or the only one. Its transform may

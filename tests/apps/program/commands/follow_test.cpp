@@ -158,16 +158,16 @@ class Follow : public test::ProgramTest {
   // The frames of the state, each once, in the order of its views, by another way: put into a
   // planner of the test's own.
   void expect_each_once(std::size_t count) const {
-    const MapOfSensor map = load_map_of_sensor(dir / "plan/state.vdb");
+    const BeliefGrid map = load_map(dir / "plan/state.vdb");
     const FrameSequence frames = open_frames(dir / "whole");
-    ASSERT_EQ(map.grid.views().size(), count);
+    ASSERT_EQ(map.views().size(), count);
     PlannerConfig config;
     config.grid.voxel_size = kVoxel;
     config.grid.workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
     config.jump_edges.reset();
     ViewPlanner planner(frames.sensor, config, {1});
     std::set<std::string> identities;
-    for (const Pose& view : map.grid.views()) {
+    for (const Pose& view : map.views()) {
       const auto is_from_there = [&](const Pose& pose) {
         return pose.translation() == view.translation();
       };
@@ -178,8 +178,8 @@ class Follow : public test::ProgramTest {
       EXPECT_TRUE(identities.insert(frame_identity(frames, i)).second) << i;
     }
     EXPECT_EQ(identities.size(), count);
-    EXPECT_EQ(map.frames, identities);
-    EXPECT_EQ(map.grid.content_hash(), planner.grid().content_hash());
+    EXPECT_EQ(map.notes().frames, identities);
+    EXPECT_EQ(map.content_hash(), planner.grid().content_hash());
   }
 
   Strings images, poses;  // the files' bytes
@@ -330,7 +330,7 @@ TEST_F(Follow, SaysWhereToLookNext) {
   EXPECT_EQ(end["frames"], 2);
   EXPECT_EQ(end["added"], 0);
   EXPECT_EQ(end["ended_by"], "done");
-  EXPECT_EQ(end["hash"], load_map_of_sensor(dir / "plan/state.vdb").grid.content_hash());
+  EXPECT_EQ(end["hash"], load_map(dir / "plan/state.vdb").content_hash());
   EXPECT_EQ(read("plan/next.json"), before);
 
   // One of a newer program's, and one that is damaged, of which the views are made again.

@@ -5,9 +5,12 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <sstream>
 #include <string>
 
 #include "apps/program_runner.hpp"
@@ -149,6 +152,118 @@ TEST_F(Resume, OfFramesWhatWasDrawnIsKept) {
   EXPECT_EQ(fs::last_write_time(dir / "out/views/01.png"), time);
   EXPECT_TRUE(result("out") == result("whole"));
   EXPECT_TRUE(left().empty());
+}
+
+// Every option of the command, from its help: one that nobody has thought of here fails.
+TEST_F(Resume, OfFramesEveryFlagThatChangesBytesIsCompared) {
+  run_well({"simulate", "cube.off", "--orbit", "2,0.6,27", "--sensor", "tof.toml", "--size", "0.2",
+            "--recenter", "on", "--out", "frames"});
+  const std::map<std::string, Strings> others{
+      {"sensor", {"tof.toml"}},
+      {"voxel", {"0.02"}},
+      {"workspace", {"-0.3,-0.3,-0.3,0.3,0.3,0.3"}},
+      {"jump-edge-filter", {"off"}},
+      {"coarsest", {"1"}},
+      {"fine", {"0,0,0,0.1,0.1,0.1", "--coarsest", "1"}},
+      {"finest", {"1", "--coarsest", "1"}},
+      {"depth-scale", {"1.1e-4"}},
+      {"out-of-range", {"invalid"}},
+      {"mask", {"masks"}},
+      {"confidence", {"masks"}},
+      {"least-confidence", {"2", "--confidence", "masks"}},
+      {"refine", {"off"}},
+      {"register", {"on"}},
+      {"pose-sigma", {"0.01,1", "--register", "on"}},
+      {"on-contradiction", {"keep", "--register", "on"}},
+      {"generator", {"sphere"}},
+      {"gain", {"surface"}},
+      {"count", {"40", "--generator", "sphere"}},
+      {"distance", {"0.7", "--generator", "sphere"}},
+      {"center", {"0,0,0.01", "--generator", "sphere"}},
+      {"reach", {"reach.toml"}},
+      {"body", {"0.01,0.01,0.02"}},
+      {"support-plane", {"-0.15"}},
+      {"obstacle", {"0.9,0.9,0.9,1,1,1"}},
+      {"overlap", {"0.4"}},
+      {"region-depth", {"0.02"}},
+      {"object-size", {"0.3"}},
+      {"hazard", {"5"}},
+      {"poses", {"frames/poses.txt"}},
+      {"seed", {"7", "--generator", "sphere"}},
+      {"cost-per-metre", {"0.1"}},
+      {"costs", {"costs.csv", "--poses", "frames/poses.txt"}},
+      {"from", {"0,0,0.6"}},
+      {"plan", {"2"}},
+      {"take", {"1", "--plan", "2"}},
+      {"top", {"3"}},
+      {"pictures", {"on"}},
+      {"save-maps", {"on"}}};
+  const std::set<std::string> same{"out",  "resume", "threads", "trace",  "quiet",      "json",
+                                   "help", "report", "beside",  "config", "save-config"};
+  write("reach.toml", "[[box]]\nmin = [-2.0, -2.0, -2.0]\nmax = [2.0, 2.0, 2.0]\n");
+  write("costs.csv", "0\n1\n");
+  fs::create_directories(dir / "masks");
+  fs::copy_file(dir / "frames/frame-000000.depth.png", dir / "masks/frame-000000.depth.png");
+  const Strings call{
+      "reconstruct", "frames", "--voxel",  "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+      "--pictures",  "off",    "--resume", "--out", "out"};
+  const int status = ended_by(
+      call, SIGKILL, [&] { return !left().empty() && fs::exists(left() / "checkpoint.json"); });
+  ASSERT_TRUE(WIFSIGNALED(status)) << status;
+  const std::string both = run_well({"reconstruct", "--help"});
+  std::istringstream help(both.substr(both.rfind("Usage: ")));
+  std::size_t flags = 0;
+  for (std::string line; std::getline(help, line);) {
+    const std::size_t begin = line.find_first_not_of(' ');
+    if (begin == std::string::npos || line[begin] != '-') continue;
+    const std::size_t dashes = line.find("--");
+    const std::string name = line.substr(dashes + 2, line.find_first_of(" ,", dashes) - dashes - 2);
+    if (same.contains(name)) continue;
+    ASSERT_TRUE(others.contains(name)) << "a new flag: " << line;
+    Strings changed = call;
+    for (const std::string& given : {"--" + name, others.at(name)[0]}) changed.push_back(given);
+    if (name == "voxel" || name == "workspace" || name == "pictures") {
+      changed = call;
+      *(std::find(changed.begin(), changed.end(), "--" + name) + 1) = others.at(name)[0];
+    }
+    changed.insert(changed.end(), others.at(name).begin() + 1, others.at(name).end());
+    const test::ProgramResult result = run(changed);
+    EXPECT_EQ(result.exit_code, 2) << name;
+    EXPECT_NE(result.err.find("is of a run with other settings"), std::string::npos)
+        << name << ": " << result.err;
+    ++flags;
+  }
+  EXPECT_EQ(flags, others.size());
+  // Files of the same names with other bytes.
+  const auto refused = [&](const Strings& with) {
+    const test::ProgramResult result = run(test::joined(call, with));
+    return result.err.find("is of a run with other settings") != std::string::npos;
+  };
+  EXPECT_FALSE(refused({"--threads", "1", "--quiet", "--json", "--report", "off"}));
+}
+
+TEST_F(Resume, OfFramesFilesThatFlagsNameAreCompared) {
+  run_well({"simulate", "cube.off", "--orbit", "2,0.6,27", "--sensor", "tof.toml", "--size", "0.2",
+            "--recenter", "on", "--out", "frames"});
+  const std::string reach = "[[box]]\nmin = [-2.0, -2.0, -2.0]\nmax = [2.0, 2.0, 2.0]\n";
+  write("reach.toml", reach);
+  fs::create_directories(dir / "masks");
+  const fs::path mask = dir / "masks/frame-000000.depth.png";
+  const Strings call{
+      "reconstruct", "frames", "--voxel", "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+      "--pictures",  "off",    "--mask",  "masks", "--reach",     "reach.toml",
+      "--resume",    "--out",  "out"};
+  fs::copy_file(dir / "frames/frame-000000.depth.png", mask);
+  const int status = ended_by(
+      call, SIGKILL, [&] { return !left().empty() && fs::exists(left() / "checkpoint.json"); });
+  ASSERT_TRUE(WIFSIGNALED(status)) << status;
+  write("reach.toml", "# wider\n" + reach);
+  expect_refused(call, "is of a run with other settings");
+  write("reach.toml", reach);
+  fs::copy_file(dir / "frames/frame-000001.depth.png", mask, fs::copy_options::overwrite_existing);
+  expect_refused(call, "is of a run with other settings");
+  fs::copy_file(dir / "frames/frame-000000.depth.png", mask, fs::copy_options::overwrite_existing);
+  EXPECT_EQ(run(call).exit_code, 0);
 }
 
 TEST_F(Resume, AnothersCheckpointIsRefusedAndStays) {

@@ -6,8 +6,9 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
@@ -16,6 +17,7 @@
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/planner.h"
 #include "viewgain/planner/view_planner.hpp"
@@ -54,13 +56,23 @@ TEST_F(Versions, TheFirstOnesFilesAreRead) {
   const std::string made = read("made.txt"), hash = made.substr(made.find('\n') + 1, 16);
   EXPECT_EQ(made.substr(0, made.find('\n')), "viewgain 0.1.0");
 
-  const MapOfSensor map = load_map_of_sensor(dir / "state.vdb");
-  EXPECT_EQ(map.grid.content_hash(), hash);
-  EXPECT_EQ(map.frames.size(), 2U);
-  ASSERT_TRUE(map.sensor);
-  EXPECT_EQ(map.sensor->name, "small");
+  const BeliefGrid map = load_map(dir / "state.vdb");
+  EXPECT_EQ(map.content_hash(), hash);
+  EXPECT_EQ(map.notes().frames.size(), 2U);
+  EXPECT_EQ(map.notes().others.count("planner"), 1U);
+  const std::optional<Sensor> of_map = map_sensor(map);
+  ASSERT_TRUE(of_map);
+  EXPECT_EQ(of_map->name, "small");
 
   const Sensor sensor = read_sensor_toml(dir / "sensor.toml");
+  // Its sensor is this one: a frame more leaves the note.
+  BeliefGrid grown = load_vdb(dir / "state.vdb");
+  const std::string note = grown.notes().sensor;
+  const auto pixels = static_cast<std::size_t>(sensor.camera.width * sensor.camera.height);
+  FrameIntegrator(sensor).integrate(
+      grown, {sensor.camera.width, sensor.camera.height, std::vector<float>(pixels, 0.3F)},
+      grown.views().front());
+  EXPECT_EQ(grown.notes().sensor, note);
   EXPECT_EQ(sensor.camera.distortion[0], 0.01);
   EXPECT_EQ(sensor.pose_sigma.rotation, 0.002);
   EXPECT_EQ(sensor.range_calibration.table.size(), 2U);
@@ -82,6 +94,20 @@ TEST_F(Versions, TheFirstOnesFilesAreRead) {
   EXPECT_GE(checkpoint["decisions"].size(), 1U);
 }
 
+TEST_F(Versions, AMapThatGoesThroughCRemembers) {
+  const BeliefGrid before = load_vdb(dir / "state.vdb");
+  vg_grid *grid = nullptr, *copy = nullptr;
+  ASSERT_EQ(vg_grid_load((dir / "state.vdb").c_str(), &grid), VG_OK) << vg_last_error();
+  ASSERT_EQ(vg_grid_clone(grid, &copy), VG_OK) << vg_last_error();
+  ASSERT_EQ(vg_grid_save(copy, (dir / "copy.vdb").c_str()), VG_OK) << vg_last_error();
+  vg_grid_release(grid);
+  vg_grid_release(copy);
+  const BeliefGrid after = load_vdb(dir / "copy.vdb");
+  EXPECT_EQ(after.notes(), before.notes());
+  EXPECT_EQ(after.notes().frames.size(), 2U);
+  EXPECT_EQ(after.content_hash(), before.content_hash());
+}
+
 TEST_F(Versions, NewerOnesAreRefused) {
   change("sensor.toml", "\nformat = 1", "\nformat = 2");
   change("reach.toml", "format = 1", "format = 2");
@@ -92,9 +118,9 @@ TEST_F(Versions, NewerOnesAreRefused) {
         "reach.toml: line 1: key \"format\" is 2; this library reads files up to format 1"}});
 
   change("sensor.toml", "\nformat = 2", "\nformat = 1");
-  std::map<std::string, std::string> notes;
-  const BeliefGrid grid = load_vdb(dir / "state.vdb", &notes);
-  std::string& planner = notes.at("planner");
+  const BeliefGrid grid = load_vdb(dir / "state.vdb");
+  MapNotes notes = grid.notes();
+  std::string& planner = notes.others.at("planner");
   planner.replace(planner.find("version 2"), 9, "version 3");
   save_vdb(grid, dir / "newer.vdb", {.notes = notes});
   try {
@@ -113,14 +139,13 @@ TEST_F(Versions, NewerOnesAreRefused) {
 TEST_F(Versions, AStrangersMapWritesNothingElsewhere) {
   Sensor sensor = read_sensor_toml(dir / "sensor.toml");
   sensor.name = "../../evil/<script>";
-  std::map<std::string, std::string> notes;
-  const BeliefGrid grid = load_vdb(dir / "state.vdb", &notes);
-  const VdbWriteConfig config = noting_frames(
-      {"0123456789abcdef ../../evil.depth.png", "0123456789abcdee /tmp/evil.depth.png"},
-      noting_sensor(sensor, {.notes = notes}));
+  const BeliefGrid grid = load_vdb(dir / "state.vdb");
+  MapNotes notes = grid.notes();
+  notes.sensor = sensor_toml(sensor);
+  notes.frames = {"0123456789abcdef ../../evil.depth.png", "0123456789abcdee /tmp/evil.depth.png"};
   fs::create_directories(dir / "in");
   fs::create_directories(dir / "out");
-  save_vdb(grid, dir / "in/map.vdb", config);
+  save_vdb(grid, dir / "in/map.vdb", {.notes = notes});
   fs::rename(dir / "sensor.toml", dir / "in/sensor.toml");
   fs::create_directories(dir / "in/frames");
   write("in/frames/done", "");

@@ -121,6 +121,10 @@ TEST_F(Workflow, FramesThatAMapHasAreSkipped) {
   EXPECT_TRUE(grown["seconds_per_frame"].is_null());
   EXPECT_EQ(read("again.vdb"), read("map.vdb"));
   EXPECT_EQ(json::parse(run_well({"info", "again.vdb", "--json"})).at("sensor"), "small");
+  // Through the library, too.
+  save_vdb(load_vdb(dir / "map.vdb").clone(), dir / "library.vdb");
+  EXPECT_EQ(grow({"--map", "library.vdb", "--out", "library.vdb"})["skipped"], 6);
+  EXPECT_EQ(read("library.vdb"), read("map.vdb"));
   EXPECT_NE(run_well({"integrate", "frames", "--map", "map.vdb", "--out", "map.vdb"})
                 .find("skipped, since the map has them already: 6"),
             std::string::npos);

@@ -26,6 +26,10 @@ enum {
   VG_NOISE_CONSTANT = 4          /* sigma_axial, sigma_lateral */
 };
 
+/* What the value 65535 of a depth image says: as the layout of its folder has it, nothing up to
+   max_range, or no reading. */
+enum { VG_OUT_OF_RANGE_BY_LAYOUT = 0, VG_OUT_OF_RANGE_CARVE = 1, VG_OUT_OF_RANGE_INVALID = 2 };
+
 /* A depth camera. Pixel (0,0) has its centre at (0,0), as in OpenCV. It has no table of ranges:
    frames of a camera that has one are corrected first, see vg_range_calibration. */
 typedef struct vg_sensor {
@@ -36,6 +40,7 @@ typedef struct vg_sensor {
   double min_range, max_range; /* along the ray [m] */
   double working_distance;     /* where it is meant to be used [m] */
   int32_t noise_model;         /* VG_NOISE_ */
+  int32_t out_of_range;        /* VG_OUT_OF_RANGE_ */
   double noise[6];             /* the model's parameters, in the order of VG_NOISE_; the rest 0 */
   double pose_sigma[2];        /* of the poses of frames, in this order: [m], [rad]; 0: exact */
   double scale_sigma;          /* of one factor, less 1, that all ranges are off by; 0: none */

@@ -38,7 +38,6 @@ struct VIEWGAIN_EXPORT FrameWatchConfig {
 struct VIEWGAIN_EXPORT WatchedFrame {
   std::uint64_t number = 0;         ///< in its files' names
   std::filesystem::path image;      ///< the depth image
-  std::string identity;             ///< as frame_identity() has it
   DepthFrame frame;                 ///< as load_frame() has it, without what masks take
   Pose T_world_camera;              ///< where it was taken
   std::uint64_t masked_pixels = 0;  ///< with a depth, that masks took

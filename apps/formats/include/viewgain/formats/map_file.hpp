@@ -5,8 +5,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
-#include <set>
-#include <string>
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -24,34 +22,16 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT bool is_octomap(const std::filesystem::path& path);
 
 /// Reads a .vdb map, or an OctoMap tree by `config`, whose prior is, unless given, the default for
-/// the sensor where there is one. Throws what load_vdb and load_octomap throw.
+/// the sensor where there is one. Throws what load_vdb and load_octomap throw, and Error(format),
+/// naming the file and the key, if the map's note of its sensor is none.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_map(const std::filesystem::path& path,
                                                   const Sensor* sensor = nullptr,
                                                   OctomapConfig config = {},
                                                   const ExecConfig& exec = {});
 
-/// A map, and where its readings come from as far as its file says so.
-struct VIEWGAIN_EXPORT MapOfSensor {
-  BeliefGrid grid;                 ///< the map
-  std::optional<Sensor> sensor;    ///< that its readings come from, where the file says so
-  std::set<std::string> frames{};  ///< that went into it, each as frame_identity() has it
-};
-
-/// load_map(), and what noting_sensor() and noting_frames() have put into a .vdb. Throws
-/// Error(format), naming the file, for a note that is no sensor (and its key) or no list of frames.
-[[nodiscard]] VIEWGAIN_EXPORT MapOfSensor load_map_of_sensor(const std::filesystem::path& path,
-                                                             const Sensor* sensor = nullptr,
-                                                             OctomapConfig config = {},
-                                                             const ExecConfig& exec = {});
-
-/// So that save_map() notes in a .vdb which sensor the map's readings come from. It is unchecked.
-[[nodiscard]] VIEWGAIN_EXPORT VdbWriteConfig noting_sensor(const Sensor& sensor,
-                                                           VdbWriteConfig config = {});
-
-/// So that save_map() notes in a .vdb which frames went into the map, each as frame_identity() has
-/// it, and these can be told from new ones. They are unchecked.
-[[nodiscard]] VIEWGAIN_EXPORT VdbWriteConfig noting_frames(const std::set<std::string>& frames,
-                                                           VdbWriteConfig config = {});
+/// The sensor that all readings of a map come from, if that is known (MapNotes::sensor). Throws
+/// Error(format), naming the key, for a note that is no sensor. Cost: parses the note.
+[[nodiscard]] VIEWGAIN_EXPORT std::optional<Sensor> map_sensor(const BeliefGrid& grid);
 
 /// Throws Error(invalid_argument) for names that save_map does not write: those that end neither in
 /// .vdb nor in .ot, unless what is there is no regular file (/dev/null, a pipe).

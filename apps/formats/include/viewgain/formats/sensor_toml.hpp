@@ -15,16 +15,9 @@
 
 namespace viewgain {
 
-/// The TOML description of a sensor; apps/docs/reference/formats.md shows the layout. Reading what
-/// was written gives an equal sensor. Checks nothing.
-[[nodiscard]] VIEWGAIN_EXPORT std::string sensor_toml(const Sensor& sensor);
-
-/// What `model` is in such a file: shot, structured_light, stereo, quadratic, constant. Never
-/// throws.
-[[nodiscard]] VIEWGAIN_EXPORT std::string_view noise_model_name(const NoiseModel& noise);
-
-/// Throws Error(io) if the file cannot be read and Error(format), naming the file and the key, for
-/// a key that is missing, unknown, of the wrong type or out of bounds.
+/// Reads what sensor_toml() of core/sensor.hpp writes. Throws Error(io) if the file cannot be read
+/// and Error(format), naming the file and the key, for a key that is missing, unknown, of the wrong
+/// type or out of bounds.
 [[nodiscard]] VIEWGAIN_EXPORT Sensor read_sensor_toml(const std::filesystem::path& path);
 
 /// The same of a text; `name` is what errors call it.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "viewgain/core/export.hpp"
+#include "viewgain/support/toml_text.hpp"
 
 namespace viewgain {
 
@@ -21,13 +22,6 @@ inline constexpr std::uint64_t kMostTomlBytes = std::uint64_t{1} << 24U;
 [[nodiscard]] VIEWGAIN_EXPORT toml::table read_toml(const std::filesystem::path& path);
 /// The same of a text; `name` is what errors call it.
 [[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& name);
-
-/// As TOML has them: a number that is read back as it was, a text in quotes, on one line.
-[[nodiscard]] std::string toml_float(double value);
-[[nodiscard]] VIEWGAIN_EXPORT std::string toml_string(const std::string& value);
-
-/// The key `format` of sensors and reach regions; grows when a reader of this one would err.
-inline constexpr int kTomlFormat = 1;
 
 /// One table of a TOML file; remembers which keys were asked for, so that the others can be
 /// refused. Must not outlive the table. Whatever is not as it should be is an Error(format) that

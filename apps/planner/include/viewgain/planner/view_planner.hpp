@@ -164,16 +164,15 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// view is worth its way. The last ranking of a view counts.
   [[nodiscard]] std::optional<StopReason> should_stop() const noexcept;
 
-  /// The whole state in one file: a map that every program reads, with the rest in its notes. Left
-  /// out are what the constructor got, sets, generations and the last proposal. Atomic: after a
-  /// kill at any moment the file is the one before or this one. `config` has what is to be in the
-  /// same file, say which frames went into the map (noting_frames() of viewgain::formats): of the
-  /// two there is never one without the other. Its note "planner" is replaced. Throws Error(io).
-  void save(const std::filesystem::path& path, VdbWriteConfig config = {}) const;
+  /// The whole state in one file: a map that every program reads, with the rest in its note
+  /// "planner". Left out are what the constructor got, sets, generations and the last proposal.
+  /// Atomic: after a kill at any moment the file is the one before or this one. Throws Error(io).
+  void save(const std::filesystem::path& path) const;
   /// Goes on where save() was called: with the same constructor's arguments, sets and generations
   /// every later answer has the same bits, from the next propose(), add() or rank() of given poses
   /// on. Throws as the constructor, Error(invalid_argument) if the map is laid out otherwise than
-  /// config.grid says, Error(format) for a file of another kind, and as load_vdb().
+  /// config.grid says or has grown since by other means than add(), Error(format) for a file of
+  /// another kind, and as load_vdb().
   [[nodiscard]] static ViewPlanner load(const std::filesystem::path& path, const Sensor& sensor,
                                         const PlannerConfig& config, const ExecConfig& exec = {});
 

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "map_notes.hpp"
+
+#include <array>
+#include <cstddef>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "grid_storage.hpp"
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/text.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+constexpr const char* kSensorNote = "sensor";
+constexpr const char* kFramesNote = "frames";  // an identity per line
+
+bool is_identity(const std::string& text) {
+  constexpr std::size_t kDigits = 16;
+  return text.size() >= kDigits + 2 && text.find_first_not_of("0123456789abcdef") == kDigits &&
+         text[kDigits] == ' ' && text.find('\n') == std::string::npos;
+}
+
+// The lines of a sensor's description that say what its readings mean, without comments: name,
+// mounting and housing change no reading.
+std::string readings_of(const std::string& sensor) {
+  constexpr std::array<std::string_view, 4> kOthers{"#", "name =", "T_flange_camera =", "body ="};
+  std::string result;
+  bool is_kept = true;
+  std::istringstream lines(sensor);
+  for (std::string line; std::getline(lines, line);) {
+    const bool goes_on = line.starts_with(' ') || line.starts_with(']');  // rows of a list
+    if (!goes_on) {
+      is_kept = true;
+      for (const std::string_view other : kOthers) is_kept = is_kept && !line.starts_with(other);
+    }
+    if (is_kept) result += line.substr(0, line.find("  #")) + "\n";
+  }
+  return result;
+}
+
+bool is_same_sensor(const std::string& a, const std::string& b) {
+  return a == b || (!a.empty() && !b.empty() && readings_of(a) == readings_of(b));
+}
+
+}  // namespace
+
+void check_identity(const std::string& identity) {
+  if (identity.empty() || is_identity(identity)) return;
+  refuse("the identity of a frame is " + viewgain::quoted(identity) +
+         "; it must be 16 hexadecimal digits, a space and a name");
+}
+
+void check_notes(const MapNotes& notes) {
+  for (const std::string& frame : notes.frames) {
+    if (!is_identity(frame)) refuse("the note of the frames holds " + viewgain::quoted(frame));
+  }
+  for (const char* name : {kSensorNote, kFramesNote}) {
+    if (!notes.others.contains(name)) continue;
+    refuse("a note is named " + viewgain::quoted(name) + ", which MapNotes has a member for");
+  }
+}
+
+std::map<std::string, std::string> texts_of(const MapNotes& notes) {
+  check_notes(notes);
+  std::map<std::string, std::string> texts = notes.others;
+  if (!notes.sensor.empty()) texts[kSensorNote] = notes.sensor;
+  if (notes.frames.empty()) return texts;
+  std::string& list = texts[kFramesNote];
+  for (const std::string& frame : notes.frames) list += frame + "\n";
+  return texts;
+}
+
+MapNotes notes_of(std::map<std::string, std::string> texts) {
+  MapNotes notes;
+  if (auto sensor = texts.extract(kSensorNote)) notes.sensor = std::move(sensor.mapped());
+  if (const auto frames = texts.extract(kFramesNote)) {
+    std::istringstream lines(frames.mapped());
+    for (std::string line; std::getline(lines, line);) notes.frames.insert(line);
+  }
+  notes.others = std::move(texts);
+  check_notes(notes);
+  return notes;
+}
+
+FrameNote::FrameNote(const GridStorage& storage, const std::string& sensor,
+                     const std::string& identity) {
+  check_identity(identity);
+  if (!identity.empty()) frame_.insert(identity);
+  const std::string& noted = storage.notes.sensor;
+  if (is_same_sensor(noted, sensor)) {
+    sensor_ = noted;
+  } else if (storage.views.empty()) {
+    sensor_ = sensor;
+  }
+}
+
+void FrameNote::put(GridStorage& storage) noexcept {
+  storage.notes.sensor.swap(sensor_);
+  storage.notes.frames.merge(frame_);
+}
+
+}  // namespace viewgain::detail

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "viewgain/grid/map_notes.hpp"
+
+namespace viewgain::detail {
+
+struct GridStorage;
+
+/// Throws Error(invalid_argument) for an identity that is none, and for another text by the name of
+/// the sensor's or the frames' note.
+void check_notes(const MapNotes& notes);
+/// The same of one frame's; an empty one is allowed.
+void check_identity(const std::string& identity);
+
+/// As a map's file has them, by name, and back. Throws as check_notes().
+[[nodiscard]] std::map<std::string, std::string> texts_of(const MapNotes& notes);
+[[nodiscard]] MapNotes notes_of(std::map<std::string, std::string> texts);
+
+/// What a frame adds to a map's notes: made before the frame goes in, so that nothing can fail
+/// afterwards.
+class FrameNote {
+ public:
+  /// `sensor` as in MapNotes. Throws as check_identity().
+  FrameNote(const GridStorage& storage, const std::string& sensor, const std::string& identity);
+  void put(GridStorage& storage) noexcept;
+
+ private:
+  std::string sensor_;  // of the map after the frame
+  std::set<std::string> frame_;
+};
+
+}  // namespace viewgain::detail
