@@ -25,7 +25,6 @@
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/support/atomic_file.hpp"
-#include "viewgain/support/isa.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -45,13 +44,14 @@ void add_to(StageSeconds& totals, const StageSeconds& seconds) {
   for (const auto& [stage, value] : seconds) totals[stage] += value;
 }
 
-// What a run leaves beside what it wrote after each view. `run` has the head of run.json; returns
-// all that run.json holds.
-Json write_results(const RunFolder& folder, Json run, const SurfaceModel& model,
-                   const std::vector<Pose>& views, const Json& report) {
+// What a run leaves beside what it wrote after each view. Returns what run.json holds.
+Json write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t seed,
+                   const SurfaceModel& model, const std::vector<Pose>& views, const Json& report) {
   save_vdb(model.grid(), folder.file("map.vdb"));
   write_surfaces(model, folder.file("surface.ply"), folder.file("points.ply"));
   write_tum(folder.file("views.txt"), views);
+  Json run = run_head(setup.settings);
+  run["seed"] = seed;
   run["map_hash"] = model.grid().content_hash();
   run.update(report);
   write_file_atomically(folder.file("run.json"), json_text(run));
@@ -94,11 +94,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   const SurfaceModel& model = parts.model;
 
   RunFolder folder(outputs.out, outputs.resume);
-  Json head = run_head(setup.settings, app);
-  head["seed"] = options.sensing.seed;
-  Json compared = head;
-  compared["isa"] = isa_name(select_isa());
-  Checkpoint checkpoint(folder, compared, outputs.resume);
+  Checkpoint checkpoint(folder, checkpoint_head(setup.settings, app), outputs.resume);
   const PolicyConfig& policy = setup.policy;
   const bool remembers = policy.ahead.is_on() || policy.policy == Policy::kriegel;
   ResumedDecision decision(checkpoint, parts.decision, remembers);
@@ -137,7 +133,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   for (std::size_t i = 0; i < registrations.size(); ++i) views[i] = registrations[i].T_world_camera;
   report.set_registrations(registrations);
   const Json json = report.json(result.reason);
-  const Json run = write_results(folder, head, model, views, json);
+  const Json run = write_results(folder, setup, options.sensing.seed, model, views, json);
   if (outputs.with_report()) {
     write_report(folder.file("report.html"), page.json(run, setup.stage.scene.get(), beside));
   }

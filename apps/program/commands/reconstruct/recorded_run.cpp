@@ -35,7 +35,6 @@
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/hash64.hpp"
-#include "viewgain/support/isa.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -168,7 +167,7 @@ class Recording {
     write_surfaces(moment.model, folder.file("surface.ply"), folder.file("points.ply"));
     write_tum(folder.file("views.txt"), moment.model.grid().views());
     write_tum(folder.file("next.txt"), poses_of(next_));
-    Json run = run_head(settings(), app_);
+    Json run = run_head(settings());
     run.update(views_->json(moment.model, next_));
     write_file_atomically(folder.file("run.json"), json_text(run));
     if (options_.outputs.with_report()) {
@@ -179,8 +178,7 @@ class Recording {
 
   // What the run's bytes depend on: settings, flags, program, and the bytes of frames and masks.
   [[nodiscard]] Json head() const {
-    Json head = run_head(settings(), app_);
-    head["isa"] = isa_name(select_isa());
+    Json head = checkpoint_head(settings(), app_);
     const FrameSequence& frames = map_->folder().frames();
     for (std::size_t i = 0; i < frames.poses.size(); ++i) {
       head["frames"].push_back(identity_or_none(frames, i));
@@ -241,7 +239,19 @@ class Recording {
         {"on_contradiction", sigma_ ? Json(options_.registration.on_contradiction) : Json()},
         {"pose_sigma", sigma_ ? pose_sigma_json(*sigma_) : Json()},
         {"generator", proposal_.generator.empty() ? "boundary" : proposal_.generator},
+        {"poses", or_null(proposal_.poses)},
+        {"count", proposal_.count},
+        {"distance", proposal_.distance},
+        {"center", or_null(proposal_.center)},
+        {"seed", proposal_.seed},
+        {"overlap", proposal_.overlap},
+        {"region_depth", proposal_.region_depth},
         {"gain", proposal_.gain},
+        {"object_size", proposal_.object_size},
+        {"hazard", or_null(proposal_.hazard)},
+        {"costs", or_null(proposal_.costs.file)},
+        {"cost_per_metre", proposal_.costs.per_metre},
+        {"from", or_null(proposal_.costs.from)},
         {"reach", or_null(proposal_.reach)},
         {"obstacles", proposal_.obstacles},
         {"top", options_.top},

@@ -17,6 +17,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/isa.hpp"
 #include "viewgain/support/stopwatch.hpp"
 #include "viewgain/version.hpp"
 
@@ -74,13 +75,19 @@ StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPa
   return seconds;
 }
 
-Json run_head(const Json& settings, const App& app) {
-  const CallSettings call = call_settings(app, kSameBytes);
+Json run_head(const Json& settings) {
   return {{"format", kRunFormat},
           {"settings", settings},
-          {"flags", call.flags},
-          {"files", call.files},
           {"versions", {{"viewgain", VIEWGAIN_VERSION}, {"compiler", __VERSION__}}}};
+}
+
+Json checkpoint_head(const Json& settings, const App& app) {
+  Json head = run_head(settings);
+  const CallSettings call = call_settings(app, kSameBytes);
+  head["flags"] = call.flags;
+  head["files"] = call.files;
+  head["isa"] = isa_name(select_isa());
+  return head;
 }
 
 Json beside_json(const RunOutputs& outputs) {

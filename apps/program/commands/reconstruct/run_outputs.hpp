@@ -36,13 +36,16 @@ struct ShownStep {
 StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPage& page,
                        const ShownStep& step, const ExecConfig& exec);
 
-/// `settings`, `flags`, `files` and `versions`, with which run.json begins: `flags` are all of the
-/// parsed call, and `files` those that they name, without what leaves the run's bytes as they are
-/// (kSameBytes).
-[[nodiscard]] Json run_head(const Json& settings, const App& app);
+/// `settings` and `versions`, with which run.json begins.
+[[nodiscard]] Json run_head(const Json& settings);
 
-/// Keys of flags by which a run that goes on may differ from the one that was ended: where it is
-/// written, how fast, what is shown of it, and what is made at its end.
+/// What a run that goes on must have as the one that was ended, so that their bytes are the same:
+/// run_head(), the instruction set, all `flags` of the parsed call but kSameBytes, and the `files`
+/// that they name.
+[[nodiscard]] Json checkpoint_head(const Json& settings, const App& app);
+
+/// Keys of flags that may differ: where the run is written, how fast, what is shown of it, and what
+/// is made at its end alone.
 inline const std::vector<std::string> kSameBytes{"out",   "resume", "threads", "trace",
                                                  "quiet", "json",   "report",  "beside"};
 

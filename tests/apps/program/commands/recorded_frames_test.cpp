@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,34 @@ class RecordedFrames : public test::ProgramTest {
     return json::parse(run_well({"info", map, "--json"})).at("hash").get<std::string>();
   }
 };
+
+TEST_F(RecordedFrames, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
+  const json settings = reconstruct(
+      "run", {"--pictures", "off", "--coarsest", "1", "--fine", "0,0,0,1,1,1", "--obstacle",
+              "0.9,0.9,0.9,1,1,1", "--hazard", "5", "--object-size", "0.3"})["settings"];
+  EXPECT_EQ(settings["out_of_range"], "carve");
+  EXPECT_EQ(settings["hazard"], "5");
+  EXPECT_EQ(settings["object_size"], 0.3);
+  EXPECT_EQ(settings["seed"], 1);
+  // Where results go, how fast, what is shown; the body is in the sensor.
+  const std::set<std::string> elsewhere{"help",   "json",   "threads",     "out",    "save_maps",
+                                        "trace",  "quiet",  "save_config", "config", "pictures",
+                                        "report", "resume", "beside",      "body"};
+  const std::string both = run_well({"reconstruct", "--help"});
+  std::istringstream help(both.substr(both.rfind("Usage: ")));  // of frames
+  std::size_t flags = 0;
+  for (std::string line; std::getline(help, line);) {
+    const std::size_t begin = line.find_first_not_of(' ');
+    if (begin == std::string::npos || line[begin] != '-') continue;
+    const std::size_t dashes = line.find("--");
+    std::string name = line.substr(dashes + 2, line.find_first_of(" ,", dashes) - dashes - 2);
+    std::replace(name.begin(), name.end(), '-', '_');
+    if (elsewhere.contains(name)) continue;
+    EXPECT_TRUE(settings.contains(name == "obstacle" ? "obstacles" : name)) << line;
+    ++flags;
+  }
+  EXPECT_EQ(flags + 2, settings.size());  // the frames have no flag; the prior follows from others
+}
 
 // Map, surface and next views are those that the other subcommands make of the same frames.
 TEST_F(RecordedFrames, ReconstructIsIntegrateSurfaceAndNextInOne) {

@@ -7,6 +7,7 @@
 #include "program/cli/json.hpp"
 #include "support/pose_file_text.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/grid/vdb_io.hpp"
 
 namespace viewgain {
 namespace {
