@@ -229,6 +229,10 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
   metadata("T_world_grid", "T_world_grid", openvdb::StringMetadata("1 0 0 0 0 1 0 0 0 0 1"));
   metadata("T_world_grid", "T_world_grid", openvdb::StringMetadata("2 0 0 0 0 1 0 0 0 0 1 0\n"));
   metadata("views", "views", openvdb::StringMetadata("1 0 0 nan 0 1 0 0 0 0 1 0\n"));
+  for (const char* note : {"frame-000000.depth.png\n", "0123456789abcdef\n", "0123456789abcdef \n",
+                           "0123456789ABCDEF a.png\n", "0123456789abcdef0 a.png\n", "\n"}) {
+    metadata("the note of the frames holds", "note_frames", openvdb::StringMetadata(note));
+  }
 
   const openvdb::Coord wall(3, 4, 6), free(3, 4, 9), unknown(3, 4, 3);
   const auto log_odds = [&](const std::string& part, const openvdb::Coord& at, float value) {
