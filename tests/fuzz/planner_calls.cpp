@@ -198,11 +198,25 @@ class PlannerCalls : CallBytes {
     now_.candidates = made.candidates, now_.is_proposed = true;
   }
 
-  Ranked ranking_of(vg_planner* planner, std::size_t k, double per_metre, const vg_watch* watch) {
+  // Where the camera is: null, or a pose that may be none.
+  struct Here {
+    std::array<double, 16> pose{};
+    bool is_given = false;
+    [[nodiscard]] const double* get() const { return is_given ? pose.data() : nullptr; }
+  };
+  Here here() {
+    Here made;
+    made.is_given = byte() % 4 == 1;
+    if (made.is_given) made.pose = pose();
+    return made;
+  }
+
+  Ranked ranking_of(vg_planner* planner, std::size_t k, double per_metre, const Here& here,
+                    const vg_watch* watch) {
     Ranked ranked{VG_OK, std::vector<vg_ranked_view>(k)};
     std::size_t found = 0;
-    ranked.status = vg_planner_rank(planner, k, nullptr, 0, per_metre, ranked.views.data(),
-                                    sizeof(vg_ranked_view), &found, watch);
+    ranked.status = vg_planner_rank(planner, k, nullptr, 0, per_metre, here.get(),
+                                    ranked.views.data(), sizeof(vg_ranked_view), &found, watch);
     expect(ranked.status);
     require(found <= k, "more views than were asked for");
     ranked.views.resize(found);
@@ -218,8 +232,10 @@ class PlannerCalls : CallBytes {
   void rank() {
     Watch until(byte());
     const std::size_t k = byte() % 6;
+    const double per_metre = usually(0);
+    const Here from = here();
     const Ranked ranked =
-        ranking_of(now_.planner(), k, usually(0), byte() % 2 == 0 ? &until.watch : nullptr);
+        ranking_of(now_.planner(), k, per_metre, from, byte() % 2 == 0 ? &until.watch : nullptr);
     require(ranked.status != VG_OK || now_.is_proposed, "ranked without a proposal");
     check(ranked, now_.candidates);
   }
@@ -232,9 +248,12 @@ class PlannerCalls : CallBytes {
     const std::size_t k = byte() % 4;
     Ranked ranked{VG_OK, std::vector<vg_ranked_view>(k)};
     std::size_t found = 0;
+    const std::size_t cost_count = byte() % 4 == 1 ? costs.size() : 0;
+    const double per_metre = usually(0);
+    const Here from = here();
     expect(vg_planner_rank_poses(now_.planner(), poses.data(), poses.size() / 16, k, costs.data(),
-                                 byte() % 4 == 1 ? costs.size() : 0, usually(0),
-                                 ranked.views.data(), sizeof(vg_ranked_view), &found, nullptr));
+                                 cost_count, per_metre, from.get(), ranked.views.data(),
+                                 sizeof(vg_ranked_view), &found, nullptr));
     require(found <= k, "more views than were asked for");
     ranked.views.resize(found);
     check(ranked, poses.size() / 16);
@@ -294,15 +313,17 @@ class PlannerCalls : CallBytes {
       now_.candidates = mine.candidates, now_.is_proposed = true;
       const std::size_t k = byte() % 4;
       const double per_metre = usually(0);
-      const Ranked here = ranking_of(now_.planner(), k, per_metre, nullptr);
-      const Ranked there = ranking_of(*other, k, per_metre, nullptr);
-      require(here.status == there.status && here.views.size() == there.views.size() &&
-                  std::equal(here.views.begin(), here.views.end(), there.views.begin(),
-                             [](const vg_ranked_view& a, const vg_ranked_view& b) {
-                               return a.index == b.index && bits(a.gain) == bits(b.gain) &&
-                                      bits(a.worth) == bits(b.worth);
-                             }),
-              "another ranking after a file");
+      const Here from = here();
+      const Ranked mine_ranked = ranking_of(now_.planner(), k, per_metre, from, nullptr);
+      const Ranked others = ranking_of(*other, k, per_metre, from, nullptr);
+      require(
+          mine_ranked.status == others.status && mine_ranked.views.size() == others.views.size() &&
+              std::equal(mine_ranked.views.begin(), mine_ranked.views.end(), others.views.begin(),
+                         [](const vg_ranked_view& a, const vg_ranked_view& b) {
+                           return a.index == b.index && bits(a.gain) == bits(b.gain) &&
+                                  bits(a.worth) == bits(b.worth);
+                         }),
+          "another ranking after a file");
     }
     std::array<std::int32_t, 2> reasons{};
     expect(vg_planner_should_stop(now_.planner(), &reasons[0]));

@@ -92,6 +92,7 @@ struct RankCall {
   const double* costs;
   std::size_t cost_count;
   double cost_per_metre;
+  const double* current_pose;
   vg_ranked_view* views;
   std::size_t view_size;
   std::size_t* found;
@@ -108,6 +109,7 @@ struct RankCall {
     RankConfig config;
     if (cost_count > 0) config.costs = {costs, cost_count};
     config.cost_per_metre = cost_per_metre;
+    if (current_pose != nullptr) config.current_pose = rigid_pose_of(current_pose);
     const Ranking ranking = rank(config, watcher.control());
     std::transform(ranking.views.begin(), ranking.views.end(), views, written);
     *found = ranking.views.size();
@@ -243,11 +245,13 @@ vg_status vg_planner_propose(vg_planner* planner, size_t* candidates, size_t* dr
 }
 
 vg_status vg_planner_rank(vg_planner* planner, size_t k, const double* costs, size_t cost_count,
-                          double cost_per_metre, vg_ranked_view* views, size_t view_size,
-                          size_t* found, const vg_watch* watch) {
+                          double cost_per_metre, const double current_pose[16],
+                          vg_ranked_view* views, size_t view_size, size_t* found,
+                          const vg_watch* watch) {
   return guarded("planner", {planner}, [&] {
     ViewPlanner& own = planner->planner;
-    const RankCall call{k, costs, cost_count, cost_per_metre, views, view_size, found, watch};
+    const RankCall call{k,     costs,     cost_count, cost_per_metre, current_pose,
+                        views, view_size, found,      watch};
     call.check();
     call.run(own.candidate_count(), [&](const RankConfig& config, const BatchControl& control) {
       return own.rank(k, config, control);
@@ -257,11 +261,12 @@ vg_status vg_planner_rank(vg_planner* planner, size_t k, const double* costs, si
 
 vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses, size_t count, size_t k,
                                 const double* costs, size_t cost_count, double cost_per_metre,
-                                vg_ranked_view* views, size_t view_size, size_t* found,
-                                const vg_watch* watch) {
+                                const double current_pose[16], vg_ranked_view* views,
+                                size_t view_size, size_t* found, const vg_watch* watch) {
   return guarded("planner", {planner}, [&] {
     ViewPlanner& own = planner->planner;
-    const RankCall call{k, costs, cost_count, cost_per_metre, views, view_size, found, watch};
+    const RankCall call{k,     costs,     cost_count, cost_per_metre, current_pose,
+                        views, view_size, found,      watch};
     call.check();
     const std::vector<Pose> given_poses = poses_of(poses, count);
     call.run(count, [&](const RankConfig& config, const BatchControl& control) {

@@ -135,8 +135,8 @@ std::vector<Pose> CandidateGeneration::tried() const {
   return tried;
 }
 
-Proposal CandidateGeneration::generate(const Pose&) {
-  return proposer_.propose(model_.grid(), model_.scene(), tried());
+Proposal CandidateGeneration::generate(const Pose& T_world_camera) {
+  return proposer_.propose(model_.grid(), model_.scene(), T_world_camera, tried());
 }
 
 Proposal CandidateGeneration::propose_these(const PoseSet& set) {

@@ -247,17 +247,15 @@ Proposal PolicyDecision::generate(const Pose& T_world_camera) {
 std::optional<DecisionMaking::Decision> PolicyDecision::decide_by_gain(
     const Pose& T_world_camera, std::span<const Candidate> candidates) {
   const std::vector<Pose> poses = poses_of(candidates);
-  const Eigen::Vector3d here = T_world_camera.translation();
   const GainEvaluator& by = evaluator();
-  const RankConfig rank{.cost_per_metre = config_.cost_per_metre};
+  const RankConfig rank{.cost_per_metre = config_.cost_per_metre, .current_pose = T_world_camera};
   if (is_of_plan_) {
     planned_.erase(planned_.begin());
-    return decision_of(rank_in_turn(by, poses, rank, here), config_.model);
+    return decision_of(rank_in_turn(by, poses, rank), config_.model);
   }
-  const Ranking ranking =
-      config_.ahead.is_on()
-          ? plan_views(by, poses, config_.ahead, mesh_area(model_.surface()), rank, here)
-          : rank_views(by, poses, 1, rank, here);
+  const Ranking ranking = config_.ahead.is_on() ? plan_views(by, poses, config_.ahead,
+                                                             mesh_area(model_.surface()), rank)
+                                                : rank_views(by, poses, 1, rank);
   planned_.clear();
   for (std::size_t i = 1; i < std::min(config_.ahead.take, ranking.views.size()); ++i) {
     planned_.push_back(ranking.views[i].T_world_camera);

@@ -50,8 +50,7 @@ Order rank(const ProposalOptions& options, const SurfaceModel& model, const Sens
   ranking.gains.resize(candidates.size());
   ranking.order.clear();
   const std::vector<Pose> poses = poses_of(candidates);
-  for (const RankedView& view :
-       rank_views(evaluator, poses, poses.size(), {.exact = true}, std::nullopt).views) {
+  for (const RankedView& view : rank_views(evaluator, poses, poses.size(), {.exact = true}).views) {
     ranking.order.push_back(view.index);
     ranking.gains[view.index] = view.gain;
   }

@@ -36,6 +36,7 @@ struct Options {
 struct Frames {
   FrameCounts counts;
   std::vector<Pose> tried;
+  std::optional<Pose> last_pose;
   Obstacles obstacles;
 };
 
@@ -53,7 +54,7 @@ SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<F
     progress.update(i + 1, map.folder().size());
   }
   map.require_frames(true);
-  frames = {map.counts(), map.tried(), map.config().surroundings.obstacles};
+  frames = {map.counts(), map.tried(), map.last_pose(), map.config().surroundings.obstacles};
   return {map.model().grid().clone(), map.model().sensor()};
 }
 
@@ -71,7 +72,8 @@ void next(const Options& options) {
   CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});
   const GainEvaluator evaluator = evaluator_of(options.proposal, model, sensor, exec);
-  NextViews views = best_views(evaluator, proposal, options.proposal, model.grid(), options.top,
+  NextViews views = best_views(evaluator, proposal, options.proposal,
+                               frames ? frames->last_pose : last_view(model.grid()), options.top,
                                options.common.quiet);
   if (options.explain) explain(views, proposal, evaluator);
   if (!options.out.empty()) save_poses(options.out, poses_of(views));

@@ -222,12 +222,13 @@ py::object propose(Planner& self) {
 }
 
 py::object rank(Planner& self, std::size_t k, const py::object& poses, const py::object& costs,
-                double cost_per_metre, bool together, bool exact, const py::object& measure,
-                const GivenOrNone<Control>& control) {
+                double cost_per_metre, const py::object& current_pose, bool together, bool exact,
+                const py::object& measure, const GivenOrNone<Control>& control) {
   const std::optional<PythonMeasure> own = measure_or_none(measure);
   RankConfig config;
   if (own) config.measure = &*own;
   config.cost_per_metre = cost_per_metre;
+  config.current_pose = optional_pose(current_pose, "current_pose");
   config.together = together;
   config.exact = exact;
   const std::vector<double> own_costs = costs_or_none(costs);
@@ -328,8 +329,8 @@ void bind_planner(py::module_& module) {
            kRegisterFrameDoc)
       .def("propose", &propose, kProposeDoc)
       .def("rank", &rank, "k"_a = 1, py::kw_only(), "poses"_a = py::none(), "costs"_a = py::none(),
-           "cost_per_metre"_a = 0.0, "together"_a = false, "exact"_a = false,
-           "measure"_a = py::none(), "control"_a = py::none(), kRankDoc)
+           "cost_per_metre"_a = 0.0, "current_pose"_a = py::none(), "together"_a = false,
+           "exact"_a = false, "measure"_a = py::none(), "control"_a = py::none(), kRankDoc)
       .def(
           "outcomes",
           [](Planner& self, const py::object& T_world_camera) {

@@ -233,8 +233,11 @@ poses : array_like, (n, 4, 4), optional
 costs : array_like, (n,), optional
     Subtracted from the gains, in their unit.
 cost_per_metre : float
-    Of the way from the last view, in the gain's unit per metre. The combined gain of new surface goes with 1 / voxel**2,
-    and so should this.
+    Of the straight way from ``current_pose``, in the gain's unit per metre. The combined gain of new surface goes with
+    1 / voxel**2, and so should this.
+current_pose : array_like, (4, 4), optional
+    Where the camera is, T_world_camera; only its centre counts. By default the pose of the last frame, whether it could
+    be used or not, or of a later ``tried`` that was reached. A plan begins there, too.
 together : bool
     Each view by what it adds to those before it, so that no two show the same; not with measure.
 exact : bool

@@ -7,7 +7,7 @@
 
 `python` blocks share their names; `sh` blocks run by bash with the program in PATH; a `toml` block is the file that its first
 line names; `console` blocks name scripts, presets and targets that are there. `cpp` blocks are compiled by
-another test. Needs PYTHONPATH.
+another test. Git ignores what the blocks write. Needs PYTHONPATH.
 """
 import json
 import os
@@ -71,6 +71,7 @@ def main():
                 check_console(source, block, where)
             ran += 1
         os.chdir(source)
+        subprocess.run([source / "tests/root_test.py", source, "--written", folder], check=True)
     assert ran == len(blocks)
     print(f"{ran} blocks of {page.relative_to(source)}")
 

@@ -151,8 +151,8 @@ TEST(CPlanner, SaysWhatTheOtherSays) {
 
       std::array<vg_ranked_view, 3> best{};
       size_t found = 0;
-      ASSERT_EQ(vg_planner_rank(planner, 3, nullptr, 0, 2.0, best.data(), sizeof best[0], &found,
-                                nullptr),
+      ASSERT_EQ(vg_planner_rank(planner, 3, nullptr, 0, 2.0, nullptr, best.data(), sizeof best[0],
+                                &found, nullptr),
                 VG_OK)
           << vg_last_error();
       const Ranking ranking = own.rank(3, {.cost_per_metre = 2.0});
@@ -164,6 +164,24 @@ TEST(CPlanner, SaysWhatTheOtherSays) {
         EXPECT_EQ(best[i].T_world_camera[3], ranking.views[i].T_world_camera.m[3]);
         EXPECT_EQ(best[i].T_world_camera[15], 1);
       }
+      // From elsewhere.
+      const Pose home = look_at({0.3, -0.2, 0.9}, {0, 0, 0});
+      ASSERT_EQ(vg_planner_rank(planner, 3, nullptr, 0, 500.0, numbers_of({home}).data(),
+                                best.data(), sizeof best[0], &found, nullptr),
+                VG_OK)
+          << vg_last_error();
+      const Ranking from_home = own.rank(3, {.cost_per_metre = 500.0, .current_pose = home});
+      ASSERT_EQ(found, from_home.views.size());
+      for (std::size_t i = 0; i < found; ++i) {
+        EXPECT_EQ(best[i].index, from_home.views[i].index);
+        EXPECT_EQ(best[i].worth, from_home.views[i].worth);
+        const double way =
+            (from_home.views[i].T_world_camera.translation() - home.translation()).norm();
+        EXPECT_NEAR(best[i].worth, best[i].gain - 500 * way, 1e-9);
+      }
+      ASSERT_EQ(vg_planner_rank(planner, 3, nullptr, 0, 2.0, nullptr, best.data(), sizeof best[0],
+                                &found, nullptr),
+                VG_OK);
       ASSERT_EQ(vg_planner_tried(planner, best[0].T_world_camera, 0), VG_OK);
       own.tried(ranking.views[0].T_world_camera, false);
       ASSERT_EQ(vg_planner_propose(planner, &candidates, dropped.data(), dropped.size()), VG_OK);
@@ -174,10 +192,27 @@ TEST(CPlanner, SaysWhatTheOtherSays) {
       ASSERT_EQ(vg_planner_load(path.c_str(), &c.sensor, &c.config, &planner), VG_OK);
       ASSERT_EQ(vg_planner_add_poses(planner, poses.data(), scene.views.size()), VG_OK);
       ASSERT_EQ(vg_planner_rank_poses(planner, poses.data(), scene.views.size(), 1, nullptr, 0, 0,
-                                      best.data(), sizeof best[0], &found, nullptr),
+                                      nullptr, best.data(), sizeof best[0], &found, nullptr),
                 VG_OK);
       EXPECT_EQ(best[0].index, own.rank(scene.views, 1).views.front().index);
     }
+    // A frame that is left out says where the camera is, too.
+    const Pose& left_out = scene.views[8];
+    ASSERT_EQ(vg_planner_drop(planner, VG_FRAME_UNREADABLE, numbers_of({left_out}).data()), VG_OK);
+    own.drop(FrameVerdict::unreadable, left_out);
+    vg_ranked_view best{};
+    size_t found = 0;
+    ASSERT_EQ(vg_planner_rank_poses(planner, poses.data(), scene.views.size(), 1, nullptr, 0, 500,
+                                    nullptr, &best, sizeof best, &found, nullptr),
+              VG_OK);
+    ASSERT_EQ(found, 1U);
+    const RankedView expected = own.rank(scene.views, 1, {.cost_per_metre = 500}).views.front();
+    EXPECT_EQ(best.index, expected.index);
+    EXPECT_EQ(best.worth, expected.worth);
+    EXPECT_NEAR(
+        best.worth,
+        best.gain - 500 * (scene.views[best.index].translation() - left_out.translation()).norm(),
+        1e-9);
     int32_t reason = -1;
     ASSERT_EQ(vg_planner_should_stop(planner, &reason), VG_OK);
     EXPECT_EQ(reason, VG_GO_ON);
@@ -197,12 +232,19 @@ TEST(CPlanner, RefusesWrongUse) {
     EXPECT_EQ(status, VG_INVALID_ARGUMENT) << part;
     EXPECT_NE(std::string(vg_last_error()).find(part), std::string::npos) << vg_last_error();
   };
-  refused(vg_planner_rank(planner, 1, nullptr, 0, 0, &best, sizeof best, &found, nullptr),
+  refused(vg_planner_rank(planner, 1, nullptr, 0, 0, nullptr, &best, sizeof best, &found, nullptr),
           "propose");
   EXPECT_EQ(found, 0U);
-  refused(vg_planner_rank(planner, 1, nullptr, 0, 0, &best, 8, &found, nullptr), "view_size");
-  refused(vg_planner_rank(planner, 1, nullptr, 0, 0, nullptr, sizeof best, &found, nullptr),
-          "views is null");
+  refused(vg_planner_rank(planner, 1, nullptr, 0, 0, nullptr, &best, 8, &found, nullptr),
+          "view_size");
+  refused(
+      vg_planner_rank(planner, 1, nullptr, 0, 0, nullptr, nullptr, sizeof best, &found, nullptr),
+      "views is null");
+  std::vector<double> twice = pose;
+  for (std::size_t k = 0; k < 12; ++k) twice[k] *= 2;
+  refused(vg_planner_rank_poses(planner, pose.data(), 1, 1, nullptr, 0, 1, twice.data(), &best,
+                                sizeof best, &found, nullptr),
+          "current_pose");
   refused(vg_planner_add(planner, nullptr, nullptr, pose.data(), nullptr, nullptr), "depth");
   std::vector<double> bad = pose;
   bad[3] = kNan;
@@ -281,7 +323,7 @@ TEST(CPlanner, AsksItsCallbacks) {
   vg_ranked_view best;
   size_t found = 0;
   EXPECT_EQ(vg_planner_rank_poses(planner, poses.data(), c.scene.views.size(), 1, nullptr, 0, 0,
-                                  &best, sizeof best, &found, &watch),
+                                  nullptr, &best, sizeof best, &found, &watch),
             VG_STOPPED);
   vg_planner_release(planner);
 }

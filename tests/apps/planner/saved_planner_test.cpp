@@ -203,6 +203,8 @@ TEST(SavedPlanner, RefusesWhatIsNone) {
                                                         {"after_choice", "after_thought"},
                                                         {"missed ", "missed 1 "},
                                                         {"missed ", "missed nan"},
+                                                        {"last_pose ", "last_pose 1 "},
+                                                        {"last_pose ", "last_pose inf"},
                                                         {"seen_area", "version 2\nseen_area"}}) {
     std::string text = note;
     ASSERT_NE(text.find(from), std::string::npos) << from;

@@ -96,6 +96,39 @@ def test_says_what_the_parts_say(gain, sensor, camera, poses):
     assert set(planner.seconds) == {"integrate", "snapshot", "candidates", "score"}
 
 
+@pytest.mark.parametrize("gain", ["paper", "combined"])
+def test_ways_begin_where_the_camera_is(gain, sensor, camera, poses, tmp_path):
+    planner = make(sensor, gain=gain, idle_views=0)
+    planner.add_poses(poses)
+    home = viewgain.look_at([0.3, -0.2, 0.9], [0, 0, 0])
+
+    def expect_from(where, planner=planner, **given):
+        proposal = planner.propose().T_world_camera
+        gains = viewgain.GainEvaluator(viewgain.VoxelScene(planner.grid, boxes=[WALL]), sensor, gain=gain).evaluate(proposal)
+        worth = gains - 700 * np.linalg.norm(proposal[:, :3, 3] - where[:3, 3], axis=1)
+        ranking = planner.rank(len(proposal), cost_per_metre=700, exact=True, **given)
+        assert len(ranking.worth) > 5 and ranking.worth[0] == pytest.approx(worth.max(), abs=1e-9)
+        assert np.allclose(ranking.worth, worth[ranking.index], rtol=0, atol=1e-9)
+
+    planner.add(camera.acquire(poses[3], 0)[0], poses[3])
+    expect_from(poses[3])
+    expect_from(home, current_pose=home)
+    empty = np.zeros((48, 64))
+    assert planner.add(empty, poses[7]).verdict not in ("used", "carved")
+    expect_from(poses[7])
+    planner.drop("unreadable", poses[5])
+    planner.drop("no_pose", None)
+    expect_from(poses[5])
+    planner.save(tmp_path / "state.vdb")
+    again = viewgain.ViewPlanner.load(tmp_path / "state.vdb", sensor, voxel_size=0.006, workspace=WORKSPACE, boxes=[WALL],
+                                      jump_edges=False, gain=gain, idle_views=0)
+    again.add_poses(poses)
+    expect_from(poses[5], again)
+    for bad in (2 * home, np.full((4, 4), np.nan), np.eye(3)):
+        with pytest.raises(ValueError, match="current_pose"):
+            planner.rank(cost_per_metre=1, current_pose=bad)
+
+
 def test_views_go_together_and_are_planned(sensor, camera, poses):
     one, ahead = make(sensor), make(sensor, plan=3, take=2)
     for planner in (one, ahead):

@@ -179,19 +179,22 @@ typedef struct vg_ranked_view {
 } vg_ranked_view;
 
 /* The k best candidates of the last proposal, which must have come since the last view, best first.
-   costs: one a candidate, in the gain's unit, or null; cost_per_metre: of the way from the last
-   view, likewise; view_size is sizeof(vg_ranked_view). *found says how many there are. watch or
-   null. */
+   costs: one a candidate, in the gain's unit, or null; cost_per_metre: of the straight way from
+   current_pose, likewise. current_pose is where the camera is, camera to world; null: the pose of
+   the last frame, whether it could be used or not, or of a later vg_planner_tried() that was
+   reached. view_size is sizeof(vg_ranked_view). *found says how many there are. watch or null. */
 VG_API vg_status vg_planner_rank(vg_planner* planner, size_t k, const double* costs,
-                                 size_t cost_count, double cost_per_metre, vg_ranked_view* views,
+                                 size_t cost_count, double cost_per_metre,
+                                 const double current_pose[16], vg_ranked_view* views,
                                  size_t view_size, size_t* found, const vg_watch* watch);
 
 /* The same of any poses; nobody looks whether they are possible. Bad ones are left out. Says
    nothing to vg_planner_should_stop(). */
 VG_API vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses, size_t count,
                                        size_t k, const double* costs, size_t cost_count,
-                                       double cost_per_metre, vg_ranked_view* views,
-                                       size_t view_size, size_t* found, const vg_watch* watch);
+                                       double cost_per_metre, const double current_pose[16],
+                                       vg_ranked_view* views, size_t view_size, size_t* found,
+                                       const vg_watch* watch);
 
 /* Why a pose's gain is what it is on the map as it stands: what becomes of its rays. */
 VG_API vg_status vg_planner_outcomes(vg_planner* planner, const double T_world_camera[16],

@@ -11,7 +11,8 @@
 namespace viewgain::detail {
 namespace {
 
-constexpr std::uint64_t kVersion = 2;
+constexpr std::uint64_t kVersion = 3;
+constexpr std::uint64_t kOldest = 2;  // without last_pose
 constexpr std::uint64_t kMost = std::uint64_t{1} << 53;
 constexpr std::array kReasons{StopReason::gain,          StopReason::area,        StopReason::cost,
                               StopReason::no_candidates, StopReason::unreachable, StopReason::idle,
@@ -88,7 +89,7 @@ constexpr std::array kEntries{
     Entry{"version", 2},       Entry{"seen_area", 2}, Entry{"before_choice", 13},
     Entry{"after_choice", 13}, Entry{"frames", 3},    Entry{"reached", 13},
     Entry{"missed", 13},       Entry{"planned", 13},  Entry{"promised", 13},
-    Entry{"of_view", 2},       Entry{"of_choice", 2}};
+    Entry{"of_view", 2},       Entry{"of_choice", 2}, Entry{"last_pose", 13}};
 
 }  // namespace
 
@@ -104,6 +105,7 @@ std::string text_of(const PlannerState& state) {
   }
   for (const Pose& pose : state.reached) text += line_of("reached", pose);
   for (const Pose& pose : state.missed) text += line_of("missed", pose);
+  if (state.last_pose) text += line_of("last_pose", *state.last_pose);
   for (const Pose& pose : state.planned) text += line_of("planned", pose);
   if (state.promised) text += line_of("promised", *state.promised);
   text += line_of("of_view", state.of_view);
@@ -126,9 +128,12 @@ PlannerState state_of(const std::string& name, std::string_view text) {
                   " values, not " + std::to_string(kEntries[at].words - 1));
     }
     if (at < 4 && at != needed++) reader.fail("entry " + quoted(key) + " is not in its place");
-    if (key == "version" && reader.count(1, kMost) != kVersion) {
-      reader.fail("a planner's state of version " + std::to_string(reader.count(1, kMost)) +
-                  "; this library reads version " + std::to_string(kVersion));
+    if (key == "version") {
+      const std::uint64_t version = reader.count(1, kMost);
+      if (version >= kOldest && version <= kVersion) continue;
+      reader.fail("a planner's state of version " + std::to_string(version) +
+                  "; this library reads versions " + std::to_string(kOldest) + " to " +
+                  std::to_string(kVersion));
     } else if (key == "seen_area") {
       state.seen_area = reader.number(1);
     } else if (key == "before_choice") {
@@ -141,6 +146,8 @@ PlannerState state_of(const std::string& name, std::string_view text) {
       state.reached.push_back(pose_of(reader));
     } else if (key == "missed") {
       state.missed.push_back(pose_of(reader));
+    } else if (key == "last_pose") {
+      state.last_pose = pose_of(reader);
     } else if (key == "planned") {
       state.planned.push_back(pose_of(reader));
     } else if (key == "promised") {

@@ -34,6 +34,14 @@ bool has_costs(const RankConfig& config) {
   return !config.costs.empty() || config.cost_per_metre > 0;
 }
 
+std::optional<Eigen::Vector3d> begin_of_ways(const RankConfig& config) {
+  if (!config.current_pose) return std::nullopt;
+  if (!rigid_pose(*config.current_pose)) {
+    refuse("current_pose is not a rigid transform of finite numbers");
+  }
+  return config.current_pose->translation();
+}
+
 // In the order of the tour.
 Ranking ranking_of(ViewTour tour, std::span<const Pose> T_world_camera) {
   Ranking ranking;
@@ -111,18 +119,19 @@ void PlanAhead::check() const {
   }
 }
 
-std::vector<double> view_costs(std::span<const Pose> poses, const RankConfig& config,
-                               const std::optional<Eigen::Vector3d>& here) {
+std::vector<double> view_costs(std::span<const Pose> poses, const RankConfig& config) {
   if (!std::isfinite(config.cost_per_metre) || config.cost_per_metre < 0) {
     refuse("cost_per_metre " + short_text(config.cost_per_metre) +
            " must be at least 0 and finite");
   }
+  const std::optional<Eigen::Vector3d> here = begin_of_ways(config);
   std::vector<double> costs(config.costs.begin(), config.costs.end());
   if (config.cost_per_metre == 0 || !here) return costs;
   if (costs.empty()) costs.resize(poses.size());
   if (costs.size() != poses.size()) return costs;  // best() refuses them
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const double way = (poses[i].translation() - *here).norm();
+    const Eigen::Vector3d to = poses[i].translation() - *here;
+    const double way = std::hypot(to.x(), to.y(), to.z());  // finite however far it is
     // A bad pose is left out whatever the way to it.
     if (std::isfinite(way)) costs[i] += config.cost_per_metre * way;
   }
@@ -130,9 +139,8 @@ std::vector<double> view_costs(std::span<const Pose> poses, const RankConfig& co
 }
 
 Ranking rank_views(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
-                   std::size_t k, const RankConfig& config,
-                   const std::optional<Eigen::Vector3d>& here, const BatchControl& control) {
-  const std::vector<double> costs = view_costs(T_world_camera, config, here);
+                   std::size_t k, const RankConfig& config, const BatchControl& control) {
+  const std::vector<double> costs = view_costs(T_world_camera, config);
   if (config.together) {
     refuse_measures(config);
     Ranking chosen = set_of(evaluator, T_world_camera, k, costs, config.exact, control);
@@ -163,9 +171,10 @@ Ranking rank_views(const GainEvaluator& evaluator, std::span<const Pose> T_world
 
 Ranking plan_views(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
                    const PlanAhead& ahead, double surface_area, const RankConfig& config,
-                   const std::optional<Eigen::Vector3d>& here, const BatchControl& control) {
+                   const BatchControl& control) {
   ahead.check();
   refuse_measures(config);
+  const std::optional<Eigen::Vector3d> here = begin_of_ways(config);
   const Pose start = here ? Pose(Eigen::Matrix3d::Identity(), *here) : Pose();
   TourConfig tour{.max_stops = ahead.plan,
                   .way = straight_ways(start, T_world_camera),
@@ -184,7 +193,7 @@ Ranking plan_views(const GainEvaluator& evaluator, std::span<const Pose> T_world
     for (const RankedView& view : planned.views) planned.worth += view.worth;
   }
   if (!planned.views.empty() || !planned.complete) return planned;
-  return rank_views(evaluator, T_world_camera, 1, config, here, control);
+  return rank_views(evaluator, T_world_camera, 1, config, control);
 }
 
 void keep_worth(const GainEvaluator& evaluator, const PlanAhead& ahead, double surface_area,
@@ -200,13 +209,11 @@ void keep_worth(const GainEvaluator& evaluator, const PlanAhead& ahead, double s
 }
 
 Ranking rank_in_turn(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
-                     RankConfig config, const std::optional<Eigen::Vector3d>& here,
-                     const BatchControl& control) {
+                     RankConfig config, const BatchControl& control) {
   refuse_measures(config);
   config.exact = true;
   config.together = false;
-  Ranking ranking =
-      rank_views(evaluator, T_world_camera, T_world_camera.size(), config, here, control);
+  Ranking ranking = rank_views(evaluator, T_world_camera, T_world_camera.size(), config, control);
   ranking.worth = std::numeric_limits<double>::quiet_NaN();
   std::sort(ranking.views.begin(), ranking.views.end(),
             [](const RankedView& a, const RankedView& b) { return a.index < b.index; });

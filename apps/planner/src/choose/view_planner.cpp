@@ -132,6 +132,7 @@ struct ViewPlanner::Impl {
     added.entropy_removed = added.progress.entropy_removed - before;
     seconds = added.update.seconds;
     proposal.reset();
+    if (T_world_camera && rigid_pose(*T_world_camera)) state.last_pose = T_world_camera;
     pass_planned(T_world_camera);
     forget_promise_unless_kept_at(T_world_camera);
     StopRules rules(planning, state.after_choice);
@@ -171,11 +172,10 @@ struct ViewPlanner::Impl {
   }
 
   Ranking plan(std::span<const Pose> poses, const RankConfig& rank_config,
-               const std::optional<Eigen::Vector3d>& here, const BatchControl& control) {
+               const BatchControl& control) {
     const GainEvaluator& by = current_evaluator();
-    return is_of_plan
-               ? rank_in_turn(by, poses, rank_config, here, control)
-               : plan_views(by, poses, config.ahead, state.seen_area, rank_config, here, control);
+    return is_of_plan ? rank_in_turn(by, poses, rank_config, control)
+                      : plan_views(by, poses, config.ahead, state.seen_area, rank_config, control);
   }
 
   // A view from elsewhere was not what promised.
@@ -207,19 +207,17 @@ struct ViewPlanner::Impl {
     state.after_choice = rules.memory();
   }
 
-  Ranking rank(std::span<const Pose> poses, std::size_t k, const RankConfig& rank_config,
+  Ranking rank(std::span<const Pose> poses, std::size_t k, RankConfig rank_config,
                const BatchControl& control, const Proposal* from) {
     require_a_usable_frame();
     const Stopwatch watch;
-    const std::vector<Pose>& views = map.grid().views();
-    std::optional<Eigen::Vector3d> here;
-    if (!views.empty()) here = views.back().translation();
+    if (!rank_config.current_pose) rank_config.current_pose = state.last_pose;
     const GainEvaluator& by = current_evaluator();
     const bool plans = from != nullptr && config.ahead.is_on();
     // The first one says why to end, whatever k.
     Ranking ranking =
-        plans ? plan(poses, rank_config, here, control)
-              : rank_views(by, poses, std::max<std::size_t>(k, 1), rank_config, here, control);
+        plans ? plan(poses, rank_config, control)
+              : rank_views(by, poses, std::max<std::size_t>(k, 1), rank_config, control);
     if (from != nullptr && ranking.complete) {
       state.promised.reset();
       if (!ranking.views.empty()) state.promised = ranking.views.front().T_world_camera;
@@ -301,7 +299,8 @@ const Proposal& ViewPlanner::propose() {
   if (!m.state.planned.empty()) proposal = m.planned_proposal();
   m.is_of_plan = !proposal.candidates.empty();
   if (!m.is_of_plan) {
-    proposal = m.proposer.propose(m.map.grid(), m.map.scene(), m.state.reached, m.state.missed);
+    proposal = m.proposer.propose(m.map.grid(), m.map.scene(), m.state.last_pose.value_or(Pose()),
+                                  m.state.reached, m.state.missed);
   }
   m.state.of_choice.reset();
   m.state.after_choice = m.state.before_choice;
@@ -335,6 +334,7 @@ Ranking ViewPlanner::rank(std::span<const Pose> T_world_camera, std::size_t k,
 void ViewPlanner::tried(const Pose& T_world_camera, bool reached) {
   check_rigid(T_world_camera, "the pose that was tried");
   (reached ? impl_->state.reached : impl_->state.missed).push_back(T_world_camera);
+  if (reached) impl_->state.last_pose = T_world_camera;
   if (!impl_->proposal) return;
   impl_->proposer.drop(T_world_camera, reached ? infeasibility_name(Infeasibility::taken) : kMissed,
                        *impl_->proposal);
@@ -378,6 +378,9 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
   }
   auto impl = std::make_unique<Impl>(config, exec, MapModel(std::move(grid), sensor, map, exec));
   impl->state = std::move(state);
+  // A state of version 2 does not say it.
+  const std::vector<Pose>& views = impl->map.grid().views();
+  if (!impl->state.last_pose && !views.empty()) impl->state.last_pose = views.back();
   // The limits are those of today's configuration; what the last choice said stays.
   impl->state.of_view = limit_reached(impl->planning, impl->state.after_choice);
   (void)impl->current_evaluator();

@@ -102,15 +102,15 @@ Proposal ViewProposer::propose_these(const PoseSet& set, const BeliefGrid& grid,
 }
 
 Proposal ViewProposer::propose(const BeliefGrid& grid, std::shared_ptr<const VoxelScene> scene,
-                               std::span<const Pose> reached, std::span<const Pose> missed) {
+                               const Pose& T_world_camera, std::span<const Pose> reached,
+                               std::span<const Pose> missed) {
   checker_ = checker_.with_scene(std::move(scene));
   Proposal proposal;
   std::vector<Candidate> candidates;
   for (const PoseSet& set : sets_) add(set, candidates);
   const std::size_t of_sets = candidates.size();
-  const Pose here = grid.views().empty() ? Pose() : grid.views().back();
   for (const auto& generation : generations_) {
-    Proposal made = generation->generate(here);
+    Proposal made = generation->generate(T_world_camera);
     std::move(made.candidates.begin(), made.candidates.end(), std::back_inserter(candidates));
     for (const auto& [reason, count] : made.dropped) proposal.dropped[reason] += count;
   }

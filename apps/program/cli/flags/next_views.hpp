@@ -52,7 +52,7 @@ struct NextViews {
   GainModel model = kDefaultGain;              ///< of the gains
   std::optional<GainEvaluator::RayOutcomes>
       no_gain{};                        ///< by explain(): candidates' rays, if none gains
-  std::optional<double> plan_metres{};  ///< of a new plan: its way, from the last view on [m]
+  std::optional<double> plan_metres{};  ///< of a new plan: its way, from where the camera is [m]
   bool all_worth = true;                ///< false: other views gain less than they cost
 };
 

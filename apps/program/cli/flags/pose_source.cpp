@@ -102,7 +102,8 @@ void add_cost_options(App& app, CostOptions& options, const std::string& of) {
   app.add_option("--cost-per-metre", options.per_metre, kCostPerMetreHelp);
   app.add_option(
       "--from", options.from,
-      "x,y,z of the camera, world [m]: where ways begin; default: at the map's last view");
+      "x,y,z of the camera, world [m]: where ways begin; default: where the last frame was taken, "
+      "used or not; of a map file: at its last view");
 }
 
 void check(const CostOptions& options, bool has_way) {
@@ -139,9 +140,17 @@ PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {
   return {std::move(list.poses), list.orthonormalized};
 }
 
-std::optional<Eigen::Vector3d> begin_of_ways(const CostOptions& options, const BeliefGrid& grid) {
-  if (!options.from.empty()) return parse_point("--from", options.from);
-  if (!grid.views().empty()) return grid.views().back().translation();
+std::optional<Pose> last_view(const BeliefGrid& grid) {
+  if (grid.views().empty()) return std::nullopt;
+  return grid.views().back();
+}
+
+std::optional<Pose> begin_of_ways(const CostOptions& options,
+                                  const std::optional<Pose>& last_pose) {
+  if (!options.from.empty()) {
+    return Pose(Eigen::Matrix3d::Identity(), parse_point("--from", options.from));
+  }
+  if (last_pose) return last_pose;
   if (options.per_metre > 0) {
     refuse(
         "--cost-per-metre: the map has no view, which would say where the camera is; --from x,y,z "

@@ -45,7 +45,7 @@ void add_pose_options(App& app, PoseOptions& options);
 struct CostOptions {
   std::string file;      ///< --costs: one number a pose
   double per_metre = 0;  ///< --cost-per-metre of the way
-  std::string from;      ///< --from x,y,z: where ways begin; empty: at the map's last view
+  std::string from;      ///< --from x,y,z: where ways begin; empty: at the last pose known
 
   [[nodiscard]] bool none() const { return file.empty() && per_metre == 0; }
 };
@@ -53,13 +53,16 @@ struct CostOptions {
 /// `has_way`: there is one whatever ways cost. Throws Error(invalid_argument), naming the flag.
 void check(const CostOptions& options, bool has_way = false);
 
-/// Where ways begin: at --from, else at the map's last view. Throws Error(invalid_argument) where
-/// ways cost and there is neither.
-[[nodiscard]] std::optional<Eigen::Vector3d> begin_of_ways(const CostOptions& options,
-                                                           const BeliefGrid& grid);
+/// Of a map; nothing: it has none.
+[[nodiscard]] std::optional<Pose> last_view(const BeliefGrid& grid);
+
+/// Where ways begin, of which only the centre counts: at --from, else at `last_pose`. Throws
+/// Error(invalid_argument) where ways cost and there is neither.
+[[nodiscard]] std::optional<Pose> begin_of_ways(const CostOptions& options,
+                                                const std::optional<Pose>& last_pose);
 
 inline constexpr const char* kCostPerMetreHelp =
-    "subtracted for each metre of the way from the map's last view, in the gain's unit";
+    "subtracted for each metre of the way from where the camera is, in the gain's unit";
 /// The flags of CostOptions; `of`: whose costs a file has.
 void add_cost_options(App& app, CostOptions& options, const std::string& of);
 

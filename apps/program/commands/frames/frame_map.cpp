@@ -98,14 +98,15 @@ MapUpdate FrameMap::add(std::size_t index, const Pose& T_world_camera,
     tally_.add(update.counts);
   }
   update.verdict = reading.fault.verdict;
-  count(index, reading.fault);
+  count(index, T_world_camera, reading.fault);
   return update;
 }
 
-void FrameMap::count(std::size_t index, const FrameFault& fault) {
+void FrameMap::count(std::size_t index, const Pose& T_world_camera, const FrameFault& fault) {
   tally_.add(folder_.frames().images[index], fault);
-  const Pose& T_world_camera = folder_.T_world_camera(index);
-  if (!is_in_map(fault.verdict) && rigid_pose(T_world_camera)) tried_.push_back(T_world_camera);
+  if (rigid_pose(T_world_camera)) last_pose_ = T_world_camera;
+  const Pose& reported = folder_.T_world_camera(index);
+  if (!is_in_map(fault.verdict) && rigid_pose(reported)) tried_.push_back(reported);
 }
 
 }  // namespace viewgain::app

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,9 @@ class FrameMap {
   MapUpdate add(std::size_t index);
   MapUpdate add(std::size_t index, const Pose& T_world_camera, const PoseSigma& pose_sigma = {});
   /// The frame is left out for another reason.
-  void drop(std::size_t index, const FrameFault& fault) { count(index, fault); }
+  void drop(std::size_t index, const FrameFault& fault) {
+    count(index, folder_.T_world_camera(index), fault);
+  }
 
   /// Throws as FrameTally::require_any().
   void require_frames(bool needs_surface = false) const {
@@ -60,19 +63,22 @@ class FrameMap {
   [[nodiscard]] const FrameCounts& counts() const noexcept { return tally_.counts(); }
   /// Where frames were taken that brought nothing, as the folder says.
   [[nodiscard]] const std::vector<Pose>& tried() const noexcept { return tried_; }
+  /// Where the last frame was taken, whether it could be used or not; nothing: no pose yet.
+  [[nodiscard]] const std::optional<Pose>& last_pose() const noexcept { return last_pose_; }
   [[nodiscard]] const FrameFolder& folder() const noexcept { return folder_; }
   [[nodiscard]] const MapModelConfig& config() const noexcept { return config_; }
   [[nodiscard]] const MapModel& model() const noexcept { return model_; }
   [[nodiscard]] std::uint64_t masked_pixels() const noexcept { return masked_pixels_; }
 
  private:
-  void count(std::size_t index, const FrameFault& fault);
+  void count(std::size_t index, const Pose& T_world_camera, const FrameFault& fault);
 
   FrameFolder folder_;
   MapModelConfig config_;
   MapModel model_;
   FrameTally tally_;
   std::vector<Pose> tried_;
+  std::optional<Pose> last_pose_;
   std::uint64_t masked_pixels_ = 0;
 };
 

@@ -180,20 +180,21 @@ void warn_of_set_up(const ProposalOptions& options, const Obstacles& obstacles,
 }
 
 NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
-                     const ProposalOptions& options, const BeliefGrid& grid, std::size_t top,
-                     bool quiet) {
+                     const ProposalOptions& options, const std::optional<Pose>& last_pose,
+                     std::size_t top, bool quiet) {
   Progress progress("pose", quiet);
   BatchControl control;
   control.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
   const std::vector<double> costs = costs_of(options, proposal);
-  const RankConfig config{
-      .costs = costs, .cost_per_metre = options.costs.per_metre, .together = true};
+  const RankConfig config{.costs = costs,
+                          .cost_per_metre = options.costs.per_metre,
+                          .current_pose = begin_of_ways(options.costs, last_pose),
+                          .together = true};
   const std::vector<Pose> poses = poses_of(proposal.candidates);
-  const std::optional<Eigen::Vector3d> here = begin_of_ways(options.costs, grid);
   PlanAhead ahead = options.plan.ahead();
   ahead.least_share = 0;  // what adds little is named, too
-  Ranking ranking = ahead.is_on() ? plan_views(evaluator, poses, ahead, 0.0, config, here, control)
-                                  : rank_views(evaluator, poses, top, config, here, control);
+  Ranking ranking = ahead.is_on() ? plan_views(evaluator, poses, ahead, 0.0, config, control)
+                                  : rank_views(evaluator, poses, top, config, control);
   progress.wipe();
   leave_out_gainless(ranking, config);
   const std::size_t found = ranking.views.size();

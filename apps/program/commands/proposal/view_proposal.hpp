@@ -80,10 +80,12 @@ void warn_of_set_up(const ProposalOptions& options, const Obstacles& obstacles,
 
 /// At most `top` candidates that go together (rank_views()), or the first views of a plan
 /// (plan_views()): each with what it adds to those chosen before it, and that less --costs and
-/// --cost-per-metre of the way from the map's last view. Those that add nothing are not among them.
-/// Throws Error(invalid_argument), naming the file and the line, for costs that are not one a pose.
+/// --cost-per-metre of the way from --from, else from `last_pose`. Those that add nothing are not
+/// among them. Throws Error(invalid_argument), naming the file and the line, for costs that are not
+/// one a pose, and as begin_of_ways().
 [[nodiscard]] NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
-                                   const ProposalOptions& options, const BeliefGrid& grid,
-                                   std::size_t top, bool quiet);
+                                   const ProposalOptions& options,
+                                   const std::optional<Pose>& last_pose, std::size_t top,
+                                   bool quiet);
 
 }  // namespace viewgain::app

@@ -157,8 +157,8 @@ class Recording {
     last.proposal = moment.generation.generate(last.T_world_camera);
     views_->add_seconds("candidates", watch.seconds());
     watch = {};
-    next_ = best_views(moment.evaluator, last.proposal, proposal_, moment.model.grid(),
-                       options_.top, options_.common.quiet);
+    next_ = best_views(moment.evaluator, last.proposal, proposal_, map_->last_pose(), options_.top,
+                       options_.common.quiet);
     views_->add_seconds("score", watch.seconds());
     if (!next_.views.empty()) last.decision = DecisionMaking::Decision{next_.views.front().index};
     show(folder, moment);

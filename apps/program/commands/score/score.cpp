@@ -108,8 +108,9 @@ std::vector<double> costs_of(const Options& options, const PoseSource& source,
                              const BeliefGrid& grid) {
   std::vector<double> costs;
   if (!options.costs.file.empty()) costs = read_costs(options.costs.file, source.poses.size());
-  return view_costs(source.poses, {.costs = costs, .cost_per_metre = options.costs.per_metre},
-                    begin_of_ways(options.costs, grid));
+  return view_costs(source.poses, {.costs = costs,
+                                   .cost_per_metre = options.costs.per_metre,
+                                   .current_pose = begin_of_ways(options.costs, last_view(grid))});
 }
 
 // Calls work(control), which shows how far it is. Returns how long it took [s].

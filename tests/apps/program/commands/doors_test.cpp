@@ -139,6 +139,41 @@ TEST_F(Doors, AgreeWithObstaclePlaneAndAReachableBox) {
 
 TEST_F(Doors, AgreeOnAListOfPoses) { EXPECT_FALSE(expect_the_same("poses.toml").empty()); }
 
+// Ways begin where the last frame was taken, though it shows nothing.
+TEST_F(Doors, CountWaysFromAFrameThatCannotBeUsed) {
+  const FrameSequence before = open_frames(dir / "frames");
+  const Pose taken = before.poses[6], last = before.poses[7];
+  ASSERT_GT((taken.translation() - last.translation()).norm(), 0.2);
+  write_png(before.images[7], GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)});
+  const Strings quiet{"--json", "--quiet", "--cost-per-metre", "40", "--top", "3"};
+  const auto flags = test::joined(test::joined(map_flags(), view_flags("")), quiet);
+  const auto call = [&](const Strings& words) {
+    return json::parse(run_well(test::joined(words, flags)));
+  };
+  const auto expect_from = [](const json& said, const Eigen::Vector3d& from) {
+    ASSERT_GT(said["next"].size(), 1U);
+    for (const json& view : said["next"]) {
+      const auto& rows = view["T_world_camera"];
+      const Eigen::Vector3d to(rows[0][3].get<double>(), rows[1][3].get<double>(),
+                               rows[2][3].get<double>());
+      EXPECT_NEAR(view["worth"].get<double>(), view["gain"].get<double>() - 40 * (to - from).norm(),
+                  1e-6);
+    }
+  };
+  expect_from(call({"next", "frames"}), last.translation());
+  expect_from(call({"next", "frames", "--from", "0.1,0.2,0.6"}), {0.1, 0.2, 0.6});
+  expect_from(call({"reconstruct", "frames", "--pictures", "off", "--out", "run"}),
+              last.translation());
+  (void)call({"follow", "frames", "--out", "plan"});
+  expect_from(json::parse(read("plan/next.json")), last.translation());
+  // A map's file knows its views alone.
+  run_well(test::joined(test::joined({"integrate", "frames", "--out", "map.vdb"}, map_flags()),
+                        view_flags("")));
+  expect_from(
+      json::parse(run_well(test::joined(test::joined({"next", "map.vdb"}, view_flags("")), quiet))),
+      taken.translation());
+}
+
 // 30 frames, seven of which cannot be used, each for a reason of its own.
 TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
   fs::remove_all(dir / "frames");

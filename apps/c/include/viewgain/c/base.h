@@ -21,7 +21,7 @@ extern "C" {
 
 /* Grows when something is removed or changes, a struct's size too; new functions leave it as it is.
  */
-#define VG_ABI_VERSION 1
+#define VG_ABI_VERSION 2
 VG_API int32_t vg_abi_version(void); /* of the library */
 VG_API const char* vg_version(void); /* "major.minor.patch" of the library */
 

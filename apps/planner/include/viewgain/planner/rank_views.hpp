@@ -24,9 +24,12 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT RankConfig {
   /// One a pose, subtracted from its gain, in the gain's unit. Empty: none.
   std::span<const double> costs{};
-  /// Of the way from the last view, likewise. The combined gain of a square metre of new surface
-  /// goes with 1 / voxel², so a cost per metre does, too.
+  /// Of the straight way from `current_pose`, likewise. The combined gain of a square metre of new
+  /// surface goes with 1 / voxel², so a cost per metre does, too.
   double cost_per_metre = 0;
+  /// Where the camera is, T_world_camera; only its centre counts. Nothing: ViewPlanner::rank()
+  /// takes the last pose that it was told, functions count no way.
+  std::optional<Pose> current_pose{};
   const ViewMeasure* measure = nullptr;     ///< instead of the gain, as in BestConfig
   const RunMeasure* run_measure = nullptr;  ///< likewise
   /// The views are good together: each is ranked by what it adds to those before it, so that no two
@@ -81,31 +84,29 @@ struct VIEWGAIN_EXPORT Ranking {
   double worth = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What each pose costs by `config`, the way from `here` included; empty: nothing costs. Throws
-/// Error(invalid_argument) for a cost_per_metre that is negative or not finite.
-[[nodiscard]] VIEWGAIN_EXPORT std::vector<double> view_costs(
-    std::span<const Pose> T_world_camera, const RankConfig& config,
-    const std::optional<Eigen::Vector3d>& here);
+/// What each pose costs by `config`, the way from its current_pose included; empty: nothing costs.
+/// Throws Error(invalid_argument) for a cost_per_metre that is negative or not finite, and for a
+/// current_pose that is not rigid (1e-3).
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<double> view_costs(std::span<const Pose> T_world_camera,
+                                                             const RankConfig& config);
 
 /// The k best of the poses, at least one of them wanted, whether they are possible or not. Ties go
-/// to the earlier one; bad poses are left out and, together, those that add nothing. `here` is
-/// where the camera is, from which cost_per_metre counts; nothing: it does not. Throws
-/// Error(invalid_argument) for a cost_per_metre as view_costs(), and as GainEvaluator::best().
+/// to the earlier one; bad poses are left out and, together, those that add nothing. Throws
+/// Error(invalid_argument) as view_costs() and GainEvaluator::best().
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  std::size_t k, const RankConfig& config,
-                                                 const std::optional<Eigen::Vector3d>& here,
                                                  const BatchControl& control = {});
 
 /// At most `ahead.plan` of the poses that are good together, in an order that is short to drive
-/// from `here` on by straight ways (nothing: it begins anywhere), at config.cost_per_metre:
-/// plan_tour(). `surface_area` is what least_share is of [m²]. Poses must be finite. Throws
-/// Error(invalid_argument) as PlanAhead::check(), with a measure, and as plan_tour().
+/// from config.current_pose on by straight ways (nothing: it begins anywhere), at
+/// config.cost_per_metre: plan_tour(). `surface_area` is what least_share is of [m²]. Poses must be
+/// finite. Throws Error(invalid_argument) as PlanAhead::check(), with a measure, and as
+/// view_costs() and plan_tour().
 [[nodiscard]] VIEWGAIN_EXPORT Ranking plan_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  const PlanAhead& ahead, double surface_area,
                                                  const RankConfig& config,
-                                                 const std::optional<Eigen::Vector3d>& here,
                                                  const BatchControl& control = {});
 
 /// Takes the views of a plan out that promise too little on the map as it is now. `surface_area` as
@@ -117,7 +118,6 @@ VIEWGAIN_EXPORT void keep_worth(const GainEvaluator& evaluator, const PlanAhead&
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_in_turn(const GainEvaluator& evaluator,
                                                    std::span<const Pose> T_world_camera,
                                                    RankConfig config,
-                                                   const std::optional<Eigen::Vector3d>& here,
                                                    const BatchControl& control = {});
 
 /// What the stopping rules want to know of a ranking: of its first view what that promises by

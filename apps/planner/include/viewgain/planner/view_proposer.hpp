@@ -86,9 +86,10 @@ class VIEWGAIN_EXPORT ViewProposer {
 
   /// The candidates of the sets and then of the generations, each in their order, that are possible
   /// in `scene`, which is the map's, now that `reached` and `missed` were tried; how many are not,
-  /// and why. Costs as the generations and FeasibilityChecker::check().
+  /// and why. `T_world_camera` is where the camera is, which generations are told. Costs as the
+  /// generations and FeasibilityChecker::check().
   [[nodiscard]] Proposal propose(const BeliefGrid& grid, std::shared_ptr<const VoxelScene> scene,
-                                 std::span<const Pose> reached = {},
+                                 const Pose& T_world_camera, std::span<const Pose> reached = {},
                                  std::span<const Pose> missed = {});
 
   /// Those of a set alone that are possible, by the same rules.
