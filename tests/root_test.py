@@ -21,7 +21,7 @@ NAMES = {
     "pyproject.toml", "raycast", "tests",
 }
 # Pages whose commands a reader runs at the root.
-PAGES = ("README.md", "apps/README.md", "apps/docs/*.md", "apps/docs/tutorials/*.md", "apps/docs/guide/*.md")
+PAGES = ("README.md", "apps/README.md", "apps/docs/**/*.md")
 # What names a file or folder to write.
 WRITES = re.compile(
     r"(?<![\w-])--(?:out|points|save-config|report|picture|prefix)[ =]\"?([\w./$-]+)"
