@@ -7,7 +7,8 @@
 #   apps/install_dependencies.sh --docs     for all that and the documentation site (target `docs`)
 #   apps/install_dependencies.sh --fuzz     for all that --tests is for and libFuzzer
 #   apps/install_dependencies.sh --packages for all that --tests is for and Debian packages
-#   apps/install_dependencies.sh --all      for all of it
+#   apps/install_dependencies.sh --furniture for all that --tests is for and 820 meshes of furniture
+#   apps/install_dependencies.sh --all      for all of it, except the furniture
 # Asks nothing; uses sudo only if not root.
 set -euo pipefail
 
@@ -35,8 +36,9 @@ case "${1:-}" in
   --docs) packages+=("${tests[@]}" "${docs[@]}") ;;
   --fuzz) packages+=("${tests[@]}" "${fuzz[@]}") ;;
   --packages) packages+=("${tests[@]}" dpkg-dev) ;;
+  --furniture) packages+=("${tests[@]}" sweethome3d-furniture) ;;
   --all) packages+=("${tests[@]}" "${perf[@]}" "${browser[@]}" "${fuzz[@]}" "${docs[@]}" dpkg-dev) ;;
-  *) echo "$0: no option $1; there are --tests, --perf, --browser, --docs, --fuzz, --packages and --all" >&2; exit 2 ;;
+  *) echo "$0: no option $1; there are --tests, --perf, --browser, --docs, --fuzz, --packages, --furniture and --all" >&2; exit 2 ;;
 esac
 
 missing=()

@@ -88,8 +88,9 @@ Stage set_stage(const StageConfig& config, const ExecConfig& exec) {
   if (config.size && (!(*config.size > 0) || !std::isfinite(*config.size))) {
     refuse("object size " + short_text(*config.size) + " m is not positive and finite");
   }
-  TriangleMesh mesh = read_mesh(config.mesh, {config.up, true, config.size.value_or(0)});
   Stage stage;
+  TriangleMesh mesh =
+      read_mesh(config.mesh, {config.up, true, config.size.value_or(0)}, &stage.repairs);
   stage.size = config.size ? *config.size : longest_side(bounds_of(mesh));
   if (!(stage.size > 0)) refuse(config.mesh.string() + ": the mesh has no extent");
   if (config.support_plane) {

@@ -129,8 +129,10 @@ void simulate(const Options& options) {
   const PoseSource source = make_poses(options.poses, options.sensing.seed);
   std::optional<Pose> T_world_mesh;
   if (!options.place.empty()) T_world_mesh = parse_place(options.place);
+  MeshRepairs repairs;
   TriangleMesh mesh =
-      read_mesh(options.mesh, placement_of(options.size, options.recenter, options.up));
+      read_mesh(options.mesh, placement_of(options.size, options.recenter, options.up), &repairs);
+  warn_of_repairs(options.mesh, repairs);
   if (T_world_mesh) place(*T_world_mesh, mesh);
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
@@ -171,6 +173,8 @@ void simulate(const Options& options) {
                 {"height", sensor.camera.height},
                 {"sensor", sensor.name},
                 {"triangles", triangles},
+                {"mended_faces", repairs.mended_faces},
+                {"dropped_faces", repairs.dropped_faces},
                 {"readings", counts.readings},
                 {"out_of_range", counts.out_of_range},
                 {"invalid", counts.invalid},

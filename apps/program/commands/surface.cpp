@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
@@ -53,7 +54,10 @@ void check(const Options& options, const App& app) {
 std::shared_ptr<const SurfaceScene> truth_of(const Options& options, const ExecConfig& exec) {
   if (options.truth.empty()) return nullptr;
   const MeshPlacement placement = placement_of(options.size, options.recenter, options.up);
-  return std::make_shared<const SurfaceScene>(read_mesh(options.truth, placement), exec);
+  MeshRepairs repairs;
+  TriangleMesh mesh = read_mesh(options.truth, placement, &repairs);
+  warn_of_repairs(options.truth, repairs);
+  return std::make_shared<const SurfaceScene>(std::move(mesh), exec);
 }
 
 // Which samples any of the views has in sight.

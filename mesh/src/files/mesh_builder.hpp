@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "viewgain/core/triangle_mesh.hpp"
+#include "viewgain/mesh/mesh_io.hpp"
 
 namespace viewgain::detail {
 
@@ -27,9 +28,9 @@ class MeshBuilder {
   void add_corner(double index, std::size_t line);
   void end_face(std::size_t line) { faces_.push_back({corners_.size(), line}); }
 
-  /// Triangles that fill the polygons, none of those with fewer than three corners; vertices that
-  /// no triangle uses are left out.
-  [[nodiscard]] TriangleMesh finish() &&;
+  /// Triangles that fill the polygons, none of those with fewer than three corners or without area;
+  /// vertices that no triangle uses are left out.
+  [[nodiscard]] TriangleMesh finish(MeshRepairs& repairs) &&;
 
  private:
   struct Face {
@@ -45,6 +46,7 @@ class MeshBuilder {
   std::vector<std::uint32_t> corners_;
   std::vector<Face> faces_;
   TriangleMesh mesh_;
+  MeshRepairs repairs_;
 };
 
 /// The mesh of a file's bytes; `name` is the file's, for messages. They throw Error(format) that
@@ -52,17 +54,21 @@ class MeshBuilder {
 
 /// Vertices and faces each on a line of their own, which may go on with colours and normals; or as
 /// words, whatever lines they stand on, as the header says and nothing else.
-[[nodiscard]] TriangleMesh off_mesh(std::string_view bytes, const std::string& name);
+[[nodiscard]] TriangleMesh off_mesh(std::string_view bytes, const std::string& name,
+                                    MeshRepairs& repairs);
 
 /// Of v and f; lines that go on behind a backslash are joined. Free-form surfaces and calls of
 /// other files are refused.
-[[nodiscard]] TriangleMesh obj_mesh(std::string_view bytes, const std::string& name);
+[[nodiscard]] TriangleMesh obj_mesh(std::string_view bytes, const std::string& name,
+                                    MeshRepairs& repairs);
 
 /// ASCII, words in any case, or binary; equal points are one vertex.
-[[nodiscard]] TriangleMesh stl_mesh(std::string_view bytes, const std::string& name);
+[[nodiscard]] TriangleMesh stl_mesh(std::string_view bytes, const std::string& name,
+                                    MeshRepairs& repairs);
 
 /// Vertices with x, y, z and lists vertex_indices or vertex_index of faces and strips of triangles,
 /// whatever else the file holds.
-[[nodiscard]] TriangleMesh ply_mesh(std::string_view bytes, const std::string& name);
+[[nodiscard]] TriangleMesh ply_mesh(std::string_view bytes, const std::string& name,
+                                    MeshRepairs& repairs);
 
 }  // namespace viewgain::detail

@@ -26,7 +26,7 @@ std::string lower_case_extension(const std::filesystem::path& path) {
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::filesystem::path& path) {
+TriangleMesh read_mesh(const std::filesystem::path& path, MeshRepairs* repairs) {
   const std::string name = path.string();
   const std::string extension = lower_case_extension(path);
   if (extension != ".off" && extension != ".obj" && extension != ".stl" && extension != ".ply") {
@@ -36,14 +36,17 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
   // Some editors put a byte order mark before text; no format of ours begins with one.
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
   if (bytes.empty()) throw Error(ErrorCode::format, name + ": the file is empty");
-  if (extension == ".off") return detail::off_mesh(bytes, name);
-  if (extension == ".obj") return detail::obj_mesh(bytes, name);
-  if (extension == ".stl") return detail::stl_mesh(bytes, name);
-  return detail::ply_mesh(bytes, name);
+  MeshRepairs unasked;
+  MeshRepairs& made = repairs != nullptr ? *repairs : unasked;
+  if (extension == ".off") return detail::off_mesh(bytes, name, made);
+  if (extension == ".obj") return detail::obj_mesh(bytes, name, made);
+  if (extension == ".stl") return detail::stl_mesh(bytes, name, made);
+  return detail::ply_mesh(bytes, name, made);
 }
 
-TriangleMesh read_mesh(const std::filesystem::path& path, const MeshPlacement& placement) {
-  TriangleMesh mesh = read_mesh(path);
+TriangleMesh read_mesh(const std::filesystem::path& path, const MeshPlacement& placement,
+                       MeshRepairs* repairs) {
+  TriangleMesh mesh = read_mesh(path, repairs);
   try {
     return placed(std::move(mesh), placement);
   } catch (const Error& error) {

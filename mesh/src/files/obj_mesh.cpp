@@ -25,7 +25,7 @@ class ObjReader {
  public:
   ObjReader(std::string_view bytes, const std::string& name) : lines_(name, bytes), mesh_(name) {}
 
-  TriangleMesh read() {
+  TriangleMesh read(MeshRepairs& repairs) {
     while (next_statement()) {
       const std::string_view keyword = words_[0];
       if (keyword == "v") {
@@ -41,7 +41,7 @@ class ObjReader {
         lines_.fail("the word " + quoted(keyword) + " begins no line of an OBJ file");
       }
     }
-    return std::move(mesh_).finish();
+    return std::move(mesh_).finish(repairs);
   }
 
  private:
@@ -114,9 +114,9 @@ class ObjReader {
 
 }  // namespace
 
-TriangleMesh obj_mesh(std::string_view bytes, const std::string& name) {
+TriangleMesh obj_mesh(std::string_view bytes, const std::string& name, MeshRepairs& repairs) {
   std::string copy;
-  return ObjReader(with_one_line_end(bytes, copy), name).read();
+  return ObjReader(with_one_line_end(bytes, copy), name).read(repairs);
 }
 
 }  // namespace viewgain::detail

@@ -21,11 +21,11 @@ class OffReader {
   OffReader(std::string_view bytes, const std::string& name)
       : lines_(name, bytes), words_(lines_), mesh_(name) {}
 
-  TriangleMesh read() {
+  TriangleMesh read(MeshRepairs& repairs) {
     read_keyword();
     read_counts();
     read_rows();
-    return std::move(mesh_).finish();
+    return std::move(mesh_).finish(repairs);
   }
 
  private:
@@ -139,8 +139,8 @@ class OffReader {
 
 }  // namespace
 
-TriangleMesh off_mesh(std::string_view bytes, const std::string& name) {
-  return OffReader(bytes, name).read();
+TriangleMesh off_mesh(std::string_view bytes, const std::string& name, MeshRepairs& repairs) {
+  return OffReader(bytes, name).read(repairs);
 }
 
 }  // namespace viewgain::detail

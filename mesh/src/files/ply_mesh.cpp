@@ -53,7 +53,7 @@ void add_strips(MeshBuilder& mesh, std::span<const double> corners, std::size_t 
 
 }  // namespace
 
-TriangleMesh ply_mesh(std::string_view bytes, const std::string& name) {
+TriangleMesh ply_mesh(std::string_view bytes, const std::string& name, MeshRepairs& repairs) {
   PlyFile file(bytes, name);
   const auto vertices = find_element(file, "vertex", "vertices");
   const auto faces = find_element(file, "face", "faces");
@@ -82,7 +82,7 @@ TriangleMesh ply_mesh(std::string_view bytes, const std::string& name) {
       add_strips(mesh, row.list(of_strips), line);
     }
   });
-  return std::move(mesh).finish();
+  return std::move(mesh).finish(repairs);
 }
 
 }  // namespace viewgain::detail

@@ -38,7 +38,7 @@ class StlMesh {
     mesh_.add_corner(static_cast<double>(found->second), line);
   }
   void end_face(std::size_t line) { mesh_.end_face(line); }
-  TriangleMesh finish() && { return std::move(mesh_).finish(); }
+  TriangleMesh finish(MeshRepairs& repairs) && { return std::move(mesh_).finish(repairs); }
 
  private:
   struct Hash {
@@ -58,7 +58,7 @@ class StlText {
   StlText(std::string_view bytes, const std::string& name)
       : lines_(name, bytes), words_(lines_), mesh_(name) {}
 
-  TriangleMesh read() {
+  TriangleMesh read(MeshRepairs& repairs) {
     while (words_.more()) {
       if (is_next("facet")) {
         read_facet();
@@ -73,7 +73,7 @@ class StlText {
         fail_at("facet");
       }
     }
-    return std::move(mesh_).finish();
+    return std::move(mesh_).finish(repairs);
   }
 
  private:
@@ -123,7 +123,8 @@ class StlText {
   StlMesh mesh_;
 };
 
-TriangleMesh binary_stl_mesh(std::string_view bytes, std::uint64_t count, const std::string& name) {
+TriangleMesh binary_stl_mesh(std::string_view bytes, std::uint64_t count, const std::string& name,
+                             MeshRepairs& repairs) {
   StlMesh mesh(name);
   for (std::uint64_t t = 0; t < count; ++t) {
     const char* at = bytes.data() + kStlBody + t * kStlTriangle + 12;  // behind the normal
@@ -134,7 +135,7 @@ TriangleMesh binary_stl_mesh(std::string_view bytes, std::uint64_t count, const 
     }
     mesh.end_face(0);
   }
-  return std::move(mesh).finish();
+  return std::move(mesh).finish(repairs);
 }
 
 // Files of both kinds begin with "solid"; no text has the size that its bytes 80 to 83 would say.
@@ -155,7 +156,7 @@ bool is_stl_text(std::string_view bytes, std::uint64_t promised, bool has_nul) {
 
 }  // namespace
 
-TriangleMesh stl_mesh(std::string_view bytes, const std::string& name) {
+TriangleMesh stl_mesh(std::string_view bytes, const std::string& name, MeshRepairs& repairs) {
   std::uint64_t promised = 0;
   if (bytes.size() >= kStlBody) {
     constexpr ScalarType kCount{ScalarType::Kind::unsigned_integer, 4};
@@ -164,7 +165,7 @@ TriangleMesh stl_mesh(std::string_view bytes, const std::string& name) {
   const bool has_nul = bytes.find('\0') != std::string_view::npos;
   if (is_stl_text(bytes, promised, has_nul)) {
     std::string copy;
-    return StlText(with_one_line_end(bytes, copy), name).read();
+    return StlText(with_one_line_end(bytes, copy), name).read(repairs);
   }
   const auto fail = [&](const std::string& what) {
     throw Error(ErrorCode::format, name + ": " + what);
@@ -178,7 +179,7 @@ TriangleMesh stl_mesh(std::string_view bytes, const std::string& name) {
     fail("the header promises " + std::to_string(promised) + " triangles, the file holds " +
          std::to_string(held));
   }
-  return binary_stl_mesh(bytes, promised, name);
+  return binary_stl_mesh(bytes, promised, name, repairs);
 }
 
 }  // namespace viewgain::detail

@@ -101,8 +101,10 @@ Rows off_rows() {
            kArea, -kVolume),
       mesh("mixed.off", with(kOff, "4 0 3 2 1", "4 1 2 3 0"), 8, 12, kArea, kVolume),
       mesh("duplicates.off", off_of("6 2 0", triangle + triangle, "3 0 1 2\n3 3 5 4\n"), 6, 2, 1),
-      mesh("no_area.off", off_of("3 3 0", triangle, "3 0 1 2\n3 0 0 1\n3 1 1 1\n"), 3, 3, 0.5),
+      mesh("no_area.off", off_of("3 3 0", triangle, "3 0 1 2\n3 0 0 1\n3 1 1 1\n"), 3, 1, 0.5),
       mesh("edges_and_points.off", off_of("3 3 0", triangle, "3 0 1 2\n2 0 1\n1 2\n"), 3, 1, 0.5),
+      refused("no_area_at_all.off", "none of the mesh's faces has an area",
+              off_of("3 2 0", triangle, "3 0 0 1\n3 1 1 1\n")),
       refused("only_edges.off", "no faces", off_of("2 1 0", "0 0 0\n1 0 0\n", "2 0 1\n")),
       refused("no_faces.off", "no faces", off_of("8 0 0", kVertices, "")),
       refused("four.off", "four.off:1: vertices of other than 3", with(kOff, "OFF", "4OFF")),
@@ -177,26 +179,28 @@ Rows obj_rows() {
            "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\n"
            "f 1 2 3 4 1 5 6 7 8 5\n",
            8, 8, 12),
-      mesh("touching.obj", "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 -1e-10 0\nv 0 4 0\nf 1 2 3 4 5\n", 5, 3,
+      mesh("touching.obj", "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 -1e-10 0\nv 0 4 0\nf 1 2 3 4 5\n", 7, 3,
            8),
       mesh("in_a_line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n", 5, 3, 4),
-      mesh("twice.obj", square + "f 1 2 2 3 4\n", 4, 3, 1),
-      mesh("no_area.obj", square + "v 2 0 0\nv 3 0 0\nf 1 2 5 6\nf 1 2 3\n", 5, 3, 0.5),
+      mesh("twice.obj", square + "f 1 2 2 3 4\n", 4, 2, 1),
+      mesh("no_area.obj", square + "v 2 0 0\nv 3 0 0\nf 1 2 5 6\nf 1 2 3\n", 3, 1, 0.5),
       mesh("two_corners.obj", square + "f 1 2\nf 1 2 3\n", 3, 1, 0.5),
-      refused("crossing.obj", ":5: face 0 crosses itself",
-              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1.5 0\nf 1 2 3 4\n"),
-      refused("star.obj", ":6: face 0 crosses itself",
-              "v 0 5 0\nv 3 -4 0\nv -5 2 0\nv 5 2 0\nv -3 -4 0\nf 1 2 3 4 5\n"),
-      refused("wound.obj", ":8: face 0 crosses itself",
-              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 2 0 0\nv .2 2 0\n"
-              "f 1 2 3 4 5 6 7\n"),
-      // Once round the first corner, which it touches again, and more than once.
+      mesh("crossing.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1.5 0\nf 1 2 3 4\n", 5, 2, 0.6),
+      mesh("star.obj", "v 0 5 0\nv 3 -4 0\nv -5 2 0\nv 5 2 0\nv -3 -4 0\nf 1 2 3 4 5\n", 10, 8,
+           29.85),
+      // More than once round the first corner.
+      mesh("wound.obj",
+           "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 2 0 0\nv .2 2 0\n"
+           "f 1 2 3 4 5 6 7\n",
+           8, 8, 4 + 1.0 / 22),
+      // Once round the first corner, which it touches again.
       mesh("once_round.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3 4 5 2\n", 5, 4,
            2),
       // Through the middle of its first edge by a corner.
-      refused("spiral.obj", ":9: face 0 crosses itself",
-              "v 0 0 0\nv 4 0 0\nv 0 4 0\nv -3 0 0\nv 0 -3 0\nv 2 0 0\nv 0 2 0\nv -1 0 0\n"
-              "f 1 2 3 4 5 6 7 8\n"),
+      mesh("spiral.obj",
+           "v 0 0 0\nv 4 0 0\nv 0 4 0\nv -3 0 0\nv 0 -3 0\nv 2 0 0\nv 0 2 0\nv -1 0 0\n"
+           "f 1 2 3 4 5 6 7 8\n",
+           8, 9, 21.5),
       refused("zero.obj", "zero.obj:9: index 0 is out of range", change("f 1 4", "f 0 4")),
       refused("large.obj", "large.obj:9: face 0 has an index out of range, the file has 8 vertices",
               change("f 1 4", "f 9 4")),

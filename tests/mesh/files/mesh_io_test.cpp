@@ -15,33 +15,18 @@
 #include "core/expect_error.hpp"
 #include "core/temporary_folder.hpp"
 #include "mesh/files/mesh_dialects.hpp"
+#include "mesh/files/mesh_measures.hpp"
 
 namespace viewgain {
 namespace {
 
+using test::cross;
+using test::dot;
 using test::expect_error;
-using Point = std::array<double, 3>;
-
-Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-struct Measures {
-  double area = 0, volume = 0;
-};
-
-Measures measures_of(const TriangleMesh& mesh) {
-  Measures m;
-  for (const auto& t : mesh.triangles) {
-    const Point &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    const Point normal = cross(minus(b, a), minus(c, a));
-    m.area += std::sqrt(dot(normal, normal)) / 2;
-    m.volume += dot(a, cross(b, c)) / 6;
-  }
-  return m;
-}
+using test::Measures;
+using test::measures_of;
+using test::minus;
+using test::Point;
 
 class MeshIo : public testing::Test {
  protected:
@@ -76,7 +61,7 @@ TEST_F(MeshIo, EveryDialectIsReadOrRefused) {
       EXPECT_EQ(said.find('\n'), said.npos) << said;
     }
   }
-  EXPECT_EQ(rows, 203U);
+  EXPECT_EQ(rows, 204U);
 }
 
 // Polygons with a random radius for each direction, in a random plane, against points in them.
@@ -128,31 +113,6 @@ TEST_F(MeshIo, PolygonsAreFilledOnce) {
   // Some lie within rounding of an edge.
   EXPECT_GE(points, 60U * 200 - 3);
   EXPECT_GT(inside, 2000U);
-}
-
-TEST_F(MeshIo, LargePolygons) {
-  // A comb: a fan would fill the gaps between its teeth.
-  double twice_area = 0;
-  const auto comb = [&](int teeth) {
-    const int corners = 2 * teeth + 1;
-    const auto at = [teeth](int i) {
-      return i == 2 * teeth ? std::pair(teeth, -3 * teeth) : std::pair(i, i % 2);
-    };
-    std::string text = "OFF " + std::to_string(corners) + " 1\n", face = std::to_string(corners);
-    for (int i = 0; i < corners; ++i) {
-      const auto [x, y] = at(i);
-      const auto [next_x, next_y] = at((i + 1) % corners);
-      text += std::to_string(x) + ' ' + std::to_string(y) + " 0\n";
-      face += ' ' + std::to_string(i);
-      twice_area += static_cast<double>(x) * next_y - static_cast<double>(y) * next_x;
-    }
-    return folder_.file("comb.off", text + face);
-  };
-  const TriangleMesh mesh = read_mesh(comb(2000));
-  EXPECT_EQ(mesh.triangles.size(), 3999U);
-  EXPECT_NEAR(measures_of(mesh).area, std::abs(twice_area) / 2, 1e-9 * std::abs(twice_area));
-  expect_error(ErrorCode::format, ":10003: face 0 has reflex corners among more than 10000",
-               [&] { (void)read_mesh(comb(5000)); });
 }
 
 TEST_F(MeshIo, FilesThatAreNotThere) {
@@ -209,9 +169,9 @@ TEST_F(MeshIo, Placement) {
   EXPECT_THROW((void)placed(box, {.longest_side = std::nan("")}), Error);
   expect_error(ErrorCode::invalid_argument, path.string() + ": the longest side must be",
                [&] { (void)read_mesh(path, {.longest_side = -1e-9}); });
-  const auto point = folder_.file("point.off", "OFF\n3 1 0\n1 1 1\n1 1 1\n1 1 1\n3 0 1 2\n");
-  expect_error(ErrorCode::invalid_argument, point.string() + ": the mesh has no extent to scale",
-               [&] { (void)read_mesh(point, {.longest_side = 1}); });
+  expect_error(ErrorCode::invalid_argument, "the mesh has no extent to scale", [] {
+    (void)placed({{{1, 1, 1}, {1, 1, 1}}, {{0, 0, 1}}}, {.longest_side = 1});
+  });
 }
 
 }  // namespace

@@ -77,7 +77,9 @@ Obstacles obstacles_of(const std::vector<std::string>& values) {
   Obstacles obstacles;
   for (const std::string& value : values) {
     if (is_obstacle_file(value)) {
-      obstacles.meshes.push_back(read_mesh(value));
+      MeshRepairs repairs;
+      obstacles.meshes.push_back(read_mesh(value, &repairs));
+      warn_of_repairs(value, repairs);
     } else {
       obstacles.boxes.push_back(parse_box("--obstacle", value));
     }
@@ -94,6 +96,25 @@ void warn_of_few_voxels(const BeliefGrid& grid) {
                "viewgain: warning: --voxel %s m leaves %d voxel%s along the workspace's longest "
                "side: voxels are in metres, not millimetres\n",
                short_text(grid.voxel_size()).c_str(), longest, longest == 1 ? "" : "s");
+}
+
+void warn_of_repairs(const std::string& file, const MeshRepairs& repairs) {
+  const auto faces = [](std::size_t count, const char* one, const char* several) {
+    return with_commas(count) + (count == 1 ? one : several);
+  };
+  std::string text;
+  if (repairs.mended_faces > 0) {
+    text = faces(repairs.mended_faces, " face crosses itself and was",
+                 " faces cross themselves and were") +
+           " split at the crossings";
+  }
+  if (repairs.dropped_faces > 0) {
+    if (!text.empty()) text += "; ";
+    text += faces(repairs.dropped_faces, " face without area was", " faces without area were") +
+            " left out";
+  }
+  if (text.empty()) return;
+  std::fprintf(stderr, "viewgain: warning: %s: %s\n", file.c_str(), text.c_str());
 }
 
 void warn_of_far_obstacles(const std::vector<std::string>& values, const Obstacles& obstacles,

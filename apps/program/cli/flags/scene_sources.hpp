@@ -55,6 +55,8 @@ inline constexpr const char* kObstacleHelp =
 
 /// Voxels so large that there are hardly any.
 void warn_of_few_voxels(const BeliefGrid& grid);
+/// Faces of a mesh file that cross themselves or have no area.
+void warn_of_repairs(const std::string& file, const MeshRepairs& repairs);
 /// Obstacles of --obstacle, obstacles_of(values), out of the reach of views of the map, or 100
 /// times its size.
 void warn_of_far_obstacles(const std::vector<std::string>& values, const Obstacles& obstacles,

@@ -237,6 +237,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.policy = policy_config(options);
   if (!options.reach.empty()) setup.reach = read_reach_toml(options.reach);
   setup.stage = set_stage(stage_config(options), exec);
+  warn_of_repairs(options.mesh, setup.stage.repairs);
   check_voxel(options, setup.stage);
   check_size(setup);
   setup.distance =

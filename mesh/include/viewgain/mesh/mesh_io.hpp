@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 
@@ -11,16 +12,20 @@
 
 namespace viewgain {
 
-/// Reads OFF, OBJ, STL or PLY (the last two in text and binary), chosen by the file name's ending,
-/// in the file's own unit and axes. Polygons are split into triangles that fill them, concave ones
-/// too; vertices that no face uses and faces of fewer than three corners are left out; which side
-/// of a face is outside is not changed. Colours, normals and lines are not looked at. Throws
-/// Error(io) if the file cannot be read and Error(format), naming the file and, in text, the line,
-/// if it cannot be parsed, has no faces, a coordinate that is not finite, an index out of range, a
-/// polygon that crosses itself, or more or fewer rows than it says; Error(capacity) as
-/// file_bytes(). Thread safe. Costs O(file), and for polygons that are no fan the squares of their
-/// corners, of which they may have 10,000.
-[[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path);
+/// What read_mesh() changed in a file's faces.
+struct VIEWGAIN_EXPORT MeshRepairs {
+  std::size_t mended_faces = 0;   ///< cross themselves; split where their edges cross
+  std::size_t dropped_faces = 0;  ///< have three corners or more and no area; left out
+};
+
+/// Reads OFF, OBJ, STL or PLY by the file's ending, in its unit and axes. Polygons, concave or
+/// self-crossing, become triangles that fill all that their edges go round; faces without area and
+/// unused vertices are left out. Colours, normals and lines are ignored. Throws Error(io) if the
+/// file cannot be read, Error(format) with file and line if it is malformed, Error(capacity) as
+/// file_bytes(). Thread safe. Costs O(file); O(n log n) for a polygon of n corners that is no fan,
+/// up to a limit per file, beyond which it is refused.
+[[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path,
+                                                     MeshRepairs* repairs = nullptr);
 
 /// The least box with all vertices in it [m]; zero without any. Never throws. Costs O(vertices).
 [[nodiscard]] VIEWGAIN_EXPORT Box bounds_of(const TriangleMesh& mesh);
@@ -45,6 +50,7 @@ struct VIEWGAIN_EXPORT MeshPlacement {
 
 /// Reads a mesh and places it; throws and costs as both, and the errors name the file.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path,
-                                                     const MeshPlacement& placement);
+                                                     const MeshPlacement& placement,
+                                                     MeshRepairs* repairs = nullptr);
 
 }  // namespace viewgain

@@ -220,5 +220,30 @@ TEST_F(Sensing, AMeshIsPlacedInTheWorld) {
        {{"--place", "90,0,0"}, "no pose has the mesh in view"}});
 }
 
+TEST_F(Sensing, MendedMeshesAreReported) {
+  // A pyramid whose base is a bow tie, with a face in a line.
+  const std::string sides =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\nv 2 0 0\n"
+      "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+  write("tie.obj", sides + "f 1 2 4 3\nf 1 2 6\nf 2 2 6\n");
+  write("line.obj", sides + "f 1 2 3 4\nf 1 2 6\n");
+  const auto call = [](const std::string& mesh) {
+    return Strings{"simulate",   mesh,     "--orbit", "2,0.6,27,0,46", "--sensor",
+                   "small.toml", "--size", "0.3",     "--recenter",    "on",
+                   "--out",      "mended", "--json"};
+  };
+  const auto tie = run(call("tie.obj"));
+  EXPECT_EQ(tie.exit_code, 0);
+  EXPECT_EQ(tie.err,
+            "viewgain: warning: tie.obj: 1 face crosses itself and was split at the crossings; 2 "
+            "faces without area were left out\n");
+  EXPECT_EQ(json::parse(tie.out).at("mended_faces"), 1);
+  EXPECT_EQ(json::parse(tie.out).at("dropped_faces"), 2);
+  EXPECT_EQ(json::parse(tie.out).at("triangles"), 6);
+  const auto line = run(call("line.obj"));
+  EXPECT_EQ(line.err, "viewgain: warning: line.obj: 1 face without area was left out\n");
+  EXPECT_EQ(json::parse(line.out).at("mended_faces"), 0);
+}
+
 }  // namespace
 }  // namespace viewgain

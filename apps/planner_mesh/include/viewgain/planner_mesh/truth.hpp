@@ -40,6 +40,7 @@ struct VIEWGAIN_EXPORT Stage {
   /// A cube of edge size · 0.4 / 0.35 around the object, or the one given; cut at the support
   /// plane, since what is under it is known.
   Box workspace{};
+  MeshRepairs repairs{};  ///< made in reading the file
 };
 
 /// Reads and centres the mesh, scales it if a size is given; with a support plane it is put on it.
