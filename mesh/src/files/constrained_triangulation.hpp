@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "grid_predicates.hpp"
+
 namespace viewgain::detail {
 
 /// What a file's polygons may still cost, so that a hostile file ends in an error.
@@ -23,10 +25,6 @@ class ConstrainedTriangulation {
  public:
   using Index = std::uint32_t;
   using Point = std::array<double, 3>;
-  struct GridPoint {
-    std::int64_t x = 0, y = 0;
-    bool operator==(const GridPoint&) const = default;
-  };
   struct Triangle {
     std::array<Index, 3> nodes;  ///< turning to the left
     std::int64_t winding;        ///< how often the chain goes round it, not 0

@@ -44,7 +44,7 @@ class PolygonFill {
   std::vector<Flat> flat_;
   double extent_ = 0;   // the largest coordinate
   double no_area_ = 0;  // what rounding makes of none, twice an area
-  std::vector<ConstrainedTriangulation::GridPoint> grid_;
+  std::vector<GridPoint> grid_;
   std::vector<std::uint32_t> added_;
   ConstrainedTriangulation triangulation_;
 };

@@ -317,7 +317,7 @@ TEST_F(Polygons, Slivers) {
 TEST_F(Polygons, FillAllThatTheyGoRoundOnce) {
   Random random(5);
   std::size_t points = 0, inside = 0, wrong = 0;
-  for (std::size_t round = 0; round < 400; ++round) {
+  for (std::size_t round = 0; round < 250; ++round) {
     const std::size_t corners = 4 + random.below(20), lattice = round % 2 == 0 ? 3 + round % 5 : 0;
     const double azimuth = 6.3 * random.unit(), lift = 2 * random.unit() - 1;
     const Point u{std::cos(azimuth), std::sin(azimuth), lift};
