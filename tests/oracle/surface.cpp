@@ -93,12 +93,14 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
     std::optional<Run> run;
     // The stretch of unknown voxels up to here.
     bool in_stretch = false;
-    double stretch_begin = 0, stretch_passed = 1, stretch_area = 0, last_across = 0;
+    double stretch_begin = 0, stretch_passed = 1, stretch_share = 0, stretch_area = 0;
+    double last_across = 0;
     const auto close = [&] {
       if (!run) return;
       const double h = static_cast<double>(hazard.rate(run->voxel));
       const double length = run->end - run->begin;
-      const double P = passed * (1 - std::exp(-h * length * V));
+      const double depth = h * length * V;
+      const double P = passed * -std::expm1(-depth);
       const double t = 0.5 * (run->begin + run->end) * V;
       const double across = std::min(angle * t * t, cap);
       value.pixel_area = std::max(value.pixel_area, across);
@@ -107,10 +109,12 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
         value.area += P * across * run->weighted / length;
         stretch_area += P * across * run->weighted / length;
       }
-      passed -= P;
+      passed *= std::exp(-depth);
+      stretch_share += P;
       run.reset();
     };
     walk(map, ray, [&](Index3 voxel, double t_in, double t_out) {
+      if (blocks(map, ray, limits, voxel, t_in)) return true;
       if (t_out <= limits.min_range) return false;
       const double begin = std::max(t_in, limits.min_range), end = std::min(t_out, last);
       if (begin >= end) return true;
@@ -124,7 +128,8 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
           if (run && (run->cell != cell || run->end != begin)) close();
           if (!in_stretch) {
             in_stretch = true;
-            stretch_begin = begin, stretch_passed = passed, stretch_area = 0;
+            stretch_begin = begin, stretch_passed = passed;
+            stretch_share = stretch_area = 0;
           }
           if (!run) run = Run{cell, begin, end, 0, voxel};
           run->end = end;
@@ -138,9 +143,9 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
       if (in_stretch) {
         const double cosine = outward(map, voxel).dot(ray.direction);
         const double length = begin - stretch_begin;
-        const double held = 1 - passed / stretch_passed;
+        const double chance = stretch_passed > 0 ? stretch_share / stretch_passed : 0;
         if (cosine > 0.2 && length >= 2) {
-          if (held > 0) value.area += stretch_area * (1 / held - 1);
+          if (chance > 0) value.area += stretch_area / chance - stretch_area;
           passed = 0;
         }
         if ((std::abs(cosine - 0.2) < 3e-3 && length > 1.99) ||

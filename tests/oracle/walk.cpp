@@ -87,6 +87,10 @@ RayHit first_visit(const DenseMap& map, const Ray& ray, const RayLimits& limits,
   walk(map, ray, [&](Index3 voxel, double t_in, double t_out) {
     if (t_in > limits.max_range) return true;
     const VoxelState state = map.state(voxel);
+    if (t_out - t_in > shortest && blocks(map, ray, limits, voxel, t_in)) {
+      hit = {RayHit::Kind::obstacle, {}, t_in};
+      return true;
+    }
     if (state == VoxelState::free || t_out <= limits.min_range || t_out - t_in <= shortest) {
       return false;
     }
@@ -128,6 +132,14 @@ void walk(const DenseMap& map, const Ray& ray,
     }
     t = t_out;
   }
+}
+
+bool blocks(const DenseMap& map, const Ray& ray, const RayLimits& limits, Index3 voxel, double t) {
+  if (map.state(voxel) != VoxelState::occupied || !(t < limits.min_range)) return false;
+  const Eigen::Vector3d& eye = ray.origin;
+  return voxel != Index3{static_cast<std::int32_t>(std::floor(eye.x())),
+                         static_cast<std::int32_t>(std::floor(eye.y())),
+                         static_cast<std::int32_t>(std::floor(eye.z()))};
 }
 
 RayHit first_hit(const DenseMap& map, const Ray& ray, const RayLimits& limits) {

@@ -30,8 +30,14 @@ struct RayLimits {
 void walk(const DenseMap& map, const Ray& ray,
           const std::function<bool(Index3, double, double)>& visit);
 
+/// Whether a visit that begins at t ends the ray before it measures: a known surface that it enters
+/// before min_range. The voxel that the ray starts in does not.
+[[nodiscard]] bool blocks(const DenseMap& map, const Ray& ray, const RayLimits& limits,
+                          Index3 voxel, double t);
+
 /// The first voxel that is not free, whose visit ends beyond min_range and begins at or before
-/// max_range and before the obstacle; or the obstacle; or nothing. Range in [m].
+/// max_range and before the obstacle; or the obstacle; or nothing. Known surface before min_range
+/// blocks as an obstacle does. Range in [m].
 [[nodiscard]] RayHit first_hit(const DenseMap& map, const Ray& ray, const RayLimits& limits);
 
 /// Whether `tested` can be where the ray ends if the ray or its range limits are moved by at most

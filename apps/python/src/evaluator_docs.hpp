@@ -28,7 +28,8 @@ pixel_stride : int
 prior_sigma : float, optional
     Standard deviation of an unknown voxel [m]; the map's unless given.
 min_range, max_range : float, optional
-    Along the ray [m]; the sensor's unless given.
+    Along the ray [m]; the sensor's unless given. Nothing nearer than min_range gains, but known
+    surface there blocks rays.
 weights : iterable of (box, weight), optional
     Task weights >= 0 of parts of the workspace: boxes (2, 3) in the grid's frame [m]. The last that
     holds a voxel's centre counts, 1 outside all.

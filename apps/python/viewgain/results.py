@@ -72,7 +72,7 @@ class RayOutcomes(NamedTuple):
     unknown: Annotated[int, "Come to unknown space: what may be new."]
     known_surface: Annotated[int, "End in known surface, with free space before it."]
     obstacle: Annotated[int, "End at an obstacle or, but by gain \"paper\", on the support plane."]
-    too_near: Annotated[int, "Meet surface or an obstacle before min_range, in free space."]
+    too_near: Annotated[int, "Meet known surface or an obstacle before min_range."]
     out_of_range: Annotated[int, "Are in known free space to max_range."]
     out_of_map: Annotated[int, "Leave the workspace, or never come into it."]
 

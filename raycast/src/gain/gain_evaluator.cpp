@@ -168,12 +168,13 @@ std::size_t for_each_view_rays(const GainEvaluator& evaluator, std::span<const P
         if (const auto frame = driver.open(T_world_camera[i], view, from)) {
           const WalkLimits limits = walk_limits(driver.scene(), *frame);
           WalkTask task;
-          driver.tracer().place(*frame, [&](std::size_t number, const RayTile& rays) {
-            set_up(driver.tracer().table(), number, *frame, rays, task);
-            std::fill_n(task.near, kTileRays, 0.0F);
-            task.lanes = rays.valid;
-            consumer.add(limits, task, *scratch);
-          });
+          driver.tracer().place(*frame, lease.workspace().sweep,
+                                [&](std::size_t number, const RayTile& rays) {
+                                  set_up(driver.tracer().table(), number, *frame, rays, task);
+                                  std::fill_n(task.near, kTileRays, 0.0F);
+                                  task.lanes = rays.valid;
+                                  consumer.add(limits, task, *scratch);
+                                });
           view.status = ViewGain::Status::ok;
         }
         consumer.finish(i, view, *scratch);

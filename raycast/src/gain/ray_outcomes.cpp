@@ -70,10 +70,6 @@ GainEvaluator::RayOutcomes GainEvaluator::outcomes(const Pose& T_world_camera) c
   detail::ViewDriver::Lease lease(driver);
   detail::ViewSweep& sweep = lease.workspace().sweep;
   const std::vector<Meeting> hits = met(driver, *frame, sweep);
-  detail::PoseFrame before = *frame;
-  before.min_range = 0;
-  before.max_range = frame->min_range;
-  const std::vector<Meeting> near = met(driver, before, sweep);
   const PlaneRange plane(driver, *frame);
 
   const detail::EvaluatorCore& core = *driver.core();
@@ -99,9 +95,9 @@ GainEvaluator::RayOutcomes GainEvaluator::outcomes(const Pose& T_world_camera) c
     ++counts.rays;
     const Eigen::Vector3f direction = R * ray.normalized().cast<float>();
     const float on_plane = plane.along(direction);
-    const RayHit::Kind before_range = near[i].kind;
-    if (before_range == RayHit::Kind::occupied || before_range == RayHit::Kind::obstacle ||
-        on_plane < frame->min_range) {
+    // What blocks before min_range is an obstacle or known surface.
+    const bool is_blocked = hits[i].kind == RayHit::Kind::obstacle;
+    if ((is_blocked && hits[i].range < frame->min_range) || on_plane < frame->min_range) {
       ++counts.too_near;
     } else if (on_plane <= std::min(hits[i].range, end)) {
       ++counts.obstacle;
@@ -109,7 +105,7 @@ GainEvaluator::RayOutcomes GainEvaluator::outcomes(const Pose& T_world_camera) c
       ++counts.unknown;
     } else if (hits[i].kind == RayHit::Kind::occupied) {
       ++counts.known_surface;
-    } else if (hits[i].kind == RayHit::Kind::obstacle) {
+    } else if (is_blocked) {
       ++counts.obstacle;
     } else if (ends_in_workspace(direction)) {
       ++counts.out_of_range;

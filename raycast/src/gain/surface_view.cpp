@@ -87,8 +87,9 @@ double SurfaceView::area_of(const RayTile& rays, WalkedTile& tile) const {
   for_each_lane(tile.occupied, [&](int lane) {
     if (!(tile.stretch_length[lane] >= kLeastStretch)) return;
     if (!is_behind(rays, lane, {tile.x[lane], tile.y[lane], tile.z[lane]})) return;
-    const float held = 1.0F - tile.passed[lane] / tile.stretch_passed[lane];
-    if (held > 0) tile.area[lane] += tile.stretch_area[lane] * (1.0F / held - 1.0F);
+    // With a hazard of 0 throughout there is nowhere for the surface to be.
+    const float chance = tile.stretch_chance[lane], area = tile.stretch_area[lane];
+    if (chance > 0) tile.area[lane] += area / chance - area;
     tile.passed[lane] = 0;
   });
   double sum = 0;
@@ -309,9 +310,11 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
   const int shift = bricks_.rate_shift;
   const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
   double passed = 1.0;
-  // The stretch of unknown voxels that the ray is in: its first share, where it begins, T there.
+  // The stretch of unknown voxels that the ray is in: its first share, where it begins, T there,
+  // what of T ends in it.
   std::size_t stretch = 0;
-  double stretch_begin = 0, stretch_passed = 1.0;
+  float stretch_begin = 0;
+  double stretch_passed = 1.0, stretch_share = 0;
   const auto same_run = [&](const VoxelVisit& a, const VoxelVisit& b) {
     return a.lane == b.lane && a.state == b.state && a.end == b.begin &&
            a.x >> shift == b.x >> shift && a.y >> shift == b.y >> shift &&
@@ -325,13 +328,12 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
     last = first + 1;
     const int lane = static_cast<int>(first->lane);
     if (first->state == BrickTable::kOccupiedVoxel) {
-      const double length = static_cast<double>(first->begin) - stretch_begin;
-      if (follows_on && length >= static_cast<double>(kLeastStretch) &&
+      if (follows_on && first->begin - stretch_begin >= kLeastStretch &&
           is_behind(rays, lane, {first->x, first->y, first->z})) {
-        const double held = 1.0 - passed / stretch_passed;
-        for (std::size_t i = stretch; held > 0 && i < workspace.shares.size(); ++i) {
-          workspace.shares[i].probability /= held;
-          workspace.shares[i].area /= held;
+        const double chance = stretch_passed > 0 ? stretch_share / stretch_passed : 0;
+        for (std::size_t i = stretch; chance > 0 && i < workspace.shares.size(); ++i) {
+          workspace.shares[i].probability /= chance;
+          workspace.shares[i].area /= chance;
         }
         passed = 0;
       }
@@ -345,19 +347,20 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
     }
     if (!follows_on) {
       stretch = workspace.shares.size();
-      stretch_begin = static_cast<double>(first->begin);
+      stretch_begin = first->begin;
       stretch_passed = passed;
+      stretch_share = 0;
     }
     while (last != visits.end() && same_run(*(last - 1), *last)) ++last;
     const double begin = static_cast<double>(first->begin),
                  end = static_cast<double>((last - 1)->end);
-    const double share = -std::expm1(-std::abs(static_cast<double>(first->rate)) * (end - begin));
-    const double P = passed * share;
+    const double rate = std::abs(static_cast<double>(first->rate));
+    const double depth = rate * (end - begin);
+    const double P = passed * -std::expm1(-depth);
     const double t = 0.5 * (begin + end);
     const double across = std::min(
         static_cast<double>(tracer_.table().solid_angle[number * kTileRays + first->lane]) * t * t,
         static_cast<double>(cap_));
-    const double rate = std::abs(static_cast<double>(first->rate));
     const auto put = [&](Index3 voxel, float from, double part, double weight, bool is_new) {
       workspace.shares.push_back({lane,
                                   from,
@@ -386,7 +389,8 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
       put(voxel_at(first->x, first->y, first->z), first->begin, P, weight_of_run,
           !std::signbit(first->rate));
     }
-    passed -= P;
+    passed *= std::exp(-depth);
+    stretch_share += P;
   }
 }
 

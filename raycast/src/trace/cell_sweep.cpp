@@ -113,8 +113,10 @@ HWY_INLINE void sweep_windows(const Sweep& sweep, std::uint32_t primitive, const
 template <bool kIsLeaf>
 HWY_INLINE void sweep_tiles(const Sweep& sweep, std::uint32_t primitive, const ImageRect& rect) {
   const Slabs slabs = slabs_of(sweep.scene.boxes[primitive], sweep.frame);
-  for (const auto& [number, lanes] : sweep.strip.left_in(rect)) {
+  for (const auto& [number, lanes_found] : sweep.strip.left_in(rect)) {
     RayTile& tile = sweep.strip.meet(number, sweep.near);
+    // Some may have ended as the tile was made.
+    const std::uint32_t lanes = lanes_found & sweep.strip.left().of_tile(number);
     std::uint32_t ended = 0;
     for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
       const std::uint32_t part = lanes >> lane0 & kPacketLanes;

@@ -108,12 +108,14 @@ HWY_INLINE MF is_solid(const TraceMask& mask, VU offset) {
 #endif
 }
 
-// Walks the voxels of a leaf along the active rays and notes the first one whose bit is set, if it
-// is nearer than what the ray has. Returns the lanes that took a hit, whose ends are updated.
-HWY_INLINE MF walk_leaf(const SceneData& scene, const PoseFrame& frame, const LaneRays& rays,
-                        std::uint32_t leaf, const Slabs& slabs, MF active, LaneEnds& ends) {
+// Walks the voxels of a leaf along the active rays, from `least_range` on, and notes the first one
+// whose bit is set in `mask`, if it is nearer than what the ray has. Returns the lanes that took a
+// hit, whose ends are updated.
+HWY_INLINE MF walk_mask(const SceneData& scene, const PoseFrame& frame, const TraceMask& mask,
+                        float least_range, const LaneRays& rays, std::uint32_t leaf,
+                        const Slabs& slabs, MF active, LaneEnds& ends) {
   const VF ix = rays.ix, iy = rays.iy, iz = rays.iz;
-  const Interval slab = intersect_slabs(ix, iy, iz, slabs, frame.min_range);
+  const Interval slab = intersect_slabs(ix, iy, iz, slabs, least_range);
   active = hn::And(active, hn::And(hn::Lt(slab.enter, slab.exit), hn::Le(slab.enter, ends.range)));
   if (hn::AllFalse(df, active)) return active;
 
@@ -157,7 +159,6 @@ HWY_INLINE MF walk_leaf(const SceneData& scene, const PoseFrame& frame, const La
   // The planes after those; where they are met is computed before it is known who steps.
   px = hn::Add(px, step_x), py = hn::Add(py, step_y), pz = hn::Add(pz, step_z);
 
-  const TraceMask& mask = scene.masks[leaf];
   // Where lanes end is noted in registers and compared with what they have once, after the walk:
   // when a lane ends cannot be predicted.
   MF found = hn::MaskFromVec(zero);
@@ -190,6 +191,13 @@ HWY_INLINE MF walk_leaf(const SceneData& scene, const PoseFrame& frame, const La
   const MF hits = hn::And(found, is_nearer(found_t, ends.range, ends.primitive, leaf));
   take(hits, found_t, leaf, found_offset, ends);
   return hits;
+}
+
+// The first voxel of a leaf that is not free, from min_range on.
+HWY_INLINE MF walk_leaf(const SceneData& scene, const PoseFrame& frame, const LaneRays& rays,
+                        std::uint32_t leaf, const Slabs& slabs, MF active, LaneEnds& ends) {
+  return walk_mask(scene, frame, scene.masks[leaf], frame.min_range, rays, leaf, slabs, active,
+                   ends);
 }
 
 // The entry into a box of unknown voxels.

@@ -130,10 +130,17 @@ HWY_INLINE VF one_minus_exp_of_small(VF x) {
   return hn::Mul(x, hn::Add(pair(1.0F, 0.5F), q));
 }
 
-// The same for all x >= 0.
-HWY_INLINE VF one_minus_exp(VF x) {
+// 1 - exp(-x) and exp(-x) for x >= 0, each to some units in its own last place.
+struct Shares {
+  VF ends, passes;
+};
+HWY_INLINE Shares shares_of(VF x) {
   constexpr float kSmall = 0.34F;
-  if (hn::AllTrue(df, hn::Le(x, hn::Set(df, kSmall)))) return one_minus_exp_of_small(x);
+  const VF one = hn::Set(df, 1.0F);
+  if (hn::AllTrue(df, hn::Le(x, hn::Set(df, kSmall)))) {
+    const VF ends = one_minus_exp_of_small(x);
+    return {ends, hn::Sub(one, ends)};
+  }
   const VF most = hn::Set(df, 80.0F);
   x = hn::Min(x, most);
   const VF n = hn::Round(hn::Mul(x, hn::Set(df, 1.44269504F)));
@@ -141,10 +148,11 @@ HWY_INLINE VF one_minus_exp(VF x) {
   VF r = hn::Sub(x, hn::Mul(n, hn::Set(df, 0.693145752F)));
   r = hn::Sub(r, hn::Mul(n, hn::Set(df, 1.42860677e-6F)));
   const VF q = one_minus_exp_of_small(r);
-  // 2^-n (1 - q)
+  // exp(-x) = 2^-n (1 - q)
   const VI exponent = hn::Sub(set_i(127), hn::ConvertTo(di, n));
   const VF scale = hn::BitCast(df, hn::ShiftLeft<23>(exponent));
-  return hn::Add(hn::Sub(hn::Set(df, 1.0F), scale), hn::Mul(scale, q));
+  const VF rest = hn::Mul(scale, q);
+  return {hn::Add(hn::Sub(one, scale), rest), hn::Sub(scale, rest)};
 }
 
 // Sums expected area. A run is what a ray has of one hazard cell in one piece. It is summed with
@@ -173,13 +181,16 @@ class AreaSink {
       const MF begins = hn::AndNot(in_unknown_, unknown);
       stretch_begin_ = hn::IfThenElse(begins, t, stretch_begin_);
       stretch_passed_ = hn::IfThenElse(begins, passed_, stretch_passed_);
-      stretch_area_ = hn::IfThenElse(begins, hn::Zero(df), stretch_area_);
+      stretch_area_ = hn::IfThenZeroElse(begins, stretch_area_);
+      stretch_share_ = hn::IfThenZeroElse(begins, stretch_share_);
 
       const VI places = finder.rate_places(step.place, step.at, unknown);
       const VF rate = finder.rates(places);
       const VF depth = hn::Mul(hn::Abs(rate), hn::Sub(next, t));
-      const VF share = hn::Mul(passed_, one_minus_exp(hn::IfThenElseZero(unknown, depth)));
-      passed_ = hn::Sub(passed_, share);
+      const Shares shares = shares_of(hn::IfThenElseZero(unknown, depth));
+      const VF share = hn::Mul(passed_, shares.ends);
+      passed_ = hn::Mul(passed_, shares.passes);
+      stretch_share_ = hn::Add(stretch_share_, share);
       const MF goes_on = hn::And(in_unknown_, finder.in_same_cell(moved_));
       const MF keeps = hn::Or(goes_on, hn::Not(unknown));
       begin_ = hn::IfThenElse(keeps, begin_, t);
@@ -211,7 +222,9 @@ class AreaSink {
     hn::Store(passed_, df, out.passed + lane0);
     hn::Store(area_, df, out.area + lane0);
     hn::Store(hn::IfThenElseZero(in_unknown_, stretch_area_), df, out.stretch_area + lane0);
-    hn::Store(stretch_passed_, df, out.stretch_passed + lane0);
+    hn::Store(hn::IfThenElseZero(hn::Gt(stretch_passed_, hn::Zero(df)),
+                                 hn::Div(stretch_share_, stretch_passed_)),
+              df, out.stretch_chance + lane0);
     hn::Store(hn::IfThenElseZero(in_unknown_, hn::Sub(range_, stretch_begin_)), df,
               out.stretch_length + lane0);
     hn::Store(range_, df, out.range + lane0);
@@ -230,7 +243,8 @@ class AreaSink {
   // The run that the ray is in: where it begins, its chance and area so far.
   VF begin_ = hn::Zero(df), run_ = hn::Zero(df), run_area_ = hn::Zero(df);
   // The stretch of unknown voxels that it is in.
-  VF stretch_begin_ = hn::Zero(df), stretch_passed_ = hn::Zero(df), stretch_area_ = hn::Zero(df);
+  VF stretch_begin_ = hn::Zero(df), stretch_passed_ = hn::Zero(df), stretch_area_ = hn::Zero(df),
+     stretch_share_ = hn::Zero(df);
   // Where it ends.
   MF occupied_ = no_lane();
   VF range_ = hn::Zero(df);

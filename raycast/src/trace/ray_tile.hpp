@@ -15,8 +15,8 @@ namespace viewgain::detail {
 /// Of so many pixels every stride-th, the first included.
 [[nodiscard]] inline int strided(int pixels, int stride) { return (pixels - 1) / stride + 1; }
 
-/// What a ray has met at an obstacle; below every primitive's number as a signed one, so that an
-/// obstacle wins a tie with a voxel.
+/// What a ray has met at an obstacle, or at known surface before min_range; below every primitive's
+/// number as a signed one, so that an obstacle wins a tie with a voxel.
 inline constexpr std::uint32_t kObstaclePrimitive = 0xFFFFFFFFU;
 
 /// Every step-th ray of every step-th row, from that column and row on.
@@ -106,8 +106,8 @@ struct alignas(64) RayTile {
   float far[kTileRays];             ///< where it meets an obstacle [voxels], if that was asked for
   std::uint32_t valid = 0;          ///< one bit a lane
   std::uint32_t hit = 0;            ///< lanes that end in a voxel
-  std::uint32_t blocked = 0;        ///< lanes that end at an obstacle
-  bool has_far = false;             ///< is `far` known? Else no obstacle ends a ray beyond a voxel
+  std::uint32_t blocked = 0;  ///< lanes that end at an obstacle or, before min_range, at surface
+  bool has_far = false;       ///< is `far` known? Else no obstacle ends a ray beyond a voxel
 };
 
 }  // namespace viewgain::detail

@@ -22,8 +22,9 @@ void StripRays::begin(const TileTable& table, TileRows strip, const TileMaker& m
 }
 
 void StripRays::make(std::size_t i, float near) {
-  maker_->make(first_tile_ + i, near, tiles_[i]);
+  const std::uint32_t ended = maker_->make(first_tile_ + i, near, tiles_[i]);
   state_[i] = State::met;
+  if (ended != 0) left_.take(i, ended);
 }
 
 void StripRays::meet_by_rows(const ImageRect& rect, float near) {

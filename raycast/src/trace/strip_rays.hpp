@@ -185,8 +185,8 @@ class TileMaker {
   TileMaker(const TileMaker&) = delete;
   TileMaker& operator=(const TileMaker&) = delete;
   /// `near`: neither this nor any other primitive that is still to come begins much nearer, along
-  /// the optical axis [voxels].
-  virtual void make(std::size_t tile, float near, RayTile& out) const = 0;
+  /// the optical axis [voxels]. Returns the lanes that end before any primitive.
+  virtual std::uint32_t make(std::size_t tile, float near, RayTile& out) const = 0;
 
  protected:
   ~TileMaker() = default;

@@ -67,10 +67,26 @@ void visit(const SceneData& scene, const PoseFrame& frame, std::uint32_t primiti
   }
 }
 
+void block(const SceneData& scene, const PoseFrame& frame, std::uint32_t leaf,
+           const TraceMask& mask, RayTile& out) {
+  const Slabs slabs = slabs_of(scene.boxes[leaf], frame);
+  for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
+    // An obstacle's number is below all leaves': what begins at min_range is not taken.
+    LaneEnds ends{hn::Min(hn::Load(df, out.range + lane0), hn::Set(df, frame.min_range)),
+                  hn::Set(du, kObstaclePrimitive), hn::Zero(du)};
+    const MF hits = walk_mask(scene, frame, mask, 0, rays_of(out, lane0), leaf, slabs,
+                              mask_of(out.valid >> lane0), ends);
+    hn::BlendedStore(ends.range, hits, df, out.range + lane0);
+    hn::BlendedStore(hn::Set(du, kObstaclePrimitive), hn::RebindMask(du, hits), du,
+                     out.primitive + lane0);
+    out.blocked |= bits_of(hits) << lane0;
+  }
+}
+
 }  // namespace
 
 const TileKernels& kernels(Isa isa) {
-  static const TileKernels table{isa, kWidth, set_up, visit};
+  static const TileKernels table{isa, kWidth, set_up, visit, block};
   return table;
 }
 

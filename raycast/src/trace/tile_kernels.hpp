@@ -22,6 +22,11 @@ struct TileKernels {
   /// is that of tracing.
   void (*visit)(const SceneData& scene, const PoseFrame& frame, std::uint32_t primitive,
                 RayTile& out);
+
+  /// Ends the tile's rays at the voxels of `mask`, some of a leaf's, that they enter before
+  /// min_range: as at an obstacle.
+  void (*block)(const SceneData& scene, const PoseFrame& frame, std::uint32_t leaf,
+                const TraceMask& mask, RayTile& out);
 };
 
 /// Kernels of an instruction set that the CPU supports.

@@ -7,13 +7,53 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "scene/scene_data.hpp"
-
 namespace viewgain::detail {
 namespace {
 
 // Rounding moves a distance by less.
 float safely_near(float near) { return near - 1e-5F * std::abs(near); }
+
+// Which of sixteen boxes come within `reach` of the camera.
+std::uint32_t within_reach(const BoxArrays& boxes, std::size_t first, const PoseFrame& frame,
+                           float reach) {
+  const auto beyond = [](float center, float half, float at) {
+    return std::max(std::abs(center - at) - half, 0.0F);
+  };
+  std::array<float, kBoxVector> squared;
+  for (std::size_t i = 0; i < kBoxVector; ++i) {
+    const std::size_t at = first + i;
+    const float x = beyond(boxes.center_x[at], boxes.half_x[at], frame.origin[0]),
+                y = beyond(boxes.center_y[at], boxes.half_y[at], frame.origin[1]),
+                z = beyond(boxes.center_z[at], boxes.half_z[at], frame.origin[2]);
+    squared[i] = x * x + y * y + z * z;
+  }
+  std::uint32_t near = 0;
+  for (std::size_t i = 0; i < kBoxVector; ++i) {
+    near |= (squared[i] <= reach * reach ? 1U : 0U) << i;
+  }
+  return near;
+}
+
+// The occupied voxels of a leaf, without that of the camera.
+TraceMask blocking_mask(const SceneData& scene, std::uint32_t primitive, const PoseFrame& frame) {
+  const GridSnapshot::Leaf& leaf = scene.snapshot.leaves[scene.leaf_source[primitive]];
+  const Index3& base = scene.snapshot.min_index;
+  TraceMask mask;
+  for (std::size_t i = 0; i < leaf.occupied.size(); ++i) {
+    mask.words[2 * i] = static_cast<std::uint32_t>(leaf.occupied[i]);
+    mask.words[2 * i + 1] = static_cast<std::uint32_t>(leaf.occupied[i] >> 32U);
+  }
+  const auto place = [&](std::size_t axis, std::int32_t lowest, std::int32_t leaf_lowest) {
+    return static_cast<std::int32_t>(std::floor(frame.origin[axis])) + lowest - leaf_lowest;
+  };
+  const std::int32_t x = place(0, base.x, leaf.origin.x), y = place(1, base.y, leaf.origin.y),
+                     z = place(2, base.z, leaf.origin.z);
+  if (std::min({x, y, z}) >= 0 && std::max({x, y, z}) < 8) {
+    const auto offset = static_cast<std::uint32_t>(x << 6 | y << 3 | z);
+    mask.words[offset >> 5U] &= ~(1U << (offset & 31U));
+  }
+  return mask;
+}
 
 // How far along the axis any point of a box from the origin is, or a little more.
 float farthest_along_axis(const std::array<float, 3>& size, const PoseFrame& frame) {
@@ -64,6 +104,45 @@ void ObstacleMarks::mark(const ImageBoundsKernels& kernels, const ObstacleScene&
                 }
               });
         });
+  }
+}
+
+void NearSurface::find(const ImageBoundsKernels& kernels, const SceneData& scene,
+                       const PoseFrame& frame, const ImageScale& image, const TileTable& table) {
+  parts_.clear();
+  tile_columns_ = table.tile_columns();
+  if (!(frame.min_range > 0)) return;
+  const SceneCells& cells = *scene.cells;
+  const float reach = 1.001F * frame.min_range + 0.1F + frame.extra_margin;
+  ImageBounds bounds;
+  for (std::size_t first = 0; first < cells.count(); first += kBoxVector) {
+    std::uint32_t near_cells = within_reach(cells.boxes, first, frame, reach);
+    if (cells.count() - first < kBoxVector) near_cells &= (1U << (cells.count() - first)) - 1U;
+    for (; near_cells != 0; near_cells &= near_cells - 1) {
+      const std::size_t cell = first + static_cast<std::size_t>(std::countr_zero(near_cells));
+      for (std::size_t at = cells.first[cell]; at < cells.first[cell + 1]; at += kBoxVector) {
+        std::uint32_t near = within_reach(cells.members, at, frame, reach);
+        for (std::uint32_t left = near; left != 0; left &= left - 1) {
+          const auto i = static_cast<std::size_t>(std::countr_zero(left));
+          const std::uint32_t primitive = cells.primitives[at + i];
+          if (primitive >= scene.leaf_count || scene.has_occupied[primitive] == 0) {
+            near &= ~(1U << i);
+          }
+        }
+        if (near == 0) continue;
+        kernels.bounds_of(cells.members, at, frame, image, bounds);
+        for (near &= bounds.seen; near != 0; near &= near - 1) {
+          const auto i = static_cast<std::size_t>(std::countr_zero(near));
+          const std::uint32_t primitive = cells.primitives[at + i];
+          const auto tile = [](std::int32_t ray) {
+            return static_cast<std::uint32_t>(ray) / kTileEdge;
+          };
+          const ImageRect rect = bounds.rect(i);
+          parts_.push_back({primitive, tile(rect.column0), tile(rect.column1), tile(rect.row0),
+                            tile(rect.row1), blocking_mask(scene, primitive, frame)});
+        }
+      }
+    }
   }
 }
 

@@ -13,6 +13,7 @@
 #include "obstacle_scene.hpp"
 #include "ray_tile.hpp"
 #include "scene/scene_cells.hpp"
+#include "scene/scene_data.hpp"
 #include "strip_rays.hpp"
 
 namespace viewgain::detail {
@@ -48,11 +49,47 @@ class ObstacleMarks {
   float farthest_voxel_ = 0;
 };
 
+/// The known surface within min_range of a view's camera: no reading comes from there, but rays
+/// end.
+class NearSurface {
+ public:
+  /// Occupied voxels of a leaf, and the tiles whose rays can meet them.
+  struct Part {
+    std::uint32_t leaf;
+    std::uint32_t column0, column1, row0, row1;
+    TraceMask occupied;
+  };
+
+  void clear() { parts_.clear(); }
+  /// Finds it; `image` counts rays from the camera on. The camera's own voxel is left out: whether
+  /// a view from there counts is for others to say. Allocates only while it grows.
+  void find(const ImageBoundsKernels& kernels, const SceneData& scene, const PoseFrame& frame,
+            const ImageScale& image, const TileTable& table);
+
+  /// Calls visit(part) for those that a tile's rays can meet.
+  template <typename Visit>
+  void for_each_at(std::size_t tile, Visit&& visit) const {
+    if (parts_.empty()) return;
+    const std::size_t row = tile / tile_columns_, column = tile % tile_columns_;
+    for (const Part& part : parts_) {
+      if (row >= part.row0 && row <= part.row1 && column >= part.column0 &&
+          column <= part.column1) {
+        visit(part);
+      }
+    }
+  }
+
+ private:
+  std::vector<Part> parts_;
+  std::size_t tile_columns_ = 1;
+};
+
 /// What a thread needs to sweep views of any scene and sensor, one after another.
 struct ViewSweep {
   std::vector<SeenCell> seen;  ///< cells that reach out of their nodes, then from near to far
   std::array<std::int32_t, 3> camera_block{};  ///< on the lattice of 8³ voxels
   ObstacleMarks obstacles;
+  NearSurface near;
   StripRays strip;
 
   /// Finds the cells that a view sees. Allocates only while it grows.

@@ -59,7 +59,9 @@ std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const 
 
 void ViewTracer::prepare(const PoseFrame& frame, ViewSweep& sweep, Asked asked) const {
   sweep.obstacles.clear();
+  sweep.near.clear();
   if (frame.sees_nothing) return;
+  find_near(frame, sweep.near);
   const ObstacleScene* obstacles = scene_.tracing->obstacles.get();
   if (by_sweep_) {
     const ImageBoundsKernels& kernels = image_bounds_kernels(kernels_.isa);
@@ -72,41 +74,49 @@ void ViewTracer::prepare(const PoseFrame& frame, ViewSweep& sweep, Asked asked) 
   }
 }
 
+void ViewTracer::find_near(const PoseFrame& frame, NearSurface& near) const {
+  near.find(image_bounds_kernels(kernels_.isa), scene_, frame, rays_->projector.scale_for(frame, 0),
+            rays_->table);
+}
+
 // Sets a tile up for a view, and cuts its rays at obstacles that are asked for before voxels: rays
 // that end early meet fewer.
 class ViewTracer::SetUp final : public TileMaker {
  public:
-  SetUp(const ViewTracer& tracer, const PoseFrame& frame, Asked asked,
-        const ObstacleMarks& obstacles)
-      : tracer_(tracer), frame_(frame), asked_(asked), obstacles_(obstacles) {}
+  SetUp(const ViewTracer& tracer, const PoseFrame& frame, Asked asked, const ViewSweep& sweep)
+      : tracer_(tracer), frame_(frame), asked_(asked), sweep_(sweep) {}
 
-  void make(std::size_t tile, float near_voxel, RayTile& out) const override {
-    tracer_.kernels_.begin(tracer_.rays_->table, frame_, tile, out);
-    const float near = obstacles_.near(tile);
-    if (near == ObstacleMarks::kNoObstacle) return;
-    if (asked_ == Asked::everywhere || (near <= obstacles_.farthest_voxel() &&
+  std::uint32_t make(std::size_t tile, float near_voxel, RayTile& out) const override {
+    tracer_.begin(frame_, tile, sweep_.near, out);
+    const std::uint32_t ended = out.blocked;
+    const ObstacleMarks& obstacles = sweep_.obstacles;
+    const float near = obstacles.near(tile);
+    if (near == ObstacleMarks::kNoObstacle) return ended;
+    if (asked_ == Asked::everywhere || (near <= obstacles.farthest_voxel() &&
                                         (asked_ == Asked::along_rays || near <= near_voxel))) {
       tracer_.ask_first(frame_, out);
     }
+    return ended;
   }
 
  private:
   const ViewTracer& tracer_;
   const PoseFrame& frame_;
   Asked asked_;
-  const ObstacleMarks& obstacles_;
+  const ViewSweep& sweep_;
 };
 
 void ViewTracer::sweep_strip(const PoseFrame& frame, TileRows strip, Asked asked,
                              ViewSweep& sweep) const {
-  const SetUp maker(*this, frame, asked, sweep.obstacles);
+  const SetUp maker(*this, frame, asked, sweep);
   StripRays& rays = sweep.strip;
   rays.begin(rays_->table, strip, maker);
   if (!by_sweep_) return;
-  if (asked == Asked::everywhere && scene_.has_obstacles) {
+  if (asked == Asked::everywhere) {
     for (std::size_t i = 0; i < rays.tile_count(); ++i) {
-      if (sweep.obstacles.near(rays.first_tile() + i) == ObstacleMarks::kNoObstacle) continue;
-      (void)rays.meet(i, 0);
+      const std::size_t tile = rays.first_tile() + i;
+      if (sweep.obstacles.near(tile) != ObstacleMarks::kNoObstacle) (void)rays.meet(i, 0);
+      sweep.near.for_each_at(tile, [&](const auto&) { (void)rays.meet(i, 0); });
     }
   }
   const CellSweep sweep_cell = cell_sweep(kernels_.isa);
@@ -116,21 +126,21 @@ void ViewTracer::sweep_strip(const PoseFrame& frame, TileRows strip, Asked asked
   }
 }
 
-void ViewTracer::finish(const PoseFrame& frame, std::size_t tile, const ObstacleMarks& obstacles,
+void ViewTracer::finish(const PoseFrame& frame, std::size_t tile, const ViewSweep& sweep,
                         RayTile& rays) const {
   if (!by_sweep_) {
-    kernels_.begin(rays_->table, frame, tile, rays);
+    begin(frame, tile, sweep.near, rays);
     if (scene_.has_obstacles) ask_first(frame, rays);
     packet_kernels(kernels_.isa).trace(scene_, scene_.tracing->bvh(margin_level_), frame, rays);
   } else if (scene_.has_obstacles && !rays.has_far) {
-    ask_afterwards(frame, tile, obstacles.near(tile), rays);
+    ask_afterwards(frame, tile, sweep.obstacles.near(tile), rays);
   }
   rays.blocked &= ~rays.hit;
 }
 
 void ViewTracer::ask_first(const PoseFrame& frame, RayTile& rays) const {
   std::copy_n(rays.range, kTileRays, rays.far);
-  rays.blocked = scene_.tracing->obstacles->cut(frame, rays, rays.valid, rays.far);
+  rays.blocked |= scene_.tracing->obstacles->cut(frame, rays, rays.valid, rays.far);
   rays.has_far = true;
   for (std::uint32_t left = rays.blocked; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);

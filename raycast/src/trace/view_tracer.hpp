@@ -23,7 +23,9 @@ namespace viewgain::detail {
 ///   have not ended yet;
 /// - by Embree: a BVH of the primitives, tile by tile, in packets.
 ///
-/// Known obstacles are triangles and always traced by Embree, where they can end a ray.
+/// Known obstacles are triangles and always traced by Embree, where they can end a ray. Known
+/// surface that a ray enters before min_range ends it as an obstacle does: the sensor cannot
+/// measure it, nor see through it.
 /// Immutable; thread safe.
 class ViewTracer {
  public:
@@ -55,7 +57,7 @@ class ViewTracer {
     for (std::size_t i = 0; i < strip_rays.tile_count(); ++i) {
       if (by_sweep_ && !strip_rays.is_met(i)) continue;
       RayTile& rays = strip_rays.tile(i);
-      finish(frame, strip_rays.first_tile() + i, sweep.obstacles, rays);
+      finish(frame, strip_rays.first_tile() + i, sweep, rays);
       visit(strip_rays.first_tile() + i, std::as_const(rays));
     }
   }
@@ -71,14 +73,20 @@ class ViewTracer {
   }
 
   /// Calls visit(tile number, RayTile) for all tiles of the view, in order, as they are before any
-  /// voxel is looked at: only `far` is known, if there are obstacles.
+  /// voxel beyond min_range is looked at: only `far` is known, if anything blocks rays.
   template <typename Visit>
-  void place(const PoseFrame& frame, Visit&& visit) const {
+  void place(const PoseFrame& frame, ViewSweep& sweep, Visit&& visit) const {
     if (frame.sees_nothing) return;
+    find_near(frame, sweep.near);
     RayTile rays;
     for (std::size_t tile = 0; tile < table().tile_count; ++tile) {
-      kernels_.begin(table(), frame, tile, rays);
-      if (scene_.has_obstacles) ask_first(frame, rays);
+      begin(frame, tile, sweep.near, rays);
+      if (scene_.has_obstacles) {
+        ask_first(frame, rays);
+      } else if (rays.blocked != 0) {
+        std::copy_n(rays.range, kTileRays, rays.far);
+        rays.has_far = true;
+      }
       visit(tile, std::as_const(rays));
     }
   }
@@ -90,8 +98,17 @@ class ViewTracer {
   static constexpr std::size_t kStripTiles = 1600;
 
   void sweep_strip(const PoseFrame& frame, TileRows strip, Asked asked, ViewSweep& sweep) const;
+  void find_near(const PoseFrame& frame, NearSurface& near) const;
+  /// Sets a tile up: it has met nothing but surface before min_range.
+  void begin(const PoseFrame& frame, std::size_t tile, const NearSurface& near,
+             RayTile& rays) const {
+    kernels_.begin(rays_->table, frame, tile, rays);
+    near.for_each_at(tile, [&](const NearSurface::Part& part) {
+      kernels_.block(scene_, frame, part.leaf, part.occupied, rays);
+    });
+  }
   /// What a tile's rays meet apart from what they were swept over.
-  void finish(const PoseFrame& frame, std::size_t tile, const ObstacleMarks& obstacles,
+  void finish(const PoseFrame& frame, std::size_t tile, const ViewSweep& sweep,
               RayTile& rays) const;
   /// Obstacles that are asked for before voxels: rays that end early have fewer to meet.
   void ask_first(const PoseFrame& frame, RayTile& rays) const;

@@ -75,6 +75,24 @@ TEST(ClassicGains, NamesAreThereAndBack) {
   for (const std::string& name : classic_gain_names()) EXPECT_NE(text.find(name), text.npos);
 }
 
+// Surface that a ray enters before min_range is not measured, and not seen through.
+TEST(ClassicGains, ASurfaceNearerThanMinRangeLeavesNothing) {
+  BeliefGrid grid = row_map({-0.4F, 2.0F, -0.4F, {}, {}, 2.0F});
+  grid.append_view(test::axis_pose({20, 1.5, 1.5}, 0, false));
+  const Sensor sensor = one_ray();
+  EXPECT_GT(gains_of(grid, sensor, row_pose())[0], 0);
+  for (const double min_range : {5.1, 5.9, 6.0, 6.5, 8.5}) {
+    ClassicConfig config{.gains = test::all_classic_gains(), .min_range = min_range * kExactVoxel};
+    const auto map =
+        ClassicMap::build(VoxelScene::build(grid), grid, Acquisition{sensor, 8 * kExactVoxel});
+    const auto gains =
+        ClassicGainEvaluator(map, sensor, config).evaluate(std::vector<Pose>{row_pose()});
+    for (std::size_t g = 0; g < gains.size(); ++g) {
+      EXPECT_EQ(gains[g], 0) << classic_gain_names()[g] << " from " << min_range;
+    }
+  }
+}
+
 TEST(ClassicGains, ARowWithASurfaceHasItsClosedForm) {
   // Two free, three unknown, one occupied, unknown ones behind. An earlier view came from there.
   BeliefGrid grid = row_map({-0.4F, -1.5F, {}, {}, {}, 2.0F});

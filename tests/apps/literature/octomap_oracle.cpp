@@ -53,6 +53,8 @@ std::vector<OctomapOracle::Visit> OctomapOracle::visits(const oracle::Ray& ray, 
                                                         double far, bool ends_in_occupied) const {
   std::vector<Visit> list;
   oracle::walk(map_, ray, [&](Index3 voxel, double t_in, double t_out) {
+    if (ends_in_occupied && oracle::blocks(map_, ray, {.min_range = near}, voxel, t_in))
+      return true;
     if (t_out <= near) return false;
     if (t_in >= far) return true;
     list.push_back({voxel, std::max(t_in, near), std::min(t_out, far), find(voxel)});

@@ -105,6 +105,7 @@ Passed expected_of(const oracle::DenseMap& map, const oracle::Ray& ray, double m
                    double max_range) {
   Passed passed;
   oracle::walk(map, ray, [&](Index3 voxel, double in, double out) {
+    if (oracle::blocks(map, ray, {.min_range = min_range}, voxel, in)) return true;
     const double begin = std::max(in, min_range), end = std::min(out, max_range);
     if (!(end > begin)) return in > max_range;
     const VoxelState state = map.state(voxel);

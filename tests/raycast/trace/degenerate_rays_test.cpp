@@ -239,18 +239,40 @@ TEST_P(DegenerateRays, OutsideTheWorkspaceGainNothingAndBlockNothing) {
   }
 }
 
-TEST_P(DegenerateRays, LeavingMinRangeInsideAVoxelStillGain) {
-  const BeliefGrid grid = sparse_map({16, 16, 32}, {{4, 4, 7}, {4, 4, 20}});
+TEST_P(DegenerateRays, LeavingMinRangeInsideAnUnknownVoxelStillGain) {
+  const BeliefGrid grid = sparse_map({16, 16, 32}, {{4, 4, 7}, {4, 4, 20}}, VoxelState::unknown);
   const Pose pose = axis_pose({4.5, 4.5, 0}, 2, true);
   const auto at = [&](double min_range) {
     return shoot(grid, pose, {.min_range = min_range * kExactVoxel});
   };
-  expect_hit(at(6.5), RayHit::Kind::occupied, {4, 4, 7}, 7);
-  expect_hit(at(7), RayHit::Kind::occupied, {4, 4, 7}, 7);
-  expect_hit(at(7.5), RayHit::Kind::occupied, {4, 4, 7}, 7.5);
-  expect_hit(at(8), RayHit::Kind::occupied, {4, 4, 20}, 20);  // left exactly at min_range
-  expect_hit(at(8.5), RayHit::Kind::occupied, {4, 4, 20}, 20);
+  expect_hit(at(6.5), RayHit::Kind::unknown, {4, 4, 7}, 7);
+  expect_hit(at(7), RayHit::Kind::unknown, {4, 4, 7}, 7);
+  expect_hit(at(7.5), RayHit::Kind::unknown, {4, 4, 7}, 7.5);
+  expect_hit(at(8), RayHit::Kind::unknown, {4, 4, 20}, 20);  // left exactly at min_range
+  expect_hit(at(8.5), RayHit::Kind::unknown, {4, 4, 20}, 20);
   EXPECT_EQ(at(21).kind, RayHit::Kind::none);
+}
+
+TEST_P(DegenerateRays, EndAtSurfaceThatTheyEnterBeforeMinRange) {
+  const BeliefGrid grid = sparse_map({16, 16, 32}, {{4, 4, 7}, {4, 4, 20}});
+  const Pose pose = axis_pose({4.5, 4.5, 0}, 2, true);
+  const auto from = [](float min_range) {
+    return GainConfig{.min_range = double(min_range) * kExactVoxel};
+  };
+  expect_hit(shoot(grid, pose, from(7)), RayHit::Kind::occupied, {4, 4, 7}, 7);
+  for (const float min_range : {std::nextafter(7.0F, 8.0F), 7.5F, 8.0F, 8.5F, 19.0F, 25.0F}) {
+    SCOPED_TRACE(min_range);
+    expect_hit(shoot(grid, pose, from(min_range)), RayHit::Kind::obstacle, {}, 7);
+    EXPECT_EQ(score(grid, pose, from(min_range)).hits, 0U);
+  }
+}
+
+// A camera in an occupied voxel gains nothing, but sees from there.
+TEST_P(DegenerateRays, SeeOutOfTheVoxelThatTheyStartIn) {
+  const BeliefGrid grid = sparse_map({16, 16, 16}, {{7, 7, 7}, {7, 7, 12}});
+  const Pose inside = axis_pose({7.5, 7.5, 7.5}, 2, true);
+  expect_hit(shoot(grid, inside, {.min_range = 1.5 * kExactVoxel}), RayHit::Kind::occupied,
+             {7, 7, 12}, 4.5);
 }
 
 TEST_P(DegenerateRays, EntryAtMaxRangeCountsAndBeyondDoesNot) {

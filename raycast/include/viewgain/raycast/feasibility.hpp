@@ -49,8 +49,7 @@ struct VIEWGAIN_EXPORT FeasibilityConfig {
   ReachRegion reach{};                       ///< where the camera may be
   ReachRegion::Tolerance taken_tolerance{};  ///< when two poses are the same
   /// Where given: a view is too near if more than max_near_share of its rays that end in the map
-  /// end within the sensor's min_range. The expected gain lets such rays pass, so a camera in front
-  /// of a wall would seem to see what is behind it.
+  /// end within the sensor's min_range, where it measures nothing.
   std::optional<Sensor> sensor{};
   double max_near_share = 0.2;  ///< of the rays that end in the map
 };

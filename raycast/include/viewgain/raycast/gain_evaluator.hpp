@@ -60,7 +60,9 @@ struct VIEWGAIN_EXPORT GainConfig {
   Criterion criterion = Criterion::log_diagonal;
   int pixel_stride = 1;                 ///< every s-th pixel of every s-th row, from pixel (0,0)
   std::optional<double> prior_sigma{};  ///< sigma_0 [m]; the map's unless given
-  std::optional<double> min_range{};    ///< along the ray [m]; the sensor's unless given
+  /// Along the ray [m]; the sensor's unless given. Nothing nearer gains, but known surface that a
+  /// ray enters before it blocks the ray, as an obstacle does at any range.
+  std::optional<double> min_range{};
   std::optional<double> max_range{};    ///< along the ray [m]; the sensor's unless given
   std::vector<WeightRegion> weights{};  ///< task weights; in their order later ones count
   double refinement_weight = 0.3;       ///< combined: w, of refining against finding new surface
@@ -103,7 +105,8 @@ struct VIEWGAIN_EXPORT ViewGain {
 
 /// Where one ray of a view ends.
 struct VIEWGAIN_EXPORT RayHit {
-  /// What a ray ends in.
+  /// What a ray ends in. A ray that enters known surface before min_range ends there as at an
+  /// obstacle.
   enum class Kind : std::uint8_t { none, unknown, occupied, obstacle };
   Kind kind = Kind::none;  ///< what it ends in
   Index3 voxel{};          ///< the voxel it ends in (unknown, occupied)
@@ -139,9 +142,9 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// What becomes of a view's rays, for asking why its gain is what it is. Each ray counts once, so
   /// that the counts below `rays` add up to it.
   struct RayOutcomes {
-    std::uint32_t rays = 0;      ///< of the view
-    std::uint32_t too_near = 0;  ///< meet surface or an obstacle before min_range, in free space
-    std::uint32_t unknown = 0;   ///< come to unknown space: what may be new
+    std::uint32_t rays = 0;           ///< of the view
+    std::uint32_t too_near = 0;       ///< meet known surface or an obstacle before min_range
+    std::uint32_t unknown = 0;        ///< come to unknown space: what may be new
     std::uint32_t known_surface = 0;  ///< end in known surface, with free space before it
     std::uint32_t obstacle =
         0;  ///< end at an obstacle or, but by the paper's gain, on the support plane
@@ -216,7 +219,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
 
   /// Why a view's gain is what it is: what becomes of each of the rays that evaluate() uses. A
   /// camera in an occupied voxel sees from there. All counts are 0 for a bad pose: nothing is
-  /// thrown for it. Costs two traces of the pose and a PinholeCamera::ray() for each ray.
+  /// thrown for it. Costs a trace of the pose and a PinholeCamera::ray() for each ray.
   [[nodiscard]] RayOutcomes outcomes(const Pose& T_world_camera) const;
 
   /// The k best poses and evaluate()'s results of them, ties to the lower index; fewer where fewer

@@ -222,7 +222,7 @@ VG_API vg_status vg_contributions(const vg_evaluator* evaluator, const double T_
 typedef struct vg_ray_outcomes {
   size_t struct_size;     /* as _init() sets it */
   uint32_t rays;          /* of the view */
-  uint32_t too_near;      /* meet surface or an obstacle before min_range, in free space */
+  uint32_t too_near;      /* meet known surface or an obstacle before min_range */
   uint32_t unknown;       /* come to unknown space: what may be new */
   uint32_t known_surface; /* end in known surface, with free space before it */
   uint32_t obstacle;      /* end at an obstacle or, but by VG_GAIN_PAPER, on the support plane */

@@ -112,8 +112,9 @@ class VIEWGAIN_EXPORT ClassicMap {
 /// Scores camera poses by any number of classic gains at once. A ray visits, for a positive length
 /// and in order, the voxels of the workspace from min_range on to the first occupied one (log-odds
 /// above 0), which it ends in, or to max_range, a known obstacle, the scene's support plane or the
-/// workspace's edge. Nothing outside the workspace counts, and no ray twice; but a voxel that
-/// several rays pass counts with each of them, unless its gain says distinct.
+/// workspace's edge; none if it enters an occupied one before min_range. Nothing outside the
+/// workspace counts, and no ray twice; but a voxel that several rays pass counts with each of them,
+/// unless its gain says distinct.
 ///
 /// Rays are in single precision, as the tracer's: some in a hundred thousand go by the other side
 /// of a voxel's edge. Else gains agree with sums in double precision to 1e-5, counts of rays
