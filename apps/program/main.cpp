@@ -22,6 +22,7 @@
 #include "program/commands/commands.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/file_bytes.hpp"
 #include "viewgain/version.hpp"
 
 namespace viewgain::app {
@@ -149,9 +150,11 @@ int run(int argc, char** argv) {
 // Runs the call; what it throws becomes a line and an exit code.
 int guarded_run(int argc, char** argv) {
   std::set_terminate(end_in_one_line);
+  std::signal(SIGXFSZ, SIG_IGN);  // a write past the limit fails, with a message, instead
   std::signal(SIGPIPE, SIG_IGN);  // who reads no more what a call says does not end its work
   try {
     clean_up_when_ended();
+    keep_bytes_of_pipes();  // --poses <(...)
     return run(argc, argv);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::backend) leave(report(error.what(), kInternalError));

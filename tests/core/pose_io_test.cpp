@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <fstream>
 #include <limits>
@@ -327,6 +330,31 @@ TEST(FileBytes, OfAPipeUpToALimit) {
                [&] { (void)file_bytes(pipe, 2'000'000); });
   writer.join();
   std::signal(SIGPIPE, SIG_DFL);
+}
+
+// Of a process of its own: what is kept is kept until the end.
+TEST(FileBytes, OfAPipeAsOftenAsWanted) {
+  std::array<int, 2> pipe{};
+  ASSERT_EQ(::pipe(pipe.data()), 0);
+  const std::string bytes = some_bytes(4000);
+  ASSERT_EQ(::write(pipe[1], bytes.data(), bytes.size()), 4000);
+  ::close(pipe[1]);
+  const std::string name = std::to_string(pipe[0]);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    keep_bytes_of_pipes();
+    for (const char* const folder : {"/dev/fd/", "/proc/self/fd/", "/dev/fd/"}) {
+      EXPECT_EQ(file_bytes(folder + name), bytes);
+    }
+    expect_error(ErrorCode::capacity, name + ": has more than 3999 bytes",
+                 [&] { (void)file_bytes("/dev/fd/" + name, 3999); });
+    ::_exit(testing::Test::HasFailure() ? 1 : 0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_EQ(file_bytes("/dev/fd/" + name), "");  // here nobody has asked for it
+  ::close(pipe[0]);
 }
 
 TEST(FileBytes, RefusesWhatHasNoEndOrIsNoFile) {

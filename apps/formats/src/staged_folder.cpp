@@ -4,13 +4,18 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <mutex>
 #include <new>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +23,8 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/synced_together.hpp"
+#include "viewgain/support/temporary_names.hpp"
 
 namespace viewgain {
 namespace {
@@ -31,11 +38,6 @@ std::vector<const StagedFolder*> alive;
   throw Error(ErrorCode::io, target.string() + ": " + what);
 }
 
-std::string hidden_prefix(const fs::path& target) {
-  std::string name(1, '.');
-  return name.append(target.filename().string()).append(".tmp-");
-}
-
 // A folder in use is locked by its process, wherever that runs. -1: that one has the lock, the
 // folder is gone, or the file system has no locks.
 int lock_of(const fs::path& folder) {
@@ -46,28 +48,45 @@ int lock_of(const fs::path& folder) {
 }
 
 // Of that name, each a process's.
-std::vector<fs::path> leftovers(const fs::path& folder, const std::string& prefix) {
+std::vector<fs::path> leftovers(const fs::path& folder, const TemporaryNames& names) {
   std::vector<fs::path> found;
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(prefix) &&
-        name.find_first_not_of("0123456789-", prefix.size()) == std::string::npos) {
-      found.push_back(entry.path());
-    }
+    if (names.writer_of(entry.path().filename().string()) != 0) found.push_back(entry.path());
   }
   return found;
 }
 
-// And links, which writers would follow out of the folder.
-void remove_half_written(const fs::path& folder) {
+// To be called before the file takes the place of the other, if that is there.
+void take_permissions(const fs::path& file, const fs::path& replaced) {
+  struct stat status {};
+  if (::stat(replaced.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return;
+  const int written = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (written < 0) return;
+  Permissions(status).give(written);
+  ::close(written);
+}
+
+// When the machine was started, by the clock of files' times.
+fs::file_time_type time_of_boot() {
+  struct timespec since {};
+  (void)::clock_gettime(CLOCK_BOOTTIME, &since);
+  return fs::file_time_type::clock::now() - std::chrono::seconds(since.tv_sec);
+}
+
+// And links, which writers would follow out of the folder. Nothing in it but its record was synced:
+// what is from before the machine was started may have come through a power cut, and not whole.
+void remove_half_written(const fs::path& folder, const char* record) {
   std::vector<fs::path> found;
   std::error_code ignored;
+  const fs::file_time_type boot = time_of_boot();
   constexpr auto kSkip = fs::directory_options::skip_permission_denied;
   for (const fs::directory_entry& entry :
        fs::recursive_directory_iterator(folder, kSkip, ignored)) {
     const bool is_hidden = entry.path().filename().string().starts_with(".");
-    if (is_hidden || entry.is_symlink(ignored)) found.push_back(entry.path());
+    const bool is_old = entry.is_regular_file(ignored) && entry.path() != folder / record &&
+                        entry.last_write_time(ignored) < boot;
+    if (is_hidden || is_old || entry.is_symlink(ignored)) found.push_back(entry.path());
   }
   for (const fs::path& path : found) fs::remove(path, ignored);
 }
@@ -116,16 +135,16 @@ std::vector<fs::path> files_of_earlier_run(const fs::path& dir) {
 }  // namespace
 
 // Takes up one of them at most and removes the others; those in use stay.
-bool StagedFolder::take_leftovers(const fs::path& folder, const std::string& prefix,
+bool StagedFolder::take_leftovers(const fs::path& folder, const TemporaryNames& names,
                                   const char* taken_up) {
   std::error_code ignored;
-  for (const fs::path& path : leftovers(folder, prefix)) {
+  for (const fs::path& path : leftovers(folder, names)) {
     const int lock = lock_of(path);
     if (lock < 0) continue;
     if (taken_up != nullptr && lock_ < 0 && fs::exists(path / taken_up, ignored)) {
       staging_ = path;
       lock_ = lock;
-      remove_half_written(staging_);
+      remove_half_written(staging_, taken_up);
       keep();
       continue;
     }
@@ -136,7 +155,6 @@ bool StagedFolder::take_leftovers(const fs::path& folder, const std::string& pre
 }
 
 StagedFolder::StagedFolder(const fs::path& target, const char* taken_up) {
-  static std::atomic<unsigned> counter{0};
   std::error_code code;
   target_ = target.has_filename() ? target : target.parent_path();  // a slash at the end
   const bool exists = fs::exists(target_, code);
@@ -144,13 +162,18 @@ StagedFolder::StagedFolder(const fs::path& target, const char* taken_up) {
   target_ = fs::weakly_canonical(fs::absolute(target_), code);
   if (code) fail(target, "cannot be created: " + code.message());
   const fs::path around = exists ? target_ : target_.parent_path();
-  const std::string prefix = hidden_prefix(target_);
-  const bool is_inside = take_leftovers(target_, prefix, taken_up);
-  const bool is_taken_up = take_leftovers(target_.parent_path(), prefix, taken_up) || is_inside;
+  const TemporaryNames names = TemporaryNames::of_folder(target_);
+  const bool is_inside = take_leftovers(target_, names, taken_up);
+  const bool is_taken_up = take_leftovers(target_.parent_path(), names, taken_up) || is_inside;
 
   const std::lock_guard guard(list_mutex);
   alive.reserve(alive.size() + 1);  // what is made below is listed in any case
+  // Files that replace others get their permissions when they are moved. Until then nobody else may
+  // read them.
+  const mode_t mode = exists ? S_IRWXU : S_IRWXU | S_IRWXG | S_IRWXO;
   if (is_taken_up) {
+    if (exists) (void)::chmod(staging_.c_str(), mode);
+    synced_ = std::make_unique<SyncedTogether>(staging_);
     alive.push_back(this);
     return;
   }
@@ -160,10 +183,10 @@ StagedFolder::StagedFolder(const fs::path& target, const char* taken_up) {
   bool is_new = false;
   do {  // again if the name is another's, or somebody took the folder for a leftover before it was
         // locked
-    staging_ =
-        around / (prefix + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1)));
+    staging_ = around / names.next().filename();
     fs::create_directories(around, code);
-    is_new = !code && fs::create_directory(staging_, code);
+    is_new = !code && ::mkdir(staging_.c_str(), mode) == 0;
+    if (!code && !is_new && errno != EEXIST) code.assign(errno, std::generic_category());
     if (code) {
       staging_.clear();  // is another's
       remove();
@@ -171,6 +194,12 @@ StagedFolder::StagedFolder(const fs::path& target, const char* taken_up) {
     }
     lock_ = is_new ? lock_of(staging_) : -1;
   } while (!is_new || (lock_ < 0 && !fs::exists(staging_, code)));
+  try {
+    synced_ = std::make_unique<SyncedTogether>(staging_);
+  } catch (const std::bad_alloc&) {
+    remove();
+    throw;
+  }
   alive.push_back(this);
 }
 
@@ -196,6 +225,7 @@ void StagedFolder::remove() const noexcept {
 }
 
 void StagedFolder::commit(const std::vector<fs::path>& earlier) {
+  synced_->sync();  // whole after a power cut, before anything gets its name
   std::error_code code;
   if (!fs::exists(target_, code)) {
     fs::rename(staging_, target_, code);
@@ -211,17 +241,17 @@ void StagedFolder::commit(const std::vector<fs::path>& earlier) {
   });
   for (const fs::path& file : written) {
     if (!code) fs::create_directories((target_ / file).parent_path(), code);
+    if (!code) take_permissions(staging_ / file, target_ / file);
     if (!code) fs::rename(staging_ / file, target_ / file, code);
   }
   if (code) fail(target_, "cannot be written: " + code.message());
-  fs::path synced;
-  for (const fs::path& file : written) {
-    const fs::path folder = (target_ / file).parent_path();
-    if (folder != synced) sync_folder(synced = folder);
-  }
+  std::set<fs::path> folders;
+  for (const fs::path& file : written) folders.insert((target_ / file).parent_path());
+  for (const fs::path& folder : folders) sync_folder(folder);
   is_kept_ = false;
+  const std::set<fs::path> kept(written.begin(), written.end());
   for (const fs::path& file : earlier) {
-    if (std::find(written.begin(), written.end(), file) != written.end()) continue;
+    if (kept.contains(file)) continue;
     fs::remove(target_ / file, code);
     if (file.has_parent_path()) fs::remove((target_ / file).parent_path(), code);  // if empty
   }
@@ -263,7 +293,11 @@ fs::path RunFolder::last_checkpoint() const {
 }
 
 void RunFolder::write_checkpoint(const std::string& text) {
-  write_file_atomically(file(kCheckpoint), text);
+  AtomicFile checkpoint(file(kCheckpoint));
+  checkpoint.write(text);
+  checkpoint.sync();  // a run may go on from it although its folder was never synced
+  checkpoint.commit();
+  sync_folder(staged_.path());
 }
 
 void RunFolder::commit(bool goes_on) {

@@ -126,7 +126,7 @@ std::vector<Identity> identities(const NamedFile& file) {
   if (file.kind == Kind::run || file.kind == Kind::run_output) inside = run_files(file.path);
   if (file.kind == Kind::plan_output) inside = {"state.vdb", "next.txt", "next.json"};
   for (const fs::path& name : inside) found.emplace_back(file.path / name);
-  if (file.kind == Kind::reach && !is_special_file(file.path)) {  // a pipe can be read only once
+  if (file.kind == Kind::reach) {
     if (const auto poses = reach_poses_file(file.path)) found.emplace_back(*poses);
   }
   return found;

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/cli/interrupt.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "viewgain/formats/staged_folder.hpp"
@@ -14,14 +18,31 @@
 namespace viewgain::app {
 namespace {
 
+constexpr int kOutOfTime = 1;  // as out of memory
+
 std::mutex mutex;
 std::stop_source* guarded = nullptr;  // of the InterruptGuard that lives
 bool ended = false;
 
-// Whether the signal was only a wish to stop.
+void say_that_time_is_up(const char* what_follows) {
+  struct rlimit limit {};
+  std::string seconds;
+  if (::getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+    seconds = " of " + std::to_string(limit.rlim_cur) + " s";
+  }
+  std::fprintf(stderr, "viewgain: the limit%s on processor time is reached (ulimit -t)%s\n",
+               seconds.c_str(), what_follows);
+}
+
+// Whether the signal was only a wish to stop. That of the processor's time comes again each second
+// until the call ends.
 bool asks_for_a_stop(int signal) {
   const std::lock_guard lock(mutex);
-  if (guarded != nullptr && signal != SIGQUIT && guarded->request_stop()) return true;
+  if (guarded != nullptr && signal != SIGQUIT) {
+    const bool is_first = guarded->request_stop();
+    if (signal == SIGXCPU && is_first) say_that_time_is_up("; the call stops after this step");
+    if (is_first || signal == SIGXCPU) return true;
+  }
   ended = true;
   return false;
 }
@@ -32,6 +53,10 @@ void watch(const sigset_t& signals) {
   while (::sigwait(&signals, &signal) != 0 || asks_for_a_stop(signal)) {
   }
   remove_unfinished_files();
+  if (signal == SIGXCPU) {  // which would leave a core, too
+    say_that_time_is_up("");
+    std::_Exit(kOutOfTime);
+  }
   std::signal(signal, SIG_DFL);
   ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
   std::raise(signal);
@@ -42,7 +67,7 @@ void watch(const sigset_t& signals) {
 void clean_up_when_ended() {
   sigset_t signals;
   ::sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU}) {
     struct sigaction action {};
     // Programs in the background and under nohup are started with some ignored.
     if (::sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {

@@ -7,8 +7,8 @@
 namespace viewgain::app {
 
 /// From now on Ctrl-C (SIGINT), SIGTERM, SIGHUP and SIGQUIT remove what is half-written before they
-/// end the program; those that were ignored when it was started stay so. To be called once, before
-/// any other thread is started.
+/// end the program, and so does SIGXCPU, which ends it with a message and exit code 1. Signals that
+/// were ignored when it was started stay so. To be called once, before any other thread is started.
 void clean_up_when_ended();
 
 /// Removes what all writers of this process have half-written and is not kept for a call that goes
@@ -20,7 +20,7 @@ void remove_unfinished_files() noexcept;
 void wait_if_ended();
 
 /// While it lives, the first of SIGINT, SIGTERM and SIGHUP asks for a stop instead of ending the
-/// program. One at a time.
+/// program, and every SIGXCPU does. One at a time.
 class InterruptGuard {
  public:
   InterruptGuard();

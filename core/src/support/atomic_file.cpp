@@ -4,6 +4,8 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -18,6 +20,8 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/synced_together.hpp"
+#include "viewgain/support/temporary_names.hpp"
 
 namespace viewgain {
 namespace {
@@ -25,8 +29,14 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& target, int error_number) {
-  throw Error(ErrorCode::io,
-              target.string() + ": cannot write: " + std::generic_category().message(error_number));
+  std::string why = std::generic_category().message(error_number);
+  struct rlimit limit {};
+  if (error_number == EFBIG && ::getrlimit(RLIMIT_FSIZE, &limit) == 0 &&
+      limit.rlim_cur != RLIM_INFINITY) {
+    why += "; this process may write files of at most " + std::to_string(limit.rlim_cur) +
+           " bytes (ulimit -f)";
+  }
+  throw Error(ErrorCode::io, target.string() + ": cannot write: " + why);
 }
 
 // Where a name leads.
@@ -70,51 +80,17 @@ int duplicate_for_writing(const fs::path& target, int descriptor) {
   return file;
 }
 
-// Temporary files: .NAME.tmp-PROCESS-COUNTER.ENDING, locked as long as their writer lives.
-
-std::string temporary_prefix(const fs::path& target) {
-  // Appended piece by piece: GCC 12 warns, wrongly, of overlap where a literal is first in a sum.
-  std::string name(1, '.');
-  name += target.stem().string();
-  name += ".tmp-";
-  return name;
-}
-
-fs::path temporary_name(const fs::path& target) {
-  static std::atomic<unsigned> counter{0};
-  std::string name = temporary_prefix(target);
-  name += std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1));
-  name += target.extension().string();
-  return target.parent_path() / name;
-}
-
-/// The process that a temporary file's name tells; 0 for any other name.
-pid_t writer_of(std::string_view name, std::string_view prefix, std::string_view ending) {
-  if (name.size() < prefix.size() + ending.size() || !name.starts_with(prefix) ||
-      !name.ends_with(ending)) {
-    return 0;
-  }
-  name.remove_prefix(prefix.size());
-  name.remove_suffix(ending.size());
-  const char* const end = name.data() + name.size();
-  pid_t process = 0;
-  const auto number = std::from_chars(name.data(), end, process);
-  if (number.ec != std::errc{} || process <= 0 || number.ptr == end || *number.ptr != '-') return 0;
-  unsigned count = 0;
-  const auto rest = std::from_chars(number.ptr + 1, end, count);
-  return rest.ec == std::errc{} && rest.ptr == end ? process : 0;
-}
+// Temporary files, locked as long as their writer lives.
 
 /// Removes what writers of this target left behind when they were killed. A process that runs
 /// elsewhere, on another machine or in another container, is known by its lock.
-void remove_leftovers(const fs::path& target) {
-  const std::string prefix = temporary_prefix(target), ending = target.extension().string();
+void remove_leftovers(const fs::path& target, const TemporaryNames& names) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   std::error_code code;
   fs::directory_iterator entry(folder, code);
   for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
     const fs::path& path = entry->path();
-    const pid_t writer = writer_of(path.filename().string(), prefix, ending);
+    const pid_t writer = names.writer_of(path.filename().string());
     if (writer == 0 || ::kill(writer, 0) == 0 || errno != ESRCH) continue;
     const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (file < 0) continue;
@@ -124,8 +100,8 @@ void remove_leftovers(const fs::path& target) {
 }
 
 /// Creates the file, which must not be there yet. Its descriptor, or -1 and errno.
-int create_new(const fs::path& path) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+int create_new(const fs::path& path, mode_t mode) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   if (file >= 0) (void)::flock(file, LOCK_EX | LOCK_NB);  // not every file system has locks
   return file;
 }
@@ -159,12 +135,30 @@ void unlist_temporary(char* name) {
   }
 }
 
+constexpr mode_t kPermissionBits = S_IRWXU | S_IRWXG | S_IRWXO;  // a write clears the others, too
+
 bool is_synced(int file) {
   // Some file systems have nothing to wait for and say so.
   return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP;
 }
 
 }  // namespace
+
+Permissions::Permissions(const struct stat& status) noexcept
+    : mode_(status.st_mode & kPermissionBits), group_(status.st_gid) {}
+
+void Permissions::give(int file) const noexcept {
+  struct stat own {};
+  if (::fstat(file, &own) != 0) return;
+  mode_t mode = mode_;
+  // The group first: its bits are for nobody else. Whoever may not give the file to the group
+  // gives his own what everybody has.
+  if (own.st_gid != group_ && ::fchown(file, static_cast<uid_t>(-1), group_) != 0) {
+    mode = (mode & ~mode_t{S_IRWXG}) | (mode & S_IRWXO) << 3U;
+  }
+  // Some file systems have no modes; then this one is that of all their files.
+  if ((own.st_mode & kPermissionBits) != mode) (void)::fchmod(file, mode);
+}
 
 AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
   if (target.empty()) throw Error(ErrorCode::io, "cannot write to a file without a name");
@@ -174,19 +168,25 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
     file_ = duplicate_for_writing(target, destination.descriptor);
     return;
   }
-  std::error_code code;
-  const fs::file_status status = fs::status(target, code);
-  if (fs::is_directory(status)) fail(target, EISDIR);
+  struct stat status {};
+  const bool is_there = ::stat(target.c_str(), &status) == 0;
+  if (!is_there && errno == ENAMETOOLONG) fail(target, errno);
+  if (is_there && S_ISDIR(status.st_mode)) fail(target, EISDIR);
   // Opened by the first write: to open a pipe is to wait for its reader.
-  if (fs::exists(status) && !fs::is_regular_file(status)) return;
+  if (is_there && !S_ISREG(status.st_mode)) return;
   if (!resolved_.has_filename()) fail(target, EISDIR);
-  remove_leftovers(resolved_);
+  if (is_there) replaced_ = Permissions(status);
+  syncs_ = !are_synced_together(resolved_);
+  const TemporaryNames names = TemporaryNames::of_file(resolved_);
+  // What a killed process left in a folder that is synced as a whole is its owner's to remove.
+  if (syncs_) remove_leftovers(resolved_, names);
   // Listed for as long as the file may be there, and so from before on: a signal may come at any
   // time.
   do {
-    temporary_ = temporary_name(resolved_);
+    temporary_ = names.next();
     listed_ = list_temporary(temporary_);
-    file_ = create_new(temporary_);
+    // What replaces a file is its owner's alone until it has the permissions of that one.
+    file_ = create_new(temporary_, replaced_ ? 0600 : 0666);
     if (file_ >= 0) return;
     const int error = errno;
     unlist_temporary(listed_);
@@ -217,15 +217,20 @@ void AtomicFile::write(std::string_view bytes) {
   }
 }
 
-void AtomicFile::commit() {
+void AtomicFile::sync() {
   if (!is_in_place() && !is_synced(file_)) fail(target_, errno);
+}
+
+void AtomicFile::commit() {
+  if (replaced_) replaced_->give(file_);
+  if (syncs_) sync();
   if (file_ >= 0 && ::close(std::exchange(file_, -1)) != 0) fail(target_, errno);
   if (!is_in_place()) {
     std::error_code code;
     fs::rename(temporary_, resolved_, code);
     if (code) fail(target_, code.value());
     // What was there before is whole, too, if this fails.
-    sync_folder(resolved_.has_parent_path() ? resolved_.parent_path() : fs::path("."));
+    if (syncs_) sync_folder(resolved_.has_parent_path() ? resolved_.parent_path() : fs::path("."));
   }
   committed_ = true;
 }

@@ -7,10 +7,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <map>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "viewgain/core/error.hpp"
 
@@ -18,6 +22,10 @@ namespace viewgain {
 namespace {
 
 constexpr std::size_t kPart = std::size_t{1} << 20U;  // [bytes]
+
+std::string too_many_bytes(std::uint64_t most) {
+  return "has more than " + std::to_string(most) + " bytes";
+}
 
 /// A regular file or a pipe, open for reading.
 class Input {
@@ -72,9 +80,7 @@ class Input {
 
 std::string bytes_of(Input& input, std::uint64_t most) {
   if (input.size() == 0) most = std::min(most, kMostPipeBytes);
-  const auto refuse = [&] {
-    input.fail_capacity("has more than " + std::to_string(most) + " bytes");
-  };
+  const auto refuse = [&] { input.fail_capacity(too_many_bytes(most)); };
   if (input.size() > most) refuse();
   try {
     std::string bytes;
@@ -93,12 +99,37 @@ std::string bytes_of(Input& input, std::uint64_t most) {
   input.fail_capacity("does not fit into memory");
 }
 
-}  // namespace
-
-std::string file_bytes(const std::filesystem::path& path, std::uint64_t most) {
+std::string read_bytes(const std::filesystem::path& path, std::uint64_t most) {
   Input input(path, true);
   return bytes_of(input, most);
 }
+
+/// What has come from pipes, each read once whatever its name is.
+struct Pipes {
+  std::atomic<bool> are_kept = false;
+  std::mutex mutex;
+  std::map<std::pair<dev_t, ino_t>, std::string> bytes;
+} pipes;
+
+}  // namespace
+
+std::string file_bytes(const std::filesystem::path& path, std::uint64_t most) {
+  struct stat status {};
+  const bool is_kept =
+      pipes.are_kept && ::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
+  if (!is_kept) return read_bytes(path, most);
+  const std::lock_guard lock(pipes.mutex);
+  const std::pair key(status.st_dev, status.st_ino);
+  auto known = pipes.bytes.find(key);
+  if (known == pipes.bytes.end()) {
+    known = pipes.bytes.emplace(key, read_bytes(path, most)).first;
+  } else if (known->second.size() > most) {
+    throw Error(ErrorCode::capacity, path.string() + ": " + too_many_bytes(most));
+  }
+  return known->second;
+}
+
+void keep_bytes_of_pipes() noexcept { pipes.are_kept = true; }
 
 std::string folder_file_bytes(const std::filesystem::path& path, std::uint64_t most) {
   Input input(path, false);

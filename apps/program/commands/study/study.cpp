@@ -339,12 +339,13 @@ void study(const Options& options) {
   const Json json = results_json(spec, rows);
   const std::string table = results_markdown(spec, rows);
   std::error_code ignored;
-  fs::remove(dir / "coverage.png", ignored);  // it may be of another spec
+  fs::resize_file(dir / "coverage.png", 0, ignored);  // of another spec perhaps; its mode stays
   write_file_atomically(dir / "results.csv", results_csv(json));
   write_file_atomically(dir / "table.md", table);
   write_file_atomically(dir / "plots.py", plots_script());
   write_file_atomically(dir / "results.json", json_text(json));
   const bool is_drawn = options.plots == "on" && draw_plots(dir / "plots.py");
+  if (!is_drawn) fs::remove(dir / "coverage.png", ignored);
   if (options.plots == "on" && !is_drawn) {
     std::fprintf(stderr, "viewgain: no plots: \"python3 %s\" draws them where matplotlib is\n",
                  (dir / "plots.py").c_str());

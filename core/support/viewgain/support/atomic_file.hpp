@@ -2,18 +2,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/stat.h>
+#include <sys/types.h>
+
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "viewgain/core/export.hpp"
 
 namespace viewgain {
 
+/// Mode and group of a file, for the one that replaces it.
+class VIEWGAIN_EXPORT Permissions {
+ public:
+  explicit Permissions(const struct stat& status) noexcept;
+  /// Gives them to an open file, as far as this process may. If it may not give the group, the
+  /// group that the file has gets what everybody has: nobody gains a right.
+  void give(int file) const noexcept;
+
+ private:
+  mode_t mode_;
+  gid_t group_;
+};
+
 /// A file that appears whole or not at all, over a power cut too. What is written goes to
 /// temporary_path(), in the target's folder; commit() syncs it and renames it to the target, and
 /// without a commit() the destructor removes it. Writers that want a file name get
-/// temporary_path(), others use write(). The temporary's name is .NAME.tmp-PROCESS-COUNTER.ENDING;
-/// what a killed process left there is removed by the next writer of the same target.
+/// temporary_path(), others use write(). TemporaryNames says how the temporary is called; what a
+/// killed process left there is removed by the next writer of the same target. In a folder of
+/// SyncedTogether that object syncs, and no leftovers are looked for.
+///
+/// What replaces a file has its permissions: only its owner may open it before commit(), which
+/// gives it the mode and the group. A new file has the mode that the umask leaves.
 ///
 /// A symbolic link stays, and the file that it leads to is replaced, or made. A target that is no
 /// regular file (a pipe, a device) is written in place, without a rename, and so is one that stands
@@ -36,6 +57,10 @@ class VIEWGAIN_EXPORT AtomicFile {
   /// Appends bytes.
   void write(std::string_view bytes);
 
+  /// Waits until what is written is on the disk, which commit() leaves to SyncedTogether in its
+  /// folder.
+  void sync();
+
   /// Makes the file appear. To be called once, when all is written and other writers have closed
   /// it.
   void commit();
@@ -43,11 +68,13 @@ class VIEWGAIN_EXPORT AtomicFile {
  private:
   [[nodiscard]] bool is_in_place() const noexcept { return temporary_ == resolved_; }
 
-  std::filesystem::path target_;     // as given, for messages
-  std::filesystem::path resolved_;   // behind symbolic links
-  std::filesystem::path temporary_;  // equals resolved_ when written in place
-  int file_ = -1;                    // where write() writes, once it is open
-  char* listed_ = nullptr;           // the name for remove_temporary_files()
+  std::filesystem::path target_;         // as given, for messages
+  std::filesystem::path resolved_;       // behind symbolic links
+  std::filesystem::path temporary_;      // equals resolved_ when written in place
+  std::optional<Permissions> replaced_;  // of the file that was there
+  bool syncs_ = false;
+  int file_ = -1;           // where write() writes, once it is open
+  char* listed_ = nullptr;  // the name for remove_temporary_files()
   bool committed_ = false;
 };
 

@@ -32,4 +32,9 @@ inline constexpr std::uint64_t kMostPipeBytes = std::uint64_t{1} << 30U;
 [[nodiscard]] VIEWGAIN_EXPORT std::string file_head(const std::filesystem::path& path,
                                                     std::size_t count);
 
+/// From now on file_bytes() keeps what it reads from a pipe, and whoever reads that pipe again gets
+/// the same bytes. For a program that reads each file of its command line from as many places as it
+/// likes, and then ends; it costs the pipes' bytes in memory.
+VIEWGAIN_EXPORT void keep_bytes_of_pipes() noexcept;
+
 }  // namespace viewgain

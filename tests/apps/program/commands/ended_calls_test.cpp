@@ -3,6 +3,7 @@
 
 // Calls that end otherwise than well: by signals, on a full disk, with names that are not UTF-8.
 
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -38,6 +39,9 @@ class EndedCalls : public test::ProgramTest {
                         {"--stop-promises", "0", "--out", out, "--max-views", views});
   }
 
+  // On stderr, by the last call.
+  [[nodiscard]] std::string said() const { return read("../stderr"); }
+
   // The hidden folder of a call that is writing; empty if there is none.
   [[nodiscard]] fs::path hidden(const std::string& folder) const {
     for (const std::string& name : list(folder)) {
@@ -58,9 +62,63 @@ TEST_F(EndedCalls, SimulateLeavesNothing) {
   }
 }
 
+// The processor's time is up.
+TEST_F(EndedCalls, ALimitOnTimeEndsACallWithAMessage) {
+  const auto before = contents();
+  const auto is_writing = [&] { return fs::exists(dir / "new") && !hidden("new").empty(); };
+  const pid_t child = start(simulate("new/frames", "1000"));
+  while (!is_writing()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const struct rlimit limit { 1, RLIM_INFINITY };
+  ASSERT_EQ(::prlimit(child, RLIMIT_CPU, &limit, nullptr), 0);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status;
+  EXPECT_EQ(said(), "viewgain: the limit of 1 s on processor time is reached (ulimit -t)\n");
+  EXPECT_TRUE(contents() == before);
+}
+
+TEST_F(EndedCalls, ALimitOnTimeIsAWishToStopAsOftenAsItComes) {
+  const pid_t child = start(reconstruct("run", "60"));
+  while (!fs::exists(hidden(".") / "maps/00.vdb")) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(::kill(child, SIGXCPU), 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  EXPECT_EQ(json::parse(read("run/run.json"))["stop_reason"], "interrupted");
+  const std::string message = "the call stops after this step";
+  EXPECT_NE(said().find(message), std::string::npos) << said();
+  EXPECT_EQ(said().find(message), said().rfind(message)) << said();
+}
+
+TEST_F(EndedCalls, ALimitOnSizesIsAnErrorThatNamesTheFile) {
+  run_well(test::joined(simulate("frames"), {"--quiet"}));
+  run_well({"integrate", "frames", "--voxel", "0.02", "--out", "map.vdb", "--quiet"});
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const struct rlimit few { 2000, before.rlim_max };
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &few), 0);  // which a child inherits
+  expect_refused({
+      {test::joined(simulate("new/frames"), {"--quiet"}), "File too large; "},
+      {test::joined(simulate("frames"), {"--quiet"}), "File too large; "},
+      {{"integrate", "frames", "--voxel", "0.02", "--out", "map.vdb", "--quiet"},
+       "map.vdb: cannot write: File too large; this process may write files of at most 2000 bytes"},
+      {{"convert", "map.vdb", "map.ot"}, "map.ot: cannot write: File too large"},
+      {{"surface", "map.vdb", "--out", "surface.ply"}, "surface.ply: cannot write: File too large"},
+      {{"render", "map.vdb", "--what", "map", "--out", "a.png"}, "a.png: cannot write: File too "},
+      {{"candidates", "map.vdb", "--generator", "sphere", "--out", "poses.txt"},
+       "poses.txt: cannot write: File too large"},
+  });
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+}
+
 TEST_F(EndedCalls, ASignalThatWasIgnoredStaysSo) {
   int cases = 0;
-  for (const int signal : {SIGINT, SIGHUP, SIGTERM, SIGQUIT}) {
+  for (const int signal : {SIGINT, SIGHUP, SIGTERM, SIGQUIT, SIGXCPU}) {
     const auto old = ::signal(signal, SIG_IGN);  // which a child inherits
     const int status = ended_by(simulate("frames", "20"), signal,
                                 [&] { return !hidden(cases == 0 ? "." : "frames").empty(); });
@@ -69,7 +127,7 @@ TEST_F(EndedCalls, ASignalThatWasIgnoredStaysSo) {
     EXPECT_EQ(list("frames").size(), 43U) << signal;  // 20 of two images, poses, sensor, mark
     ++cases;
   }
-  EXPECT_EQ(cases, 4);
+  EXPECT_EQ(cases, 5);
 }
 
 // Frames are aligned before any goes into the map, which takes most of such a call's time.

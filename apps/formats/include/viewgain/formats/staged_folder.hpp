@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,16 @@
 
 namespace viewgain {
 
+class SyncedTogether;
+class TemporaryNames;
+
 /// A folder of results that appears, or begins to change, only when all of them are written: they
 /// go into a hidden folder, beside the target where that is not there yet, else inside it, and
 /// commit() moves them. What else is in the target stays. The hidden folder is called
-/// .NAME.tmp-PROCESS-COUNTER; one that a killed process has left is removed by the next writer of
-/// the same target, or taken up. Thread safety: distinct objects may be used from distinct threads.
-/// Cost of commit(): one rename, or one a file where the target is there.
+/// .NAME.tmp-PROCESS-COUNTER, with a hash for a NAME that leaves no room; one that a killed process
+/// has left is removed by the next writer of the same target, or taken up. Thread safety: distinct
+/// objects may be used from distinct threads. Cost of commit(): the disk is waited for once, then
+/// one rename, or one per file where the target is there.
 class VIEWGAIN_EXPORT StagedFolder {
  public:
   /// Creates the hidden folder, and the target's parents where they are missing. Throws Error(io).
@@ -32,11 +37,12 @@ class VIEWGAIN_EXPORT StagedFolder {
   /// Where to write.
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return staging_; }
 
-  /// Moves the folder as a whole where there is no target yet. Else moves every file over the one
-  /// of its name, so that each name has its old or its new contents at any time, run.json,
-  /// poses.txt, simulated.txt and imported.txt last: new ones stand beside new files. Then removes
-  /// those of `earlier` (relative to the target, in any order) that were not written anew, and the
-  /// folders that this leaves empty. Throws Error(io).
+  /// Syncs the files, then moves the folder as a whole where there is no target yet. Else moves
+  /// every file over the one of its name, whose mode and group it takes, so that each name has its
+  /// old or its new contents at any time, run.json, poses.txt, simulated.txt and imported.txt last:
+  /// new ones stand beside new files. Then removes those of `earlier` (relative to the target, in
+  /// any order) that were not written anew, and the folders that this leaves empty. Throws
+  /// Error(io).
   void commit(const std::vector<std::filesystem::path>& earlier);
 
   /// From now on the hidden folder stays if commit() does not come, to be taken up. What was taken
@@ -46,13 +52,14 @@ class VIEWGAIN_EXPORT StagedFolder {
  private:
   friend VIEWGAIN_EXPORT void remove_staged_folders() noexcept;
   void remove() const noexcept;
-  bool take_leftovers(const std::filesystem::path& folder, const std::string& prefix,
+  bool take_leftovers(const std::filesystem::path& folder, const TemporaryNames& names,
                       const char* taken_up);
 
   std::filesystem::path target_;
   std::filesystem::path staging_;
   std::vector<std::filesystem::path> parents_;  // made for this one, the innermost first
-  int lock_ = -1;                               // of the hidden folder, while it is in use
+  std::unique_ptr<const SyncedTogether> synced_;
+  int lock_ = -1;  // of the hidden folder, while it is in use
   std::atomic<bool> is_kept_ = false;
 };
 

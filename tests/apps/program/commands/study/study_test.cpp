@@ -219,6 +219,12 @@ TEST_F(Study, PlotsAreDrawnByTheScriptItLeaves) {
   }
   run_well(study("out"));
   EXPECT_TRUE(read("out/coverage.png").starts_with("\x89PNG"));
+  // As of every file that is written anew the mode stays.
+  const auto own = fs::perms::owner_read | fs::perms::owner_write;
+  fs::permissions(dir / "out/coverage.png", own);
+  run_well(study("out"));
+  EXPECT_TRUE(read("out/coverage.png").starts_with("\x89PNG"));
+  EXPECT_EQ(fs::status(dir / "out/coverage.png").permissions(), own);
 }
 
 }  // namespace
