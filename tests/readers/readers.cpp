@@ -181,6 +181,7 @@ std::vector<Reader> frame_readers() {
     folder.file("frames/frame-000000.pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0.5\n0 0 0 1\n");
     folder.file("frames/camera-intrinsics.txt", "9.5 0 3.5\n0 9.25 2.5\n0 0 1\n");
     folder.file("frames/depth-scale.txt", "0.0010000000000\n");
+    folder.file("frames/frames.toml", "out_of_range = \"invalid\"\npose_time_offset = 0.5\n");
     write_sensor_toml(folder.path() / "frames/sensor.toml", small_sensor());
   };
   const auto read_frames = [](const fs::path& folder) {
@@ -196,7 +197,7 @@ std::vector<Reader> frame_readers() {
            read_frames},
           {"recorded",
            write_recorded,
-           {"frames/camera-intrinsics.txt", "frames/depth-scale.txt"},
+           {"frames/camera-intrinsics.txt", "frames/depth-scale.txt", "frames/frames.toml"},
            read_frames,
            4},
           {"tum", write_tum_recording, {"depth.txt", "groundtruth.txt"}, load_recording, 20}};

@@ -11,6 +11,7 @@
 
 #include "folders.hpp"
 #include "frames/frame_names.hpp"
+#include "frames/frames_toml.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -28,15 +29,8 @@ constexpr double kUnit = 1.0 / 5000;  // of the images [m]
 constexpr std::uint16_t kSaturated = 65535;
 constexpr const char* kImportedText = "# files written by viewgain import";
 
-// The poses, the lost ones among them.
-struct TimedPoses {
-  std::vector<ReadPose> poses;
-  std::vector<double> times;  // one a pose [s]; NaN: the line has none
-};
-
 TimedPoses read_timed_poses(const fs::path& path) {
-  TimedPoses read;
-  read.poses = read_pose_lines(path, false, &read.times);
+  TimedPoses read = read_pose_lines(path, {.allows_heading = true});
   const bool has_any = std::any_of(read.poses.begin(), read.poses.end(), [](const ReadPose& pose) {
     return pose.fault.verdict == FrameVerdict::used;
   });
@@ -77,11 +71,33 @@ struct Dropped {
   }
 };
 
+// A recording may be of anybody, and leads to no files of elsewhere. What is not read may.
+void refuse_link_out(const fs::path& source, const fs::path& file) {
+  std::error_code ignored;
+  const fs::path root = fs::canonical(source, ignored) / "";
+  fs::path path = source;
+  for (const fs::path& name : file.lexically_relative(source)) {
+    path /= name;
+    if (!fs::is_symlink(path, ignored)) continue;
+    std::error_code code;  // of one that leads nowhere, too
+    const std::string to = (fs::canonical(path, code) / "").string();
+    if (!code && to.starts_with(root.string())) continue;
+    throw Error(ErrorCode::format, path.string() + ": is a link out of the recording");
+  }
+}
+
+// Masks may lie anywhere, but what lies in the recording may be of anybody, too.
+void refuse_mask_link_out(const fs::path& source, const fs::path& mask) {
+  const fs::path within = mask.lexically_normal().lexically_relative(source.lexically_normal());
+  if (!within.empty() && *within.begin() != "..") refuse_link_out(source, source / within);
+}
+
 std::vector<RecordedFrame> read_frames(const fs::path& source, double max_time_gap,
                                        Dropped& dropped) {
-  const fs::path list = source / "depth.txt";
+  const fs::path list = source / "depth.txt", truth = source / "groundtruth.txt";
+  for (const fs::path& file : {list, truth}) refuse_link_out(source, file);
   const std::string bytes = folder_file_bytes(list);
-  const TimedPoses poses = read_timed_poses(source / "groundtruth.txt");
+  const TimedPoses poses = read_timed_poses(truth);
   std::vector<RecordedFrame> frames;
   std::set<fs::path> names;
   std::uint64_t number = 0;
@@ -108,28 +124,13 @@ std::vector<RecordedFrame> read_frames(const fs::path& source, double max_time_g
     } else if (!names.insert(image).second) {
       dropped.add({FrameVerdict::changed, where + ": an earlier line has named this image"});
     } else {
+      refuse_link_out(source, source / image);
       frames.push_back({number, source / image, *pose});
     }
     ++number;
   }
   if (number == 0) throw Error(ErrorCode::format, list.string() + ": names no image");
   return frames;
-}
-
-// A recording may be of anybody, and leads to no files of elsewhere.
-void refuse_links_out(const fs::path& source) {
-  std::error_code ignored;
-  const fs::path root = fs::canonical(source, ignored) / "";
-  // What may not be listed can be read by nobody, so nothing leads out of it.
-  constexpr auto kSkip = fs::directory_options::skip_permission_denied;
-  for (const fs::directory_entry& entry :
-       fs::recursive_directory_iterator(source, kSkip, ignored)) {
-    if (!entry.is_symlink(ignored)) continue;
-    std::error_code code;  // of one that leads nowhere, too
-    const std::string to = fs::canonical(entry.path(), code).string();
-    if (!code && to.starts_with(root.string())) continue;
-    throw Error(ErrorCode::format, entry.path().string() + ": is a link out of the recording");
-  }
 }
 
 // The image, of the camera's size, which the first one gives where the camera has none; else why
@@ -193,7 +194,9 @@ class RecordedFolder {
   void commit(const PinholeCamera& camera, const std::optional<Sensor>& sensor) {
     put(kIntrinsics, short_text(camera.fx) + " 0 " + short_text(camera.cx) + "\n0 " +
                          short_text(camera.fy) + " " + short_text(camera.cy) + "\n0 0 1\n");
-    put(kScale, short_text(kUnit) + "\n");
+    put(kFrames,
+        frames_toml(
+            {.depth_scale = kUnit, .out_of_range = Sensor::OutOfRange::invalid, .recorded = true}));
     if (sensor) {
       Sensor own = *sensor;
       own.camera = camera;
@@ -232,7 +235,6 @@ void check(const fs::path& source, const ImportConfig& config) {
   if (!fs::is_directory(source, ignored)) {
     throw Error(ErrorCode::io, source.string() + ": no such folder");
   }
-  refuse_links_out(source);
 }
 
 }  // namespace
@@ -258,6 +260,7 @@ ImportReport import_recording(const fs::path& source, const fs::path& out,
     if (!depth) continue;
     bool is_masked = false;
     for (const MaskFolder& masks : mask_folders) {
+      refuse_mask_link_out(source, masks.file_of(image));
       std::optional<Gray8Image> mask = masks.mask_of(image, depth->width, depth->height);
       if (!mask) continue;
       is_masked = true;

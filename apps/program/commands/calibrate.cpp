@@ -36,6 +36,8 @@ void calibrate(const Options& options) {
   FrameSequence frames =
       opened(&open_depth_images, options.frames, options.sensor, options.depth_scale);
   frames.out_of_range = Sensor::OutOfRange::invalid;
+  frames.is_out_of_range_assumed = false;
+  warn_of_assumptions(options.frames, frames);
   NoiseCalibration calibration(frames.sensor, frames.depth_scale);
   std::map<std::string, std::size_t> bad;
   std::size_t used = 0;
@@ -109,8 +111,8 @@ Command add_calibrate(App& program) {
                   kSensorHelp + "; default: FRAMES_DIR/sensor.toml. Its noise is replaced");
   app->add_option(
       "--depth-scale", options->depth_scale,
-      "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
-      "sensor.toml), else 1e-3");
+      "metres per unit of the images (default: as frames.toml says, else 1e-4 with poses.txt, 1e-3 "
+      "with pose files)");
   app->add_option("--out", options->out, "sensor file to write (.toml)")->required();
   add_common_options(*app, options->common);
   add_help(*app, kMapGroup,

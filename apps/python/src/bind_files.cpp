@@ -38,11 +38,16 @@ FrameSequence read_frames(const py::object& folder, const py::object& sensor,
   }
   const std::string given = sensor.is_none() ? std::string() : preset_or_file(sensor);
   const std::string path = file_path(folder);
-  const WithoutGil without_gil;
-  FrameSequence frames = open_frames(path, given, depth_scale);
+  FrameSequence frames = outside_gil([&] { return open_frames(path, given, depth_scale); });
   if (out_of_range) {
     frames.out_of_range =
         *out_of_range == "carve" ? Sensor::OutOfRange::carve : Sensor::OutOfRange::invalid;
+    frames.is_out_of_range_assumed = false;
+  }
+  if (const std::string assumed = assumed_text(frames); !assumed.empty()) {
+    if (PyErr_WarnEx(PyExc_UserWarning, (path + ": " + assumed).c_str(), 1) != 0) {
+      throw py::error_already_set();
+    }
   }
   return frames;
 }
@@ -238,14 +243,14 @@ Parameters
 folder : path-like
     With frame-NNNNNN.depth.png, 16 bit, and either poses.txt (TUM) and sensor.toml, as the program's
     ``simulate`` writes it, or frame-NNNNNN.pose.txt and camera-intrinsics.txt, as recordings have it.
+    Its frames.toml says how they are to be read; a UserWarning says what had to be assumed.
 sensor : str or path-like, optional
     A preset's name or a .toml file; the folder's own unless given.
 depth_scale : float, optional
-    [m] per unit; 1e-4 with poses.txt and sensor.toml, else 1e-3.
+    [m] per unit. Default: as frames.toml says, else 1e-4 with poses.txt and 1e-3 with pose files.
 out_of_range : {"carve", "invalid"}, optional
-    What 65535 in a depth image says: nothing up to max_range, or no reading. As the sensor's file
-    says unless given, else "carve" with poses.txt, as ``simulate`` writes it, and "invalid" in
-    recordings.
+    Meaning of 65535 in a depth image: no surface up to max_range, or no reading. Default: as
+    frames.toml or the sensor's file says, else "carve" with poses.txt and "invalid" with pose files.
 
 Returns
 -------

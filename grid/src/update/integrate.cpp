@@ -43,10 +43,10 @@ class FramePixels : public Readings {
   void set_pose_sigma(const PoseSigma& sigma);
 
   /// Sorts the frame's pixels into the kinds and computes what follows from the readings alone.
-  /// cosθ = amplitude · range² where the frame has amplitudes, else cos_incidence(). With `tapered`
-  /// false crossings keep their weight up to the reading. Readings of the frame's known
-  /// depth, and those below `plane` or less than 3 σ above it, are on_known. The frame must have
-  /// the camera's size.
+  /// cosθ = amplitude · range² where the frame has amplitudes that are not saturated, else
+  /// cos_incidence(). With `tapered` false crossings keep their weight up to the reading. Readings
+  /// of the frame's known depth, and those below `plane` or less than 3 σ above it, are on_known.
+  /// The frame must have the camera's size.
   void load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
             const std::optional<CameraPlane>& plane = {});
 
@@ -114,9 +114,10 @@ void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
         const std::size_t i = v * width + u;
         if (kinds_[i] != PixelKind::reading) continue;
         const double range = reach_taper_[2 * i];
-        const double cosine = frame.amplitude.empty()
-                                  ? cos_incidence(static_cast<int>(u), static_cast<int>(v))
-                                  : cos_from_amplitude(frame.amplitude[i], range);
+        const double cosine =
+            frame.amplitude.empty() || frame.amplitude[i] == DepthFrame::kSaturated
+                ? cos_incidence(static_cast<int>(u), static_cast<int>(v))
+                : cos_from_amplitude(frame.amplitude[i], range);
         sigmas_[i] = sensor_.sigmas(range, cosine);
         if (tapered) reach_taper_[2 * i + 1] = kTaperSigmas * sigmas_[i].axial;
         if (frame.shows_known(i)) {

@@ -272,30 +272,113 @@ TEST_F(Files, FramesReadBackInTenthsOfAMillimetre) {
   }
   EXPECT_EQ(list("frames"),
             (std::vector<std::string>{"frame-000000.depth.png", "frame-000001.depth.png",
-                                      "poses.txt", "sensor.toml", "simulated.txt"}));
+                                      "frames.toml", "poses.txt", "sensor.toml", "simulated.txt"}));
   FrameSequence frames = open_frames(dir / "frames", "", std::nullopt);
   EXPECT_TRUE(equal(frames.sensor, sensor));
   EXPECT_EQ(frames.depth_scale, 1e-4);
   ASSERT_EQ(frames.poses.size(), 2U);
   const std::vector<float> expected{0.0F,    DepthFrame::kOutOfRange, 0.1234F, 0.1235F,
-                                    6.5534F, DepthFrame::kOutOfRange, 0.0F,    0.0F};
+                                    6.5534F, DepthFrame::kInvalid,    0.0F,    0.0F};
   EXPECT_EQ(load_frame(frames, 1).depth, expected);
   frames.out_of_range = Sensor::OutOfRange::invalid;
   const DepthFrame read_back = load_frame(frames, 1);
   EXPECT_EQ(read_back.depth[1], DepthFrame::kInvalid);
 
-  // Whose word counts: the sensor's, else the layout's.
-  sensor.out_of_range = Sensor::OutOfRange::invalid;
+  // Whose word counts: the folder's, else the sensor's, else the layout's, which is said.
+  using Meaning = Sensor::OutOfRange;
+  const auto expect = [&](Meaning meaning, bool is_assumed) {
+    const FrameSequence opened = open_frames(dir / "frames");
+    EXPECT_EQ(opened.out_of_range, meaning);
+    EXPECT_EQ(opened.is_out_of_range_assumed, is_assumed);
+    EXPECT_EQ(opened.depth_scale, opened.recorded ? 1e-3 : 1e-4);
+  };
+  sensor.out_of_range = Meaning::invalid;
   write_sensor_toml(dir / "frames/sensor.toml", sensor);
-  EXPECT_EQ(open_frames(dir / "frames").out_of_range, Sensor::OutOfRange::invalid);
-  std::filesystem::rename(dir / "frames/poses.txt", dir / "frames/none.txt");
+  expect(Meaning::carve, false);
+  fs::remove(dir / "frames/frames.toml");  // as version 0.1.0 wrote it
+  expect(Meaning::invalid, false);
   sensor.out_of_range.reset();
   write_sensor_toml(dir / "frames/sensor.toml", sensor);
-  EXPECT_EQ(open_frames(dir / "frames").out_of_range, Sensor::OutOfRange::invalid);
-  sensor.out_of_range = Sensor::OutOfRange::carve;
-  write_sensor_toml(dir / "frames/sensor.toml", sensor);
-  EXPECT_EQ(open_frames(dir / "frames").out_of_range, Sensor::OutOfRange::carve);
-  std::filesystem::rename(dir / "frames/none.txt", dir / "frames/poses.txt");
+  expect(Meaning::carve, false);
+  EXPECT_EQ(assumed_text(open_frames(dir / "frames")), "");
+  fs::remove(dir / "frames/simulated.txt");  // whoever wrote it
+  expect(Meaning::carve, true);
+  const std::string said = assumed_text(open_frames(dir / "frames"));
+  for (const char* part : {"depth_scale = 0.0001", "out_of_range = \"carve\"", "frames.toml"}) {
+    EXPECT_NE(said.find(part), std::string::npos) << said;
+  }
+  fs::rename(dir / "frames/poses.txt", dir / "frames/none.txt");
+  expect(Meaning::invalid, false);
+  fs::rename(dir / "frames/none.txt", dir / "frames/poses.txt");
+}
+
+// The same camera has the same scale, whether its file is in the folder or named.
+TEST_F(Files, TheScaleDoesNotDependOnWhereTheSensorIs) {
+  Sensor sensor = sensor_preset("kinect_v1");
+  sensor.camera.width = 4, sensor.camera.height = 2;
+  write_sensor_toml(dir / "mine.toml", sensor);
+  write("frames/poses.txt", "0 0 0 0 0 0 0 1\n");
+  write_png(dir / "frames/frame-000000.depth.png",
+            GrayImage{4, 2, std::vector<std::uint16_t>(8, 9000)});
+  const std::string mine = (dir / "mine.toml").string();
+  const auto both = [&] {
+    fs::remove(dir / "frames/sensor.toml");
+    const FrameSequence named = open_frames(dir / "frames", mine);
+    fs::copy(mine, dir / "frames/sensor.toml");
+    const FrameSequence own = open_frames(dir / "frames");
+    EXPECT_EQ(named.depth_scale, own.depth_scale);
+    EXPECT_EQ(named.out_of_range, own.out_of_range);
+    EXPECT_EQ(assumed_text(named), assumed_text(own));
+    EXPECT_EQ(load_frame(named, 0), load_frame(own, 0));
+    return own;
+  };
+  EXPECT_NE(assumed_text(both()), "");
+  write("frames/frames.toml", "depth_scale = 1e-3\nout_of_range = \"invalid\"\n");
+  FrameSequence frames = both();
+  EXPECT_EQ(frames.depth_scale, 1e-3);
+  EXPECT_EQ(frames.out_of_range, Sensor::OutOfRange::invalid);
+  EXPECT_EQ(assumed_text(frames), "");
+  write("frames/frame-000000.pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 9\n0 0 0 1\n");
+  write("frames/frames.toml", "poses = \"frame-NNNNNN.pose.txt\"\n");
+  EXPECT_EQ(both().poses[0].translation().z(), 9);
+  for (const auto& [text, word] :
+       {std::pair{"depth_scale = -1", "depth_scale"},
+        std::pair{"out_of_range = \"far\"", "out_of_range"},
+        std::pair{"poses = \"mine.txt\"", "poses"}, std::pair{"first_frame = -1", "first_frame"},
+        std::pair{"first_frame = 1.5", "first_frame"}, std::pair{"scale = 1", "scale"},
+        std::pair{"x", "frames.toml"}}) {
+    write("frames/frames.toml", text);
+    expect_error(ErrorCode::format, word, [&] { (void)open_frames(dir / "frames"); });
+  }
+}
+
+// A surface that is only too far for the file is no free space.
+TEST_F(Files, ImagesHoldWhatTheSensorSees) {
+  Sensor sensor = sensor_preset("sr4000");
+  sensor.camera.width = 2, sensor.camera.height = 1;
+  std::size_t cases = 0;
+  for (const auto& [range, scale] :
+       {std::pair{5.0, 1e-4}, std::pair{6.5534, 1e-4}, std::pair{6.6, 2e-4}, std::pair{20.0, 5e-4},
+        std::pair{65.0, 1e-3}, std::pair{1000.0, 2e-2}, std::pair{1e6, 1.0}}) {
+    sensor.max_range = range;
+    EXPECT_EQ(depth_scale_for(sensor), scale) << range;
+    const fs::path folder = dir / std::to_string(cases);
+    const double depth = std::min(range, 65534 * scale);
+    FramesWriter writer(folder, depth_scale_for(sensor));
+    writer.write_frame(0, {2, 1, {static_cast<float>(depth), static_cast<float>(2 * range)}});
+    writer.commit(std::vector<Pose>(1), sensor);
+    const FrameSequence frames = open_frames(folder);
+    EXPECT_EQ(frames.depth_scale, scale);
+    const DepthFrame read = load_frame(frames, 0);
+    EXPECT_NEAR(read.depth[0], depth, 0.51 * scale) << range;
+    EXPECT_NE(read.depth[1], DepthFrame::kOutOfRange) << range;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 7U);
+  for (const double scale : {0.0, -1.0, 2.0, std::nan("")}) {
+    expect_error(ErrorCode::invalid_argument, "depth scale",
+                 [&] { const FramesWriter writer(dir / "none", scale); });
+  }
 }
 
 // Line i is the image of number i, of however many digits; two images of a number are refused.
@@ -314,7 +397,8 @@ TEST_F(Files, FramesHaveNumbersOfAnyLength) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(read_frame(frames, i).fault.verdict, FrameVerdict::used) << frames.images[i];
   }
-  // As of clocks in nanoseconds.
+  // As of clocks in nanoseconds. Only where it is said can an image be without a line.
+  write("frames/frames.toml", "depth_scale = 1e-4\nfirst_frame = 0\n");
   for (const char* number : {"1700000000123456789", "18446744073709551615"}) {
     const fs::path late = folder / ("frame-" + std::string(number) + ".depth.png");
     fs::copy(folder / "frame-1.depth.png", late);
@@ -350,10 +434,11 @@ TEST_F(Files, AmplitudesReadBackInThousandths) {
   }
   EXPECT_EQ(list("frames"),
             (std::vector<std::string>{"frame-000000.amplitude.png", "frame-000000.depth.png",
-                                      "frame-000001.depth.png", "poses.txt", "sensor.toml",
-                                      "simulated.txt"}));
+                                      "frame-000001.depth.png", "frames.toml", "poses.txt",
+                                      "sensor.toml", "simulated.txt"}));
   const FrameSequence frames = open_frames(dir / "frames", "", std::nullopt);
-  const std::vector<float> expected{0.0F, 0.010F, 0.011F, 65.535F, 65.535F, 0.0F, 0.0F, 1.0F};
+  const std::vector<float> expected{
+      0.0F, 0.010F, 0.011F, DepthFrame::kSaturated, DepthFrame::kSaturated, 0.0F, 0.0F, 1.0F};
   EXPECT_EQ(load_frame(frames, 0).amplitude, expected);
   EXPECT_TRUE(load_frame(frames, 1).amplitude.empty());
 }

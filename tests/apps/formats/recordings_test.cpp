@@ -170,23 +170,38 @@ class Recordings : public test::ProgramTest {
   [[nodiscard]] std::string cut_png() const { return read("rec/depth/0.png").substr(0, 200); }
 };
 
-// A recording may be of anybody: what it links to elsewhere is none of its frames.
-TEST_F(Recordings, LinksOutOfARecordingAreRefused) {
+// A recording may be of anybody: what it links to elsewhere is none of its frames. What is not
+// read, such as the colour images, may be a link.
+TEST_F(Recordings, LinksOutOfARecordingAreRefusedWhereTheyAreRead) {
   write_plain_recording();
   fs::create_directory_symlink("depth", dir / "rec/again");  // within
-  (void)import_json();
+  fs::rename(dir / "rec/depth", dir / "rec/images");
+  fs::create_directory_symlink("images", dir / "rec/depth");
   write_image("elsewhere/0.png", image_of(0));
+  fs::create_directory_symlink(dir / "elsewhere", dir / "rec/rgb");
+  fs::create_symlink("/no/such", dir / "rec/gone");
+  EXPECT_EQ(import_json()["frames"], kFrames);
+  expect_frames();
+  fs::remove(dir / "rec/depth");
+  fs::rename(dir / "rec/images", dir / "rec/depth");
+  const Strings masked = call({"--mask", "rec/masks"});
+  write("rec/masks/1.png", read("rec/depth/1.png"));
   std::size_t cases = 0;
-  for (const auto& [link, to] :
-       {std::pair{"rec/depth/999999.png", dir / "elsewhere/0.png"},
-        std::pair{"rec/depth/999999.png", fs::path("../../elsewhere/0.png")},
-        std::pair{"rec/more", dir / "elsewhere"}, std::pair{"rec/gone", fs::path("/no/such")}}) {
+  for (const auto& [link, to] : {std::pair{"rec/depth/0.png", dir / "elsewhere/0.png"},
+                                 std::pair{"rec/depth/2.png", fs::path("../../elsewhere/0.png")},
+                                 std::pair{"rec/depth/1.png", fs::path("/no/such")},
+                                 std::pair{"rec/depth", dir / "elsewhere"},
+                                 std::pair{"rec/depth.txt", dir / "elsewhere/depth.txt"},
+                                 std::pair{"rec/groundtruth.txt", dir / "elsewhere/depth.txt"},
+                                 std::pair{"rec/masks/0.png", dir / "elsewhere/0.png"}}) {
+    if (fs::exists(dir / link)) fs::rename(dir / link, dir / "away");
     fs::create_symlink(to, dir / link);
-    expect_refused(call(), std::string(link) + ": is a link out of the recording");
+    expect_refused(masked, std::string(link) + ": is a link out of the recording");
     fs::remove(dir / link);
+    if (fs::exists(dir / "away")) fs::rename(dir / "away", dir / link);
     ++cases;
   }
-  EXPECT_EQ(cases, 4U);
+  EXPECT_EQ(cases, 7U);
 }
 
 TEST_F(Recordings, ComeThroughExactly) {
@@ -315,8 +330,8 @@ TEST_F(Recordings, OnlyAnEarlierImportIsReplaced) {
   write("rec/depth.txt", "0 depth/none.png\n1 depth/1.png\n");
   EXPECT_EQ(import_json()["frames"], 1);
   EXPECT_EQ(list("frames"),
-            (Strings{"camera-intrinsics.txt", "depth-scale.txt", "frame-000001.depth.png",
-                     "frame-000001.pose.txt", "imported.txt", "mine.txt", "sensor.toml"}));
+            (Strings{"camera-intrinsics.txt", "frame-000001.depth.png", "frame-000001.pose.txt",
+                     "frames.toml", "imported.txt", "mine.txt", "sensor.toml"}));
   write("foreign/frame-000009.depth.png", "mine");
   write_cube();
   const Strings simulate{"simulate", "cube.off", "--size",   "0.3",        "--recenter", "on",
@@ -342,7 +357,11 @@ TEST_F(Recordings, AMapIsMadeOfWhatIsImported) {
   EXPECT_EQ(map["frames"], kFrames);
   EXPECT_EQ(map["depth_scale"], kUnit);
   EXPECT_GT(map["occupied"], 10);
-  // What the folder says of its scale holds unless something else is asked for.
+  // What the folder says of its scale holds unless something else is asked for; so does the file of
+  // version 0.1.0.
+  ASSERT_TRUE(fs::remove(dir / "frames/frames.toml"));
+  write("frames/depth-scale.txt", "0.0002\n");
+  EXPECT_EQ(open_frames(dir / "frames").depth_scale, 2e-4);
   for (const char* scale : {"", "0", "-1", "inf", "1 2", "one"}) {
     write("frames/depth-scale.txt", scale);
     EXPECT_EQ(open_frames(dir / "frames", {}, 0.5).depth_scale, 0.5);

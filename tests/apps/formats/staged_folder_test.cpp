@@ -155,14 +155,14 @@ TEST_F(StagedFolderTest, FramesThatNobodySimulatedAreRefused) {
   std::size_t cases = 0;
   for (const char* name :
        {"frame-000000.depth.png", "frame-000000.amplitude.png", "frame-000000.pose.txt",
-        "camera-intrinsics.txt", "poses.txt", "sensor.toml", "simulated.txt"}) {
+        "camera-intrinsics.txt", "poses.txt", "sensor.toml", "frames.toml", "simulated.txt"}) {
     const std::string folder = "recording" + std::to_string(cases);
     write(folder + "/" + name, "mine");
     EXPECT_THROW(FramesWriter writer(dir / folder), Error) << name;
     EXPECT_EQ(list(folder), Strings{name});
     ++cases;
   }
-  EXPECT_EQ(cases, 7U);
+  EXPECT_EQ(cases, 8U);
 
   const Sensor sensor = sensor_preset("laser_line");
   const auto pixels = static_cast<std::size_t>(sensor.camera.width * sensor.camera.height);
@@ -176,8 +176,9 @@ TEST_F(StagedFolderTest, FramesThatNobodySimulatedAreRefused) {
   write_frames(3);
   write("frames/mine.txt", "mine");
   write_frames(2);
-  EXPECT_EQ(list("frames"), (Strings{"frame-000000.depth.png", "frame-000001.depth.png", "mine.txt",
-                                     "poses.txt", "sensor.toml", "simulated.txt"}));
+  EXPECT_EQ(list("frames"),
+            (Strings{"frame-000000.depth.png", "frame-000001.depth.png", "frames.toml", "mine.txt",
+                     "poses.txt", "sensor.toml", "simulated.txt"}));
   write("frames/frame-000002.depth.png", "mine");
   EXPECT_THROW(write_frames(3), Error);
   EXPECT_EQ(read("frames/frame-000002.depth.png"), "mine");

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of sensors, regions, poses and frames: there and back, and what is refused."""
 import copy
+import warnings
 
 import numpy as np
 import pytest
@@ -90,7 +91,12 @@ def test_frames(tmp_path):
     for i in range(2):
         (tmp_path / f"frame-{i:06}.depth.png").write_bytes(gray_png(pixels))
     (tmp_path / "frame-000001.amplitude.png").write_bytes(gray_png(pixels))
-    frames = viewgain.read_frames(tmp_path)
+    with pytest.warns(UserWarning, match="assumed: depth_scale = 0.0001"):
+        viewgain.read_frames(tmp_path)
+    (tmp_path / "frames.toml").write_text('depth_scale = 1e-4\nout_of_range = "carve"\n')
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        frames = viewgain.read_frames(tmp_path)
     assert len(frames) == 2 and frames.depth_scale == 1e-4 and frames.sensor.camera == small_sensor().camera
     assert np.allclose(frames.poses, poses) and "2 frames" in repr(frames)
     seen = 0

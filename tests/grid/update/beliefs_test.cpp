@@ -278,6 +278,15 @@ TEST(Amplitude, ReplacesTheNeighbourhoodAndOnlyWhereThereIsOne) {
   EXPECT_NEAR(information(), 0.5 * by_neighbourhood, 0.03 * by_neighbourhood);
   set_cosine(1.0);
   EXPECT_NEAR(information(), by_neighbourhood, 0.03 * by_neighbourhood);
+  // One at full scale tells no angle: of a tilted plane, too, the neighbourhood does.
+  frame.amplitude.clear();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    frame.depth[i] = static_cast<float>(0.55 / (1 + 0.5 * rays[i].x()));
+  }
+  const double of_tilted = information();
+  EXPECT_LT(of_tilted, 0.95 * by_neighbourhood);
+  frame.amplitude.assign(rays.size(), DepthFrame::kSaturated);
+  EXPECT_EQ(information(), of_tilted);
 }
 
 TEST(Amplitude, OfAnotherSizeIsRefused) {

@@ -26,21 +26,13 @@ ReadPose unknown_pose(FrameVerdict verdict, std::string what) {
   return pose;
 }
 
-std::vector<ReadPose> read_pose_lines(const fs::path& path, bool whole_lines_alone,
-                                      std::vector<double>* times) {
+TimedPoses read_pose_lines(const fs::path& path, PoseLineRules rules) {
   std::string text = folder_file_bytes(path);
-  if (whole_lines_alone) text.resize(text.rfind('\n') + 1);  // none: 0
-  std::vector<ReadPose> poses;
+  if (rules.whole_lines_alone) text.resize(text.rfind('\n') + 1);  // none: 0
+  TimedPoses read;
   for (LineReader line(path.string(), text); line.next();) {
     if (line.words().empty() || line.words().front().front() == '#') continue;
-    if (times != nullptr) {
-      times->push_back(std::numeric_limits<double>::quiet_NaN());
-      try {
-        times->back() = line.finite_number(0);
-      } catch (const Error&) {  // the pose has no time then
-      }
-    }
-    if (times == nullptr && poses.empty()) {
+    if (!rules.allows_heading && read.poses.empty()) {
       // As a lost pose it would give every image the pose of the one before.
       try {
         (void)line.number(0);
@@ -48,15 +40,20 @@ std::vector<ReadPose> read_pose_lines(const fs::path& path, bool whole_lines_alo
         line.fail("is no pose; a heading begins with '#'");
       }
     }
+    read.times.push_back(std::numeric_limits<double>::quiet_NaN());
     try {
-      ReadPose read;
-      read.T_world_camera = tum_line_pose(line, &read.is_mended);
-      poses.push_back(std::move(read));
+      read.times.back() = line.finite_number(0);
+    } catch (const Error&) {  // the pose has no time then
+    }
+    try {
+      ReadPose pose;
+      pose.T_world_camera = tum_line_pose(line, &pose.is_mended);
+      read.poses.push_back(std::move(pose));
     } catch (const Error& error) {
-      poses.push_back(unknown_pose(FrameVerdict::lost_pose, error.what()));
+      read.poses.push_back(unknown_pose(FrameVerdict::lost_pose, error.what()));
     }
   }
-  return poses;
+  return read;
 }
 
 ReadPose read_pose_file(const fs::path& path) {

@@ -35,12 +35,21 @@ struct ReadPose {
 /// A pose that nobody knows: not finite.
 [[nodiscard]] ReadPose unknown_pose(FrameVerdict verdict, std::string what);
 
-/// The poses of a TUM file in the order of its lines, the lost ones among them, and where asked
-/// for their times [s], NaN where a line has none. `whole_lines_alone`: what comes after the last
-/// line's end is left out. Throws Error(io) if it cannot be read.
-[[nodiscard]] std::vector<ReadPose> read_pose_lines(const std::filesystem::path& path,
-                                                    bool whole_lines_alone = false,
-                                                    std::vector<double>* times = nullptr);
+/// The poses of a TUM file in the order of its lines, the lost ones among them.
+struct TimedPoses {
+  std::vector<ReadPose> poses;
+  std::vector<double> times;  // one per pose [s]; NaN: the line has none
+};
+
+/// Which lines of a TUM file are read.
+struct PoseLineRules {
+  bool whole_lines_alone = false;  ///< what comes after the last line's end is left out
+  bool allows_heading = false;     ///< a first line of words is a lost pose, no error
+};
+
+/// Throws Error(io) if the file cannot be read, and Error(format) for a heading.
+[[nodiscard]] TimedPoses read_pose_lines(const std::filesystem::path& path,
+                                         PoseLineRules rules = {});
 
 /// The pose of a file of a 4x4 matrix; no_pose if there is no such file.
 [[nodiscard]] ReadPose read_pose_file(const std::filesystem::path& path);
@@ -57,7 +66,9 @@ inline constexpr const char* kIntrinsics = "camera-intrinsics.txt";
 inline constexpr const char* kSimulated = "simulated.txt";
 inline constexpr const char* kScale = "depth-scale.txt";
 inline constexpr const char* kImported = "imported.txt";
-inline constexpr std::array kNames{kPoses, kSensor, kIntrinsics, kSimulated, kScale, kImported};
+inline constexpr const char* kFrames = "frames.toml";
+inline constexpr std::array kNames{kPoses, kSensor,   kIntrinsics, kSimulated,
+                                   kScale, kImported, kFrames};
 
 /// "frame-000050.depth.png" of 50 and ".depth.png".
 [[nodiscard]] std::string frame_name(std::uint64_t index, std::string_view suffix);

@@ -13,6 +13,7 @@
 #include "folders.hpp"
 #include "frames/file_stamp.hpp"
 #include "frames/frame_names.hpp"
+#include "frames/growing_poses.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/file_bytes.hpp"
 
@@ -53,16 +54,6 @@ struct Finding {
 
 Finding fault(FrameVerdict verdict, std::string what) { return {{}, {verdict, std::move(what)}}; }
 
-// The poses of lines that have their end; none of a file that is being replaced.
-std::vector<ReadPose> poses_of_lines(const fs::path& path) {
-  try {
-    return read_pose_lines(path, true);
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::format) throw;
-    return {};
-  }
-}
-
 // Frames that are decided on and looked at again with a listing, and looks that one serves at most:
 // both would take longer with each frame.
 constexpr std::size_t kAgain = 256;
@@ -98,8 +89,7 @@ struct FrameWatch::Impl {
   std::set<std::string> twins;     // images of numbers that others have, or too large
   Time looked{};                   // when it was looked at last
   std::size_t quiet_listings = 0;  // in a row, with which nothing new was found
-  FileStamp poses_stamp;
-  std::vector<ReadPose> poses;  // of poses.txt
+  GrowingPoses lines;              // of poses.txt
 
   [[nodiscard]] Signature signature(std::uint64_t number, const std::string& name,
                                     bool is_recorded) const {
@@ -110,8 +100,8 @@ struct FrameWatch::Impl {
     }
     if (is_recorded) {
       now.pose_file = stamp_of(dir / (name + std::string(kPoseSuffix)));
-    } else if (number < poses.size()) {
-      now.line = poses[static_cast<std::size_t>(number)];
+    } else {
+      now.line = lines.pose_of(number);
     }
     return now;
   }
@@ -199,7 +189,9 @@ struct FrameWatch::Impl {
   void open_folder() {
     if (folder) return;
     folder = open_frame_folder(dir, config.sensor, config.depth_scale);
-    if (config.out_of_range) folder->out_of_range = *config.out_of_range;
+    if (!config.out_of_range) return;
+    folder->out_of_range = *config.out_of_range;
+    folder->is_out_of_range_assumed = false;
   }
 
   static BadFrame set_bad(std::uint64_t number, Entry& entry, Finding why) {
@@ -249,6 +241,17 @@ struct FrameWatch::Impl {
     twins = std::move(left);
   }
 
+  // Also of images that were taken and are gone.
+  [[nodiscard]] std::set<std::uint64_t> known_numbers() const {
+    std::set<std::uint64_t> numbers;
+    for (const auto& [number, name] : listing.frames) numbers.insert(number);
+    for (const auto& [name, identity] : taken) {
+      const auto digits = frame_number(name, kDepthSuffix);
+      if (const auto number = digits ? frame_index(*digits) : std::nullopt) numbers.insert(*number);
+    }
+    return numbers;
+  }
+
   void list(FolderLook& found) {
     const std::vector<std::string> names = names_in(dir);
     const std::uint64_t begin = listing.again_end;
@@ -258,11 +261,9 @@ struct FrameWatch::Impl {
       return frame_number(name, kAmplitudeSuffix).has_value();
     });
     const bool has_poses = std::find(names.begin(), names.end(), kPoses) != names.end();
-    listing.is_recorded = folder ? folder->recorded : !has_poses;
-    if (const FileStamp stamp = stamp_of(dir / kPoses); stamp != poses_stamp) {
-      poses_stamp = stamp;
-      poses = poses_of_lines(dir / kPoses);
-    }
+    listing.is_recorded =
+        folder ? folder->recorded : lines.is_recorded(looked).value_or(!has_poses);
+    if (!listing.is_recorded) lines.look(known_numbers(), looked);
     std::erase_if(entries,
                   [&](const auto& entry) { return !listing.frames.contains(entry.first); });
     listing.again_begin = begin;
@@ -321,6 +322,7 @@ struct FrameWatch::Impl {
 FrameWatch::FrameWatch(fs::path dir, FrameWatchConfig config) : impl_(std::make_unique<Impl>()) {
   impl_->dir = std::move(dir);
   impl_->config = std::move(config);
+  impl_->lines = GrowingPoses(impl_->dir, impl_->config.settle);
   for (const std::string& identity : impl_->config.taken) {
     impl_->taken.emplace(identity.substr(identity.find(' ') + 1), identity);
   }
@@ -341,16 +343,18 @@ std::vector<BadFrame> FrameWatch::give_up() {
     given_up.push_back(Impl::set_bad(
         number, entry,
         has_pose ? fault(FrameVerdict::no_mask, entry.missing_mask.string() + ": no such mask")
-                 : fault(FrameVerdict::no_pose, image.string() + ": has no pose")));
+                 : fault(FrameVerdict::no_pose, m.lines.misfit().empty()
+                                                    ? image.string() + ": has no pose"
+                                                    : m.lines.misfit())));
   }
-  for (std::uint64_t i = 0; i < m.poses.size(); ++i) {
-    const fs::path image = m.dir / frame_name(i, kDepthSuffix);
-    if (m.folder && m.folder->recorded) break;
+  if (m.listing.is_recorded) return given_up;
+  for (const std::uint64_t number : m.lines.numbers()) {
+    const fs::path image = m.dir / frame_name(number, kDepthSuffix);
     if (m.taken.contains(image.filename().string())) continue;  // and gone since
-    const auto [entry, is_new] = m.entries.try_emplace(i);
+    const auto [entry, is_new] = m.entries.try_emplace(number);
     if (!is_new) continue;
     given_up.push_back(Impl::set_bad(
-        i, entry->second, fault(FrameVerdict::unreadable, image.string() + ": no such file")));
+        number, entry->second, fault(FrameVerdict::unreadable, image.string() + ": no such file")));
   }
   return given_up;
 }
@@ -390,6 +394,7 @@ std::map<std::string, std::size_t> FrameWatch::bad() const {
 bool FrameWatch::is_settled() const {
   if (impl_->quiet_listings * kAgain < impl_->entries.size())
     return false;  // not all had their turn
+  if (!impl_->lines.is_settled(impl_->looked)) return false;
   return std::all_of(impl_->entries.begin(), impl_->entries.end(), [&](const auto& entry) {
     return entry.second.state != State::waits ||
            impl_->looked - entry.second.since >= impl_->config.settle;

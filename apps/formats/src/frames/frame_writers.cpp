@@ -11,6 +11,7 @@
 
 #include "folders.hpp"
 #include "frames/frame_names.hpp"
+#include "frames/frames_toml.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
@@ -18,6 +19,7 @@
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {
@@ -26,9 +28,17 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kSimulatedText = "frames written by viewgain simulate: ";
 
+constexpr double kMax = std::numeric_limits<std::uint16_t>::max();
+
+// 65535 says out of range, which a depth that is only too large for the file is not.
+std::uint16_t depth_units(double units) {
+  if (std::isinf(units) && units > 0) return static_cast<std::uint16_t>(kMax);
+  const double whole = std::round(units);
+  return whole > 0 && whole < kMax ? static_cast<std::uint16_t>(whole) : std::uint16_t{0};
+}
+
 // In units, from 0 to the largest value of an image; 0 for what is no number.
 std::uint16_t saturated(double units) {
-  constexpr double kMax = std::numeric_limits<std::uint16_t>::max();
   return units > 0 ? static_cast<std::uint16_t>(std::min(std::round(units), kMax))
                    : std::uint16_t{0};
 }
@@ -61,7 +71,20 @@ std::vector<fs::path> simulated_files(const fs::path& dir) {
 
 }  // namespace
 
-FramesWriter::FramesWriter(const fs::path& dir) : earlier_(simulated_files(dir)), staged_(dir) {}
+double depth_scale_for(const Sensor& sensor) {
+  for (const double scale :
+       {kDepthUnit, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2, 5e-2, 0.1, 0.2, 0.5}) {
+    if (sensor.max_range <= scale * (kMax - 1)) return scale;
+  }
+  return 1;
+}
+
+FramesWriter::FramesWriter(const fs::path& dir, double depth_scale)
+    : earlier_(simulated_files(dir)), staged_(dir), depth_scale_(depth_scale) {
+  if (!(depth_scale > 0 && depth_scale <= 1)) {
+    refuse("the depth scale " + short_text(depth_scale) + " must be within 0 and 1 m per unit");
+  }
+}
 
 void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
   const auto refuse = [&](const std::string& what) {
@@ -86,7 +109,7 @@ void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
   GrayImage image{frame.width, frame.height, {}};
   image.pixels.reserve(frame.depth.size());
   for (const float z : frame.depth) {
-    image.pixels.push_back(saturated(static_cast<double>(z) / kDepthUnit));
+    image.pixels.push_back(depth_units(static_cast<double>(z) / depth_scale_));
   }
   write_png(staged_.path() / frame_name(index, kDepthSuffix), image);
   if (frame.amplitude.empty()) return;
@@ -109,6 +132,11 @@ void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) 
   }
   write_tum(staged_.path() / kPoses, poses);
   write_sensor_toml(staged_.path() / kSensor, sensor);
+  FramesToml said;
+  said.depth_scale = depth_scale_;
+  said.out_of_range = sensor.out_of_range.value_or(Sensor::OutOfRange::carve);
+  said.recorded = false;
+  write_file_atomically(staged_.path() / kFrames, frames_toml(said));
   write_file_atomically(staged_.path() / kSimulated,
                         std::string(kSimulatedText) + std::to_string(poses.size()) + "\n");
   staged_.commit(earlier_);

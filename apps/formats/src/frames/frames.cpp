@@ -10,6 +10,8 @@
 
 #include "folders.hpp"
 #include "frames/frame_names.hpp"
+#include "frames/frames_toml.hpp"
+#include "frames/pose_match.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -38,7 +40,7 @@ std::uint64_t apply(const Gray8Image& mask, int width, int height, std::vector<V
 
 namespace fs = std::filesystem;
 
-constexpr std::uint16_t kOutOfRangeValue = 65535;
+constexpr std::uint16_t kFullScale = 65535;
 
 void check_index(std::size_t index, std::size_t count) {
   if (index < count) return;
@@ -103,18 +105,22 @@ void add_frame(FrameSequence& frames, fs::path image, ReadPose pose) {
   frames.orthonormalized += pose.is_mended ? 1 : 0;
 }
 
-// A line a frame, whether its image is there or not, and the images beyond the last line.
+// A line per frame, whether its image is there or not, and the images without a line.
 void list_own_layout(const fs::path& dir, FrameSequence& frames) {
-  std::vector<ReadPose> poses = read_pose_lines(dir / kPoses);
+  TimedPoses lines = read_pose_lines(dir / kPoses);
   std::map<std::uint64_t, std::string> names = list_frames(names_in(dir));
-  for (std::size_t i = 0; i < poses.size(); ++i) names.try_emplace(i, frame_name(i, ""));
+  std::vector<std::uint64_t> numbers;
+  for (const auto& [number, name] : names) numbers.push_back(number);
+  const PoseMatch match = match_poses(dir, lines, numbers, read_frames_toml(dir));
+  for (std::size_t i = 0; i < lines.poses.size(); ++i) {
+    if (const auto number = match.number_of(i)) names.try_emplace(*number, frame_name(*number, ""));
+  }
   for (const auto& [number, name] : names) {
-    ReadPose pose = number < poses.size()
-                        ? std::move(poses[number])
-                        : unknown_pose(FrameVerdict::no_pose, (dir / kPoses).string() + ": has " +
-                                                                  std::to_string(poses.size()) +
-                                                                  " poses, none for " + name);
-    add_frame(frames, dir / (name + std::string(kDepthSuffix)), std::move(pose));
+    const std::optional<std::size_t> line = match.line_of(number);
+    add_frame(frames, dir / (name + std::string(kDepthSuffix)),
+              line ? lines.poses[*line]
+                   : unknown_pose(FrameVerdict::no_pose,
+                                  (dir / kPoses).string() + ": " + match.no_pose_text(name)));
   }
 }
 
@@ -187,10 +193,14 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
   }
   const bool has_sensor = is_there(dir / kSensor);
   FrameSequence frames;
-  frames.recorded = !is_there(dir / kPoses);
-  const std::optional<double> scale = depth_scale ? depth_scale : said_scale(dir);
-  frames.depth_scale =
-      scale.value_or(has_sensor && !frames.recorded ? kDepthUnit : kRecordedDepthUnit);
+  const FramesToml said = read_frames_toml(dir);
+  frames.recorded = said.recorded.value_or(!is_there(dir / kPoses));
+  std::optional<double> scale = depth_scale ? depth_scale : said.depth_scale;
+  if (!scale) scale = said_scale(dir);
+  // Version 0.1.0 wrote no frames.toml; simulated.txt tells its folders of the own layout.
+  const bool may_be_otherwise = !frames.recorded && !is_there(dir / kSimulated);
+  frames.is_scale_assumed = !scale && may_be_otherwise;
+  frames.depth_scale = scale.value_or(frames.recorded ? kRecordedDepthUnit : kDepthUnit);
   if (!(frames.depth_scale > 0) || !std::isfinite(frames.depth_scale)) {
     refuse("the depth scale " + short_text(frames.depth_scale) + " must be positive and finite");
   }
@@ -209,8 +219,13 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
   if (frames.recorded && is_there(dir / kIntrinsics)) {
     apply_intrinsics_file(dir / kIntrinsics, frames.sensor.camera);
   }
-  frames.out_of_range = frames.sensor.out_of_range.value_or(
-      frames.recorded ? Sensor::OutOfRange::invalid : Sensor::OutOfRange::carve);
+  const auto meaning = said.out_of_range ? said.out_of_range : frames.sensor.out_of_range;
+  // Its 65535 was also what lies beyond the largest depth of an image.
+  const bool may_be_beyond =
+      !frames.recorded && frames.sensor.max_range > 65534 * frames.depth_scale;
+  frames.is_out_of_range_assumed = !meaning && (may_be_otherwise || may_be_beyond);
+  frames.out_of_range =
+      meaning.value_or(frames.recorded ? Sensor::OutOfRange::invalid : Sensor::OutOfRange::carve);
   if (!frames.sensor.range_calibration.table.empty()) {
     frames.corrector = std::make_shared<const RangeCorrector>(frames.sensor.camera,
                                                               frames.sensor.range_calibration);
@@ -244,6 +259,26 @@ FrameSequence open_depth_images(const fs::path& dir, const std::string& sensor,
   return frames;
 }
 
+std::string assumed_text(const FrameSequence& frames) {
+  if (!frames.is_scale_assumed && !frames.is_out_of_range_assumed) return {};
+  std::string keys, values;
+  const auto add = [&](const std::string& key, const std::string& value,
+                       const std::string& meaning) {
+    keys += (keys.empty() ? "" : " and ") + key;
+    values += (values.empty() ? "" : ", ") + key + " = " + value + " (" + meaning + ")";
+  };
+  if (frames.is_scale_assumed) {
+    add("depth_scale", short_text(frames.depth_scale), "m per unit of the depth images");
+  }
+  if (frames.is_out_of_range_assumed) {
+    const bool carves = frames.out_of_range == Sensor::OutOfRange::carve;
+    add("out_of_range", carves ? "\"carve\"" : "\"invalid\"",
+        carves ? "65535: no surface up to max_range" : "65535: no reading");
+  }
+  return std::string("the folder does not say ") + keys + "; assumed: " + values + "; say it in " +
+         kFrames;
+}
+
 DepthFrame load_frame(const FrameSequence& frames, std::size_t index) {
   check_index(index, frames.images.size());
   const PinholeCamera& camera = frames.sensor.camera;
@@ -255,14 +290,15 @@ DepthFrame load_frame(const FrameSequence& frames, std::size_t index) {
   if (index < frames.poses.size()) frame.identity = frame_identity(frames, index);
   frame.depth.reserve(image.pixels.size());
   for (const std::uint16_t value : image.pixels) {
-    frame.depth.push_back(
-        value == kOutOfRangeValue ? out_of_range : static_cast<float>(value * frames.depth_scale));
+    frame.depth.push_back(value == kFullScale ? out_of_range
+                                              : static_cast<float>(value * frames.depth_scale));
   }
   correct_ranges(frames, frame);
   const fs::path amplitude = amplitude_path(frames.images[index]);
   if (!is_there(amplitude)) return frame;
   for (const std::uint16_t value : read_gray_png(amplitude, camera.width, camera.height).pixels) {
-    frame.amplitude.push_back(static_cast<float>(value * kAmplitudeUnit));
+    frame.amplitude.push_back(value == kFullScale ? DepthFrame::kSaturated
+                                                  : static_cast<float>(value * kAmplitudeUnit));
   }
   return frame;
 }

@@ -57,7 +57,7 @@ class Surroundings {
     const double range = reading.point.norm();
     const double frontal = -reading.normal.dot(reading.point) / range;
     const double cosine =
-        frame_.amplitude.empty()
+        frame_.amplitude.empty() || frame_.amplitude[i] == DepthFrame::kSaturated
             ? frontal
             : std::min(1.0, static_cast<double>(frame_.amplitude[i]) * range * range);
     const MeasurementSigmas sigmas = sensor_.noise_sigmas(range, cosine);

@@ -3,6 +3,7 @@
 #include "program/cli/flags/frame_folder.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
@@ -12,7 +13,11 @@ namespace {
 
 FrameSequence frames_of(const FrameFolderOptions& options) {
   FrameSequence frames = opened(&open_frames, options.folder, options.sensor, options.depth_scale);
-  if (const auto meaning = out_of_range_of(options)) frames.out_of_range = *meaning;
+  if (const auto meaning = out_of_range_of(options)) {
+    frames.out_of_range = *meaning;
+    frames.is_out_of_range_assumed = false;
+  }
+  warn_of_assumptions(options.folder, frames);
   return frames;
 }
 
@@ -41,6 +46,12 @@ FrameSequence opened(OpenFrames open, const std::string& folder, const std::stri
   }
 }
 
+void warn_of_assumptions(const std::string& folder, const FrameSequence& frames) {
+  const std::string text = assumed_text(frames);
+  if (text.empty()) return;
+  std::fprintf(stderr, "viewgain: warning: %s: %s\n", folder.c_str(), text.c_str());
+}
+
 std::optional<Sensor::OutOfRange> out_of_range_of(const FrameFolderOptions& options) {
   if (options.out_of_range.empty()) return std::nullopt;
   return options.out_of_range == "carve" ? Sensor::OutOfRange::carve : Sensor::OutOfRange::invalid;
@@ -49,12 +60,12 @@ std::optional<Sensor::OutOfRange> out_of_range_of(const FrameFolderOptions& opti
 void add_frame_folder_options(App& app, FrameFolderOptions& options) {
   app.add_option(
       "--depth-scale", options.depth_scale,
-      "metres per unit of the images; default: 1e-4 for what simulate writes (poses.txt and "
-      "sensor.toml), else 1e-3");
+      "metres per unit of the images (default: as frames.toml says, else 1e-4 with poses.txt, 1e-3 "
+      "with pose files)");
   app.add_option("--out-of-range", options.out_of_range,
-                 "what 65535 says: carve (nothing up to the maximal range) or invalid (no "
-                 "reading); default: as the sensor's file says, else carve for what simulate "
-                 "writes (poses.txt), invalid for recorded frames")
+                 "meaning of 65535: carve (no surface up to the maximal range) or invalid (no "
+                 "reading) (default: as frames.toml or the sensor's file says, else carve with "
+                 "poses.txt, invalid with pose files)")
       ->check(one_of({"carve", "invalid"}, "meaning"));
   add_mask_options(app, options.mask, options.confidence, options.least_confidence);
 }

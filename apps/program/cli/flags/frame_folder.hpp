@@ -44,6 +44,9 @@ using OpenFrames = FrameSequence (*)(const std::filesystem::path&, const std::st
 [[nodiscard]] FrameSequence opened(OpenFrames open, const std::string& folder,
                                    const std::string& sensor, std::optional<double> depth_scale);
 
+/// Warns of assumed_text(), where there is one.
+void warn_of_assumptions(const std::string& folder, const FrameSequence& frames);
+
 /// Recorded or simulated frames with their poses, and what masks leave of them.
 class FrameFolder {
  public:

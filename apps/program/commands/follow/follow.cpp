@@ -211,6 +211,7 @@ class Following {
   [[nodiscard]] std::size_t count() const { return watch_->taken_count(); }
 
   void open_map() {
+    warn_of_assumptions(options_.frames.folder, *watch_->folder());
     const Sensor& sensor = watch_->folder()->sensor;
     config_.grid.prior_sigma = default_prior_sigma(options_.voxel, sensor);
     const BeliefGrid empty(config_.grid);

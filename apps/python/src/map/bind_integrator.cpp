@@ -292,8 +292,8 @@ T_world_camera : array_like, (4, 4)
 pose_sigma : array_like, (2,), optional
     What this pose may be off beside the sensor's own pose_sigma [m], [rad].
 amplitude : array_like, (height, width), floating point, optional
-    cos / range**2 [1/m**2], from which the angle of incidence is taken; else from the depth. NaN or
-    masked: the least information.
+    cos / range**2 [1/m**2], from which the angle of incidence is taken; else from the depth, also
+    where it is inf: saturated. NaN or masked: the least information.
 
 )") + kIntegrateReturns;
   auto type = bound_class<Integrator>(module, "FrameIntegrator", doc.c_str());

@@ -18,12 +18,15 @@ struct VIEWGAIN_EXPORT DepthFrame {
   static constexpr float kInvalid = 0.0F;  ///< a depth [m] that says nothing
   static constexpr float kOutOfRange =
       std::numeric_limits<float>::infinity();  ///< a depth [m]: nothing up to max_range
+  static constexpr float kSaturated =
+      std::numeric_limits<float>::infinity();  ///< an amplitude [m⁻²] at full scale: not known
 
   int width = 0;             ///< [px]
   int height = 0;            ///< [px]
   std::vector<float> depth;  ///< width * height values
   /// Empty, or width * height values: the returned signal cosθ / t² [m⁻²], θ the angle of incidence
-  /// and t the range, for a diffuse surface as bright as the sensor's noise model assumes.
+  /// and t the range, for a diffuse surface as bright as the sensor's noise model assumes. Where it
+  /// is kSaturated, the angle comes from the depths.
   std::vector<float> amplitude{};
   /// Empty, or width * height values: from which depth [m] on a pixel's reading is of something
   /// that is known and no part of the map, say the wall of a bin; infinity: none is. ObstacleView

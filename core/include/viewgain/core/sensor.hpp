@@ -54,7 +54,7 @@ struct VIEWGAIN_EXPORT Sensor {
   /// no number of them makes a point surer of it: it is in points' covariances
   /// (FusedPointsConfig::scale_sigma), and in no reading's sigmas().
   double scale_sigma = 0;
-  /// In its depth images; nothing: as the folder's layout has it (FrameSequence).
+  /// In its depth images, where the folder does not say it; nothing: see FrameSequence.
   std::optional<OutOfRange> out_of_range{};
 
   /// Standard deviations of a reading at range t [m], whose cosine of incidence is cos_incidence,

@@ -77,10 +77,11 @@ struct VIEWGAIN_EXPORT IntegrationReport {
 ///
 /// A pixel is a reading if its range along the ray is in [min_range, max_range]; nearer ones are
 /// invalid, farther ones out of range. Readings also carve what lies nearer than min_range. cosθ
-/// is amplitude · range² (at most 1) where the frame has amplitudes; else it comes from the normal
-/// of the pixel's 3×3 neighbourhood, 1 where there is none. Readings of what is known
-/// (DepthFrame::known_depth) carve as far as they reach but do not hit. The map is the same bit for
-/// bit for any number of threads and under each instruction set.
+/// is amplitude · range² (at most 1) where the frame has amplitudes that are not saturated
+/// (DepthFrame::kSaturated); else it comes from the normal of the pixel's 3×3 neighbourhood, 1
+/// where there is none. Readings of what is known (DepthFrame::known_depth) carve as far as they
+/// reach but do not hit. The map is the same bit for bit for any number of threads and under each
+/// instruction set.
 ///
 /// A reading hits the voxel that it lies in. Where its sigma_ax is at least half a voxel, noise may
 /// have carried it there: it is put on the plane through the 5×5 pixels around, and hits the best

@@ -63,8 +63,9 @@ TEST_F(BadInputTest, Frames) {
     return test::joined(integrate({"--voxel", size}), workspace);
   };
   write("empty_dir/readme", "");
-  write("cut/poses.txt", read("frames/poses.txt"));
+  write("cut/poses.txt", "0 0 0 0 0 0 0 1\n");
   write("cut/sensor.toml", read("frames/sensor.toml"));
+  write("cut/frames.toml", read("frames/frames.toml"));
   const std::string png = read("frames/frame-000000.depth.png");
   write("cut/frame-000000.depth.png", png.substr(0, png.size() / 2));
   write("nosensor/poses.txt", read("frames/poses.txt"));

@@ -103,7 +103,7 @@ TEST_F(Workflow, FramesThatAMapHasAreSkipped) {
     write("frames/poses.txt", poses.substr(0, end));
   };
   const auto names = [](std::size_t i) { return "frame-00000" + std::to_string(i) + ".depth.png"; };
-  move("sensor.toml");
+  for (const char* file : {"sensor.toml", "frames.toml"}) move(file);
   for (std::size_t i = 0; i < 3; ++i) move(names(i));
   up_to(3);
   integrate("frames", "map.vdb");

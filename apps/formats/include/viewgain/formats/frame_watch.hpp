@@ -69,7 +69,7 @@ struct VIEWGAIN_EXPORT FolderLook {
 /// waited for as long. With FrameWatchConfig::masks a mask must be there, end and be readable as
 /// well; one that is missing is waited for as a pose is. Masks are no part of what a frame is known
 /// by (frame_identity()): one that was taken stays taken, whatever becomes of its mask. What holds
-/// for all frames (sensor.toml, camera-intrinsics.txt, depth-scale.txt) must be there before the
+/// for all frames (sensor.toml, frames.toml, camera-intrinsics.txt) must be there before the
 /// first frame is complete.
 ///
 /// Whether files have changed is told by what the file system says of them; none is read twice for
@@ -88,7 +88,8 @@ class VIEWGAIN_EXPORT FrameWatch {
 
   /// Looks at the folder; `now` must not go back. A frame that is given out counts as taken; the
   /// next one comes with the next look. The folder is listed when a look has come to the end of the
-  /// last list, or after 256 of them. Throws Error(io) if the folder cannot be read, and with the
+  /// last list, or after 256 of them. Throws Error(io) if the folder cannot be read, Error(format)
+  /// if the first numbers of images and poses.txt do not fit for as long as `settle`, and with the
   /// first complete frame as open_frames() for what holds for all. Of frames that are taken or bad
   /// 256 are looked at again, in turns. Takes some µs a file of these and of the new ones.
   [[nodiscard]] FolderLook look(Time now);

@@ -69,7 +69,7 @@ VIEWGAIN_EXPORT std::uint64_t apply_mask(const Gray8Image& mask, DepthFrame& fra
 
 namespace viewgain {
 
-inline constexpr double kDepthUnit = 1e-4;          ///< of our own depth images [m]
+inline constexpr double kDepthUnit = 1e-4;          ///< of our own depth images, by default [m]
 inline constexpr double kRecordedDepthUnit = 1e-3;  ///< of recorded ones, unless said otherwise [m]
 inline constexpr double kAmplitudeUnit = 1e-3;      ///< of amplitude images [m⁻²]
 
@@ -88,22 +88,23 @@ struct VIEWGAIN_EXPORT FrameSequence {
   /// T_world_camera, one an image, not finite where there is none; none of open_depth_images().
   std::vector<Pose> poses;
   std::vector<FrameFault> pose_faults;  ///< one a pose: lost_pose, no_pose, or nothing against it
-  /// What 65535 says in the images: by the sensor's own word, else carve in our own layout and
-  /// invalid in the recorded one. May be set before frames are loaded.
+  /// What 65535 means in the images: as frames.toml says, else the sensor, else carve in our own
+  /// layout and invalid in the recorded one. May be set before frames are loaded.
   Sensor::OutOfRange out_of_range = Sensor::OutOfRange::carve;
-  std::size_t orthonormalized = 0;  ///< rotations that were a little off
+  bool is_scale_assumed = false;         ///< nothing says depth_scale; see assumed_text()
+  bool is_out_of_range_assumed = false;  ///< nothing says out_of_range
+  std::size_t orthonormalized = 0;       ///< rotations that were a little off
   /// Of the sensor as the folder was opened with it, null if that has no table: spares load_frame()
   /// the rays of the sensor's camera. Where the sensor has been changed it does not count.
   std::shared_ptr<const RangeCorrector> corrector{};
 };
 
-/// Opens either layout: poses.txt + frame-NNNNNN.depth.png (line i is frame i) + sensor.toml, or
-/// frame-NNNNNN.depth.png + frame-NNNNNN.pose.txt + camera-intrinsics.txt, whose numbers may have
-/// gaps. A pose that is lost (not finite, not rigid, no pose at all) or missing is that frame's
-/// fault alone. The scale is, unless given, what depth-scale.txt says [m per unit], without one
-/// 1e-4 where there are poses.txt and sensor.toml, else 1e-3. Beside a depth image there may be a
-/// frame-NNNNNN.amplitude.png. `sensor`: preset or .toml file, empty for the folder's own. Throws
-/// Error, naming the file, for what is missing or wrong of all frames.
+/// Opens either layout: poses.txt + frame-NNNNNN.depth.png + sensor.toml, or frame-NNNNNN.depth.png
+/// + frame-NNNNNN.pose.txt + camera-intrinsics.txt. frames.toml says which, with depth scale and
+/// meaning of 65535; apps/docs/reference/formats.md has its keys, what holds without it, and how
+/// the lines of poses.txt are matched to the images. A pose that is lost (not finite, not rigid) or
+/// missing is that frame's fault alone. `sensor`: preset or .toml file, empty for the folder's own.
+/// Throws Error, naming the file, for what is missing or wrong of all frames.
 [[nodiscard]] VIEWGAIN_EXPORT FrameSequence open_frames(const std::filesystem::path& dir,
                                                         const std::string& sensor = {},
                                                         std::optional<double> depth_scale = {});
@@ -114,7 +115,12 @@ struct VIEWGAIN_EXPORT FrameSequence {
 open_depth_images(const std::filesystem::path& dir, const std::string& sensor = {},
                   std::optional<double> depth_scale = {});
 
-/// Reads the depth image, and the amplitude image (16 bit, 1e-3 m⁻²) if there is one. Depths are
+/// What was assumed because nothing says it, for a warning; empty: nothing. Depth images of our own
+/// layout could be in another unit, unless frames.toml or simulated.txt tells.
+[[nodiscard]] VIEWGAIN_EXPORT std::string assumed_text(const FrameSequence& frames);
+
+/// Reads the depth image, and the amplitude image (16 bit, 1e-3 m⁻²; full scale is
+/// DepthFrame::kSaturated) if there is one. Depths are
 /// corrected by the range_calibration of the sensor as it is at the call; where that, or its
 /// camera, is not what the folder was opened with, each call finds the rays anew
 /// (RangeCalibration::correct()). Throws Error(io) or Error(format), naming the file, and
@@ -149,30 +155,35 @@ struct VIEWGAIN_EXPORT FrameReading {
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::filesystem::path> frame_files(
     const std::filesystem::path& dir);
 
+/// The unit [m] in which a depth image of 16 bits holds all that the sensor measures: kDepthUnit,
+/// or the least of 2, 5, 10, 20, ... times that.
+[[nodiscard]] VIEWGAIN_EXPORT double depth_scale_for(const Sensor& sensor);
+
 /// Writes frames in our own layout into a folder that appears, or changes, only when all is
 /// written. simulated.txt in it says how many frames are simulated; only those are ever replaced.
 /// Thread safety: one call at a time.
 class VIEWGAIN_EXPORT FramesWriter {
  public:
   /// Throws Error(io), and Error(invalid_argument) if the folder holds frames, poses or a sensor
-  /// that no FramesWriter has written.
-  explicit FramesWriter(const std::filesystem::path& dir);
+  /// that no FramesWriter has written, or if the scale [m per unit] is not within 0 and 1.
+  explicit FramesWriter(const std::filesystem::path& dir, double depth_scale = kDepthUnit);
 
   /// Writes the depth image, and an amplitude image if the frame has amplitudes. What is no depth
-  /// (NaN, negative) is written as invalid, from 6.55345 m on as out of range; amplitudes end at
-  /// 65.535 m⁻². Throws Error(io), and Error(invalid_argument) for an index that is not the count
-  /// of frames so far, pixels that are too few or too many, or a size that is not that of the
-  /// first.
+  /// (NaN, negative), or a finite one over 65534 units, is written as invalid; amplitudes from
+  /// 65.5345 m⁻² on as full scale. Throws Error(io), and Error(invalid_argument) for an index that
+  /// is not the count of frames so far, pixels that are too few or too many, or a size that is not
+  /// that of the first.
   void write_frame(std::size_t index, const DepthFrame& frame);
 
-  /// Writes poses (T_world_camera, one a frame) and sensor and puts all in the place of the frames
-  /// of an earlier simulation. Throws Error(io), and Error(invalid_argument) for another count of
-  /// poses than of frames, none, or a sensor of another size.
+  /// Writes poses (T_world_camera, one a frame), sensor and frames.toml and puts all in the place
+  /// of the frames of an earlier simulation. Throws Error(io), and Error(invalid_argument) for
+  /// another count of poses than of frames, none, or a sensor of another size.
   void commit(const std::vector<Pose>& poses, const Sensor& sensor);
 
  private:
   std::vector<std::filesystem::path> earlier_;
   StagedFolder staged_;
+  double depth_scale_;          // [m] per unit
   std::size_t written_ = 0;     // frames
   int width_ = 0, height_ = 0;  // of them [px]
 };

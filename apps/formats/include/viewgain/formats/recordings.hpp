@@ -48,7 +48,7 @@ struct VIEWGAIN_EXPORT ImportReport {
 /// Writes a recording's frames into a folder that open_frames() reads which
 /// appears whole or not at all. Each frame has the pose nearest in time, nothing is interpolated,
 /// and the number of its place in depth.txt, from 0; a pixel of 65535, which means nothing here,
-/// becomes 0.
+/// becomes 0. Files that are read must not be links out of the recording; others may.
 ///
 /// Throws Error(io) or Error(format), naming the file and where there is one the line, for what is
 /// missing or damaged and not one frame's, also for a recording without a frame that can be used
