@@ -293,6 +293,15 @@ TEST_F(MatchedPoses, GrowingFoldersWithShiftedNumbersAreRefused) {
   now += 5s;
   EXPECT_FALSE(watch.look(now).frame);
 
+  // Also in a later call.
+  put({"2"}, {"0", "1", "2"});
+  FrameWatchConfig config;
+  for (const char* name : {"frame-000000.depth.png", "frame-000001.depth.png"}) {
+    config.taken.insert("0123456789abcdef " + std::string(name));
+  }
+  FrameWatch later(dir, config);
+  EXPECT_EQ(later.look(now).frame->number, 2U);
+
   put({"1"}, {"0", "1"});
   FrameWatch shifted(dir, {});
   EXPECT_FALSE(shifted.look(now).frame);

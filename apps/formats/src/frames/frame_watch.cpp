@@ -241,17 +241,6 @@ struct FrameWatch::Impl {
     twins = std::move(left);
   }
 
-  // Also of images that were taken and are gone.
-  [[nodiscard]] std::set<std::uint64_t> known_numbers() const {
-    std::set<std::uint64_t> numbers;
-    for (const auto& [number, name] : listing.frames) numbers.insert(number);
-    for (const auto& [name, identity] : taken) {
-      const auto digits = frame_number(name, kDepthSuffix);
-      if (const auto number = digits ? frame_index(*digits) : std::nullopt) numbers.insert(*number);
-    }
-    return numbers;
-  }
-
   void list(FolderLook& found) {
     const std::vector<std::string> names = names_in(dir);
     const std::uint64_t begin = listing.again_end;
@@ -263,7 +252,11 @@ struct FrameWatch::Impl {
     const bool has_poses = std::find(names.begin(), names.end(), kPoses) != names.end();
     listing.is_recorded =
         folder ? folder->recorded : lines.is_recorded(looked).value_or(!has_poses);
-    if (!listing.is_recorded) lines.look(known_numbers(), looked);
+    if (!listing.is_recorded) {
+      std::vector<std::uint64_t> numbers;
+      for (const auto& [number, name] : listing.frames) numbers.push_back(number);
+      lines.look(std::move(numbers), looked);
+    }
     std::erase_if(entries,
                   [&](const auto& entry) { return !listing.frames.contains(entry.first); });
     listing.again_begin = begin;
@@ -324,7 +317,12 @@ FrameWatch::FrameWatch(fs::path dir, FrameWatchConfig config) : impl_(std::make_
   impl_->config = std::move(config);
   impl_->lines = GrowingPoses(impl_->dir, impl_->config.settle);
   for (const std::string& identity : impl_->config.taken) {
-    impl_->taken.emplace(identity.substr(identity.find(' ') + 1), identity);
+    const auto known =
+        impl_->taken.emplace(identity.substr(identity.find(' ') + 1), identity).first;
+    const auto digits = frame_number(known->first, kDepthSuffix);
+    if (const auto number = digits ? frame_index(*digits) : std::nullopt) {
+      impl_->lines.add_earlier(*number);
+    }
   }
 }
 FrameWatch::~FrameWatch() = default;

@@ -35,17 +35,18 @@ std::optional<bool> GrowingPoses::is_recorded(Time now) {
   return said_.recorded;
 }
 
-void GrowingPoses::look(std::set<std::uint64_t> numbers, Time now) {
+void GrowingPoses::look(std::vector<std::uint64_t> numbers, Time now) {
   if (const FileStamp stamp = stamp_of(dir_ / kPoses); stamp != lines_stamp_) {
     lines_stamp_ = stamp;
     lines_since_ = now;
     lines_ = poses_of_lines(dir_ / kPoses);
   }
   is_last_ = now - lines_since_ >= settle_;
-  if (first_) numbers.insert(*first_);
-  if (!numbers.empty()) first_ = *numbers.begin();
-  match_ = match_growing_poses(dir_, lines_, std::vector(numbers.begin(), numbers.end()), said_,
-                               &misfit_);
+  if (first_ && (numbers.empty() || *first_ < numbers.front())) {
+    numbers.insert(numbers.begin(), *first_);
+  }
+  if (!numbers.empty()) first_ = numbers.front();
+  match_ = match_growing_poses(dir_, lines_, numbers, said_, &misfit_);
   // Lines with later times may come.
   if (misfit_.empty() || match_.is_by_stamps()) {
     misfit_since_.reset();

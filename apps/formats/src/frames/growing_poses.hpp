@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "frames/file_stamp.hpp"
@@ -30,9 +31,12 @@ class GrowingPoses {
   /// writing the file.
   [[nodiscard]] std::optional<bool> is_recorded(Time now);
 
-  /// Reads the lines, if there are others, and matches them to the images of these numbers. Throws
-  /// Error(format) if first numbers do not fit for `settle`, and as read_pose_lines().
-  void look(std::set<std::uint64_t> numbers, Time now);
+  /// The folder had an image of this number, which may be gone.
+  void add_earlier(std::uint64_t number) { first_ = std::min(first_.value_or(number), number); }
+
+  /// Reads the lines, if there are others, and matches them to the images of these numbers, which
+  /// rise. Throws Error(format) if first numbers do not fit for `settle`, and as read_pose_lines().
+  void look(std::vector<std::uint64_t> numbers, Time now);
 
   /// Nothing: no line is the image's yet.
   [[nodiscard]] std::optional<ReadPose> pose_of(std::uint64_t number) const;
