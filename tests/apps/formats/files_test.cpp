@@ -304,7 +304,7 @@ TEST_F(Files, FramesReadBackInTenthsOfAMillimetre) {
   fs::remove(dir / "frames/simulated.txt");  // whoever wrote it
   expect(Meaning::carve, true);
   const std::string said = assumed_text(open_frames(dir / "frames"));
-  for (const char* part : {"depth_scale = 0.0001", "out_of_range = \"carve\"", "frames.toml"}) {
+  for (const char* part : {"depth_scale = 1e-04", "out_of_range = \"carve\"", "frames.toml"}) {
     EXPECT_NE(said.find(part), std::string::npos) << said;
   }
   fs::rename(dir / "frames/poses.txt", dir / "frames/none.txt");
