@@ -90,8 +90,11 @@ void candidates(const Options& options) {
   const Sensor sensor = with_body(std::move(map.sensor), options.proposal);
   const GenerationConfig config =
       generation_config(options.proposal, sensor, map.grid, options.map);
-  const SurfaceModel model = model_of(std::move(map.grid), sensor, options.proposal,
-                                      obstacles_of(options.proposal.obstacles), exec);
+  const Obstacles obstacles = obstacles_of(options.proposal.obstacles);
+  warn_of_set_up(options.proposal, obstacles, map.grid, sensor);
+  const SurfaceModel model =
+      model_of(std::move(map.grid), sensor, options.proposal, obstacles, exec);
+  warn_of_views(options.proposal, obstacles, model, sensor);
   CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});
   const Order ranking = rank(options.proposal, model, sensor, exec, proposal.candidates);

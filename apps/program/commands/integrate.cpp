@@ -10,10 +10,12 @@
 
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
+#include "program/cli/flags/set_up_warnings.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/frames/frame_tally.hpp"
+#include "program/commands/frames/mask_use.hpp"
 #include "program/commands/frames/reading_source.hpp"
 #include "program/commands/map_json.hpp"
 #include "viewgain/formats/map_file.hpp"
@@ -187,9 +189,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   if (totals.skipped > 0) {
     std::printf("skipped, since the map has them already: %zu\n", totals.skipped);
   }
-  if (!options.frames.mask.empty() || !options.frames.confidence.empty()) {
-    std::printf("pixels taken away by masks: %s\n", with_commas(totals.masked_pixels).c_str());
-  }
+  std::printf("%s", masked_text(options.frames, totals.masked_pixels).c_str());
   if (options.jump_edge_filter != "off") {
     std::printf("flying pixels removed: %s\n", with_commas(totals.jump_edge_removed).c_str());
   }
@@ -249,6 +249,17 @@ void refuse_empty(const Options& options, const ReadingSource& source, const Tot
   }
 }
 
+void warn_of_set_up(const Options& options, const ReadingSource& source) {
+  const Obstacles obstacles = obstacles_of(options.obstacles);
+  app::warn_of_set_up({.sensor = source.sensor(),
+                       .map = source.grid(),
+                       .frames_follow = source.folder() != nullptr,
+                       .obstacle_values = &options.obstacles,
+                       .obstacles = &obstacles,
+                       .support_plane = options.support_plane,
+                       .pose_sigma = stated_sigma(options.registration)});
+}
+
 void integrate(const Options& options, const App& app) {
   const Stopwatch watch;
   check_flags(options, app);
@@ -263,6 +274,7 @@ void integrate(const Options& options, const App& app) {
   source->start(options.map.empty() ? new_map(*source, options)
                                     : continued_map(source->sensor(), options));
   const BeliefGrid& grid = source->grid();
+  warn_of_set_up(options, *source);
   const Totals totals = integrate_all(*source, options);
   refuse_empty(options, *source, totals);
   const LostInTree lost = save_map(grid, options.out, {options.with_covariance == "on"});

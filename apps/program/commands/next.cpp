@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/frames/frame_map.hpp"
+#include "program/commands/frames/mask_use.hpp"
 #include "program/commands/map_json.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
 #include "viewgain/formats/pose_files.hpp"
@@ -38,6 +40,7 @@ struct Frames {
   std::vector<Pose> tried;
   std::optional<Pose> last_pose;
   Obstacles obstacles;
+  std::uint64_t masked_pixels = 0;
 };
 
 SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<Frames>& frames) {
@@ -54,7 +57,8 @@ SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<F
     progress.update(i + 1, map.folder().size());
   }
   map.require_frames(true);
-  frames = {map.counts(), map.tried(), map.last_pose(), map.config().surroundings.obstacles};
+  frames = {map.counts(), map.tried(), map.last_pose(), map.config().surroundings.obstacles,
+            map.masked_pixels()};
   return {map.model().grid().clone(), map.model().sensor()};
 }
 
@@ -68,7 +72,8 @@ void next(const Options& options) {
                                                     frames ? frames->tried : std::vector<Pose>());
   const Obstacles obstacles = frames ? frames->obstacles : obstacles_of(options.proposal.obstacles);
   const SurfaceModel model = model_of(std::move(grid), sensor, options.proposal, obstacles, exec);
-  warn_of_set_up(options.proposal, obstacles, model, sensor);
+  if (!frames) warn_of_set_up(options.proposal, obstacles, model.grid(), sensor);
+  warn_of_views(options.proposal, obstacles, model, sensor);
   CandidateGeneration generation(model, config, exec);
   const Proposal proposal = generation.generate({});
   const GainEvaluator evaluator = evaluator_of(options.proposal, model, sensor, exec);
@@ -95,6 +100,9 @@ void next(const Options& options) {
               printable(sensor.name).c_str(), summary_of(views).c_str());
   if (const std::string text = frames ? frames_text(frames->counts) : ""; !text.empty()) {
     std::printf("%s\n", text.c_str());
+  }
+  if (frames) {
+    std::printf("%s", masked_text(options.frames.folder, frames->masked_pixels).c_str());
   }
   std::printf("%s", text_of(views).c_str());
   if (!options.out.empty()) std::printf("poses in %s\n", options.out.c_str());

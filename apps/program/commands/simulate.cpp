@@ -15,6 +15,7 @@
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
+#include "program/cli/flags/set_up_warnings.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
@@ -22,6 +23,7 @@
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/planner/simulated_acquisition.hpp"
+#include "viewgain/planner/suspect_set_up.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -124,6 +126,7 @@ void simulate(const Options& options) {
   const ExecConfig exec{options.common.threads};
   Sensor sensor = load_sensor(options.sensor);
   sensor.validate();
+  warn_of_sensor(sensor);
   sensor.range_calibration = {};  // the frames have no such error
   if (options.size) check_positive("--size", *options.size);
   const PoseSource source = make_poses(options.poses, options.sensing.seed);
@@ -140,6 +143,7 @@ void simulate(const Options& options) {
   warn_of_place(options, bounds_of(scene->mesh()), sensor);
   const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, sensor), exec);
   const PoseSigma pose_noise = parse_pose_sigma("--pose-noise", options.sensing.pose_noise);
+  warn(suspect_pose_sigma(pose_noise, sensor.working_distance), "--pose-noise");
   std::vector<Pose> poses, reported;  // one a frame
   for (std::size_t view = 0; view < source.poses.size(); ++view) {
     const Pose& pose = source.poses[view];

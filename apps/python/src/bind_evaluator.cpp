@@ -19,6 +19,7 @@
 #include "evaluator_docs.hpp"
 #include "gil.hpp"
 #include "given.hpp"
+#include "suspicions.hpp"
 #include "viewgain/raycast/view_tour.hpp"
 
 namespace viewgain::python {
@@ -79,6 +80,7 @@ std::unique_ptr<Evaluator> make_evaluator(
   const GainConfig config = gain_config(gain, criterion, pixel_stride, prior_sigma, min_range,
                                         max_range, weights, refinement_weight, posterior_entropy);
   const ExecConfig exec{num_threads, parse_tracer(tracer)};
+  warn(suspect_sensor(sensor, scene.scene->snapshot().voxel_size));
   return held(scene, sensor, criterion, pixel_stride,
               outside_gil([&] { return GainEvaluator(scene.scene, sensor, config, exec); }));
 }
@@ -87,6 +89,14 @@ std::unique_ptr<Evaluator> with_scene(const Evaluator& self, const Given<Scene>&
   const Scene& scene = *given;
   return held(scene, self.sensor, self.criterion, self.pixel_stride,
               outside_gil([&] { return self.evaluator.with_scene(scene.scene); }));
+}
+
+// What most evaluations begin with: the poses, and a warning if they do not look at the map.
+PoseBatch batch_of(const Evaluator& self, const py::object& T_world_camera, bool strict = false) {
+  PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", strict);
+  const auto& scene = self.scene.cast<const Scene&>().scene;
+  warn(outside_gil([&] { return suspicion_of_poses(scene, self.sensor, batch.poses); }));
+  return batch;
 }
 
 void score(const Evaluator& self, std::span<const Pose> poses, std::span<ViewGain> results,
@@ -102,7 +112,7 @@ void score(const Evaluator& self, std::span<const Pose> poses, std::span<ViewGai
 
 py::object evaluate(const Evaluator& self, const py::object& T_world_camera, bool strict,
                     const GivenOrNone<Control>& control) {
-  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", strict);
+  const PoseBatch batch = batch_of(self, T_world_camera, strict);
   py::array_t<double> gains(batch.shape);
   std::vector<ViewGain> results(batch.poses.size());
   score(self, batch.poses, results, control);
@@ -113,7 +123,7 @@ py::object evaluate(const Evaluator& self, const py::object& T_world_camera, boo
 
 py::object evaluate_detailed(const Evaluator& self, const py::object& T_world_camera, bool strict,
                              const GivenOrNone<Control>& control) {
-  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", strict);
+  const PoseBatch batch = batch_of(self, T_world_camera, strict);
   py::array_t<ViewGain> views(batch.shape);
   score(self, batch.poses, {views.mutable_data(), batch.poses.size()}, control);
   return scalar_or_array(views);
@@ -153,7 +163,7 @@ struct Worth {
 py::object best(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
                 const py::object& costs, const py::object& measure, bool return_gains,
                 const GivenOrNone<Control>& control) {
-  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const PoseBatch batch = batch_of(self, T_world_camera);
   const Worth worth(costs, measure, return_gains);
   BestConfig config;
   worth.into(config);
@@ -167,7 +177,7 @@ py::object best(const Evaluator& self, const py::object& T_world_camera, std::si
 py::object race(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
                 std::uint64_t seed, const py::object& costs, const py::object& measure,
                 bool return_gains, const GivenOrNone<Control>& control) {
-  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const PoseBatch batch = batch_of(self, T_world_camera);
   const Worth worth(costs, measure, return_gains);
   BestConfig config{.seed = seed};
   worth.into(config);
@@ -180,7 +190,7 @@ py::object race(const Evaluator& self, const py::object& T_world_camera, std::si
 
 py::object race_until(const Evaluator& self, const py::object& T_world_camera, double seconds,
                       std::size_t k, std::uint64_t seed, const GivenOrNone<Control>& control) {
-  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const PoseBatch batch = batch_of(self, T_world_camera);
   BestViews result;
   run_batch(control, [&](const BatchControl& watched) {
     result = self.evaluator.race(batch.poses, k, {.deadline = seconds, .seed = seed}, watched);
@@ -192,7 +202,7 @@ py::object race_until(const Evaluator& self, const py::object& T_world_camera, d
 
 py::object best_set(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
                     bool return_gains, const GivenOrNone<Control>& control) {
-  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const PoseBatch batch = batch_of(self, T_world_camera);
   ViewSet set;
   run_batch(control, [&](const BatchControl& watched) {
     set = self.evaluator.best_set(batch.poses, k, watched);
@@ -225,7 +235,7 @@ py::object tour(const Evaluator& self, const py::object& T_world_camera, const p
                 std::optional<std::size_t> max_stops, std::optional<std::size_t> first,
                 double cost_per_way, std::optional<double> budget, bool per_way,
                 const py::object& costs, double least_area, const GivenOrNone<Control>& control) {
-  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const PoseBatch batch = batch_of(self, T_world_camera);
   const std::vector<double> own_costs = costs_or_none(costs);
   const TourConfig config{.max_stops = max_stops.value_or(batch.poses.size()),
                           .first = first,
@@ -253,7 +263,7 @@ py::object tour(const Evaluator& self, const py::object& T_world_camera, const p
 
 py::object approximate(const Evaluator& self, const py::object& T_world_camera, double share,
                        std::uint64_t seed, const GivenOrNone<Control>& control) {
-  const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
+  const PoseBatch batch = batch_of(self, T_world_camera);
   const ApproximateConfig config{share, seed};
   py::array_t<ApproximateGain> estimates(batch.shape);
   const std::span<ApproximateGain> out(estimates.mutable_data(), batch.poses.size());

@@ -24,6 +24,7 @@
 #include "map/depth_images.hpp"
 #include "map/shared_grid.hpp"
 #include "planner_docs.hpp"
+#include "suspicions.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/planner/view_planner.hpp"
 
@@ -94,6 +95,28 @@ class PythonGeneration : public ViewpointGeneration {
   const MapModel& map_;
 };
 
+std::vector<Suspicion> suspicions_of_set_up(const Sensor& sensor, const PlannerConfig& config,
+                                            const BeliefGrid& grid) {
+  std::vector<Suspicion> all = suspect_sensor(sensor, grid.voxel_size());
+  all.push_back(suspect_workspace(grid, sensor));
+  const auto add_obstacle = [&](const Box& bounds) {
+    all.push_back(suspect_obstacle(bounds, grid, sensor));
+    if (!all.back().kind.empty()) all.back().what = "an obstacle " + all.back().what;
+  };
+  const Obstacles& obstacles = config.surroundings.obstacles;
+  for (const Box& box : obstacles.boxes) add_obstacle(box);
+  for (const TriangleMesh& mesh : obstacles.meshes) add_obstacle(obstacle_bounds(mesh));
+  if (const auto& plane = config.surroundings.support_plane) {
+    all.push_back(suspect_support_plane(*plane, grid, sensor));
+  }
+  all.push_back(suspect_reach(config.reach, grid, sensor));
+  if (const auto& size = config.hazard.object_size) {
+    all.push_back(suspect_object_size(*size, grid));
+  }
+  all.push_back(suspect_clearance(config.clearance));
+  return all;
+}
+
 std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
                               const py::object& workspace, const py::object& T_world_grid,
                               std::optional<double> prior_sigma,
@@ -136,10 +159,13 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
   config.stop_gain = stop_gain;
   config.stop_area = stop_area;
   const ExecConfig exec{num_threads, parse_tracer(tracer)};
-  if (state.is_none()) return std::make_unique<Planner>(sensor, ViewPlanner(sensor, config, exec));
-  const std::string file = readable_file(state);
-  return std::make_unique<Planner>(
-      sensor, outside_gil([&] { return ViewPlanner::load(file, sensor, config, exec); }));
+  const std::string file = state.is_none() ? "" : readable_file(state);
+  ViewPlanner planner = outside_gil([&] {
+    return file.empty() ? ViewPlanner(sensor, config, exec)
+                        : ViewPlanner::load(file, sensor, config, exec);
+  });
+  warn(suspicions_of_set_up(sensor, config, planner.grid()));
+  return std::make_unique<Planner>(sensor, std::move(planner));
 }
 
 // A pose that may be lost, and is NaN then: numbers in the right shape.
@@ -158,14 +184,36 @@ py::object to_python(const AddedView& added) {
                std::string(frame_verdict_name(added.update.verdict)));
 }
 
+// What add() came to, and what may be wrong with the frame or its pose.
+struct Judged {
+  AddedView added{};
+  Suspicion suspicion{};
+};
+
+Judged judged(ViewPlanner& planner, const Sensor& sensor, const DepthFrame& frame,
+              const Pose& T_world_camera, const PoseSigma& pose_sigma = {}) {
+  Judged result{planner.add(frame, T_world_camera, pose_sigma)};
+  const MapUpdate& update = result.added.update;
+  if (update.verdict == FrameVerdict::used || update.verdict == FrameVerdict::carved ||
+      update.verdict == FrameVerdict::outside) {
+    result.suspicion =
+        suspicion_of_frame(sensor, frame, T_world_camera, planner.grid(), update.counts);
+  }
+  return result;
+}
+
+py::object to_python(const Judged& judged) {
+  warn(judged.suspicion);
+  return to_python(judged.added);
+}
+
 py::object add(Planner& self, const py::object& depth, const py::object& T_world_camera,
                const std::array<double, 2>& pose_sigma, const py::object& amplitude) {
   const DepthFrame frame = depth_frame(self.sensor(), depth, amplitude);
   const Pose pose = loose_pose(T_world_camera);
-  const AddedView added = self.run([&](ViewPlanner& planner) {
-    return planner.add(frame, pose, {pose_sigma[0], pose_sigma[1]});
-  });
-  return to_python(added);
+  const PoseSigma sigma{pose_sigma[0], pose_sigma[1]};
+  return to_python(self.run(
+      [&](ViewPlanner& planner) { return judged(planner, self.sensor(), frame, pose, sigma); }));
 }
 
 py::object add_frame(Planner& self, const Given<FrameSequence>& frames, py::ssize_t index) {
@@ -174,8 +222,8 @@ py::object add_frame(Planner& self, const Given<FrameSequence>& frames, py::ssiz
     const FrameReading read = read_frame(*frames, i);
     const Pose& T_world_camera = frames->poses.at(i);
     return read.fault.verdict == FrameVerdict::used
-               ? planner.add(read.frame, T_world_camera)
-               : planner.drop(read.fault.verdict, T_world_camera);
+               ? judged(planner, self.sensor(), read.frame, T_world_camera)
+               : Judged{planner.drop(read.fault.verdict, T_world_camera)};
   }));
 }
 
@@ -221,6 +269,12 @@ py::object propose(Planner& self) {
                proposal.dropped);
 }
 
+Suspicion suspicion_on_map(Planner& self, std::span<const Pose> poses) {
+  return self.run([&](ViewPlanner& planner) {
+    return suspicion_of_poses(planner.map().scene(), self.sensor(), poses);
+  });
+}
+
 py::object rank(Planner& self, std::size_t k, const py::object& poses, const py::object& costs,
                 double cost_per_metre, const py::object& current_pose, bool together, bool exact,
                 const py::object& measure, const GivenOrNone<Control>& control) {
@@ -234,7 +288,10 @@ py::object rank(Planner& self, std::size_t k, const py::object& poses, const py:
   const std::vector<double> own_costs = costs_or_none(costs);
   config.costs = own_costs;
   std::vector<Pose> asked;
-  if (!poses.is_none()) asked = pose_batch(poses, "poses", false).poses;
+  if (!poses.is_none()) {
+    asked = pose_batch(poses, "poses", false).poses;
+    warn(suspicion_on_map(self, asked));
+  }
   Ranking ranking;
   self.use([&](ViewPlanner& planner) {
     run_batch(control, [&](const BatchControl& watched) {
@@ -292,6 +349,7 @@ void bind_planner(py::module_& module) {
           "add_poses",
           [](Planner& self, const py::object& T_world_camera, const std::string& name) {
             PoseSet set{name, pose_list(T_world_camera, "T_world_camera")};
+            warn(suspicion_on_map(self, set.poses));
             self.use([&](ViewPlanner& planner) { planner.add_poses(std::move(set)); });
           },
           "T_world_camera"_a, "name"_a = "poses", kAddPosesDoc)

@@ -72,6 +72,8 @@ GainEvaluator)";
 inline constexpr const char* kEvaluateDoc =
     R"(The expected gains of poses.
 
+Warns (UserWarning) if most poses do not see the map, and of the likely mistake.
+
 Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)

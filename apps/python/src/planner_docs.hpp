@@ -111,6 +111,8 @@ path : path-like)";
 inline constexpr const char* kAddPosesDoc =
     R"(Candidates that are proposed from now on.
 
+Warns (UserWarning) if most poses do not see the map, and of the likely mistake.
+
 Parameters
 ----------
 T_world_camera : array_like, (n, 4, 4)
@@ -131,6 +133,9 @@ name : str
 
 inline constexpr const char* kAddDoc =
     R"(Puts a frame into the map; the last proposal is void.
+
+Warns (UserWarning) if hardly any reading lies in the workspace and most would by another convention
+of poses or depths.
 
 Cost: linear in the pixels and grows with the voxels that they carve: 12 ms for 176x144 pixels and voxels of
 5 mm on two threads.
@@ -222,7 +227,8 @@ inline constexpr const char* kRankDoc =
     R"(The k best candidates of the proposal since the last view, or of any poses.
 
 Cost: linear in the candidates: 2 ms each in two stages, 20 ms with exact, by gain "combined", for 176x144
-pixels and a map of 128**3 voxels that is mostly unknown.
+pixels and a map of 128**3 voxels that is mostly unknown. Warns (UserWarning) if most of the given
+poses do not see the map.
 
 Parameters
 ----------

@@ -69,11 +69,13 @@ void Sensor::validate() const {
     fail("min_range must be finite and not negative, not " + short_text(min_range));
   }
   if (!(std::isfinite(max_range) && max_range > min_range)) {
-    fail("max_range must be finite and over min_range, not " + short_text(max_range));
+    fail("max_range must be finite and over min_range, " + short_text(min_range) + " m, not " +
+         short_text(max_range) + " (lengths are in metres)");
   }
   if (!(working_distance > 0 && working_distance >= min_range && working_distance <= max_range)) {
-    fail("working_distance must be positive and within min_range and max_range, not " +
-         short_text(working_distance));
+    fail("working_distance must be positive and within min_range and max_range, " +
+         short_text(min_range) + " to " + short_text(max_range) + " m, not " +
+         short_text(working_distance) + " (lengths are in metres)");
   }
   NoiseModel parameters = noise;
   for_each_parameter(parameters, [&](double value, const auto& field) {

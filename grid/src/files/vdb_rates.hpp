@@ -30,6 +30,7 @@ class RateReader {
     HazardConfig::Volume volume;
     volume.outside = checked(rates_->background());
     const VoxelBox& box = volume.box = touched_by_active(grid);
+    check_place(grid, box);
     volume.rates.reserve(static_cast<std::size_t>(box.volume()));
     const openvdb::tree::ValueAccessor<const openvdb::FloatTree, false> values(rates_->tree());
     for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
@@ -47,6 +48,33 @@ class RateReader {
   }
 
  private:
+  // Rates in other units or of another place would count as a single rate everywhere.
+  void check_place(const BeliefGrid& grid, const VoxelBox& box) const {
+    constexpr double kMost = 50;  // times as coarse or as fine
+    openvdb::CoordBBox active;
+    if (!rates_->tree().evalActiveVoxelBoundingBox(active)) return;
+    const double size = rates_->voxelSize().length() / std::sqrt(3.0);
+    const double ratio = size / grid.voxel_size();
+    if (ratio > kMost || ratio * kMost < 1) {
+      mismatch("has voxels of " + short_text(size) + " m, the map of " +
+               short_text(grid.voxel_size()) + " m");
+    }
+    if (box.volume() == 0) {
+      const openvdb::Vec3d low = rates_->indexToWorld(active.min().asVec3d());
+      const openvdb::Vec3d high = rates_->indexToWorld(active.max().asVec3d());
+      mismatch("its rates lie between " + text_of(low) + " and " + text_of(high) +
+               " m, none of them in the map");
+    }
+  }
+  [[nodiscard]] static std::string text_of(const openvdb::Vec3d& p) {
+    return short_text(p.x()) + "," + short_text(p.y()) + "," + short_text(p.z());
+  }
+  [[noreturn]] void mismatch(const std::string& what) const {
+    throw Error(ErrorCode::invalid_argument,
+                path_.string() + ": " + what +
+                    ": the transform of hazard rates is to the map's world, in metres");
+  }
+
   [[nodiscard]] static bool is_index(const openvdb::Vec3d& at) {
     constexpr double kMost = std::numeric_limits<std::int32_t>::max() - 1;
     return std::abs(at.x()) < kMost && std::abs(at.y()) < kMost && std::abs(at.z()) < kMost;

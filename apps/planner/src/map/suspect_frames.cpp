@@ -11,6 +11,7 @@
 
 #include "map/frame_meetings.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/planner/suspect_set_up.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -170,6 +171,8 @@ Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frame
                          std::span<const Pose> T_world_camera) {
   if (frames.size() != T_world_camera.size()) refuse("one pose a frame is needed");
   for (const DepthFrame& frame : frames) check_frame_size(frame, sensor.camera);
+  for (const Suspicion& unit : suspect_sensor(sensor))
+    if (explains_frames(unit)) return unit;
   if (Suspicion camera = suspect_camera(sensor.camera); !camera.kind.empty()) return camera;
   const FrameMeetings meeting(sensor, frames, T_world_camera);
   if (Suspicion range = suspect_range(sensor, frames, meeting); !range.kind.empty()) return range;

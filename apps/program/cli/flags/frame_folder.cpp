@@ -72,11 +72,11 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options) {
 
 void add_mask_options(App& app, std::string& mask, std::string& confidence, int& least_confidence) {
   app.add_option("--mask", mask,
-                 "folder of grayscale PNGs with the depth images' names: where they are not 0, an "
-                 "image says nothing");
+                 "folder of grayscale PNGs with the depth images' names; nonzero pixels are "
+                 "ignored");
   app.add_option("--confidence", confidence,
-                 "folder of grayscale PNGs with the depth images' names: where they are under "
-                 "--least-confidence, an image says nothing");
+                 "folder of grayscale PNGs with the depth images' names; pixels under "
+                 "--least-confidence are ignored");
   app.add_option("--least-confidence", least_confidence,
                  "least value of --confidence that counts, 1..255")
       ->check(CLI::Range(1, 255, "confidence"));

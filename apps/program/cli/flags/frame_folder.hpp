@@ -58,6 +58,7 @@ class FrameFolder {
   [[nodiscard]] const FrameSequence& frames() const noexcept { return frames_; }
   [[nodiscard]] const Sensor& sensor() const noexcept { return frames_.sensor; }
   [[nodiscard]] std::size_t size() const noexcept { return frames_.images.size(); }
+  [[nodiscard]] bool has_masks() const noexcept { return !masks_.empty(); }
   [[nodiscard]] const Pose& T_world_camera(std::size_t index) const { return frames_.poses[index]; }
 
   /// Of --mask and --confidence.

@@ -117,32 +117,6 @@ void warn_of_repairs(const std::string& file, const MeshRepairs& repairs) {
   std::fprintf(stderr, "viewgain: warning: %s: %s\n", file.c_str(), text.c_str());
 }
 
-void warn_of_far_obstacles(const std::vector<std::string>& values, const Obstacles& obstacles,
-                           const BeliefGrid& grid, const Sensor& sensor) {
-  constexpr double kHuge = 100;  // times the workspace
-  const Box map = grid.workspace();
-  const double longest = longest_side(map);
-  auto mesh = obstacles.meshes.begin();
-  auto other = obstacles.boxes.begin();
-  for (const std::string& value : values) {
-    const Box box = is_obstacle_file(value) ? bounds_of(*mesh++) : *other++;
-    const double side = longest_side(box);
-    double squared = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double gap = std::max({0.0, box.min[a] - map.max[a], map.min[a] - box.max[a]});
-      squared += gap * gap;
-    }
-    const double distance = std::sqrt(squared);
-    // A view that sees the map to its range may look as far beyond.
-    if (distance <= 2 * sensor.max_range && side <= kHuge * longest) continue;
-    std::fprintf(stderr,
-                 "viewgain: warning: --obstacle %s is %s m long and %s m from the map, which is "
-                 "%s m long: is it in metres?\n",
-                 value.c_str(), short_text(side).c_str(), short_text(distance).c_str(),
-                 short_text(longest).c_str());
-  }
-}
-
 void warn_of_poses(const std::string& file, const std::vector<Pose>& poses,
                    const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor) {
   const std::string suspicion = suspect_poses(scene, sensor, poses).what;

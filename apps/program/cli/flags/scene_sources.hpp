@@ -57,10 +57,6 @@ inline constexpr const char* kObstacleHelp =
 void warn_of_few_voxels(const BeliefGrid& grid);
 /// Faces of a mesh file that cross themselves or have no area.
 void warn_of_repairs(const std::string& file, const MeshRepairs& repairs);
-/// Obstacles of --obstacle, obstacles_of(values), out of the reach of views of the map, or 100
-/// times its size.
-void warn_of_far_obstacles(const std::vector<std::string>& values, const Obstacles& obstacles,
-                           const BeliefGrid& grid, const Sensor& sensor);
 /// Poses of a file of which most see nothing of the map (suspect_poses()).
 void warn_of_poses(const std::string& file, const std::vector<Pose>& poses,
                    const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor);

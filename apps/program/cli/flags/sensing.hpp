@@ -73,6 +73,12 @@ void add_registration_options(App& app, RegistrationOptions& options);
 [[nodiscard]] std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,
                                                           const PoseSigma& noise = {});
 
+/// What --pose-sigma says; nothing without it.
+[[nodiscard]] inline std::optional<PoseSigma> stated_sigma(const RegistrationOptions& options) {
+  if (options.pose_sigma.empty()) return std::nullopt;
+  return parse_pose_sigma("--pose-sigma", options.pose_sigma);
+}
+
 /// --coarsest, --fine and --finest: which scales the leaves of a map that is made get.
 struct ScaleOptions {
   std::size_t coarsest = 0, finest = 0;

@@ -11,6 +11,7 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "program/cli/flags/frame_folder.hpp"
@@ -19,12 +20,14 @@
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
+#include "program/cli/flags/set_up_warnings.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/file_format.hpp"
 #include "program/commands/follow/followed_map.hpp"
 #include "program/commands/frames/frame_tally.hpp"
+#include "program/commands/frames/mask_use.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frame_watch.hpp"
@@ -142,7 +145,10 @@ class Following {
   // What is not there by now will not come, if all is done.
   void finish(bool is_done) {
     if (is_done) leave_out(watch_->give_up());
-    if (map_) warn(map_->last_suspicion());
+    if (map_) {
+      const std::string of_masks = suspicion_of_masks(true);
+      warn(of_masks.empty() ? map_->last_suspicion() : of_masks);
+    }
     if (map_ && has_news_) write();
     write_new_counts();
   }
@@ -170,9 +176,7 @@ class Following {
     if (const std::string text = frames_text(carved(), watch_->bad()); !text.empty()) {
       std::printf("%s\n", text.c_str());
     }
-    if (!options_.frames.mask.empty() || !options_.frames.confidence.empty()) {
-      std::printf("pixels taken away by masks: %s\n", with_commas(masked_pixels_).c_str());
-    }
+    std::printf("%s", masked_text(options_.frames, masked_pixels_).c_str());
     if (!map_) return;
     if (const auto reason = map_->should_stop()) {
       std::printf("enough: %s\n", stop_reason_name(*reason).data());
@@ -188,6 +192,14 @@ class Following {
 
   void warn(const std::string& what) const {
     if (!what.empty()) std::fprintf(stderr, "viewgain: warning: %s\n", what.c_str());
+  }
+
+  [[nodiscard]] bool has_masks() const {
+    return !options_.frames.mask.empty() || !options_.frames.confidence.empty();
+  }
+  [[nodiscard]] std::string suspicion_of_masks(bool is_last) {
+    return has_masks() ? masks_.suspicion(watch_->folder()->sensor, map_->grid(), is_last)
+                       : std::string();
   }
 
   [[nodiscard]] std::size_t carved() const {
@@ -222,12 +234,26 @@ class Following {
     // What was next may be missing or older than the state, which has not heard of it: a frame that
     // waits is held against it.
     has_news_ = saved_.has_value();
+    Sensor with_body = sensor;
+    if (body_) with_body.body_size = body_;
+    warn_of_set_up({.sensor = with_body,
+                    .map = map_->grid(),
+                    .frames_follow = true,
+                    .obstacle_values = &options_.obstacles,
+                    .obstacles = &config_.surroundings.obstacles,
+                    .support_plane = options_.support_plane,
+                    .reach_file = options_.reach,
+                    .reach = &config_.reach,
+                    .object_size = options_.object_size,
+                    .pose_sigma = stated_sigma(options_.registration)});
     if (saved_) propose(saved_->frames);
   }
 
   void take(const WatchedFrame& frame) {
     const std::string name = frame.image.filename().string();
-    warn(map_->suspicion_with(frame));
+    if (has_masks()) masks_.add(*watch_->folder(), frame);
+    const std::string of_masks = suspicion_of_masks(false);
+    warn(of_masks.empty() ? map_->suspicion_with(frame) : of_masks);
     const std::optional<FrameRegistration> registration = map_->register_in(frame);
     FrameVerdict verdict = FrameVerdict::contradicts;
     std::string why = frame.image.string();
@@ -258,6 +284,9 @@ class Following {
   void propose(const std::set<std::string>& frames) {
     next_ = map_->next(options_.top, options_.cost_per_metre);
     views_.ask(poses_of(next_), frames);
+    if (next_.candidates > 0 || !next_.dropped.contains("obstacle")) return;
+    if (std::exchange(told_of_obstacles_, true)) return;
+    warn_of_views_in_obstacles(config_.surroundings.obstacles, map_->grid());
   }
 
   // First the state: what is next takes longest, and can be made of it again.
@@ -312,10 +341,12 @@ class Following {
   std::optional<FolderLock> lock_;
   std::optional<SavedFrames> saved_;
   std::optional<FrameWatch> watch_;
-  std::optional<FollowedMap> map_;   // once the sensor is known
+  std::optional<FollowedMap> map_;  // once the sensor is known
+  MaskWatch masks_;
   std::size_t added_ = 0;            // frames, by this call
   std::uint64_t masked_pixels_ = 0;  // of these
   bool has_news_ = false;            // that are not yet written
+  bool told_of_obstacles_ = false;   // that hold the views
   std::optional<Stopwatch> since_written_;
   NextViews next_;
   Json said_;  // counts(), as next.json has them

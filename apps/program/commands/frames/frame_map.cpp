@@ -6,6 +6,7 @@
 
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/scene_sources.hpp"
+#include "program/cli/flags/set_up_warnings.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
@@ -81,7 +82,9 @@ FrameMap::FrameMap(const FrameMapOptions& options, const ProposalOptions& propos
     : folder_(options.folder),
       config_(config_of(folder_, options, proposal, quiet)),
       model_(with_body(folder_.sensor(), proposal), config_, exec),
-      tally_(quiet) {}
+      tally_(quiet) {
+  warn_of_set_up(proposal, config_.surroundings.obstacles, model_.grid(), model_.sensor(), true);
+}
 
 MapUpdate FrameMap::add(std::size_t index) { return add(index, folder_.T_world_camera(index)); }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "program/cli/values.hpp"
+#include "program/commands/frames/mask_use.hpp"
 #include "viewgain/planner/suspect_frames.hpp"
 
 namespace viewgain::app {
@@ -105,6 +106,7 @@ std::string FrameTally::none_inside(const FrameFolder& folder) const {
 
 void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
                              const std::optional<double>& support_plane, bool needs_surface) const {
+  if (blames_masks(folder, map, needs_surface)) return;
   const std::string suspicion = suspicion_of(folder, support_plane);
   if (counts_.empty() || is_in_map(counts_.begin()->first)) {
     name_left_out();
@@ -138,6 +140,8 @@ void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
 }
 
 void refuse_without_readings(const FrameFolder& folder, const FrameTally& bad) {
+  if (const std::string why = mask_suspicion(folder); !why.empty())
+    refuse(folder.name() + ": " + why);
   std::string what = folder.name() + ": no frame has a reading at " +
                      short_text(folder.frames().depth_scale) +
                      " m per unit of the depth images (--depth-scale)";

@@ -63,6 +63,9 @@ class FrameTally {
   [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
 
  private:
+  /// Says, or throws as require_any(), that masks explain what became of the frames (mask_use.hpp).
+  [[nodiscard]] bool blames_masks(const FrameFolder& folder, const BeliefGrid& map,
+                                  bool needs_surface) const;
   [[nodiscard]] std::string none_inside(const FrameFolder& folder) const;
 
   bool quiet_;

@@ -8,6 +8,7 @@
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/scene_sources.hpp"
+#include "program/cli/flags/set_up_warnings.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/formats/reach_toml.hpp"
@@ -173,8 +174,23 @@ GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& m
 }
 
 void warn_of_set_up(const ProposalOptions& options, const Obstacles& obstacles,
-                    const SurfaceModel& model, const Sensor& sensor) {
-  warn_of_far_obstacles(options.obstacles, obstacles, model.grid(), sensor);
+                    const BeliefGrid& grid, const Sensor& sensor, bool frames_follow) {
+  std::optional<ReachRegion> reach;
+  if (!options.reach.empty()) reach = read_reach_toml(options.reach);
+  warn_of_set_up({.sensor = sensor,
+                  .map = grid,
+                  .frames_follow = frames_follow,
+                  .obstacle_values = &options.obstacles,
+                  .obstacles = &obstacles,
+                  .support_plane = options.support_plane,
+                  .reach_file = options.reach,
+                  .reach = reach ? &*reach : nullptr,
+                  .object_size = options.object_size});
+}
+
+void warn_of_views(const ProposalOptions& options, const Obstacles& obstacles,
+                   const SurfaceModel& model, const Sensor& sensor) {
+  warn_of_views_in_obstacles(obstacles, model.grid());
   if (options.poses.empty()) return;
   warn_of_poses(options.poses, poses_in(options.poses), model.scene(), sensor);
 }

@@ -74,9 +74,12 @@ void check(const ProposalOptions& options);
 [[nodiscard]] GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& model,
                                          const Sensor& sensor, const ExecConfig& exec);
 
-/// Warns of --obstacle and --poses that are far from the map (scene_sources.hpp).
+/// Warns of implausible numbers of sensor and flags (set_up_warnings.hpp).
 void warn_of_set_up(const ProposalOptions& options, const Obstacles& obstacles,
-                    const SurfaceModel& model, const Sensor& sensor);
+                    const BeliefGrid& grid, const Sensor& sensor, bool frames_follow = false);
+/// Warns of views of the map inside of obstacles, and of --poses that do not see it.
+void warn_of_views(const ProposalOptions& options, const Obstacles& obstacles,
+                   const SurfaceModel& model, const Sensor& sensor);
 
 /// At most `top` candidates that go together (rank_views()), or the first views of a plan
 /// (plan_views()): each with what it adds to those chosen before it, and that less --costs and

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "program/cli/flags/set_up_warnings.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
@@ -78,6 +79,20 @@ void warn_of_workspace(const Stage& stage) {
                100 * share, describe(object).c_str());
 }
 
+void warn_of_set_up(const ReconstructOptions& options, const RunSetup& setup) {
+  const bool has_noise = setup.pose_noise != PoseSigma{};
+  app::warn_of_set_up(
+      {.sensor = setup.sensor,
+       .map = BeliefGrid(setup.model.map.grid, setup.sensor),
+       .obstacle_values = &options.obstacles,
+       .obstacles = &setup.model.map.surroundings.obstacles,
+       .support_plane = options.sensing.support_plane,
+       .reach_file = options.reach,
+       .reach = &setup.reach,
+       .object_size = options.object_size,
+       .pose_sigma = has_noise ? setup.pose_noise : stated_sigma(options.registration)});
+}
+
 void reconstruct(const ReconstructOptions& options, const App& app) {
   const RunOutputs& outputs = options.outputs;
   if (outputs.with_report()) check_report_page("--report");
@@ -86,6 +101,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
   const ExecConfig exec = exec_of(options.common);
   RunSetup setup = set_up(options, exec);
   warn_of_workspace(setup.stage);
+  warn_of_set_up(options, setup);
   const InterruptGuard interrupt;
   setup.planning.stop = interrupt.token();
   const Stopwatch watch_of_set_up;

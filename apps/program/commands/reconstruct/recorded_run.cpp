@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "program/cli/flags/next_views.hpp"
+#include "program/cli/flags/set_up_warnings.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
@@ -19,6 +20,7 @@
 #include "program/commands/commands.hpp"
 #include "program/commands/frames/frame_map.hpp"
 #include "program/commands/frames/frame_tally.hpp"
+#include "program/commands/frames/mask_use.hpp"
 #include "program/commands/map_json.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
 #include "program/commands/reconstruct/checkpoint.hpp"
@@ -31,6 +33,7 @@
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/formats/staged_folder.hpp"
 #include "viewgain/planner/align_frames.hpp"
+#include "viewgain/planner/suspect_set_up.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
@@ -111,6 +114,10 @@ class Recording {
     check(proposal_);
     map_.emplace(options.frames, proposal_, options.common.quiet, exec_);
     sigma_ = registration_sigma(options.registration);
+    if (const auto stated = stated_sigma(options.registration)) {
+      warn(suspect_pose_sigma(*stated, sensor().working_distance, grid().voxel_size()),
+           "--pose-sigma");
+    }
     if (sigma_) {
       const Stopwatch watch;
       auto aligned = align_folder(*map_, *sigma_, options.common.quiet, exec_, stop);
@@ -152,6 +159,7 @@ class Recording {
     Stopwatch watch;
     Moment moment(*map_, proposal_, exec_);
     views_->add_seconds("surface", watch.seconds());
+    warn_of_views(proposal_, map_->config().surroundings.obstacles, moment.model, sensor());
     ViewRecord& last = views_->last();
     watch = {};
     last.proposal = moment.generation.generate(last.T_world_camera);
@@ -284,6 +292,8 @@ void print(const Options& options, const Json& run, const BeliefGrid& grid,
   if (const std::string text = frames_text(counts); !text.empty()) {
     std::printf("%s\n", text.c_str());
   }
+  std::printf(
+      "%s", masked_text(options.frames.folder, run["masked_pixels"].get<std::uint64_t>()).c_str());
   if (run.contains("registration")) {
     std::printf("%s\n", registration_text(run["registration"]).c_str());
   }

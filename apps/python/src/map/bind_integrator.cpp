@@ -17,6 +17,7 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "shared_grid.hpp"
+#include "suspicions.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/cloud_io.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
@@ -85,14 +86,13 @@ struct SharedIntegrator {
   SharedIntegrator(const Sensor& of, const Config& config, int num_threads)
       : sensor(of), integrator(of, config, ExecConfig{num_threads}) {}
 
-  // Call with the GIL.
-  template <typename Readings, typename... More>
-  py::object integrate(SharedGrid& grid, const Readings& readings, const Pose& T_world_sensor,
-                       const More&... more) {
-    return to_python(grid.write([&](BeliefGrid& g) {
+  // Calls f(BeliefGrid&, Integrator&) without the GIL, with which it is called.
+  template <typename F>
+  auto write(SharedGrid& grid, const F& f) {
+    return grid.write([&](BeliefGrid& g) {
       const std::lock_guard lock(mutex);
-      return integrator.integrate(g, readings, T_world_sensor, more...);
-    }));
+      return f(g, integrator);
+    });
   }
 };
 
@@ -119,7 +119,10 @@ Cloud cloud_in_world(const Sensor& sensor, const py::object& points_sensor, cons
 py::object integrate_cloud(Clouds& self, const Given<SharedGrid>& grid,
                            const py::object& points_sensor, const py::object& T_world_sensor) {
   const Pose pose = one_pose(T_world_sensor, "T_world_sensor");
-  return self.integrate(*grid, cloud_in_world(self.sensor, points_sensor, pose), pose);
+  const Cloud cloud = cloud_in_world(self.sensor, points_sensor, pose);
+  return to_python(self.write(*grid, [&](BeliefGrid& g, CloudIntegrator& integrator) {
+    return integrator.integrate(g, cloud, pose);
+  }));
 }
 
 py::object to_python(const std::optional<Box>& box) {
@@ -184,6 +187,7 @@ T_world_sensor : array_like, (4, 4)
              config.coarsest = coarsest;
              config.finest = finest;
              config.fine = optional_boxes(fine, "fine");
+             warn(suspect_sensor(*sensor));
              return std::make_unique<Clouds>(*sensor, config, num_threads);
            }),
            "sensor"_a, py::kw_only(), "occupancy"_a = "probabilistic",
@@ -251,8 +255,14 @@ py::object integrate(Integrator& self, const Given<SharedGrid>& grid, const py::
                      const py::object& T_world_camera, const std::array<double, 2>& pose_sigma,
                      const py::object& amplitude) {
   const DepthFrame frame = depth_frame(self.sensor, depth, amplitude);
-  return self.integrate(*grid, frame, one_pose(T_world_camera, "T_world_camera"),
-                        PoseSigma{pose_sigma[0], pose_sigma[1]});
+  const Pose pose = one_pose(T_world_camera, "T_world_camera");
+  IntegrationReport counts;
+  const Suspicion suspicion = self.write(*grid, [&](BeliefGrid& g, FrameIntegrator& integrator) {
+    counts = integrator.integrate(g, frame, pose, PoseSigma{pose_sigma[0], pose_sigma[1]});
+    return suspicion_of_frame(self.sensor, frame, pose, g, counts);
+  });
+  warn(suspicion);
+  return to_python(counts);
 }
 
 void calibrate_hazard(const Integrator& self, const Given<SharedGrid>& grid,
@@ -305,6 +315,7 @@ amplitude : array_like, (height, width), floating point, optional
              config.coarsest = coarsest;
              config.finest = finest;
              config.fine = optional_boxes(fine, "fine");
+             warn(suspect_sensor(*sensor));
              return std::make_unique<Integrator>(*sensor, config, num_threads);
            }),
            "sensor"_a, py::kw_only(), "carve"_a = "cones", "occupancy"_a = "probabilistic",

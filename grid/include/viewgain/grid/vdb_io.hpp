@@ -43,8 +43,9 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 /// be any linear one to the world [m]; each voxel of the map has the value at its centre, of the
 /// file's nearest voxel. Where the file has no active voxels its background holds. Throws as
 /// load_vdb(), and Error(format) for a rate that is negative or not finite, a file with several
-/// grids of floats of other names, or a transform that is not linear. 4 bytes, and some 50 ns, per
-/// voxel of the map in the box of active ones.
+/// grids of floats of other names, or a transform that is not linear; and Error(invalid_argument)
+/// if active voxels are 50 times as large or as small as the map's, or all outside of it. 4 bytes,
+/// and some 50 ns, per voxel of the map in the box of active ones.
 [[nodiscard]] VIEWGAIN_EXPORT HazardConfig::Volume load_hazard_vdb(
     const std::filesystem::path& path, const BeliefGrid& grid);
 

@@ -17,8 +17,8 @@ namespace viewgain {
 /// What is probably wrong with frames or poses.
 struct VIEWGAIN_EXPORT Suspicion {
   /// Empty: nothing. distortion, principal_point, depth_scale, world_to_camera, quaternion_order,
-  /// body_frame, upward_camera, pose_millimetres, depth_along_ray, focal_length or, of poses alone,
-  /// no_voxel.
+  /// body_frame, upward_camera, pose_millimetres, depth_along_ray, focal_length, those of
+  /// suspect_set_up.hpp or, of poses alone, no_voxel.
   std::string kind{};
   std::string what{};  ///< a sentence with the figure that made it suspicious
 };

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "program/cli/flags/frame_folder.hpp"
+#include "viewgain/formats/frame_watch.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+
+namespace viewgain::app {
+
+/// What is probably wrong with the masks of a folder's frames (suspect_masks()); empty: nothing, or
+/// there are none. Reads a dozen frames with and without their masks.
+[[nodiscard]] std::string mask_suspicion(const FrameFolder& folder,
+                                         const BeliefGrid* map = nullptr);
+
+/// The same of frames as they come.
+class MaskWatch {
+ public:
+  /// `folder`: FrameWatch::folder(). Reads the image again, without its masks.
+  void add(const FrameSequence& folder, const WatchedFrame& frame);
+  /// What is wrong, said once: after six and after twelve frames, or when there will be no more.
+  [[nodiscard]] std::string suspicion(const Sensor& sensor, const BeliefGrid& map, bool is_last);
+
+ private:
+  std::vector<DepthFrame> unmasked_, masked_;
+  std::vector<Pose> poses_;
+  bool is_suspected_ = false;
+};
+
+/// A line for people about pixels with a depth that masks took; empty without --mask and
+/// --confidence.
+[[nodiscard]] std::string masked_text(const FrameFolderOptions& options, std::uint64_t pixels);
+
+}  // namespace viewgain::app
