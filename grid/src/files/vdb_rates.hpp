@@ -53,7 +53,8 @@ class RateReader {
     constexpr double kMost = 50;  // times as coarse or as fine
     openvdb::CoordBBox active;
     if (!rates_->tree().evalActiveVoxelBoundingBox(active)) return;
-    const double size = rates_->voxelSize().length() / std::sqrt(3.0);
+    const openvdb::Vec3d sides = rates_->voxelSize();
+    const double size = std::max({sides.x(), sides.y(), sides.z()});
     const double ratio = size / grid.voxel_size();
     if (ratio > kMost || ratio * kMost < 1) {
       mismatch("has voxels of " + short_text(size) + " m, the map of " +

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <string>
@@ -319,7 +320,7 @@ TEST_F(SuspectReadings, MasksThatAreMeantAsTheyAre) {
     return std::abs(static_cast<int>(i % 64) - 32) > 6 ||
            std::abs(static_cast<int>(i / 64) - 24) > 5;
   };
-  for (const BeliefGrid* of : {static_cast<const BeliefGrid*>(&map), &room, nullptr}) {
+  for (const BeliefGrid* of : std::initializer_list<const BeliefGrid*>{&map, &room, nullptr}) {
     EXPECT_EQ(masked(arm, of).kind, "");
     EXPECT_EQ(masked(background, of).kind, "");
     EXPECT_EQ(masked(none, of).kind, "");

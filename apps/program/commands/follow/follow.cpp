@@ -146,8 +146,8 @@ class Following {
   void finish(bool is_done) {
     if (is_done) leave_out(watch_->give_up());
     if (map_) {
-      const std::string of_masks = suspicion_of_masks(true);
-      warn(of_masks.empty() ? map_->last_suspicion() : of_masks);
+      warn_of_masks(true);
+      if (!masks_.is_suspected()) warn(map_->last_suspicion());
     }
     if (map_ && has_news_) write();
     write_new_counts();
@@ -197,9 +197,9 @@ class Following {
   [[nodiscard]] bool has_masks() const {
     return !options_.frames.mask.empty() || !options_.frames.confidence.empty();
   }
-  [[nodiscard]] std::string suspicion_of_masks(bool is_last) {
-    return has_masks() ? masks_.suspicion(watch_->folder()->sensor, map_->grid(), is_last)
-                       : std::string();
+  void warn_of_masks(bool is_last) {
+    if (!has_masks()) return;
+    warn(masks_.suspicion(watch_->folder()->sensor, map_->grid(), is_last));
   }
 
   [[nodiscard]] std::size_t carved() const {
@@ -252,8 +252,8 @@ class Following {
   void take(const WatchedFrame& frame) {
     const std::string name = frame.image.filename().string();
     if (has_masks()) masks_.add(*watch_->folder(), frame);
-    const std::string of_masks = suspicion_of_masks(false);
-    warn(of_masks.empty() ? map_->suspicion_with(frame) : of_masks);
+    warn_of_masks(false);
+    if (!masks_.is_suspected()) warn(map_->suspicion_with(frame));
     const std::optional<FrameRegistration> registration = map_->register_in(frame);
     FrameVerdict verdict = FrameVerdict::contradicts;
     std::string why = frame.image.string();

@@ -24,6 +24,8 @@ class MaskWatch {
   void add(const FrameSequence& folder, const WatchedFrame& frame);
   /// What is wrong, said once: after six and after twelve frames, or when there will be no more.
   [[nodiscard]] std::string suspicion(const Sensor& sensor, const BeliefGrid& map, bool is_last);
+  /// It was said: frames need no other explanation.
+  [[nodiscard]] bool is_suspected() const noexcept { return is_suspected_; }
 
  private:
   std::vector<DepthFrame> unmasked_, masked_;

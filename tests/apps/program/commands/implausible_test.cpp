@@ -43,7 +43,8 @@ class Implausible : public test::ProgramTest {
          "--out", "run"},
         {"follow", "frames", "--voxel", "0.025", "--workspace", kSmall, "--out", "plan"},
         {"next", "map.vdb"},
-        {"candidates", "map.vdb", "--generator", "sphere", "--count", "20", "--out", "new.txt"},
+        {"candidates", "map.vdb", "--generator", "sphere", "--count", "20", "--gain", "surface",
+         "--out", "new.txt"},
         {"score", "map.vdb", "--sphere", "20,0.6"}};
     if (!with_views) calls.push_back(integrate());
     return calls;
