@@ -75,7 +75,7 @@ def test_poses_that_are_inverse(sensor, camera, poses):
 
 def test_a_frame_at_an_inverse_pose(sensor, camera, poses):
     depth, amplitude = camera.acquire(poses[0], 0)
-    grid = viewgain.BeliefGrid(0.01, WORKSPACE, sensor=sensor)
+    grid = viewgain.BeliefGrid(voxel_size=0.01, workspace=WORKSPACE, sensor=sensor)
     integrator = viewgain.FrameIntegrator(sensor)
     for add in planner(sensor).add, lambda d, T: integrator.integrate(grid, d, T):
         assert "world to camera" in said(lambda: add(depth, np.linalg.inv(poses[0])))
@@ -97,7 +97,7 @@ def test_a_warning_can_be_an_error(sensor, camera, poses):
 
 
 def test_settings_in_other_units(sensor, poses):
-    grid = viewgain.BeliefGrid(0.01, WORKSPACE, sensor=sensor)
+    grid = viewgain.BeliefGrid(voxel_size=0.01, workspace=WORKSPACE, sensor=sensor)
     scene = viewgain.VoxelScene(grid)
     for more, words in [({"noise": viewgain.ConstantNoise(2.0, 0.0005)}, "sigma_axial"),
                         ({"pose_sigma": (5.0, 0.5)}, "5 m"), ({"pose_sigma": (0, 0.5)}, "28.65 degrees"),
