@@ -270,6 +270,13 @@ class PlannerCalls : CallBytes {
       require(reason >= VG_GO_ON && reason <= VG_STOP_MAX_VIEWS, "no reason");
       require(now_.views < now_.config.max_views || reason != VG_GO_ON, "more views than asked");
     }
+    auto agreed = made(vg_consistency_init);
+    if (expect(vg_planner_consistency(now_.planner(), &agreed, nullptr, 0))) {
+      require(agreed.share_in_free >= 0 && agreed.share_in_free <= 1 &&
+                  agreed.share_seen_past >= 0 && agreed.share_seen_past <= 1,
+              "shares of contradictions that are none");
+      require(agreed.contradicting <= agreed.frames, "more frames contradict than there are");
+    }
     auto rays = made(vg_ray_outcomes_init);
     if (!expect(vg_planner_outcomes(now_.planner(), pose().data(), &rays))) return;
     require(rays.too_near + rays.unknown + rays.known_surface + rays.obstacle + rays.out_of_range +

@@ -92,6 +92,7 @@ struct Totals {
   std::uint64_t jump_edge_removed = 0;
   std::size_t skipped = 0;                       // frames that the map has already
   std::vector<FrameRegistration> registrations;  // of the others, if they are registered
+  std::optional<FrameConsistency> consistency;   // of depth frames
   std::vector<double> seconds;  // of each frame's integration, reading the image not counted
 };
 
@@ -109,7 +110,7 @@ Totals integrate_all(ReadingSource& source, const Options& options) {
     if (fault.verdict == FrameVerdict::used) fault = source.load(i);
     if (fault.verdict == FrameVerdict::used) {
       if (std::optional<FrameRegistration> registration = source.register_loaded()) {
-        if (options.registration.leaves_out(*registration)) {
+        if (leaves_out(*registration, options.frames.on_contradiction)) {
           fault = {FrameVerdict::contradicts,
                    source.file(i).string() + ": " + registration->reason};
         }
@@ -131,6 +132,7 @@ Totals integrate_all(ReadingSource& source, const Options& options) {
     totals.tally.add(source.file(i), fault);
     progress.update(i + 1, source.size());
   }
+  totals.consistency = source.consistency();
   return totals;
 }
 
@@ -155,10 +157,14 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
                  {"invalid", totals.sum.invalid},
                  {"orthonormalized_poses", source.orthonormalized()},
                  {"registration", nullptr},
+                 {"contradiction", nullptr},
                  {"sensor", source.sensor().name},
                  {"depth_scale", scale}};
     const Json frames = frames_json(totals.tally.counts());
     for (const char* key : {"carved", "bad"}) json[key] = frames[key];
+    if (totals.consistency) {
+      json["contradiction"] = to_json(*totals.consistency, totals.tally.numbers());
+    }
     if (options.registration.is_on == "on") {
       json["registration"] = registration_counts(totals.registrations);
     }
@@ -230,9 +236,15 @@ void check_flags(const Options& options, const App& app) {
 
 // A map without a reading comes of a wrong scale, sensor or workspace.
 void refuse_empty(const Options& options, const ReadingSource& source, const Totals& totals) {
-  if (totals.skipped > 0) return totals.tally.name_left_out();
+  if (totals.skipped > 0) {
+    totals.tally.name_left_out();
+    if (totals.consistency) {
+      totals.tally.warn_of_contradictions(*source.folder(), *totals.consistency);
+    }
+    return;
+  }
   if (options.clouds.empty()) {
-    return totals.tally.require_any(*source.folder(), source.grid(), options.support_plane);
+    return totals.tally.require_any(*source.folder(), source.grid(), *totals.consistency);
   }
   const IntegrationReport& sum = totals.sum;
   warn_if_out_of_range(options.clouds.front(), sum);
@@ -263,6 +275,7 @@ void warn_of_set_up(const Options& options, const ReadingSource& source) {
 void integrate(const Options& options, const App& app) {
   const Stopwatch watch;
   check_flags(options, app);
+  check_contradiction(options.frames, options.registration.is_on == "on");
   check_map_name(options.out);
   if (options.with_covariance == "on" && is_octomap(options.out)) {
     refuse("--with-covariance with " + options.out + ": a tree has no place for covariances");

@@ -41,6 +41,7 @@ struct Frames {
   std::optional<Pose> last_pose;
   Obstacles obstacles;
   std::uint64_t masked_pixels = 0;
+  Json contradiction{};
 };
 
 SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<Frames>& frames) {
@@ -50,6 +51,7 @@ SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<F
     require_known(map.grid, options.source);
     return {std::move(map.grid), with_body(std::move(map.sensor), options.proposal)};
   }
+  check_contradiction(options.frames.folder, false);
   FrameMap map(options.frames, options.proposal, options.common.quiet, exec);
   Progress progress("frame", options.common.quiet);
   for (std::size_t i = 0; i < map.folder().size(); ++i) {
@@ -57,8 +59,9 @@ SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<F
     progress.update(i + 1, map.folder().size());
   }
   map.require_frames(true);
-  frames = {map.counts(), map.tried(), map.last_pose(), map.config().surroundings.obstacles,
-            map.masked_pixels()};
+  frames = {map.counts(),        map.tried(),
+            map.last_pose(),     map.config().surroundings.obstacles,
+            map.masked_pixels(), map.consistency_json()};
   return {map.model().grid().clone(), map.model().sensor()};
 }
 
@@ -87,6 +90,7 @@ void next(const Options& options) {
     if (frames) {
       json.update(map_json(model.grid(), model.grid().statistics()));
       json.update(frames_json(frames->counts));
+      json["contradiction"] = frames->contradiction;
     }
     json.update(to_json(views));
     json["out"] = nullptr;

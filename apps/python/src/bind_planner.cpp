@@ -18,6 +18,7 @@
 #include "arrays.hpp"
 #include "batch_call.hpp"
 #include "classes.hpp"
+#include "consistency.hpp"
 #include "evaluator.hpp"
 #include "gil.hpp"
 #include "given.hpp"
@@ -381,6 +382,13 @@ void bind_planner(py::module_& module) {
             });
           },
           "dict: how many frames had each verdict so far, by its name; no entry: none")
+      .def(
+          "consistency",
+          [](Planner& self) {
+            return to_python(
+                self.run([](ViewPlanner& planner) { return planner.map().consistency(); }));
+          },
+          kConsistencyDoc)
       .def("register_frame", &register_frame, "depth"_a, "T_world_camera"_a, py::kw_only(),
            "sigma_translation"_a = kUsualPoseSigma.translation,
            "sigma_rotation"_a = kUsualPoseSigma.rotation, "amplitude"_a = py::none(),

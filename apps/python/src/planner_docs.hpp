@@ -172,6 +172,15 @@ Returns
 -------
 AddedView)";
 
+inline constexpr const char* kConsistencyDoc =
+    R"(Whether the frames in the map fit one another.
+
+Cost: 20 ms for a dozen frames, 0.5 s where they do not fit.
+
+Returns
+-------
+FrameConsistency)";
+
 inline constexpr const char* kDropDoc =
     R"(A view that came to nothing before there was a frame to add, or whose frame is left out. Cost: a pass over the map.
 

@@ -29,6 +29,6 @@ except ImportError as error:
 from ._viewgain import *
 from ._viewgain import __version__
 from .codes import HitKind, Infeasibility, ViewStatus, VoxelState
-from .results import (AddedView, ChosenViews, Cloud, Frame, FrameRegistration, GridStatistics, IntegrationReport, Proposal,
+from .results import (AddedView, ChosenViews, Cloud, Frame, FrameConsistency, FrameRegistration, GridStatistics, IntegrationReport, Proposal,
                       RacedViews, Ranking, RayOutcomes, Sigmas, SimulatedFrame, Suspicion, TimedPoses, ViewTour)
 from . import plot

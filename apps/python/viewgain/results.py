@@ -65,6 +65,18 @@ class Suspicion(NamedTuple):
 
 
 @named("viewgain")
+class FrameConsistency(NamedTuple):
+    """Whether frames fit one another, from ``ViewPlanner.consistency`` and ``FrameCheck.result``."""
+
+    share_in_free: Annotated[float, "Of all readings, those in space that other frames saw as free."]
+    share_seen_past: Annotated[float, "Of readings of earlier frames, those that later frames see past."]
+    contradicting: Annotated[tuple, "Indices of the frames that contradict the others; empty unless something is suspected."]
+    suspicion: Annotated[Optional[Suspicion], "The likely cause; None: the frames agree."]
+    in_free: Annotated[_Floats, "(N,), float64: share_in_free of each frame in the map."]
+    seen_past: Annotated[_Floats, "(N,), float64: share_seen_past of each."]
+
+
+@named("viewgain")
 class RayOutcomes(NamedTuple):
     """What becomes of a view's rays, from ``GainEvaluator.outcomes`` and ``ViewPlanner.outcomes``."""
 

@@ -129,6 +129,22 @@ TEST(CPlanner, SaysWhatTheOtherSays) {
       vg_grid_release(grid);
       EXPECT_EQ(hash, own.grid().content_hash());
 
+      const FrameConsistency all = own.map().consistency();
+      vg_consistency agreed;
+      vg_consistency_init(&agreed, sizeof agreed);
+      std::vector<std::int32_t> contradicts(view + 1, 7);
+      ASSERT_EQ(vg_planner_consistency(planner, &agreed, contradicts.data(), view + 1), VG_OK);
+      EXPECT_EQ(agreed.frames, all.frames.size());
+      EXPECT_EQ(agreed.share_in_free, all.share_in_free);
+      EXPECT_EQ(agreed.share_seen_past, all.share_seen_past);
+      EXPECT_EQ(agreed.kind, all.suspicion.kind);
+      EXPECT_EQ(agreed.what, all.suspicion.what);
+      EXPECT_EQ(static_cast<std::size_t>(std::count(contradicts.begin(), contradicts.end(), 1)),
+                agreed.contradicting);
+      EXPECT_EQ(std::count(contradicts.begin(), contradicts.end(), 7), 0);
+      EXPECT_EQ(vg_planner_consistency(planner, &agreed, contradicts.data(), view),
+                VG_INVALID_ARGUMENT);
+
       vg_ray_outcomes rays;
       vg_ray_outcomes_init(&rays, sizeof rays);
       ASSERT_EQ(vg_planner_outcomes(planner, numbers_of({pose}).data(), &rays), VG_OK);

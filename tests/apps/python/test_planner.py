@@ -46,6 +46,28 @@ def step(planner, camera, pose, frame=0):
     return repr(told)
 
 
+def test_frames_are_held_against_one_another(sensor, camera, poses):
+    off = np.eye(4)
+    off[:3, 3] = [0.0, 0.03, 0.0]  # of every second frame
+    for wrong in (False, True):
+        planner, check = make(sensor), viewgain.FrameCheck(sensor)
+        grid = viewgain.BeliefGrid(voxel_size=0.006, workspace=WORKSPACE, sensor=sensor)
+        integrator = viewgain.FrameIntegrator(sensor)
+        for frame, pose in enumerate(poses):
+            depth = camera.acquire(pose, frame)[0]
+            at = off @ pose if wrong and frame % 2 else pose
+            planner.add(depth, at)
+            check.look(grid, depth, at)
+            integrator.integrate(grid, depth, at)
+        for found in (planner.consistency(), check.result(grid)):
+            assert len(found.in_free) == len(found.seen_past) == len(poses)
+            assert (found.suspicion is not None) == wrong, found
+            assert bool(found.contradicting) == wrong
+            assert (found.share_seen_past > 0.01) == wrong
+    with pytest.raises(ValueError):
+        check.look(grid, depth[:-1], pose)
+
+
 def test_registers_a_frame_against_its_map(sensor, camera, poses):
     planner = make(sensor)
     reported = poses[3].copy()

@@ -133,6 +133,25 @@ VG_API vg_status vg_planner_drop(vg_planner* planner, int32_t verdict,
 /* How many frames had each verdict so far: counts[verdict], `verdicts` of them. */
 VG_API vg_status vg_planner_frames(const vg_planner* planner, size_t* counts, size_t verdicts);
 
+/* Whether the frames in the map fit one another, as C++'s FrameConsistency. */
+typedef struct vg_consistency {
+  size_t struct_size;     /* as _init() sets it */
+  size_t frames;          /* in the map */
+  size_t contradicting;   /* of these, those that contradict the others */
+  double share_in_free;   /* of all readings, those in space that other frames saw as free */
+  double share_seen_past; /* of earlier frames' readings, those that later frames see past */
+  char kind[32];          /* the likely cause; empty: the frames agree */
+  char what[480];         /* a sentence for people; cut off if it is longer */
+} vg_consistency;
+/* Makes `found` ready for a call. */
+VG_API void vg_consistency_init(vg_consistency* found, size_t struct_size);
+
+/* Holds the frames so far against one another. contradicts, or null: one per frame in the map, of
+   which there must be `capacity` at least; nonzero for a frame that contradicts the others. Takes
+   20 ms, and 0.5 s where frames do not fit. */
+VG_API vg_status vg_planner_consistency(const vg_planner* planner, vg_consistency* found,
+                                        int32_t* contradicts, size_t capacity);
+
 /* What became of a frame that was registered. */
 enum {
   VG_REGISTERED = 0,

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "viewgain/core/jump_edge_filter.hpp"
@@ -31,6 +32,26 @@ Pose w_first(const Pose& T) {
   const Eigen::Quaterniond q(T.rotation());
   return {Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()).toRotationMatrix(), T.translation()};
 }
+// The camera turned about its optical axis.
+template <int quarters>
+Pose rolled(const Pose& T) {
+  const Eigen::AngleAxisd roll(quarters * std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
+  return {T.rotation() * roll.toRotationMatrix(), T.translation()};
+}
+
+// The pose `shift` frames after the one at `place`, between two of them on the straight way.
+std::optional<Pose> pose_after(std::span<const Pose> sequence, std::size_t place, double shift) {
+  if (shift == 0) return sequence[place];
+  const double at = static_cast<double>(place) + shift, last = std::floor(at);
+  if (!(last >= 0) || at > static_cast<double>(sequence.size() - 1)) return std::nullopt;
+  const auto i = static_cast<std::size_t>(last);
+  if (at == last) return rigid_pose(sequence[i]);
+  const std::optional<Pose> from = rigid_pose(sequence[i]), to = rigid_pose(sequence[i + 1]);
+  if (!from || !to) return std::nullopt;
+  const Eigen::Quaterniond a(from->rotation()), b(to->rotation());
+  return Pose(a.slerp(at - last, b).toRotationMatrix(),
+              from->translation() + (at - last) * (to->translation() - from->translation()));
+}
 
 }  // namespace
 
@@ -44,7 +65,32 @@ std::vector<Convention> other_readings() {
       {"upward_camera", "the poses' camera looks along -z with y up, not along z with y down", 1,
        false, optical_of_upward},
       {"pose_millimetres", "the poses are in millimetres", 1, false, in_metres},
+      {"rolled_camera", "the camera is turned by 90 degrees about its optical axis", 1, false,
+       rolled<1>, 1, 1, false, false, 0, true},
+      {"rolled_camera", "the camera is turned by 180 degrees about its optical axis", 1, false,
+       rolled<2>, 1, 1, false, false, 0, true},
+      {"rolled_camera", "the camera is turned by -90 degrees about its optical axis", 1, false,
+       rolled<3>, 1, 1, false, false, 0, true},
   };
+  all.push_back({.kind = "mirrored", .what = "the images are mirrored", .flips_columns = true});
+  all.push_back({.kind = "upside_down",
+                 .what = "the images are upside down (rows from the bottom to the top)",
+                 .flips_rows = true});
+  for (const int shift : {-3, -2, -1, 1, 2, 3}) {
+    const std::string frames =
+        std::to_string(std::abs(shift)) + (std::abs(shift) == 1 ? " frame" : " frames");
+    all.push_back(
+        {.kind = "numbering",
+         .what = "each image has the pose of " + frames + (shift > 0 ? " later" : " before"),
+         .pose_shift = static_cast<double>(shift)});
+  }
+  for (const double shift : {-0.75, -0.5, -0.25, 0.25, 0.5, 0.75}) {
+    all.push_back({.kind = "time_offset",
+                   .what = std::string("the poses are ") + (shift > 0 ? "early" : "late") +
+                           " by about " + short_text(std::abs(shift)) +
+                           " of the time between two frames",
+                   .pose_shift = shift});
+  }
   // Cameras have units of 0.1, 0.2, 0.25, 0.5 and 1 mm.
   for (const double factor : {2.0, 2.5, 4.0, 5.0, 10.0, 1000.0}) {
     const std::string times = "the depth scale is " + short_text(factor) + " times ";
@@ -60,10 +106,11 @@ std::vector<Convention> other_readings() {
 }
 
 FrameMeetings::FrameMeetings(const Sensor& sensor, std::span<const DepthFrame> frames,
-                             std::span<const Pose> poses)
+                             std::span<const Pose> sequence, std::vector<std::size_t> places)
     : sensor_(sensor),
       frames_(frames.begin(), frames.end()),
-      poses_(poses),
+      sequence_(sequence),
+      places_(std::move(places)),
       rays_(sensor.camera.ray_table()) {
   const JumpEdgeFilter filter(sensor.camera);
   for (DepthFrame& frame : frames_) filter.apply(frame);
@@ -79,12 +126,20 @@ FrameMeetings::FrameMeetings(const Sensor& sensor, std::span<const DepthFrame> f
   }
 }
 
-Meetings FrameMeetings::under(const Convention& reading) const {
-  std::vector<Pose> T_world, T_camera;
-  for (const Pose& pose : poses_) {
-    T_world.push_back(reading.pose == nullptr ? pose : reading.pose(pose));
-    T_camera.push_back(T_world.back().inverse());
+std::vector<std::optional<Pose>> FrameMeetings::poses_under(const Convention& reading) const {
+  std::vector<std::optional<Pose>> poses;
+  for (const std::size_t place : places_) {
+    std::optional<Pose> pose = pose_after(sequence_, place, reading.pose_shift);
+    if (pose && reading.pose != nullptr) pose = reading.pose(*pose);
+    poses.push_back(pose);
   }
+  return poses;
+}
+
+Meetings FrameMeetings::under(const Convention& reading) const {
+  const std::vector<std::optional<Pose>> T_world = poses_under(reading);
+  std::vector<Pose> T_camera;
+  for (const auto& pose : T_world) T_camera.push_back(pose ? pose->inverse() : Pose());
   const double parallax = kParallax * std::clamp(1 / reading.depth_factor, 1.0, 10.0);
   Meetings sum;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
@@ -92,10 +147,12 @@ Meetings FrameMeetings::under(const Convention& reading) const {
       const std::optional<double> z = depth(reading, i, pixel);
       if (!z) continue;
       ++sum.points;
-      const Eigen::Vector3d p_world = T_world[i] * (*z * ray(reading, pixel));
+      if (!T_world[i]) continue;
+      const Eigen::Vector3d p_world = *T_world[i] * (*z * ray(reading, pixel));
       for (std::size_t j = 0; j < frames_.size(); ++j) {
+        if (!T_world[j]) continue;
         // Frames from one place agree however poses and depths are read.
-        const double baseline = (T_world[j].translation() - T_world[i].translation()).norm();
+        const double baseline = (T_world[j]->translation() - T_world[i]->translation()).norm();
         if (!(baseline > parallax * *z)) continue;
         const std::optional<double> farther = beyond(reading, j, T_camera[j] * p_world);
         if (!farther || *farther < -1) continue;  // it looks elsewhere, or the point is hidden
@@ -109,8 +166,11 @@ Meetings FrameMeetings::under(const Convention& reading) const {
 
 std::optional<double> FrameMeetings::share_better(const Convention& reading) const {
   const Convention as_said;
-  std::vector<Pose> T_camera;
-  for (const Pose& pose : poses_) T_camera.push_back(pose.inverse());
+  std::vector<Pose> T_world, T_camera;
+  for (const std::size_t place : places_) {
+    T_world.push_back(sequence_[place]);
+    T_camera.push_back(T_world.back().inverse());
+  }
   std::size_t better = 0, all = 0;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     for (const std::size_t pixel : samples_[i]) {
@@ -118,7 +178,7 @@ std::optional<double> FrameMeetings::share_better(const Convention& reading) con
       if (!z || !other_z) continue;
       for (std::size_t j = 0; j < frames_.size(); ++j) {
         if (j == i) continue;
-        const Pose T = T_camera[j] * poses_[i];
+        const Pose T = T_camera[j] * T_world[i];
         const auto one = beyond(as_said, j, T * (*z * rays_[pixel]), true);
         const auto other = beyond(reading, j, T * (*other_z * ray(reading, pixel)), true);
         if (!one || !other) continue;
@@ -133,9 +193,20 @@ std::optional<double> FrameMeetings::share_better(const Convention& reading) con
   return static_cast<double>(better) / static_cast<double>(all);
 }
 
+std::size_t FrameMeetings::flipped(const Convention& reading, std::size_t pixel) const {
+  if (!reading.flips_columns && !reading.flips_rows) return pixel;
+  const auto width = static_cast<std::size_t>(sensor_.camera.width);
+  const auto height = static_cast<std::size_t>(sensor_.camera.height);
+  std::size_t u = pixel % width, v = pixel / width;
+  if (reading.flips_columns) u = width - 1 - u;
+  if (reading.flips_rows) v = height - 1 - v;
+  return v * width + u;
+}
+
 Eigen::Vector3d FrameMeetings::ray(const Convention& reading, std::size_t pixel) const {
-  const Eigen::Vector3d& stated = rays_[pixel];
-  return {stated.x() / reading.focal_factor, stated.y() / reading.focal_factor, 1};
+  const Eigen::Vector3d& stated = rays_[flipped(reading, pixel)];
+  return {stated.x() / (reading.focal_factor * reading.focal_x_factor),
+          stated.y() / reading.focal_factor, 1};
 }
 
 std::optional<double> FrameMeetings::depth(const Convention& reading, std::size_t frame,
@@ -156,7 +227,7 @@ std::optional<double> FrameMeetings::depth(const Convention& reading, std::size_
     const auto pixel =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
     if (!rays_[pixel].allFinite()) return std::nullopt;
-    return depth(reading, frame, pixel);
+    return depth(reading, frame, flipped(reading, pixel));
   };
   const std::optional<double> nearest = at(std::round(u), std::round(v));
   if (!nearest) return std::nullopt;
@@ -175,8 +246,8 @@ std::optional<double> FrameMeetings::beyond(const Convention& reading, std::size
                                             const Eigen::Vector3d& p, bool is_flat) const {
   if (!(p.z() > 0)) return std::nullopt;
   const PinholeCamera& camera = sensor_.camera;
-  const Eigen::Vector2d at =
-      camera.project({reading.focal_factor * p.x(), reading.focal_factor * p.y(), p.z()});
+  const Eigen::Vector2d at = camera.project(
+      {reading.focal_factor * reading.focal_x_factor * p.x(), reading.focal_factor * p.y(), p.z()});
   const std::optional<double> z = depth(reading, frame, at.x(), at.y(), is_flat);
   if (!z) return std::nullopt;
   return (*z - p.z()) / (kGate * *z + 3 * *z / camera.fx);

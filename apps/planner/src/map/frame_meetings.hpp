@@ -23,12 +23,21 @@ struct Convention {
   bool is_along_ray = false;
   Pose (*pose)(const Pose&) = nullptr;
   double focal_factor = 1;
+  double focal_x_factor = 1;  ///< of fx alone, beside that
+  bool flips_columns = false, flips_rows = false;
+  double pose_shift = 0;  ///< in frames: each has the pose of a later one, or one between two
+  bool is_rolled = false;
+
+  /// One of many that are alike, so that one of them may fit a little better by chance.
+  [[nodiscard]] bool needs_proof() const {
+    return flips_columns || flips_rows || pose_shift != 0 || is_rolled;
+  }
 };
 
 inline constexpr const char* kScale = "depth_scale";
 inline constexpr const char* kFocalLength = "focal_length";
 
-/// What may be meant instead: poses first, then scales, then focal lengths.
+/// What may be meant instead: poses first, then images and numbers, scales and focal lengths.
 [[nodiscard]] std::vector<Convention> other_readings();
 
 /// Of fewer nothing is said.
@@ -51,11 +60,14 @@ struct Meetings {
   [[nodiscard]] bool has_overlap() const { return met >= kLeastMeetings && 5 * met >= 2 * points; }
 };
 
-/// Looks for readings of each frame in the others; keeps `sensor` and `poses` by reference.
+/// Looks for readings of each frame in the others; keeps `sensor` and `sequence` by reference.
 class FrameMeetings {
  public:
+  /// `sequence`: the poses of all frames of the recording, `places`: those of `frames` in it.
   FrameMeetings(const Sensor& sensor, std::span<const DepthFrame> frames,
-                std::span<const Pose> poses);
+                std::span<const Pose> sequence, std::vector<std::size_t> places);
+  /// As it is said.
+  [[nodiscard]] const Pose& pose(std::size_t frame) const { return sequence_[places_[frame]]; }
   /// Cost: 10 ms for a dozen frames.
   [[nodiscard]] Meetings under(const Convention& reading) const;
   /// Of pairs that fit either way and not equally well, where the surface is not steep, the share
@@ -63,6 +75,10 @@ class FrameMeetings {
   [[nodiscard]] std::optional<double> share_better(const Convention& reading) const;
 
  private:
+  /// Where each frame was; nothing where the sequence has no such pose.
+  [[nodiscard]] std::vector<std::optional<Pose>> poses_under(const Convention& reading) const;
+  /// The pixel of the ray that a stored pixel belongs to, and the other way round.
+  [[nodiscard]] std::size_t flipped(const Convention& reading, std::size_t pixel) const;
   /// Distortion goes with it, as for the intrinsics of another resolution.
   [[nodiscard]] Eigen::Vector3d ray(const Convention& reading, std::size_t pixel) const;
   /// Along z; nothing out of range.
@@ -79,7 +95,8 @@ class FrameMeetings {
 
   const Sensor& sensor_;
   std::vector<DepthFrame> frames_;
-  std::span<const Pose> poses_;
+  std::span<const Pose> sequence_;
+  std::vector<std::size_t> places_;  ///< of the frames in it
   std::vector<Eigen::Vector3d> rays_;
   std::vector<std::vector<std::size_t>> samples_;  ///< pixels with a depth, of each frame
 };

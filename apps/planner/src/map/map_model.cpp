@@ -84,6 +84,7 @@ MapModel::MapModel(BeliefGrid grid, const Sensor& sensor, const MapModelConfig& 
       rays_(sensor.camera.ray_table()),
       obstacles_(config.surroundings.obstacles, sensor, exec),
       integrator_(sensor, config_.integration, exec),
+      check_(sensor, config.surroundings.support_plane),
       new_surface_(sensor, config.surroundings.support_plane),
       calibration_(sensor, config.surroundings.support_plane),
       scene_(config.keep_scene ? VoxelScene::build(grid_, config.surroundings, exec, config.hazard)
@@ -155,12 +156,16 @@ void MapModel::integrate(BeliefGrid& grid, const std::vector<DepthFrame>& frames
     }
   }
   for (const DepthFrame& frame : frames) {
+    if (&grid == &grid_) check_.look(grid, frame, T_world_camera, measurements.pose_sigma);
     update.counts += integrator_.integrate(grid, frame, T_world_camera, measurements.pose_sigma);
   }
 }
 
 MapUpdate MapModel::update(const Measurements& measurements) {
   MapUpdate update;
+  for (const DepthFrame& frame : measurements.frames) {
+    check_.see(frame, measurements.T_world_camera);
+  }
   update.verdict = judged(measurements);
   if (update.verdict != FrameVerdict::used) return update;
   const Stopwatch watch;
@@ -178,6 +183,9 @@ MapUpdate MapModel::update(const Measurements& measurements) {
     const IntegrationReport& counts = update.counts;
     if (counts.voxels_crossed + counts.voxels_hit > 0) {
       update.verdict = FrameVerdict::carved;
+      for (const DepthFrame& frame : frames) {
+        check_.look(grid_, frame, measurements.T_world_camera, measurements.pose_sigma);
+      }
       grid_ = std::move(carved);
     } else {
       const bool says_something = counts.readings + counts.plane_readings + counts.out_of_range > 0;

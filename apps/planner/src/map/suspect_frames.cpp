@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "map/frame_meetings.hpp"
+#include "map/suspicion.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/planner/suspect_set_up.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
@@ -22,6 +24,7 @@ using detail::FrameMeetings, detail::kFocalLength, detail::kScale, detail::Meeti
     detail::Convention;
 
 constexpr double kOffCentre = 0.12;  // of the image's side
+constexpr double kEdges = 0.015;     // of right frames' readings, at edges of surfaces
 constexpr double kAlike = 0.1;       // what fits less well than the best by this is named, too
 
 std::string percent(double share) { return short_text(std::round(100 * share)) + " %"; }
@@ -35,6 +38,11 @@ Suspicion suspect_camera(const PinholeCamera& camera) {
     return {"distortion", percent(share) +
                               " of the image's pixels have no ray by the lens's distortion: are k1 "
                               "k2 p1 p2 k3 those of this camera?"};
+  }
+  if (std::max(camera.fx, camera.fy) > 1.1 * std::min(camera.fx, camera.fy)) {
+    return {"focal_lengths",
+            "fx is " + short_text(camera.fx) + " px and fy " + short_text(camera.fy) +
+                " px, more than 10 % apart: are the intrinsics in the right order?"};
   }
   if (camera.width == 1 || camera.height == 1) return {};  // such an image has no middle
   const double u = camera.cx / (camera.width - 1), v = camera.cy / (camera.height - 1);
@@ -70,8 +78,14 @@ bool is_possible(const Meetings& other, const Meetings& as_said) {
 bool is_better(const Meetings& other, const Meetings& as_said) {
   if (!is_possible(other, as_said)) return false;
   if (4 * as_said.met < other.met) return true;
-  return as_said.share_past() > 0.015 && other.share_past() < 0.6 * as_said.share_past() &&
+  return as_said.share_past() > kEdges && other.share_past() < 0.6 * as_said.share_past() &&
          other.share_close() > as_said.share_close();
+}
+
+// By the right one of many readings frames fit nearly as well as right ones do.
+bool is_proof(const Meetings& other, const Meetings& as_said) {
+  return other.share_past() < 0.05 && other.share_past() < 0.3 * as_said.share_past() &&
+         other.share_close() > 0.8;
 }
 
 struct Fit {
@@ -95,7 +109,7 @@ std::vector<Fit> fits_by_meetings(const FrameMeetings& meeting, const Meetings& 
   for (const Convention& reading : readings) {
     if (reading.kind == kFocalLength) continue;
     const Meetings other = meeting.under(reading);
-    if (is_better(other, as_said)) {
+    if (is_better(other, as_said) && (!reading.needs_proof() || is_proof(other, as_said))) {
       fits.push_back({reading, static_cast<double>(other.close), other});
     }
   }
@@ -125,7 +139,10 @@ std::optional<Fit> fit_by_focal_length(const FrameMeetings& meeting, const Meeti
 // commoner mistake first.
 std::vector<Fit> fits_of(const FrameMeetings& meeting, const Meetings& as_said) {
   const auto is_clearly_less = [](double a, double b) { return a < 0.5 * b && b > 0.015; };
-  std::vector<Fit> fits = fits_by_meetings(meeting, as_said, detail::other_readings());
+  std::vector<Fit> fits;
+  if (!as_said.has_overlap() || as_said.share_past() > kEdges) {
+    fits = fits_by_meetings(meeting, as_said, detail::other_readings());
+  }
   const std::optional<Fit> focal = fit_by_focal_length(meeting, as_said);
   if (!focal) return fits;
   const bool is_scale = !fits.empty() && fits[0].reading.kind == kScale;
@@ -165,29 +182,46 @@ Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames
   return {kScale, text + words_of(fits)};
 }
 
-}  // namespace
-
-Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frames,
-                         std::span<const Pose> T_world_camera) {
-  if (frames.size() != T_world_camera.size()) refuse("one pose a frame is needed");
-  for (const DepthFrame& frame : frames) check_frame_size(frame, sensor.camera);
-  for (const Suspicion& unit : suspect_sensor(sensor))
-    if (explains_frames(unit)) return unit;
-  if (Suspicion camera = suspect_camera(sensor.camera); !camera.kind.empty()) return camera;
-  const FrameMeetings meeting(sensor, frames, T_world_camera);
-  if (Suspicion range = suspect_range(sensor, frames, meeting); !range.kind.empty()) return range;
-  const Meetings as_said = meeting.under({});
-  const std::vector<Fit> fits = fits_of(meeting, as_said);
-  const Meetings by_ray = meeting.under({.is_along_ray = true});
-  const std::optional<double> along_ray = meeting.share_better({.is_along_ray = true});
-  if (along_ray && *along_ray >= 0.45 && as_said.has_overlap() && as_said.share_past() < 0.15 &&
-      std::all_of(fits.begin(), fits.end(), [&](const Fit& fit) {
-        return by_ray.close > fit.met.close && by_ray.share_close() > fit.met.share_close();
-      })) {
-    return {"depth_along_ray", "of the readings for which it matters " + percent(*along_ray) +
-                                   " fit the other frames better if depths are along the ray, not "
-                                   "along z"};
+// Under a table nothing is seen.
+Suspicion suspect_plane(const Sensor& sensor, std::span<const DepthFrame> frames,
+                        const FrameMeetings& meeting, double plane) {
+  constexpr double kUnder = 0.05;  // no noise [m]
+  const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
+  std::size_t under = 0, all = 0;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const double z = static_cast<double>(frames[k].depth[i]);
+      if (!(z > 0 && std::isfinite(z) && rays[i].allFinite())) continue;
+      ++all;
+      under += (meeting.pose(k) * (z * rays[i])).z() < plane - kUnder ? 1 : 0;
+    }
   }
+  if (10 * under <= all) return {};
+  const double share = static_cast<double>(under) / static_cast<double>(all);
+  return {"support_plane", percent(share) + " of the readings lie more than " + short_text(kUnder) +
+                               " m under the support plane at " + short_text(plane) + " m"};
+}
+
+// Depths along the ray: told by readings for which it matters.
+Suspicion suspect_along_ray(const FrameMeetings& meeting, const Meetings& as_said,
+                            const std::vector<Fit>& fits) {
+  if (!as_said.has_overlap() || as_said.share_past() >= 0.15) return {};
+  const std::optional<double> along_ray = meeting.share_better({.is_along_ray = true});
+  if (!along_ray || *along_ray < 0.45) return {};
+  const Meetings by_ray = meeting.under({.is_along_ray = true});
+  const bool fits_best = std::all_of(fits.begin(), fits.end(), [&](const Fit& fit) {
+    return by_ray.close > fit.met.close && by_ray.share_close() > fit.met.share_close();
+  });
+  if (!fits_best) return {};
+  return {"depth_along_ray", "of the readings for which it matters " + percent(*along_ray) +
+                                 " fit the other frames better if depths are along the ray, not "
+                                 "along z"};
+}
+
+// A mistake by which the frames fit one another.
+Suspicion suspect_convention(const FrameMeetings& meeting, const Meetings& as_said) {
+  const std::vector<Fit> fits = fits_of(meeting, as_said);
+  if (Suspicion ray = suspect_along_ray(meeting, as_said, fits); !ray.kind.empty()) return ray;
   if (fits.empty()) return {};
   const Meetings& best = fits[0].met;
   const std::string what = " would if " + words_of(fits);
@@ -204,6 +238,73 @@ Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frame
                      "others; " +
                      percent(best.share_past());
   return {fits[0].reading.kind, now + what};
+}
+
+// Frames that contradict one another for no reason that is known.
+Suspicion suspect_contradiction(const FrameConsistency& found) {
+  const auto copies =
+      std::count_if(found.frames.begin(), found.frames.end(), [](const FrameContradiction& frame) {
+        return frame.same_image_as &&
+               std::max(frame.share_in_free(), frame.share_seen_past()) > detail::kContradicting;
+      });
+  const std::string now =
+      percent(found.share_in_free) + " of the readings lie in space that other frames saw as free";
+  if (copies > 0) {
+    return {"same_image",
+            now + "; " + std::to_string(copies) + (copies == 1 ? " frame has" : " frames have") +
+                " the image of an earlier one at another pose: does the camera hang?"};
+  }
+  if (!detail::is_contradictory(found)) return {};
+  return {"contradiction",
+          now +
+              ": are the poses those of another frame (a flange, a body), late or early, or "
+              "numbered otherwise than the images; are the images mirrored, the intrinsics those "
+              "of this camera; did an object move, or do the poses drift?"};
+}
+
+}  // namespace
+
+double detail::largest_share(const FrameConsistency& found) {
+  double most = 0;
+  for (const FrameContradiction& frame : found.frames) {
+    most = std::max({most, frame.share_in_free(), frame.share_seen_past()});
+  }
+  return most;
+}
+
+bool detail::is_contradictory(const FrameConsistency& found) {
+  if (found.share_in_free > kInFree || found.share_seen_past > kSeenPast) return true;
+  return std::any_of(found.frames.begin(), found.frames.end(), [](const FrameContradiction& f) {
+    return (f.readings >= kEnoughReadings && f.share_in_free() > kOfAFrame) ||
+           (f.others >= kEnoughReadings && f.share_seen_past() > kOfAFrame);
+  });
+}
+
+Suspicion detail::suspicion_of(const Sensor& sensor, std::span<const DepthFrame> frames,
+                               const FrameMeetings& meeting, std::optional<double> support_plane,
+                               const FrameConsistency& found) {
+  for (const Suspicion& unit : suspect_sensor(sensor)) {
+    if (explains_frames(unit)) return unit;
+  }
+  if (Suspicion camera = suspect_camera(sensor.camera); !camera.kind.empty()) return camera;
+  if (Suspicion range = suspect_range(sensor, frames, meeting); !range.kind.empty()) return range;
+  const Suspicion other = suspect_contradiction(found);
+  if (other.kind == "same_image") return other;
+  if (Suspicion known = suspect_convention(meeting, meeting.under({})); !known.kind.empty()) {
+    return known;
+  }
+  if (!other.kind.empty() || !support_plane) return other;
+  return suspect_plane(sensor, frames, meeting, *support_plane);
+}
+
+Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frames,
+                         std::span<const Pose> T_world_camera) {
+  if (frames.size() != T_world_camera.size()) refuse("one pose a frame is needed");
+  for (const DepthFrame& frame : frames) check_frame_size(frame, sensor.camera);
+  std::vector<std::size_t> places(frames.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  const FrameMeetings meeting(sensor, frames, T_world_camera, std::move(places));
+  return detail::suspicion_of(sensor, frames, meeting, {}, {});
 }
 
 Suspicion suspect_poses(const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor,

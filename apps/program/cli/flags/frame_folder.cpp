@@ -57,6 +57,11 @@ std::optional<Sensor::OutOfRange> out_of_range_of(const FrameFolderOptions& opti
   return options.out_of_range == "carve" ? Sensor::OutOfRange::carve : Sensor::OutOfRange::invalid;
 }
 
+void check_contradiction(const FrameFolderOptions& options, bool registers) {
+  if (options.on_contradiction != "keep" || registers) return;
+  refuse("--on-contradiction keep requires --register on");
+}
+
 void add_frame_folder_options(App& app, FrameFolderOptions& options) {
   app.add_option(
       "--depth-scale", options.depth_scale,
@@ -68,6 +73,10 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options) {
                  "poses.txt, invalid with pose files)")
       ->check(one_of({"carve", "invalid"}, "meaning"));
   add_mask_options(app, options.mask, options.confidence, options.least_confidence);
+  app.add_option("--on-contradiction", options.on_contradiction,
+                 "frames that contradict the others: skip those that --register refuses and warn "
+                 "of the rest, keep all (requires --register on), or end with an error")
+      ->check(one_of({"skip", "keep", "error"}, "answer"));
 }
 
 void add_mask_options(App& app, std::string& mask, std::string& confidence, int& least_confidence) {
@@ -85,7 +94,8 @@ void add_mask_options(App& app, std::string& mask, std::string& confidence, int&
 FrameFolder::FrameFolder(const FrameFolderOptions& options)
     : name_(options.folder),
       frames_(frames_of(options)),
-      masks_(mask_folders(options, frames_.images)) {}
+      masks_(mask_folders(options, frames_.images)),
+      refuses_contradictions_(options.on_contradiction == "error") {}
 
 std::optional<Box> workspace_around(std::size_t count, double voxel,
                                     const std::function<std::optional<Box>(std::size_t)>& bounds) {

@@ -19,21 +19,25 @@ namespace viewgain::app {
 
 /// How the frames of a folder are to be read.
 struct FrameFolderOptions {
-  std::string folder;                   ///< FRAMES_DIR
-  std::string sensor;                   ///< --sensor; empty: the folder's own
-  std::optional<double> depth_scale{};  ///< --depth-scale [m per unit]; nothing: the folder's
-  std::string mask;                     ///< --mask; empty: none
-  std::string confidence;               ///< --confidence; empty: none
-  int least_confidence = 1;             ///< --least-confidence
-  std::string out_of_range;             ///< --out-of-range; empty: the folder's
+  std::string folder;                     ///< FRAMES_DIR
+  std::string sensor;                     ///< --sensor; empty: the folder's own
+  std::optional<double> depth_scale{};    ///< --depth-scale [m per unit]; nothing: the folder's
+  std::string mask;                       ///< --mask; empty: none
+  std::string confidence;                 ///< --confidence; empty: none
+  int least_confidence = 1;               ///< --least-confidence
+  std::string out_of_range;               ///< --out-of-range; empty: the folder's
+  std::string on_contradiction = "skip";  ///< --on-contradiction skip|keep|error
 };
 
 /// What the flag says; nothing: the folder does.
 [[nodiscard]] std::optional<Sensor::OutOfRange> out_of_range_of(const FrameFolderOptions& options);
 
-/// --depth-scale, --out-of-range, --mask and --confidence, the same in every subcommand that reads
-/// frames.
+/// --depth-scale, --out-of-range, --mask, --confidence and --on-contradiction, the same in every
+/// subcommand that puts frames into a map.
 void add_frame_folder_options(App& app, FrameFolderOptions& options);
+
+/// Throws Error(invalid_argument) for --on-contradiction keep without --register on.
+void check_contradiction(const FrameFolderOptions& options, bool registers);
 
 /// --mask, --confidence and --least-confidence.
 void add_mask_options(App& app, std::string& mask, std::string& confidence, int& least_confidence);
@@ -61,6 +65,9 @@ class FrameFolder {
   [[nodiscard]] bool has_masks() const noexcept { return !masks_.empty(); }
   [[nodiscard]] const Pose& T_world_camera(std::size_t index) const { return frames_.poses[index]; }
 
+  /// Frames that contradict one another are an error, not a warning.
+  [[nodiscard]] bool refuses_contradictions() const noexcept { return refuses_contradictions_; }
+
   /// Of --mask and --confidence.
   [[nodiscard]] const std::vector<MaskFolder>& masks() const noexcept { return masks_; }
 
@@ -73,6 +80,7 @@ class FrameFolder {
   std::string name_;
   FrameSequence frames_;
   std::vector<MaskFolder> masks_;
+  bool refuses_contradictions_ = false;
 };
 
 /// The workspace for what frames or clouds see: the box around `bounds(i)`, i < count, with half a

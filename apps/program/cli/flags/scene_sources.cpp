@@ -3,7 +3,6 @@
 #include "program/cli/flags/scene_sources.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <sstream>
 #include <utility>

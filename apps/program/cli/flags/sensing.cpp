@@ -74,18 +74,11 @@ void add_registration_options(App& app, RegistrationOptions& options) {
   app.add_option("--pose-sigma", options.pose_sigma,
                  "SIGMA_M,SIGMA_DEG by which reported poses may be off, of --register; default: "
                  "0.005,0.5");
-  app.add_option("--on-contradiction", options.on_contradiction,
-                 "what --register does with a frame that contradicts the others: skip, or keep it "
-                 "at its reported pose")
-      ->check(one_of({"skip", "keep"}, "answer"));
 }
 
 std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,
                                             const PoseSigma& noise) {
   if (options.is_on != "on") {
-    if (options.on_contradiction == "keep") {
-      refuse("--on-contradiction keep goes with --register on");
-    }
     if (options.pose_sigma.empty()) return std::nullopt;
     refuse("--pose-sigma " + options.pose_sigma + " goes with --register on");
   }

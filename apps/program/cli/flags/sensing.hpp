@@ -53,18 +53,17 @@ inline constexpr const char* kJumpEdgeHelp =
 
 /// Whether frames are registered, as the command line says it.
 struct RegistrationOptions {
-  std::string is_on = "off";              ///< --register on|off
-  std::string pose_sigma;                 ///< --pose-sigma SIGMA_M,SIGMA_DEG; empty: the default
-  std::string on_contradiction = "skip";  ///< --on-contradiction skip|keep
-
-  /// Of a frame that registration refused.
-  [[nodiscard]] bool leaves_out(const FrameRegistration& registration) const {
-    return registration.status == RegistrationStatus::refused && on_contradiction == "skip";
-  }
+  std::string is_on = "off";  ///< --register on|off
+  std::string pose_sigma;     ///< --pose-sigma SIGMA_M,SIGMA_DEG; empty: the default
 };
 
-/// --register, --pose-sigma and --on-contradiction, for frames that go into a map one after the
-/// other.
+/// Is a frame that registration refused left out, by what --on-contradiction says?
+[[nodiscard]] inline bool leaves_out(const FrameRegistration& registration,
+                                     const std::string& on_contradiction) {
+  return registration.status == RegistrationStatus::refused && on_contradiction != "keep";
+}
+
+/// --register and --pose-sigma, for frames that go into a map one after the other.
 void add_registration_options(App& app, RegistrationOptions& options);
 
 /// By how much reported poses may be off: what --pose-sigma says, else `noise` (--pose-noise) where

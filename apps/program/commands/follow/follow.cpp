@@ -110,6 +110,7 @@ class Following {
         frames_(options.frames.folder),
         out_(options.out),
         views_(frames_) {
+    check_contradiction(options.frames, sigma_.has_value());
     if (!options.frames.sensor.empty()) (void)load_sensor(options.frames.sensor);
     if (!options.body.empty()) body_ = parse_size("--body", options.body);
     std::error_code ignored;
@@ -147,7 +148,7 @@ class Following {
     if (is_done) leave_out(watch_->give_up());
     if (map_) {
       warn_of_masks(true);
-      if (!masks_.is_suspected()) warn(map_->last_suspicion());
+      warn_of_contradictions(true);
     }
     if (map_ && has_news_) write();
     write_new_counts();
@@ -166,7 +167,11 @@ class Following {
       json["orthonormalized_poses"] = watch_->folder() ? watch_->folder()->orthonormalized : 0;
       json["ended_by"] = is_done ? "done" : "signal";
       json["hash"] = nullptr;
-      if (map_) json["hash"] = map_->grid().content_hash();
+      json["contradiction"] = nullptr;
+      if (map_) {
+        json["hash"] = map_->grid().content_hash();
+        json["contradiction"] = map_->consistency_json();
+      }
       json["out"] = options_.out;
       json["seconds"] = seconds;
       return print_json(json);
@@ -200,6 +205,16 @@ class Following {
   void warn_of_masks(bool is_last) {
     if (!has_masks()) return;
     warn(masks_.suspicion(watch_->folder()->sensor, map_->grid(), is_last));
+  }
+
+  // Frames that masks explain need no other explanation.
+  void warn_of_contradictions(bool is_last) {
+    if (masks_.is_suspected()) return;
+    const std::string what = map_->suspicion(is_last);
+    if (!what.empty() && options_.frames.on_contradiction == "error") {
+      refuse(frames_.string() + ": " + what);
+    }
+    warn(what);
   }
 
   [[nodiscard]] std::size_t carved() const {
@@ -253,16 +268,16 @@ class Following {
     const std::string name = frame.image.filename().string();
     if (has_masks()) masks_.add(*watch_->folder(), frame);
     warn_of_masks(false);
-    if (!masks_.is_suspected()) warn(map_->suspicion_with(frame));
     const std::optional<FrameRegistration> registration = map_->register_in(frame);
     FrameVerdict verdict = FrameVerdict::contradicts;
     std::string why = frame.image.string();
     AddedView added;
-    if (registration && options_.registration.leaves_out(*registration)) {
+    if (registration && leaves_out(*registration, options_.frames.on_contradiction)) {
       why += ": " + registration->reason;
     } else {
       added = map_->add(frame, registration);
       verdict = added.update.verdict;
+      warn_of_contradictions(false);
     }
     if (!is_in_map(verdict)) {
       watch_->refuse(frame, verdict);

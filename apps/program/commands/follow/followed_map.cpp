@@ -173,18 +173,10 @@ FollowedMap::FollowedMap(const Sensor& sensor, std::optional<std::array<double, 
   planner_.add_generation(std::make_shared<BoundaryGeneration>(planner_.map(), boundary, exec));
 }
 
-std::string FollowedMap::suspicion_with(const WatchedFrame& frame) {
-  constexpr std::size_t kEnough = 12;
-  if (is_suspected_ || first_.size() >= kEnough) return {};
-  first_.push_back(frame.frame);
-  first_poses_.push_back(frame.T_world_camera);
-  return 2 * first_.size() == kEnough || first_.size() == kEnough ? last_suspicion()
-                                                                  : std::string();
-}
-
-std::string FollowedMap::last_suspicion() {
-  if (is_suspected_) return {};
-  std::string what = suspect_frames(sensor_, first_, first_poses_).what;
+std::string FollowedMap::suspicion(bool is_last) {
+  if (is_suspected_ || (!is_last && count_ < due_)) return {};
+  while (due_ <= count_) due_ *= 2;
+  std::string what = text_of(planner_.map().consistency(), numbers_);
   is_suspected_ = !what.empty();
   return what;
 }
@@ -196,8 +188,12 @@ std::optional<FrameRegistration> FollowedMap::register_in(const WatchedFrame& fr
 
 AddedView FollowedMap::add(const WatchedFrame& frame,
                            const std::optional<FrameRegistration>& registration) {
-  if (!registration) return planner_.add(frame.frame, frame.T_world_camera);
-  return planner_.add(frame.frame, registration->T_world_camera, registration->pose_sigma());
+  const AddedView added = registration ? planner_.add(frame.frame, registration->T_world_camera,
+                                                      registration->pose_sigma())
+                                       : planner_.add(frame.frame, frame.T_world_camera);
+  if (is_in_map(added.update.verdict)) numbers_.push_back(number_of(frame.image, count_));
+  ++count_;
+  return added;
 }
 
 void FollowedMap::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera) {

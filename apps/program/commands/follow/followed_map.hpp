@@ -13,6 +13,7 @@
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/json.hpp"
+#include "program/commands/frames/frame_tally.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -110,10 +111,13 @@ class FollowedMap {
               const std::optional<SavedFrames>& saved, const std::optional<PoseSigma>& sigma,
               const ExecConfig& exec);
 
-  /// What is probably wrong with the frames that came (suspect_frames()), said once: after six and
-  /// after twelve of them, whether they can be used or not, or in the end.
-  [[nodiscard]] std::string suspicion_with(const WatchedFrame& frame);
-  [[nodiscard]] std::string last_suspicion();
+  /// What is probably wrong with the frames that came, said once: after six, twelve, 24, ... of
+  /// them, or when there will be no more.
+  [[nodiscard]] std::string suspicion(bool is_last);
+  /// Whether the frames of this call fit one another.
+  [[nodiscard]] Json consistency_json() const {
+    return to_json(planner_.map().consistency(), numbers_);
+  }
 
   /// What registering the frame against the map comes to; nothing without sigmas.
   [[nodiscard]] std::optional<FrameRegistration> register_in(const WatchedFrame& frame) const;
@@ -147,9 +151,10 @@ class FollowedMap {
   GainModel model_;
   std::filesystem::path state_;
   ViewPlanner planner_;
-  std::optional<PoseSigma> sigma_;  // of the poses, if frames are registered
-  std::vector<DepthFrame> first_;   // frames, until something was suspected
-  std::vector<Pose> first_poses_;
+  std::optional<PoseSigma> sigma_;    // of the poses, if frames are registered
+  std::vector<std::size_t> numbers_;  // of the frames that went in
+  std::size_t due_ = 6;               // frames, when they are next held against one another
+  std::size_t count_ = 0;             // of the frames that came
   bool is_suspected_ = false;
 };
 

@@ -56,9 +56,12 @@ class FrameMap {
   }
 
   /// Throws as FrameTally::require_any().
-  void require_frames(bool needs_surface = false) const {
-    tally_.require_any(folder_, model_.grid(), config().surroundings.support_plane, needs_surface);
+  void require_frames(bool needs_surface = false) {
+    consistency_ = model_.consistency();
+    tally_.require_any(folder_, model_.grid(), consistency_, needs_surface);
   }
+  /// Whether the frames fit one another, for JSON; after require_frames().
+  [[nodiscard]] Json consistency_json() const { return to_json(consistency_, tally_.numbers()); }
 
   [[nodiscard]] const FrameCounts& counts() const noexcept { return tally_.counts(); }
   /// Where frames were taken that brought nothing, as the folder says.
@@ -77,6 +80,7 @@ class FrameMap {
   MapModelConfig config_;
   MapModel model_;
   FrameTally tally_;
+  FrameConsistency consistency_;
   std::vector<Pose> tried_;
   std::optional<Pose> last_pose_;
   std::uint64_t masked_pixels_ = 0;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/commands/frames/frame_tally.hpp"
 
-#include <cmath>
+#include <charconv>
 #include <cstdio>
 #include <utility>
 
@@ -32,28 +32,61 @@ std::string frames_text(const FrameCounts& counts) {
 
 namespace {
 
-// Under a table nothing is seen.
-std::string suspect_plane(const Sensor& sensor, const std::vector<DepthFrame>& frames,
-                          const std::vector<Pose>& poses, double plane) {
-  constexpr double kUnder = 0.05;  // no noise [m]
-  const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
-  std::size_t under = 0, all = 0;
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const double z = static_cast<double>(frames[k].depth[i]);
-      if (!(z > 0 && std::isfinite(z) && rays[i].allFinite())) continue;
-      ++all;
-      under += (poses[k] * (z * rays[i])).z() < plane - kUnder ? 1 : 0;
-    }
+std::vector<std::size_t> numbers_of(const std::vector<std::size_t>& frames,
+                                    const std::vector<std::size_t>& numbers) {
+  std::vector<std::size_t> all;
+  for (const std::size_t frame : frames) {
+    all.push_back(frame < numbers.size() ? numbers[frame] : frame);
   }
-  if (10 * under <= all) return {};
-  return formatted("%.0f %% of the readings lie more than %g m under the support plane at %g m",
-                   100 * static_cast<double>(under) / static_cast<double>(all), kUnder, plane);
+  return all;
 }
 
 }  // namespace
 
-std::string suspicion_of(const FrameFolder& folder, const std::optional<double>& support_plane) {
+std::size_t number_of(const std::filesystem::path& image, std::size_t place) {
+  const std::string name = image.filename().string();
+  const std::size_t first = name.find_first_of("0123456789");
+  std::size_t number = 0;
+  const char* end = name.data() + name.size();
+  if (first == std::string::npos ||
+      std::from_chars(name.data() + first, end, number).ec != std::errc()) {
+    return place;
+  }
+  return number;
+}
+
+Json to_json(const FrameConsistency& found, const std::vector<std::size_t>& numbers) {
+  Json json{{"share_in_free", found.share_in_free},
+            {"share_seen_past", found.share_seen_past},
+            {"kind", nullptr},
+            {"what", nullptr},
+            {"frames", numbers_of(found.contradicting, numbers)},
+            {"per_frame", Json::array()}};
+  if (!found.suspicion.kind.empty()) {
+    json["kind"] = found.suspicion.kind;
+    json["what"] = found.suspicion.what;
+  }
+  for (std::size_t i = 0; i < found.frames.size(); ++i) {
+    const FrameContradiction& frame = found.frames[i];
+    Json one{{"frame", numbers_of({i}, numbers)[0]},
+             {"in_free", frame.share_in_free()},
+             {"seen_past", frame.share_seen_past()},
+             {"same_image_as", nullptr}};
+    if (frame.same_image_as) one["same_image_as"] = numbers_of({*frame.same_image_as}, numbers)[0];
+    json["per_frame"].push_back(std::move(one));
+  }
+  return json;
+}
+
+std::string text_of(const FrameConsistency& found, const std::vector<std::size_t>& numbers) {
+  std::string text = found.suspicion.what;
+  if (text.empty() || found.contradicting.empty()) return text;
+  const bool is_one = found.contradicting.size() == 1;
+  return text + " (" + (is_one ? "frame " : "frames ") +
+         ranges_text(numbers_of(found.contradicting, numbers)) + ")";
+}
+
+std::string suspicion_of(const FrameFolder& folder) {
   constexpr std::size_t kFrames = 12;
   std::vector<DepthFrame> frames;
   std::vector<Pose> poses;
@@ -64,11 +97,7 @@ std::string suspicion_of(const FrameFolder& folder, const std::optional<double>&
     frames.push_back(std::move(reading.frame));
     poses.push_back(folder.T_world_camera(i));
   }
-  std::string what = suspect_frames(folder.sensor(), frames, poses).what;
-  if (what.empty() && support_plane) {
-    what = suspect_plane(folder.sensor(), frames, poses, *support_plane);
-  }
-  return what;
+  return suspect_frames(folder.sensor(), frames, poses).what;
 }
 
 void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum) {
@@ -81,6 +110,8 @@ void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum
 
 void FrameTally::add(const std::filesystem::path& image, const FrameFault& fault) {
   const bool is_first = counts_[fault.verdict]++ == 0;
+  if (is_in_map(fault.verdict)) numbers_.push_back(number_of(image, count_));
+  ++count_;
   if (!is_first || is_in_map(fault.verdict)) return;
   faults_.push_back((fault.what.empty() ? image.string() : fault.what) + " (" +
                     std::string(frame_verdict_name(fault.verdict)) + ")");
@@ -104,10 +135,18 @@ std::string FrameTally::none_inside(const FrameFolder& folder) const {
          " m per unit of the depth images (--depth-scale)";
 }
 
+void FrameTally::warn_of_contradictions(const FrameFolder& folder,
+                                        const FrameConsistency& found) const {
+  const std::string what = text_of(found, numbers_);
+  if (what.empty()) return;
+  if (folder.refuses_contradictions()) refuse(folder.name() + ": " + what);
+  std::fprintf(stderr, "viewgain: warning: %s: %s\n", folder.name().c_str(), what.c_str());
+}
+
 void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
-                             const std::optional<double>& support_plane, bool needs_surface) const {
+                             const FrameConsistency& found, bool needs_surface) const {
   if (blames_masks(folder, map, needs_surface)) return;
-  const std::string suspicion = suspicion_of(folder, support_plane);
+  const std::string suspicion = text_of(found, numbers_);
   if (counts_.empty() || is_in_map(counts_.begin()->first)) {
     name_left_out();
     const bool has_surface = sees_plane_ || map.statistics().occupied > 0;
@@ -125,7 +164,8 @@ void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
     }
     if (!suspicion.empty()) warning += (warning.empty() ? "" : "; ") + suspicion;
     if (warning.empty()) return;
-    if ((is_outside && !suspicion.empty()) || (needs_surface && !has_surface)) {
+    if ((is_outside && !suspicion.empty()) || (needs_surface && !has_surface) ||
+        (folder.refuses_contradictions() && !suspicion.empty())) {
       refuse(folder.name() + ": " + warning);
     }
     std::fprintf(stderr, "viewgain: warning: %s: %s\n", folder.name().c_str(), warning.c_str());

@@ -18,6 +18,7 @@
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/planner/frame_check.hpp"
 #include "viewgain/planner/register_frame.hpp"
 
 namespace viewgain::app {
@@ -30,11 +31,18 @@ namespace viewgain::app {
 [[nodiscard]] std::string frames_text(std::size_t carved,
                                       const std::map<std::string, std::size_t>& bad);
 
-/// What is probably wrong with the frames of the folder (suspect_frames()), or with a support plane
-/// [m] that they see far below; empty: nothing. Reads a
+/// What is probably wrong with the frames of the folder (suspect_frames()); empty: nothing. Reads a
 /// dozen of them.
-[[nodiscard]] std::string suspicion_of(const FrameFolder& folder,
-                                       const std::optional<double>& support_plane = {});
+[[nodiscard]] std::string suspicion_of(const FrameFolder& folder);
+
+/// 12 for frame-000012.depth.png; without digits its place among the frames.
+[[nodiscard]] std::size_t number_of(const std::filesystem::path& image, std::size_t place);
+/// share_in_free, share_seen_past, kind and what (null: the frames agree), frames (numbers of those
+/// that contradict the others), per_frame. `numbers`: of the frames in the map.
+[[nodiscard]] Json to_json(const FrameConsistency& found, const std::vector<std::size_t>& numbers);
+/// The suspicion and the frames concerned, as ranges of their numbers; empty: nothing.
+[[nodiscard]] std::string text_of(const FrameConsistency& found,
+                                  const std::vector<std::size_t>& numbers);
 
 /// Warns where clouds have points and none is in the sensor's range, as in millimetres.
 void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum);
@@ -48,17 +56,22 @@ class FrameTally {
   /// Pixels of a frame that went into the map, or did not.
   void add(const IntegrationReport& counts);
   /// Throws Error(invalid_argument) if there were frames and none is in the map, or none has a
-  /// reading in the workspace and something is suspected, with the reasons and suspicion_of(); else
-  /// names the first of each kind that was left out, unless quiet, and warns of what is suspected,
-  /// and where no voxel of their `map` is occupied and no frame shows the support plane: which is
-  /// an error where the caller `needs_surface`.
-  void require_any(const FrameFolder& folder, const BeliefGrid& map,
-                   const std::optional<double>& support_plane, bool needs_surface = false) const;
+  /// reading in the workspace and something is suspected, with the reasons, and where the folder
+  /// refuses contradictions; else names the first of each kind that was left out, unless quiet, and
+  /// warns of what is suspected (`found`), and where no voxel of their `map` is occupied and no
+  /// frame shows the support plane: an error where the caller `needs_surface`.
+  void require_any(const FrameFolder& folder, const BeliefGrid& map, const FrameConsistency& found,
+                   bool needs_surface = false) const;
+  /// Warns of what is suspected of frames that go into a map which has others already, or throws
+  /// where the folder refuses contradictions.
+  void warn_of_contradictions(const FrameFolder& folder, const FrameConsistency& found) const;
 
   /// Names the first of each kind that was left out, unless quiet.
   void name_left_out() const;
 
   [[nodiscard]] const FrameCounts& counts() const noexcept { return counts_; }
+  /// Of the frames in the map, in their order, as their names say.
+  [[nodiscard]] const std::vector<std::size_t>& numbers() const noexcept { return numbers_; }
   /// Of the first frame of each kind that was left out.
   [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
 
@@ -70,6 +83,8 @@ class FrameTally {
 
   bool quiet_;
   FrameCounts counts_;
+  std::size_t count_ = 0;
+  std::vector<std::size_t> numbers_;
   std::vector<std::string> faults_;
   std::uint64_t readings_ = 0;
   bool sees_plane_ = false;

@@ -88,6 +88,9 @@ class FrameSource : public ReadingSource {
   MapUpdate integrate() override {
     return map_->update({T_world_camera_, {loaded_.frame}, pose_sigma_});
   }
+  [[nodiscard]] std::optional<FrameConsistency> consistency() const override {
+    return map_->consistency();
+  }
   [[nodiscard]] std::uint64_t masked_pixels() const override { return loaded_.masked_pixels; }
   [[nodiscard]] const FrameFolder* folder() const override { return &folder_; }
 

@@ -87,6 +87,8 @@ class ReadingSource {
   virtual MapUpdate integrate() = 0;
   /// Pixels of the loaded part with a depth that its mask took.
   [[nodiscard]] virtual std::uint64_t masked_pixels() const { return 0; }
+  /// Whether the frames fit one another; nothing for clouds.
+  [[nodiscard]] virtual std::optional<FrameConsistency> consistency() const { return {}; }
   /// Its file.
   [[nodiscard]] virtual std::filesystem::path file(std::size_t index) const = 0;
   /// Of depth images; null for clouds.

@@ -114,6 +114,7 @@ class Recording {
     check(proposal_);
     map_.emplace(options.frames, proposal_, options.common.quiet, exec_);
     sigma_ = registration_sigma(options.registration);
+    check_contradiction(options.frames.folder, sigma_.has_value());
     if (const auto stated = stated_sigma(options.registration)) {
       warn(suspect_pose_sigma(*stated, sensor().working_distance, grid().voxel_size()),
            "--pose-sigma");
@@ -122,7 +123,7 @@ class Recording {
       const Stopwatch watch;
       auto aligned = align_folder(*map_, *sigma_, options.common.quiet, exec_, stop);
       if (!aligned.empty()) aligned_until_ = aligned.rbegin()->first + 1;
-      views_.emplace(*map_, std::move(aligned), options.registration);
+      views_.emplace(*map_, std::move(aligned), options.frames.folder.on_contradiction);
       views_->add_seconds("register", watch.seconds());
     } else {
       views_.emplace(*map_);
@@ -244,7 +245,7 @@ class Recording {
         {"jump_edge_filter", options_.frames.jump_edge_filter},
         {"refine", options_.refine == "on"},
         {"register", sigma_.has_value()},
-        {"on_contradiction", sigma_ ? Json(options_.registration.on_contradiction) : Json()},
+        {"on_contradiction", sigma_ ? Json(folder.on_contradiction) : Json()},
         {"pose_sigma", sigma_ ? pose_sigma_json(*sigma_) : Json()},
         {"generator", proposal_.generator.empty() ? "boundary" : proposal_.generator},
         {"poses", or_null(proposal_.poses)},

@@ -22,8 +22,10 @@ double sum_of(const StageSeconds& seconds) {
 
 RecordedViews::RecordedViews(FrameMap& map,
                              std::optional<std::map<std::size_t, FrameRegistration>> registrations,
-                             RegistrationOptions options)
-    : map_(map), registrations_(std::move(registrations)), options_(std::move(options)) {}
+                             std::string on_contradiction)
+    : map_(map),
+      registrations_(std::move(registrations)),
+      on_contradiction_(std::move(on_contradiction)) {}
 
 const FrameRegistration* RecordedViews::registration(std::size_t index) const {
   if (!registrations_) return nullptr;
@@ -33,7 +35,7 @@ const FrameRegistration* RecordedViews::registration(std::size_t index) const {
 
 bool RecordedViews::is_refused(std::size_t index) const {
   const FrameRegistration* found = registration(index);
-  return found != nullptr && options_.leaves_out(*found);
+  return found != nullptr && leaves_out(*found, on_contradiction_);
 }
 
 void RecordedViews::add(std::size_t index) {
@@ -116,6 +118,7 @@ Json RecordedViews::json(const SurfaceModel& model, const NextViews& next) const
     for (const auto& [index, one] : *registrations_) all.push_back(one);
     run["registration"] = registration_counts(all);
   }
+  run["contradiction"] = map_.consistency_json();
   run.update(app::to_json(next));
   run["seconds"] = seconds_json(seconds_);
   run["per_view"] = Json::array();

@@ -23,10 +23,10 @@ namespace viewgain::app {
 class RecordedViews {
  public:
   /// The map must outlive it. `registrations`: by the frame's index, or nothing where the poses are
-  /// taken as the folder says them. `options`: which of them are left out.
+  /// taken as the folder says them. `on_contradiction`: what --on-contradiction says.
   explicit RecordedViews(FrameMap& map,
                          std::optional<std::map<std::size_t, FrameRegistration>> registrations = {},
-                         RegistrationOptions options = {});
+                         std::string on_contradiction = "skip");
 
   /// Puts a frame into the map, in order; one that was refused stays out of it, and one that cannot
   /// be used is no view either. Throws as FrameMap::add().
@@ -47,7 +47,7 @@ class RecordedViews {
 
   FrameMap& map_;
   std::optional<std::map<std::size_t, FrameRegistration>> registrations_;
-  RegistrationOptions options_;
+  std::string on_contradiction_;
   std::size_t asked_ = 0;  ///< frames, whatever became of them
   std::vector<ViewRecord> records_;
   std::vector<double> new_areas_;  ///< one a record [m²]

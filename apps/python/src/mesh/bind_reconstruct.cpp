@@ -60,8 +60,8 @@ class PythonAcquisition : public DataAcquisition {
           "not a tuple of " +
           std::to_string(parts.size()));
     }
-    measurements.frames.push_back(depth_frame(sensor_, parts[0], parts[parts.size() - 1]));
     if (parts.size() == 3) measurements.T_world_camera = one_pose(parts[1], "T_world_camera");
+    measurements.frames.push_back(depth_frame(sensor_, parts[0], parts[parts.size() - 1]));
     return measurements;
   }
 

@@ -16,6 +16,7 @@ namespace viewgain {
 /// Mode and group of a file, for the one that replaces it.
 class VIEWGAIN_EXPORT Permissions {
  public:
+  /// Those of the file that stat() has described.
   explicit Permissions(const struct stat& status) noexcept;
   /// Gives them to an open file, as far as this process may. If it may not give the group, the
   /// group that the file has gets what everybody has: nobody gains a right.

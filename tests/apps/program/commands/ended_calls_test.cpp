@@ -66,11 +66,16 @@ TEST_F(EndedCalls, SimulateLeavesNothing) {
 TEST_F(EndedCalls, ALimitOnTimeEndsACallWithAMessage) {
   const auto before = contents();
   const auto is_writing = [&] { return fs::exists(dir / "new") && !hidden("new").empty(); };
-  const pid_t child = start(simulate("new/frames", "1000"));
-  while (!is_writing()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  Strings call = test::joined(simulate("new/frames", "1000"), {"--quiet"});
+  call[3] = "20,0.6,27";  // views enough for more than a second
+  const pid_t child = start(call);
+  int status = 0;
+  while (!is_writing()) {
+    ASSERT_EQ(::waitpid(child, &status, WNOHANG), 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   const struct rlimit limit { 1, RLIM_INFINITY };
   ASSERT_EQ(::prlimit(child, RLIMIT_CPU, &limit, nullptr), 0);
-  int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status;
   EXPECT_EQ(said(), "viewgain: the limit of 1 s on processor time is reached (ulimit -t)\n");
@@ -79,14 +84,15 @@ TEST_F(EndedCalls, ALimitOnTimeEndsACallWithAMessage) {
 
 TEST_F(EndedCalls, ALimitOnTimeIsAWishToStopAsOftenAsItComes) {
   const pid_t child = start(reconstruct("run", "60"));
+  int status = 0;
   while (!fs::exists(hidden(".") / "maps/00.vdb")) {
+    ASSERT_EQ(::waitpid(child, &status, WNOHANG), 0);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(::kill(child, SIGXCPU), 0);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
   EXPECT_EQ(json::parse(read("run/run.json"))["stop_reason"], "interrupted");
@@ -98,13 +104,19 @@ TEST_F(EndedCalls, ALimitOnTimeIsAWishToStopAsOftenAsItComes) {
 TEST_F(EndedCalls, ALimitOnSizesIsAnErrorThatNamesTheFile) {
   run_well(test::joined(simulate("frames"), {"--quiet"}));
   run_well({"integrate", "frames", "--voxel", "0.02", "--out", "map.vdb", "--quiet"});
+  // The poses of so many views are over the limit, whatever the images take.
+  const auto simulate_many = [](const std::string& out) {
+    return Strings{"simulate", "cube.off", "--orbit", "40,0.6,27",  "--sensor",
+                   "tof.toml", "--size",   "0.2",     "--recenter", "on",
+                   "--quiet",  "--out",    out};
+  };
   struct rlimit before {};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const struct rlimit few { 2000, before.rlim_max };
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &few), 0);  // which a child inherits
   expect_refused({
-      {test::joined(simulate("new/frames"), {"--quiet"}), "File too large; "},
-      {test::joined(simulate("frames"), {"--quiet"}), "File too large; "},
+      {simulate_many("new/frames"), "File too large; "},
+      {simulate_many("frames"), "File too large; "},
       {{"integrate", "frames", "--voxel", "0.02", "--out", "map.vdb", "--quiet"},
        "map.vdb: cannot write: File too large; this process may write files of at most 2000 bytes"},
       {{"convert", "map.vdb", "map.ot"}, "map.ot: cannot write: File too large"},

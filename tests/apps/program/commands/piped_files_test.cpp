@@ -47,8 +47,11 @@ class PipedFiles : public test::ProgramTest {
   PipedFiles() {
     make_small_run();
     write("poses.txt",
-          "0 0 0 0.6 1 0 0 0\n0 0 0 0.5 1 0 0 0\n0 0.1 0 0.55 1 0 0 0\n0 0 0.1 0.5 1 0 0 0\n");
-    write("costs.txt", "1\n2\n3\n4\n");
+          "0 0 0 0.6 1 0 0 0\n1 0 0 0.5 1 0 0 0\n2 0.1 0 0.55 1 0 0 0\n3 0 0.1 0.5 1 0 0 0\n");
+    write("costs.txt", "1e-5\n2e-5\n3e-5\n4e-5\n");
+    write("obstacle.off",
+          "OFF\n4 4 0\n0.4 0.4 -0.4\n0.5 0.4 -0.4\n0.4 0.5 -0.4\n0.4 0.4 -0.3\n"
+          "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
     write("reach.toml", "format = 1\n[[box]]\nmin = [-1.0, -1.0, -1.0]\nmax = [1.0, 1.0, 1.0]\n");
     write("score.toml", "map = \"run/map.vdb\"\nsphere = \"50,0.6\"\njson = true\n");
     write("again.toml",
@@ -110,12 +113,12 @@ TEST_F(PipedFiles, AreReadOnce) {
   expect_same({"next", "run/map.vdb", "--poses", "poses.txt", "--json"}, {"poses.txt"});
   expect_same({"next", "run/map.vdb", "--generator", "boundary", "--poses", "poses.txt", "--costs",
                "costs.txt", "--reach", "reach.toml", "--hazard", "rates.vdb", "--obstacle",
-               "cube.off", "--sensor", "tof.toml", "--json", "--out", "next.txt"},
-              {"poses.txt", "costs.txt", "reach.toml", "rates.vdb", "cube.off", "tof.toml"});
+               "obstacle.off", "--sensor", "tof.toml", "--json", "--out", "next.txt"},
+              {"poses.txt", "costs.txt", "reach.toml", "rates.vdb", "obstacle.off", "tof.toml"});
   expect_same({"next", "frames", "--voxel", "0.0125", "--workspace",
                "-0.15,-0.15,-0.15,0.15,0.15,0.15", "--sensor", "tof.toml", "--poses", "poses.txt",
-               "--costs", "costs.txt", "--obstacle", "cube.off", "--json"},
-              {"tof.toml", "poses.txt", "costs.txt", "cube.off"});
+               "--costs", "costs.txt", "--obstacle", "obstacle.off", "--json"},
+              {"tof.toml", "poses.txt", "costs.txt", "obstacle.off"});
   expect_same({"score", "run/map.vdb", "--poses", "poses.txt", "--costs", "costs.txt", "--reach",
                "reach.toml", "--json", "--out", "scores.csv"},
               {"poses.txt", "costs.txt", "reach.toml"});

@@ -21,6 +21,7 @@
 #include "viewgain/grid/hazard.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
 #include "viewgain/grid/integrate.hpp"
+#include "viewgain/planner/frame_check.hpp"
 #include "viewgain/raycast/obstacle_view.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
@@ -118,6 +119,8 @@ class VIEWGAIN_EXPORT MapModel {
   [[nodiscard]] const Sensor& sensor() const noexcept { return sensor_; }
   /// Entropy removed and unknown voxels; no coverage and no surface.
   [[nodiscard]] ModelProgress progress() const;
+  /// Whether the frames that have come fit one another. Cost: FrameCheck::result().
+  [[nodiscard]] FrameConsistency consistency() const { return check_.result(grid_); }
 
  private:
   /// What is wrong with them before anybody looks at the pixels, else `used`.
@@ -139,6 +142,7 @@ class VIEWGAIN_EXPORT MapModel {
   std::vector<Eigen::Vector3d> rays_;  // of the pixels, (x, y, 1); not finite: the lens has none
   ObstacleView obstacles_;
   FrameIntegrator integrator_;
+  FrameCheck check_;
   RealisedArea new_surface_;
   HazardCalibration calibration_;
   std::shared_ptr<const VoxelScene> scene_;

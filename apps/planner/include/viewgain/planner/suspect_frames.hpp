@@ -16,23 +16,21 @@ namespace viewgain {
 
 /// What is probably wrong with frames or poses.
 struct VIEWGAIN_EXPORT Suspicion {
-  /// Empty: nothing. distortion, principal_point, depth_scale, world_to_camera, quaternion_order,
-  /// body_frame, upward_camera, pose_millimetres, depth_along_ray, focal_length, those of
-  /// suspect_set_up.hpp or, of poses alone, no_voxel.
+  /// Empty: nothing. distortion, principal_point, focal_lengths (fx and fy far apart), depth_scale,
+  /// world_to_camera, quaternion_order, body_frame, upward_camera, rolled_camera, pose_millimetres,
+  /// mirrored, upside_down, numbering, time_offset, depth_along_ray, focal_length, same_image,
+  /// support_plane, contradiction (of another cause), those of suspect_set_up.hpp or, of poses
+  /// alone, no_voxel.
   std::string kind{};
   std::string what{};  ///< a sentence with the figure that made it suspicious
 };
 
-/// Do frames of one scene fit one another better if their poses or depths are read in another way,
-/// or by another focal length?
-/// Readings of each frame are looked for in the others, as their poses are and under each mistake
-/// that is often made; where most of them meet only under a mistake, that is suspected, and of
-/// several the one by which most lie close. Scales are tried that are off by a factor of 2, 2.5,
-/// 4, 5, 10 or 1000, focal lengths from 0.5 to 2 times the stated one; of a scale and a focal
-/// length that fit alike both are named. Says nothing of frames that do not overlap.
-/// `T_world_camera`: one a frame, rigid. A dozen frames are enough. Throws Error(invalid_argument)
-/// as check_frame_size(), and for another count of poses. Thread safety: may run from many threads.
-/// Cost: a pass over the pixels, and up to 0.3 s.
+/// Do frames of one scene fit one another better if their poses, images or depths are read in
+/// another way? Readings of each frame are looked for in the others, as the poses are and under
+/// common mistakes; the one by which most lie close is suspected, or several that fit alike. Says
+/// nothing of frames that do not overlap. `T_world_camera`: one per frame. Throws
+/// Error(invalid_argument) as check_frame_size(), and for another count of poses. Thread safe.
+/// Cost: a pass over the pixels and 20 ms for a dozen frames, 0.5 s where they do not fit.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_frames(const Sensor& sensor,
                                                        std::span<const DepthFrame> frames,
                                                        std::span<const Pose> T_world_camera);

@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "viewgain/grid/frame_agreement.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "map/grid_layout.hpp"
+#include "viewgain/core/noise.hpp"
+#include "viewgain/support/hash64.hpp"
+
+namespace viewgain {
+namespace {
+
+constexpr std::size_t kSamples = 600;  // of a frame
+constexpr std::size_t kKept = 40'000;  // readings of all frames
+constexpr std::size_t kOthers = 600;   // of these, that a frame is held against
+constexpr std::size_t kImages = 64;    // that are remembered
+constexpr double kSigmas = 3;          // that noise explains
+constexpr double kSteepest = 3;        // slope to the image plane of a surface that is looked at
+constexpr int kMostSteps = 12;         // along a ray, on either side of a reading
+
+// The same images from poses that differ by less say nothing.
+constexpr double kMoved = 0.005, kTurned = 0.01;  // [m], [rad]
+
+bool has_moved(const Pose& a, const Pose& b) {
+  const double turned = (a.rotation() - b.rotation()).norm() / std::sqrt(2.0);
+  return (a.translation() - b.translation()).norm() > kMoved || turned > kTurned;
+}
+
+bool is_depth(float z) { return z > 0 && std::isfinite(z); }
+
+// The least depth of pixels in a square round one, 0 if one of them says nothing; a few of a large
+// square.
+float nearest_round(const DepthFrame& frame, std::size_t u, std::size_t v, std::size_t reach) {
+  const std::size_t step = (reach + 2) / 3;
+  const auto last_u = std::min(u + reach, static_cast<std::size_t>(frame.width) - 1);
+  const auto last_v = std::min(v + reach, static_cast<std::size_t>(frame.height) - 1);
+  float nearest = std::numeric_limits<float>::infinity();
+  for (std::size_t y = v - std::min(v, reach); y <= last_v; y += step) {
+    for (std::size_t x = u - std::min(u, reach); x <= last_u; x += step) {
+      nearest = std::min(nearest, frame.depth[y * static_cast<std::size_t>(frame.width) + x]);
+    }
+  }
+  return nearest;
+}
+
+bool is_free(const BeliefGrid& grid, const Eigen::Vector3d& p_world) {
+  const std::optional<Index3> voxel = grid.index_of(p_world);
+  return voxel && grid.state(*voxel) == VoxelState::free;
+}
+
+// Everything near is free where a reading may come from: along its ray, and across it where errors
+// are larger than a cell.
+bool lies_in_free(const BeliefGrid& grid, const Eigen::Vector3d& p_world,
+                  const Eigen::Vector3d& ray, double axial, double lateral) {
+  const std::optional<Index3> voxel = grid.index_of(p_world);
+  if (!voxel || grid.state(*voxel) != VoxelState::free) return false;
+  const double cell = grid.voxel_size() * static_cast<double>(1 << grid.scale(*voxel));
+  const auto is_free_along = [&](const Eigen::Vector3d& direction, double margin) {
+    const int steps = std::clamp(static_cast<int>(std::ceil(margin / cell)), 1, kMostSteps);
+    for (int k = 1; k <= steps; ++k) {
+      const Eigen::Vector3d offset = margin * k / steps * direction;
+      if (!is_free(grid, p_world + offset) || !is_free(grid, p_world - offset)) return false;
+    }
+    return true;
+  };
+  if (!is_free_along(ray, std::max(0.5 * cell, kSigmas * axial))) return false;
+  const double beside = kSigmas * lateral;
+  if (beside < cell) return true;
+  const Eigen::Vector3d across = ray.unitOrthogonal(), other = ray.cross(across);
+  return is_free_along(across, beside) && is_free_along(other, beside) &&
+         is_free_along((across + other).normalized(), beside) &&
+         is_free_along((across - other).normalized(), beside);
+}
+
+}  // namespace
+
+FrameAgreement::FrameAgreement(const Sensor& sensor, std::optional<double> support_plane)
+    : sensor_(sensor), support_plane_(support_plane) {
+  sensor.validate();
+  rays_ = sensor.camera.ray_table();
+}
+
+bool FrameAgreement::is_smooth(const DepthFrame& frame, std::size_t u, std::size_t v) const {
+  const auto width = static_cast<std::size_t>(frame.width);
+  if (u < 1 || v < 1 || u + 1 >= width || v + 1 >= static_cast<std::size_t>(frame.height)) {
+    return false;
+  }
+  const std::size_t i = v * width + u;
+  const auto z = static_cast<double>(frame.depth[i]);
+  const double noise = 2 * kSigmas * sensor_.noise_sigmas(z * rays_[i].norm()).axial;
+  const double step = kSteepest * z / std::min(sensor_.camera.fx, sensor_.camera.fy) + noise;
+  for (std::size_t y = v - 1; y <= v + 1; ++y) {
+    for (std::size_t x = u - 1; x <= u + 1; ++x) {
+      const float other = frame.depth[y * width + x];
+      if (!is_depth(other) || std::abs(static_cast<double>(other) - z) > step) return false;
+    }
+  }
+  return true;
+}
+
+void FrameAgreement::look(const BeliefGrid& before, const DepthFrame& frame,
+                          const Pose& T_world_camera_in, const PoseSigma& pose_sigma) {
+  check_frame_size(frame, sensor_.camera);
+  const Pose T_world_camera = detail::rigid_view(T_world_camera_in);
+  FrameContradiction found;
+  look_at_others(frame, T_world_camera, pose_sigma, found);
+  look_for_copy(frame, T_world_camera, found);
+
+  const auto width = static_cast<std::size_t>(frame.width);
+  const auto height = static_cast<std::size_t>(frame.height);
+  const double pixels = static_cast<double>(width) * static_cast<double>(height);
+  const auto stride =
+      static_cast<std::size_t>(std::max(1.0, std::ceil(std::sqrt(pixels / kSamples))));
+  const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
+  std::vector<Reading> readings;
+  for (std::size_t v = stride / 2; v < height; v += stride) {
+    for (std::size_t u = stride / 2; u < width; u += stride) {
+      const std::size_t i = v * width + u;
+      if (!is_depth(frame.depth[i]) || !rays_[i].allFinite() || frame.shows_known(i)) continue;
+      const Eigen::Vector3d p_camera = static_cast<double>(frame.depth[i]) * rays_[i];
+      const double range = p_camera.norm();
+      if (range < sensor_.min_range || range > sensor_.max_range) continue;
+      const Eigen::Vector3d p_world = T_world_camera * p_camera;
+      if (!before.index_of(p_world) || !is_smooth(frame, u, v)) continue;
+      const Eigen::Vector3d ray = R_world_camera * p_camera / range;
+      const MeasurementSigmas own = sigmas(range, pose_sigma);
+      if (support_plane_ && is_of_plane(p_world.z() - *support_plane_, ray.z(), own)) continue;
+      Reading reading{p_world, ray.cast<float>(), static_cast<float>(own.axial),
+                      static_cast<float>(own.lateral), static_cast<std::uint32_t>(frames_.size())};
+      reading.in_free = lies_in_free(before, p_world, ray, own.axial, own.lateral);
+      ++found.readings;
+      found.in_free += reading.in_free ? 1 : 0;
+      readings.push_back(reading);
+    }
+  }
+  keep(std::move(readings));
+  frames_.push_back(found);
+}
+
+MeasurementSigmas FrameAgreement::sigmas(double range, const PoseSigma& pose_sigma) const {
+  const MeasurementSigmas own = sensor_.sigmas(range);
+  const double moved = std::hypot(pose_sigma.translation, pose_sigma.rotation * range);
+  return {std::hypot(own.axial, pose_sigma.translation, sensor_.scale_sigma * range),
+          std::hypot(own.lateral, moved, sensor_.scale_sigma * range)};
+}
+
+void FrameAgreement::look_at_others(const DepthFrame& frame, const Pose& T_world_camera,
+                                    const PoseSigma& pose_sigma, FrameContradiction& found) const {
+  const Pose T_camera_world = T_world_camera.inverse();
+  const auto width = static_cast<std::size_t>(frame.width);
+  const std::size_t step = kept_.size() / kOthers + 1;
+  for (std::size_t k = 0; k < kept_.size(); k += step) {
+    const Eigen::Vector3d p_camera = T_camera_world * kept_[k].p_world;
+    if (!sensor_.camera.sees(p_camera)) continue;
+    const Eigen::Vector2d pixel = sensor_.camera.project(p_camera);
+    const auto u = static_cast<std::size_t>(std::max(0.0, std::round(pixel.x())));
+    const auto v = static_cast<std::size_t>(std::max(0.0, std::round(pixel.y())));
+    if (u < 1 || v < 1 || u + 1 >= width || v + 1 >= static_cast<std::size_t>(frame.height)) {
+      continue;
+    }
+    const double range = p_camera.norm();
+    if (range < sensor_.min_range || range > sensor_.max_range) continue;
+    const MeasurementSigmas own = sigmas(range, pose_sigma);
+    const double axial = std::hypot(own.axial, static_cast<double>(kept_[k].axial));
+    const double lateral = std::hypot(own.lateral, static_cast<double>(kept_[k].lateral));
+    // Where errors are larger than a pixel the surface may be seen beside it.
+    const auto reach = static_cast<std::size_t>(
+        std::max(1.0, std::ceil(kSigmas * lateral * sensor_.camera.fx / p_camera.z())));
+    const float nearest = nearest_round(frame, u, v, reach);
+    if (!(nearest > 0)) continue;
+    const double beyond = static_cast<double>(nearest) - p_camera.z();
+    const double gate = kSigmas * std::max(axial, lateral) + 0.5 * range / sensor_.camera.fx;
+    if (beyond < -gate) continue;  // hidden
+    ++found.others;
+    found.seen_past += beyond > gate ? 1 : 0;
+  }
+}
+
+void FrameAgreement::look_for_copy(const DepthFrame& frame, const Pose& T_world_camera,
+                                   FrameContradiction& found) {
+  Hash64 hash;
+  const auto* bytes = reinterpret_cast<const char*>(frame.depth.data());
+  hash.add_bytes({bytes, frame.depth.size() * sizeof(float)});
+  const auto same = std::find_if(images_.begin(), images_.end(),
+                                 [&](const Image& image) { return image.hash == hash.value(); });
+  if (same == images_.end()) {
+    if (images_.size() == kImages) images_.erase(images_.begin());
+    images_.push_back({hash.value(), frames_.size(), T_world_camera});
+  } else if (has_moved(same->T_world_camera, T_world_camera)) {
+    found.same_image_as = same->frame;
+  }
+}
+
+void FrameAgreement::keep(std::vector<Reading> readings) {
+  for (std::size_t k = 0; k < readings.size(); k += keep_every_) kept_.push_back(readings[k]);
+  while (kept_.size() > kKept) {
+    for (std::size_t k = 0; 2 * k < kept_.size(); ++k) kept_[k] = kept_[2 * k];
+    kept_.resize((kept_.size() + 1) / 2);
+    keep_every_ *= 2;
+  }
+}
+
+std::vector<FrameContradiction> FrameAgreement::frames(const BeliefGrid& after) const {
+  std::vector<FrameContradiction> all = frames_;
+  // What lay in free space before and what has become free since are shares of the same readings.
+  std::vector<std::size_t> kept(all.size()), carved(all.size());
+  for (const Reading& reading : kept_) {
+    ++kept[reading.frame];
+    if (reading.in_free) continue;
+    carved[reading.frame] +=
+        lies_in_free(after, reading.p_world, reading.ray.cast<double>(),
+                     static_cast<double>(reading.axial), static_cast<double>(reading.lateral))
+            ? 1
+            : 0;
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (kept[i] == 0) continue;
+    const double share = static_cast<double>(carved[i]) / static_cast<double>(kept[i]);
+    all[i].in_free +=
+        static_cast<std::size_t>(std::lround(share * static_cast<double>(all[i].readings)));
+  }
+  return all;
+}
+
+}  // namespace viewgain
