@@ -112,7 +112,8 @@ void write_reach_toml(const std::filesystem::path& path, const ReachRegion& regi
   poses.replace_extension(".poses.txt");
   if (!region.poses.empty()) {
     if (is_special_file(path)) {
-      refuse(path.string() + ": a region with poses, which go beside it, needs a regular file");
+      refuse(path.string() +
+             ": a region with poses needs a regular file: the poses are written beside it");
     }
     root.insert("poses", poses.filename().string());
   }

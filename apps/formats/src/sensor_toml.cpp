@@ -112,7 +112,7 @@ Sensor sensor_of(const toml::table& root, const std::string& file) {
   for (const char* key : {"pose_sigma", "pose_sigma_rad"}) {
     const toml::node* node = reader.find(key);
     if (node == nullptr) continue;
-    if (sensor.pose_sigma != PoseSigma{}) reader.fail(key, "stands beside pose_sigma");
+    if (sensor.pose_sigma != PoseSigma{}) reader.fail(key, "cannot be used with pose_sigma");
     const std::vector<double> sigmas = reader.numbers(key, *node, 2);
     sensor.pose_sigma = {sigmas[0], sigmas[1]};
   }

@@ -97,8 +97,6 @@ bool is_record(const fs::path& file) {
          file == "imported.txt";
 }
 
-namespace fs = std::filesystem;
-
 constexpr std::array kFiles{"run.json", kCheckpoint,   "config.toml", "views.txt",  "next.txt",
                             "map.vdb",  "surface.ply", "points.ply",  "report.html"};
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/cli/interrupt.hpp"
 
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -24,14 +23,10 @@ std::mutex mutex;
 std::stop_source* guarded = nullptr;  // of the InterruptGuard that lives
 bool ended = false;
 
+// Not how long it is: the kernel raises the limit with each signal.
 void say_that_time_is_up(const char* what_follows) {
-  struct rlimit limit {};
-  std::string seconds;
-  if (::getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
-    seconds = " of " + std::to_string(limit.rlim_cur) + " s";
-  }
-  std::fprintf(stderr, "viewgain: the limit%s on processor time is reached (ulimit -t)%s\n",
-               seconds.c_str(), what_follows);
+  std::fprintf(stderr, "viewgain: the limit on processor time is reached (ulimit -t)%s\n",
+               what_follows);
 }
 
 // Whether the signal was only a wish to stop. That of the processor's time comes again each second

@@ -109,10 +109,9 @@ Command add_calibrate(App& program) {
       ->required();
   app->add_option("--sensor", options->sensor,
                   kSensorHelp + "; default: FRAMES_DIR/sensor.toml. Its noise is replaced");
-  app->add_option(
-      "--depth-scale", options->depth_scale,
-      "metres per unit of the images (default: as frames.toml says, else 1e-4 with poses.txt, 1e-3 "
-      "with pose files)");
+  app->add_option("--depth-scale", options->depth_scale,
+                  "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
+                  "poses.txt, 1e-3 with pose files)");
   app->add_option("--out", options->out, "sensor file to write (.toml)")->required();
   add_common_options(*app, options->common);
   add_help(*app, kMapGroup,

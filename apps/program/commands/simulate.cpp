@@ -209,11 +209,10 @@ Command add_simulate(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "simulate",
-      "Depth frames of a mesh: frame-NNNNNN.depth.png (16 bit, depth along z in 0.1 mm, or more "
-      "for "
-      "sensors that see beyond 6.5534 m; 0 invalid, 65535 out of range), "
+      "Depth frames of a mesh: frame-NNNNNN.depth.png (16 bit, depth along z in units of 0.1 mm, "
+      "or larger units for sensors that see beyond 6.5534 m; 0 invalid, 65535 out of range), "
       "frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2, 65535 unknown), poses.txt "
-      "(TUM, first number is the frame's, as reported), sensor.toml, frames.toml.");
+      "(TUM, reported poses; the first number is the frame's), sensor.toml, frames.toml.");
   app->add_option("MESH", options->mesh, "OFF, OBJ, STL or PLY file")->required();
   add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kSensorHelp)->required();

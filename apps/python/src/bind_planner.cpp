@@ -24,6 +24,7 @@
 #include "given.hpp"
 #include "map/depth_images.hpp"
 #include "map/shared_grid.hpp"
+#include "planner_class.hpp"
 #include "planner_docs.hpp"
 #include "suspicions.hpp"
 #include "viewgain/formats/frames.hpp"
@@ -31,92 +32,6 @@
 
 namespace viewgain::python {
 namespace {
-
-// Python's planner: whoever calls it while it is at work is told so.
-class Planner {
- public:
-  Planner(Sensor of, ViewPlanner planner) : sensor_(std::move(of)), planner_(std::move(planner)) {}
-
-  [[nodiscard]] const Sensor& sensor() const noexcept { return sensor_; }
-  /// For people; asks nothing of a planner that is at work.
-  [[nodiscard]] std::string text() const {
-    return std::string("<ViewPlanner of ").append(sensor_.name).append(busy_ ? ", at work>" : ">");
-  }
-
-  /// Calls f(ViewPlanner&); with the GIL, which f may let go.
-  template <typename F>
-  auto use(const F& f) {
-    if (busy_.exchange(true)) {
-      throw std::runtime_error("ViewPlanner: one call at a time; another one is at work");
-    }
-    const Free free{busy_};
-    return f(planner_);
-  }
-  /// The same without the GIL; f must not touch Python.
-  template <typename F>
-  auto run(const F& f) {
-    return use([&](ViewPlanner& planner) {
-      const WithoutGil without_gil;
-      return f(planner);
-    });
-  }
-
- private:
-  struct Free {
-    std::atomic<bool>& busy;
-    ~Free() { busy = false; }
-  };
-
-  Sensor sensor_;
-  ViewPlanner planner_;
-  std::atomic<bool> busy_{false};
-};
-
-// VIEWPOINTSGENERATION by a function of Python's.
-class PythonGeneration : public ViewpointGeneration {
- public:
-  /// The map is its planner's.
-  PythonGeneration(py::object callable, std::string name, const MapModel& map)
-      : call_(std::move(callable)), name_(std::move(name)), map_(map) {}
-
-  Proposal generate(const Pose&) override {
-    const auto grid = std::make_shared<SharedGrid>(map_.grid().clone());
-    const std::vector<Pose> poses =
-        with_gil([&] { return pose_list(call_(grid), "what the generator returns"); });
-    Proposal proposal;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      proposal.candidates.push_back({poses[i], name_, std::nullopt, i});
-    }
-    return proposal;
-  }
-
- private:
-  PythonCall call_;
-  std::string name_;
-  const MapModel& map_;
-};
-
-std::vector<Suspicion> suspicions_of_set_up(const Sensor& sensor, const PlannerConfig& config,
-                                            const BeliefGrid& grid) {
-  std::vector<Suspicion> all = suspect_sensor(sensor, grid.voxel_size());
-  all.push_back(suspect_workspace(grid, sensor));
-  const auto add_obstacle = [&](const Box& bounds) {
-    all.push_back(suspect_obstacle(bounds, grid, sensor));
-    if (!all.back().kind.empty()) all.back().what = "an obstacle " + all.back().what;
-  };
-  const Obstacles& obstacles = config.surroundings.obstacles;
-  for (const Box& box : obstacles.boxes) add_obstacle(box);
-  for (const TriangleMesh& mesh : obstacles.meshes) add_obstacle(obstacle_bounds(mesh));
-  if (const auto& plane = config.surroundings.support_plane) {
-    all.push_back(suspect_support_plane(*plane, grid, sensor));
-  }
-  all.push_back(suspect_reach(config.reach, grid, sensor));
-  if (const auto& size = config.hazard.object_size) {
-    all.push_back(suspect_object_size(*size, grid));
-  }
-  all.push_back(suspect_clearance(config.clearance));
-  return all;
-}
 
 std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
                               const py::object& workspace, const py::object& T_world_grid,

@@ -63,7 +63,7 @@ Parameters
 ----------
 sensor : Sensor
 support_plane : float, optional
-    Height of the table [m], as ``FrameIntegrator`` has it.)")
+    Height z of the table [m]; None: no table.)")
       .def(py::init([](const Given<Sensor>& sensor, std::optional<double> support_plane) {
              return Check{*sensor, FrameCheck(*sensor, support_plane)};
            }),
@@ -79,7 +79,7 @@ Parameters
 before : BeliefGrid
     The map without the frame.
 depth : array_like, (height, width), floating point
-    As ``FrameIntegrator.integrate`` takes it [m].
+    Along the optical axis [m]; 0, NaN or masked: nothing known, inf: nothing up to max_range.
 T_world_camera : array_like, (4, 4)
 pose_sigma : array_like, (2,), optional
     Standard deviations of the pose beside the sensor's own pose_sigma [m], [rad].)")

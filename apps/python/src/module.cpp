@@ -18,7 +18,8 @@ void bind_control(py::module_&), bind_noise(py::module_&), bind_camera(py::modul
     bind_sensors(py::module_&), bind_generators(py::module_&), bind_grid(py::module_&),
     bind_scene(py::module_&), bind_integrator(py::module_&), bind_cloud(py::module_&),
     bind_reach(py::module_&), bind_feasibility(py::module_&), bind_simulation(py::module_&),
-    bind_evaluator(py::module_&), bind_files(py::module_&), bind_frame_check(py::module_&), bind_planner(py::module_&);
+    bind_evaluator(py::module_&), bind_files(py::module_&), bind_frame_check(py::module_&),
+    bind_planner(py::module_&);
 
 namespace {
 

@@ -6,6 +6,8 @@
 #include <string>
 
 #include "map/leaf_scales.hpp"
+#include "map/map_notes.hpp"
+#include "viewgain/core/error.hpp"
 #include "viewgain/support/solid_voxels.hpp"
 
 // OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
@@ -14,6 +16,7 @@
 #pragma GCC visibility pop
 
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <string>
@@ -74,6 +77,16 @@ inline void initialize_openvdb() {
       notes[name.substr(kNotePrefix.size())] = text->value();
   }
   return notes;
+}
+
+/// The map's notes. Throws Error(format), naming the file, for ones that no map has.
+[[nodiscard]] inline MapNotes map_notes(const openvdb::MetaMap& metadata,
+                                        const std::filesystem::path& path) {
+  try {
+    return notes_of(note_texts(metadata));
+  } catch (const Error& error) {
+    throw Error(ErrorCode::format, path.string() + ": " + error.what());
+  }
 }
 
 /// The hazard counters of a file; value(name) reads an Int64Metadata. Throws as it does, and

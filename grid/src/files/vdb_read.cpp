@@ -60,7 +60,7 @@ class Loader {
         const std::string fault = take_scales(*scales_, *storage);
         if (!fault.empty()) fail("grid '" + std::string(kScaleGridName) + "': " + fault);
       }
-      storage->notes = notes(contents.metadata);
+      storage->notes = map_notes(contents.metadata, path_);
       return GridAccess::wrap(std::move(storage));
     } catch (const openvdb::Exception& error) {
       fail(std::string("cannot be read by OpenVDB: ") + error.what());
@@ -70,14 +70,6 @@ class Loader {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(ErrorCode::format, path_.string() + ": " + what);
-  }
-
-  [[nodiscard]] MapNotes notes(const openvdb::MetaMap& metadata) const {
-    try {
-      return notes_of(note_texts(metadata));
-    } catch (const Error& error) {
-      fail(error.what());
-    }
   }
 
   template <typename Metadata>

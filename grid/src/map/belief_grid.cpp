@@ -368,6 +368,8 @@ const BeliefBlock* find_beliefs(const BeliefGrid& grid, Index3 voxel) {
   return s.find_beliefs(s.lattice.key(voxel));
 }
 
+MapNotes& notes_to_change(BeliefGrid& grid) noexcept { return GridAccess::storage(grid).notes; }
+
 std::uint64_t bytes_of(const BeliefGrid& grid) { return GridAccess::storage(grid).bytes(); }
 
 }  // namespace detail

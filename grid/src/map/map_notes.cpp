@@ -8,7 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include "grid_storage.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -37,7 +36,10 @@ std::string readings_of(const std::string& sensor) {
       is_kept = true;
       for (const std::string_view other : kOthers) is_kept = is_kept && !line.starts_with(other);
     }
-    if (is_kept) result += line.substr(0, line.find("  #")) + "\n";
+    if (!is_kept) continue;
+    constexpr std::string_view kOldName = "pose_sigma =";  // in files of 0.1.0
+    if (line.starts_with(kOldName)) line.replace(0, kOldName.size(), "pose_sigma_rad =");
+    result += line.substr(0, line.find("  #")) + "\n";
   }
   return result;
 }
@@ -86,21 +88,22 @@ MapNotes notes_of(std::map<std::string, std::string> texts) {
   return notes;
 }
 
-FrameNote::FrameNote(const GridStorage& storage, const std::string& sensor,
+FrameNote::FrameNote(const BeliefGrid& grid, const std::string& sensor,
                      const std::string& identity) {
   check_identity(identity);
   if (!identity.empty()) frame_.insert(identity);
-  const std::string& noted = storage.notes.sensor;
+  const std::string& noted = grid.notes().sensor;
   if (is_same_sensor(noted, sensor)) {
     sensor_ = noted;
-  } else if (storage.views.empty()) {
+  } else if (grid.views().empty()) {
     sensor_ = sensor;
   }
 }
 
-void FrameNote::put(GridStorage& storage) noexcept {
-  storage.notes.sensor.swap(sensor_);
-  storage.notes.frames.merge(frame_);
+void FrameNote::put(BeliefGrid& grid) noexcept {
+  MapNotes& notes = notes_to_change(grid);
+  notes.sensor.swap(sensor_);
+  notes.frames.merge(frame_);
 }
 
 }  // namespace viewgain::detail

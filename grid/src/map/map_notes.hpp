@@ -6,11 +6,10 @@
 #include <set>
 #include <string>
 
+#include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/map_notes.hpp"
 
 namespace viewgain::detail {
-
-struct GridStorage;
 
 /// Throws Error(invalid_argument) for an identity that is none, and for another text by the name of
 /// the sensor's or the frames' note.
@@ -22,13 +21,16 @@ void check_identity(const std::string& identity);
 [[nodiscard]] std::map<std::string, std::string> texts_of(const MapNotes& notes);
 [[nodiscard]] MapNotes notes_of(std::map<std::string, std::string> texts);
 
+/// For what keeps the rules of set_notes() by itself.
+[[nodiscard]] MapNotes& notes_to_change(BeliefGrid& grid) noexcept;
+
 /// What a frame adds to a map's notes: made before the frame goes in, so that nothing can fail
 /// afterwards.
 class FrameNote {
  public:
   /// `sensor` as in MapNotes. Throws as check_identity().
-  FrameNote(const GridStorage& storage, const std::string& sensor, const std::string& identity);
-  void put(GridStorage& storage) noexcept;
+  FrameNote(const BeliefGrid& grid, const std::string& sensor, const std::string& identity);
+  void put(BeliefGrid& grid) noexcept;
 
  private:
   std::string sensor_;  // of the map after the frame

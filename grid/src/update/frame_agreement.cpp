@@ -16,13 +16,16 @@
 namespace viewgain {
 namespace {
 
-constexpr std::size_t kSamples = 600;  // of a frame
-constexpr std::size_t kKept = 40'000;  // readings of all frames
-constexpr std::size_t kOthers = 600;   // of these, that a frame is held against
-constexpr std::size_t kImages = 64;    // that are remembered
-constexpr double kSigmas = 3;          // that noise explains
-constexpr double kSteepest = 3;        // slope to the image plane of a surface that is looked at
-constexpr int kMostSteps = 12;         // along a ray, on either side of a reading
+constexpr std::size_t kSamples = 600;     // of a frame
+constexpr std::size_t kFewSamples = 300;  // more are looked for
+constexpr std::size_t kKept = 40'000;     // readings of all frames
+constexpr std::size_t kOthers = 600;      // of these, that a frame is held against
+constexpr std::size_t kImages = 64;       // that are remembered
+// Of the range: what real cameras and trackers are off by beside what they declare.
+constexpr double kUndeclared = 0.01;
+constexpr double kSigmas = 3;    // that noise explains
+constexpr double kSteepest = 3;  // slope to the image plane of a surface that is looked at
+constexpr int kMostSteps = 12;   // along a ray, on either side of a reading
 
 // The same images from poses that differ by less say nothing.
 constexpr double kMoved = 0.005, kTurned = 0.01;  // [m], [rad]
@@ -54,30 +57,6 @@ bool is_free(const BeliefGrid& grid, const Eigen::Vector3d& p_world) {
   return voxel && grid.state(*voxel) == VoxelState::free;
 }
 
-// Everything near is free where a reading may come from: along its ray, and across it where errors
-// are larger than a cell.
-bool lies_in_free(const BeliefGrid& grid, const Eigen::Vector3d& p_world,
-                  const Eigen::Vector3d& ray, double axial, double lateral) {
-  const std::optional<Index3> voxel = grid.index_of(p_world);
-  if (!voxel || grid.state(*voxel) != VoxelState::free) return false;
-  const double cell = grid.voxel_size() * static_cast<double>(1 << grid.scale(*voxel));
-  const auto is_free_along = [&](const Eigen::Vector3d& direction, double margin) {
-    const int steps = std::clamp(static_cast<int>(std::ceil(margin / cell)), 1, kMostSteps);
-    for (int k = 1; k <= steps; ++k) {
-      const Eigen::Vector3d offset = margin * k / steps * direction;
-      if (!is_free(grid, p_world + offset) || !is_free(grid, p_world - offset)) return false;
-    }
-    return true;
-  };
-  if (!is_free_along(ray, std::max(0.5 * cell, kSigmas * axial))) return false;
-  const double beside = kSigmas * lateral;
-  if (beside < cell) return true;
-  const Eigen::Vector3d across = ray.unitOrthogonal(), other = ray.cross(across);
-  return is_free_along(across, beside) && is_free_along(other, beside) &&
-         is_free_along((across + other).normalized(), beside) &&
-         is_free_along((across - other).normalized(), beside);
-}
-
 }  // namespace
 
 FrameAgreement::FrameAgreement(const Sensor& sensor, std::optional<double> support_plane)
@@ -104,19 +83,13 @@ bool FrameAgreement::is_smooth(const DepthFrame& frame, std::size_t u, std::size
   return true;
 }
 
-void FrameAgreement::look(const BeliefGrid& before, const DepthFrame& frame,
-                          const Pose& T_world_camera_in, const PoseSigma& pose_sigma) {
-  check_frame_size(frame, sensor_.camera);
-  const Pose T_world_camera = detail::rigid_view(T_world_camera_in);
-  FrameContradiction found;
-  look_at_others(frame, T_world_camera, pose_sigma, found);
-  look_for_copy(frame, T_world_camera, found);
-
+std::vector<FrameAgreement::Reading> FrameAgreement::sampled(const BeliefGrid& map,
+                                                             const DepthFrame& frame,
+                                                             const Pose& T_world_camera,
+                                                             const PoseSigma& pose_sigma,
+                                                             std::size_t stride) const {
   const auto width = static_cast<std::size_t>(frame.width);
   const auto height = static_cast<std::size_t>(frame.height);
-  const double pixels = static_cast<double>(width) * static_cast<double>(height);
-  const auto stride =
-      static_cast<std::size_t>(std::max(1.0, std::ceil(std::sqrt(pixels / kSamples))));
   const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
   std::vector<Reading> readings;
   for (std::size_t v = stride / 2; v < height; v += stride) {
@@ -127,20 +100,67 @@ void FrameAgreement::look(const BeliefGrid& before, const DepthFrame& frame,
       const double range = p_camera.norm();
       if (range < sensor_.min_range || range > sensor_.max_range) continue;
       const Eigen::Vector3d p_world = T_world_camera * p_camera;
-      if (!before.index_of(p_world) || !is_smooth(frame, u, v)) continue;
+      if (!map.index_of(p_world) || !is_smooth(frame, u, v)) continue;
       const Eigen::Vector3d ray = R_world_camera * p_camera / range;
       const MeasurementSigmas own = sigmas(range, pose_sigma);
       if (support_plane_ && is_of_plane(p_world.z() - *support_plane_, ray.z(), own)) continue;
-      Reading reading{p_world, ray.cast<float>(), static_cast<float>(own.axial),
-                      static_cast<float>(own.lateral), static_cast<std::uint32_t>(frames_.size())};
-      reading.in_free = lies_in_free(before, p_world, ray, own.axial, own.lateral);
-      ++found.readings;
-      found.in_free += reading.in_free ? 1 : 0;
-      readings.push_back(reading);
+      readings.push_back({p_world, ray.cast<float>(), static_cast<float>(own.axial),
+                          static_cast<float>(own.lateral),
+                          static_cast<std::uint32_t>(frames_.size())});
     }
   }
+  return readings;
+}
+
+void FrameAgreement::look(const BeliefGrid& before, const DepthFrame& frame,
+                          const Pose& T_world_camera_in, const PoseSigma& pose_sigma) {
+  check_frame_size(frame, sensor_.camera);
+  const Pose T_world_camera = detail::rigid_view(T_world_camera_in);
+  FrameContradiction found;
+  look_at_others(frame, T_world_camera, pose_sigma, found);
+  look_for_copy(frame, T_world_camera, found);
+
+  const double pixels = static_cast<double>(frame.width) * static_cast<double>(frame.height);
+  auto stride = static_cast<std::size_t>(std::max(1.0, std::ceil(std::sqrt(pixels / kSamples))));
+  std::vector<Reading> readings = sampled(before, frame, T_world_camera, pose_sigma, stride);
+  // What is mapped may be a small part of the image.
+  while (readings.size() < kFewSamples && stride > 1) {
+    stride /= 2;
+    readings = sampled(before, frame, T_world_camera, pose_sigma, stride);
+  }
+  for (Reading& reading : readings) {
+    reading.in_free = lies_in_free(before, reading);
+    found.in_free += reading.in_free ? 1 : 0;
+  }
+  found.readings = readings.size();
   keep(std::move(readings));
   frames_.push_back(found);
+}
+
+// Everything near is free where a reading may come from: along its ray, and across it where errors
+// are larger than a cell.
+bool FrameAgreement::lies_in_free(const BeliefGrid& grid, const Reading& reading) {
+  const Eigen::Vector3d& p_world = reading.p_world;
+  const Eigen::Vector3d ray = reading.ray.cast<double>();
+  const std::optional<Index3> voxel = grid.index_of(p_world);
+  if (!voxel || grid.state(*voxel) != VoxelState::free) return false;
+  const double cell = grid.voxel_size() * static_cast<double>(1 << grid.scale(*voxel));
+  const auto is_free_along = [&](const Eigen::Vector3d& direction, double margin) {
+    const int steps = std::clamp(static_cast<int>(std::ceil(margin / cell)), 1, kMostSteps);
+    for (int k = 1; k <= steps; ++k) {
+      const Eigen::Vector3d offset = margin * k / steps * direction;
+      if (!is_free(grid, p_world + offset) || !is_free(grid, p_world - offset)) return false;
+    }
+    return true;
+  };
+  if (!is_free_along(ray, std::max(cell, kSigmas * static_cast<double>(reading.axial))))
+    return false;
+  const double beside = kSigmas * static_cast<double>(reading.lateral);
+  if (beside < cell) return true;
+  const Eigen::Vector3d across = ray.unitOrthogonal(), other = ray.cross(across);
+  return is_free_along(across, beside) && is_free_along(other, beside) &&
+         is_free_along((across + other).normalized(), beside) &&
+         is_free_along((across - other).normalized(), beside);
 }
 
 MeasurementSigmas FrameAgreement::sigmas(double range, const PoseSigma& pose_sigma) const {
@@ -175,7 +195,8 @@ void FrameAgreement::look_at_others(const DepthFrame& frame, const Pose& T_world
     const float nearest = nearest_round(frame, u, v, reach);
     if (!(nearest > 0)) continue;
     const double beyond = static_cast<double>(nearest) - p_camera.z();
-    const double gate = kSigmas * std::max(axial, lateral) + 0.5 * range / sensor_.camera.fx;
+    const double gate =
+        kSigmas * std::max(axial, lateral) + 0.5 * range / sensor_.camera.fx + kUndeclared * range;
     if (beyond < -gate) continue;  // hidden
     ++found.others;
     found.seen_past += beyond > gate ? 1 : 0;
@@ -184,6 +205,11 @@ void FrameAgreement::look_at_others(const DepthFrame& frame, const Pose& T_world
 
 void FrameAgreement::look_for_copy(const DepthFrame& frame, const Pose& T_world_camera,
                                    FrameContradiction& found) {
+  // Images of nothing, or of one depth, are alike from everywhere.
+  const auto first = std::find_if(frame.depth.begin(), frame.depth.end(), is_depth);
+  if (std::all_of(first, frame.depth.end(), [&](float z) { return !is_depth(z) || z == *first; })) {
+    return;
+  }
   Hash64 hash;
   const auto* bytes = reinterpret_cast<const char*>(frame.depth.data());
   hash.add_bytes({bytes, frame.depth.size() * sizeof(float)});
@@ -213,17 +239,14 @@ std::vector<FrameContradiction> FrameAgreement::frames(const BeliefGrid& after) 
   for (const Reading& reading : kept_) {
     ++kept[reading.frame];
     if (reading.in_free) continue;
-    carved[reading.frame] +=
-        lies_in_free(after, reading.p_world, reading.ray.cast<double>(),
-                     static_cast<double>(reading.axial), static_cast<double>(reading.lateral))
-            ? 1
-            : 0;
+    carved[reading.frame] += lies_in_free(after, reading) ? 1 : 0;
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (kept[i] == 0) continue;
     const double share = static_cast<double>(carved[i]) / static_cast<double>(kept[i]);
-    all[i].in_free +=
+    const auto more =
         static_cast<std::size_t>(std::lround(share * static_cast<double>(all[i].readings)));
+    all[i].in_free = std::min(all[i].readings, all[i].in_free + more);
   }
   return all;
 }

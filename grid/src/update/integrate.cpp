@@ -11,7 +11,6 @@
 #include <string>
 
 #include "map/grid_layout.hpp"
-#include "map/grid_storage.hpp"
 #include "map/map_notes.hpp"
 #include "map_update.hpp"
 #include "readings.hpp"
@@ -220,14 +219,14 @@ IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame&
   const Pose T_camera_grid = T_world_camera.inverse() * grid.T_world_grid();
   const Pose T_grid_camera = grid.T_world_grid().inverse() * T_world_camera;
   const ConeCamera camera(m.pixels.sensor().camera, T_camera_grid);
-  FrameNote note(GridAccess::storage(grid), m.sensor, frame.identity);
+  FrameNote note(grid, m.sensor, frame.identity);
   m.pixels.set_pose_sigma(pose_sigma);
   m.pixels.load(frame, m.config.occupancy != IntegrationConfig::Occupancy::literal, m.update.pool(),
                 plane_seen_from(T_world_camera, m.config.support_plane));
   const IntegrationReport report =
       m.update.run(grid, {m.pixels, T_grid_camera, T_world_camera},
                    m.config.carve == IntegrationConfig::Carve::cones ? &camera : nullptr);
-  note.put(GridAccess::storage(grid));
+  note.put(grid);
   return report;
 }
 
@@ -310,10 +309,10 @@ IntegrationReport CloudIntegrator::integrate(BeliefGrid& grid,
   m.points.load(points, view.translation(),
                 m.config.occupancy != IntegrationConfig::Occupancy::literal, m.config.support_plane,
                 m.update.pool());
-  FrameNote note(GridAccess::storage(grid), m.sensor, {});
+  FrameNote note(grid, m.sensor, {});
   const Pose T_grid_world = grid.T_world_grid().inverse();
   const IntegrationReport report = m.update.run(grid, {m.points, T_grid_world, view}, nullptr);
-  note.put(GridAccess::storage(grid));
+  note.put(grid);
   return report;
 }
 

@@ -229,11 +229,12 @@ TEST_F(StagedFolderTest, TheDiskIsWaitedForAndTheFolderListedAConstantNumberOfTi
     (void)import_recording(dir / "many", dir / folder, config);
   };
   const auto run = [&](const std::string& folder, std::size_t count) {
-    RunFolder run(dir / folder);
-    write_file_atomically(run.file("run.json"), "{\"map_hash\": 0}");
-    for (std::size_t i = 0; i < count; ++i) write_file_atomically(run.view(i, ".png"), "picture");
-    for (std::size_t i = 0; i < count; ++i) write_file_atomically(run.map(i), "map");
-    run.commit();
+    RunFolder results(dir / folder);
+    write_file_atomically(results.file("run.json"), "{\"map_hash\": 0}");
+    for (std::size_t i = 0; i < count; ++i)
+      write_file_atomically(results.view(i, ".png"), "picture");
+    for (std::size_t i = 0; i < count; ++i) write_file_atomically(results.map(i), "map");
+    results.commit();
   };
   simulate("many", 30);  // the images of the recording
   std::size_t cases = 0;
@@ -309,10 +310,12 @@ TEST_F(StagedFolderTest, NamesMayBeAsLongAsTheFileSystemAllows) {
         hidden = killed.path();
       }
       EXPECT_TRUE(fs::exists(hidden / "run.json"));
-      StagedFolder staged(dir / name, "run.json");
-      EXPECT_EQ(staged.path(), hidden);
-      put(staged.path() / "run.json", text);
-      staged.commit({});
+      {
+        StagedFolder staged(dir / name, "run.json");
+        EXPECT_EQ(staged.path(), hidden);
+        put(staged.path() / "run.json", text);
+        staged.commit({});
+      }
       EXPECT_EQ(read(name + "/run.json"), text);
       EXPECT_EQ(list(name), Strings{"run.json"});
       ++cases;

@@ -235,13 +235,14 @@ TEST_P(CurrentPose, OfAnOlderStateIsTheMapsLastView) {
   planner.add(scene.see(scene.views[4]), scene.views[4]);
   planner.drop(FrameVerdict::unreadable, scene.views[9]);
   planner.save(path);
-  std::string note = test::notes_of(path).at("planner");
+  MapNotes notes = load_vdb(path).notes();
+  std::string& note = notes.others.at("planner");
   ASSERT_TRUE(note.starts_with("version 3\n"));
   note.replace(0, 9, "version 2");
   const std::size_t line = note.find("last_pose ");
   ASSERT_NE(line, std::string::npos);
   note.erase(line, note.find('\n', line) + 1 - line);
-  save_vdb(planner.grid(), path, {.with_covariance = false, .notes = {{"planner", note}}});
+  save_vdb(planner.grid(), path, {.notes = notes});
   ViewPlanner old = ViewPlanner::load(path, scene.sensor, config(), {1});
   old.add_poses({"dome", scene.views});
   expect_ways_from(old, scene.views[4], {.cost_per_metre = kPerMetre, .exact = true}, "old");

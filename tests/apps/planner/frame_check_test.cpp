@@ -214,6 +214,25 @@ TEST(FrameCheck, ALostFrameIsNamed) {
   EXPECT_LT(found.contradicting.size(), kFrames / 2);
 }
 
+// A dozen images are kept of any number of frames.
+TEST(FrameCheck, ManyFramesAgree) {
+  std::size_t cases = 0;
+  for (const std::size_t count : {13, 25, 49}) {
+    Taken all = taken(camera(), 9);
+    for (std::size_t i = kFrames; i < count; ++i) {
+      all.frames.push_back(all.frames[i % kFrames]);
+      all.poses.push_back(all.poses[i % kFrames]);
+    }
+    const FrameConsistency found = consistency_of(camera(), all);
+    EXPECT_EQ(found.suspicion.what, "") << count;
+    EXPECT_EQ(found.frames.size(), count);
+    for (Pose& pose : all.poses) pose = turned(pose, Eigen::Vector3d::UnitZ(), 90);
+    EXPECT_EQ(consistency_of(camera(), all).suspicion.kind, "rolled_camera") << count;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3U);
+}
+
 TEST(FrameCheck, FocalLengthsThatAreFarApartAreNamed) {
   Sensor sensor = camera();
   const Taken all = taken(sensor, 7);

@@ -68,18 +68,18 @@ TEST(FrameAgreement, ViewsOfOneSceneAgree) {
     EXPECT_EQ(frame.seen_past, 0U);
     EXPECT_FALSE(frame.same_image_as);
   }
-  EXPECT_GT(readings, 400U);
-  EXPECT_GT(others, 400U);
+  EXPECT_GT(readings, 300U);
+  EXPECT_GT(others, 200U);
 }
 
 // A wall that the second frame sees farther off: by less than the errors of both it is the same
 // one, by more the second frame looks past the first one's readings. The gate is three standard
-// deviations of the difference, and half a pixel.
+// deviations of the difference, half a pixel and 1 % of the range.
 TEST(FrameAgreement, AWallThatIsFartherOffIsSeenPast) {
   const Sensor sensor = sensor_of_a_wall();
-  const double gate = 3 * std::hypot(0.002, 0.002) + 0.5 / sensor.camera.fx;
+  const double gate = 3 * std::hypot(0.002, 0.002) + 0.5 / sensor.camera.fx + 0.01;
   std::size_t cases = 0;
-  for (const double share : {0.0, 0.5, 0.8, 1.4, 2.0, 8.0}) {
+  for (const double share : {0.0, 0.5, 0.8, 1.4, 2.0, 6.0}) {
     const auto frames = agreement_of(sensor, grid_of_a_wall(),
                                      {{test::see_plane(sensor, 1), beside(0)},
                                       {test::see_plane(sensor, 1 + share * gate), beside(0.05)}});

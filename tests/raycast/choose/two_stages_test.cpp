@@ -253,7 +253,13 @@ class ApproximateInARoom : public testing::TestWithParam<GainModel> {};
 
 TEST_P(ApproximateInARoom, StandardErrorsCoverTheTruth) {
   const GainEvaluator evaluator(room(), small_kinect(), {.model = GetParam()});
-  const std::vector<Pose> poses = test::poses_in(room()->snapshot(), 300, 3);
+  std::vector<Pose> poses = test::poses_in(room()->snapshot(), 300, 3);
+  // Before a wall that blocks most rays a part of them has too few with a gain to tell its scatter.
+  std::erase_if(poses, [&](const Pose& pose) {
+    const ViewGain gain = evaluator.evaluate(pose);
+    return 2 * gain.hits < gain.rays;
+  });
+  EXPECT_GT(poses.size(), 150U);
   const std::vector<ViewGain> truth = evaluator.evaluate(poses);
   for (const double share : {0.02, 0.1, 0.5}) {
     std::size_t within = 0, count = 0;

@@ -113,7 +113,7 @@ TEST(GainOptions, PriorAndRangesOverrideTheMapsAndTheSensors) {
   EXPECT_EQ(GainEvaluator(scene, made.sensor).prior_sigma(), made.map.grid.prior_sigma());
   const GainConfig config{.model = GainModel::paper,
                           .prior_sigma = 0.123,
-                          .min_range = 3.5 * made.map.grid.voxel_size(),
+                          .min_range = 1.5 * made.map.grid.voxel_size(),
                           .max_range = 9.25 * made.map.grid.voxel_size()};
   const GainEvaluator evaluator(scene, made.sensor, config);
   EXPECT_EQ(evaluator.prior_sigma(), 0.123);

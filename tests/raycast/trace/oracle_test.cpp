@@ -65,10 +65,13 @@ TEST(Oracle, RefusesWrongVoxelsAndAcceptsGrazedOnes) {
   EXPECT_FALSE(oracle::is_tie(map, near, limits, hit(RayHit::Kind::none)));
   const Ray off{{4.5, 5 - 1e-3, 0}, Eigen::Vector3d::UnitZ()};
   EXPECT_FALSE(oracle::is_tie(map, off, limits, hit(occupied, {4, 5, 6})));
-  // Leaving min_range within 1e-4 of where the voxel ends; max_range likewise.
-  const RayLimits grazing_min{.min_range = 9 - 5e-5};
-  EXPECT_TRUE(oracle::is_tie(map, middle, grazing_min, hit(occupied, {4, 4, 12})));
+  // Entering a voxel within 1e-4 of min_range, before which it blocks; max_range likewise.
+  const RayLimits grazing_min{.min_range = 8 + 5e-5};
+  EXPECT_EQ(oracle::first_hit(map, middle, grazing_min).kind, RayHit::Kind::obstacle);
+  EXPECT_TRUE(oracle::is_tie(map, middle, grazing_min, hit(occupied, {4, 4, 8})));
+  EXPECT_FALSE(oracle::is_tie(map, middle, grazing_min, hit(occupied, {4, 4, 12})));
   const RayLimits inside_min{.min_range = 8.5};
+  EXPECT_FALSE(oracle::is_tie(map, middle, inside_min, hit(occupied, {4, 4, 8})));
   EXPECT_FALSE(oracle::is_tie(map, middle, inside_min, hit(occupied, {4, 4, 12})));
   const RayLimits grazing_max{.max_range = 8 + 5e-5};
   EXPECT_TRUE(oracle::is_tie(map, middle, grazing_max, hit(RayHit::Kind::none)));

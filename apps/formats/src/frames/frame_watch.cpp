@@ -14,6 +14,7 @@
 #include "frames/file_stamp.hpp"
 #include "frames/frame_names.hpp"
 #include "frames/growing_poses.hpp"
+#include "frames/watch_entry.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/file_bytes.hpp"
 
@@ -21,28 +22,7 @@ namespace viewgain {
 namespace {
 
 namespace fs = std::filesystem;
-
-// What a frame's files are like. A line of poses.txt counts, and not the file, which grows.
-struct Signature {
-  FileStamp depth, amplitude, pose_file;
-  std::optional<ReadPose> line{};
-  std::vector<FileStamp> masks{};  // one a folder
-
-  bool operator==(const Signature&) const = default;
-};
-
-enum class State { waits, taken, bad };
-
-struct Entry {
-  Signature signature{};
-  FrameWatch::Time since{};  // when it was first seen
-  bool is_examined = false;  // since then
-  bool is_judged = false;    // likewise, when nobody was writing any more
-  fs::path missing_mask{};   // when it was judged: all that it waits for
-  std::string name{};        // of the depth image
-  State state = State::waits;
-  FrameVerdict verdict = FrameVerdict::used;  // of a bad one
-};
+using detail::Entry, detail::Signature, detail::State;
 
 // What came of looking into a frame's files; neither a frame nor a fault: something is missing.
 struct Finding {

@@ -275,8 +275,8 @@ std::string assumed_text(const FrameSequence& frames) {
     add("out_of_range", carves ? "\"carve\"" : "\"invalid\"",
         carves ? "65535: no surface up to max_range" : "65535: no reading");
   }
-  return std::string("the folder does not say ") + keys + "; assumed: " + values + "; say it in " +
-         kFrames;
+  return std::string("the folder does not state ") + keys + "; assumed: " + values +
+         "; state it in " + kFrames;
 }
 
 DepthFrame load_frame(const FrameSequence& frames, std::size_t index) {

@@ -134,13 +134,21 @@ std::string numbers_misfit(const fs::path& dir, const TimedPoses& lines,
     poses += " numbered " + range_text(static_cast<std::uint64_t>(lines.times.front()),
                                        static_cast<std::uint64_t>(lines.times.back()));
   }
+  const std::string first_image = std::to_string(numbers.front());
+  std::string cure =
+      "Begin each line with its image's number, or write first_frame = " + first_image +
+      " if the first line belongs to the first image";
+  if (kind.are_whole) {
+    cure =
+        "Write first_frame = " + std::to_string(static_cast<std::uint64_t>(lines.times.front())) +
+        " if the lines begin with the images' numbers and images or lines are missing, "
+        "first_frame = " +
+        first_image + " if the first line belongs to the first image,";
+  }
   return (dir / kPoses).string() + ": has " + poses + ", but there are " +
          std::to_string(numbers.size()) + " images numbered " +
          range_text(numbers.front(), numbers.back()) +
-         ": which pose belongs to which image is not known. Begin each line with its image's "
-         "number, or write the number of the first pose's image as first_frame (such as "
-         "first_frame = " +
-         std::to_string(numbers.front()) + ") into " + in(dir);
+         ": which pose belongs to which image is not known. " + cure + " into " + in(dir);
 }
 
 bool has_all(const PoseMatch& match, std::span<const std::uint64_t> numbers) {

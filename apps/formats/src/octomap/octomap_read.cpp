@@ -42,8 +42,8 @@ Header read_header(std::string_view bytes, const std::string& name) {
   } else if (bytes.starts_with(" BDV")) {
     throw Error(ErrorCode::format,
                 name +
-                    ": is an OpenVDB file, no OctoMap file; load_vdb reads it (in Python "
-                    "BeliefGrid.load), and the program by its ending, .vdb");
+                    ": is an OpenVDB file, not an OctoMap file; read it with load_vdb (in Python "
+                    "BeliefGrid.load), or in the program under a name that ends in .vdb");
   } else if (!bytes.starts_with(kOctomapFullMark)) {
     throw Error(ErrorCode::format, name + ":1: is no OctoMap file: it does not begin with \"" +
                                        std::string(kOctomapFullMark) + "\" or \"" +

@@ -146,9 +146,9 @@ typedef struct vg_consistency {
 /* Makes `found` ready for a call. */
 VG_API void vg_consistency_init(vg_consistency* found, size_t struct_size);
 
-/* Holds the frames so far against one another. contradicts, or null: one per frame in the map, of
-   which there must be `capacity` at least; nonzero for a frame that contradicts the others. Takes
-   20 ms, and 0.5 s where frames do not fit. */
+/* Compares the frames that went into the map since the planner was made or loaded. `contradicts`
+   may be null; else it has room for `capacity` entries, at least one per frame, and an entry is
+   nonzero for a frame that contradicts the others. Takes 20 ms, 0.5 s if frames do not fit. */
 VG_API vg_status vg_planner_consistency(const vg_planner* planner, vg_consistency* found,
                                         int32_t* contradicts, size_t capacity);
 

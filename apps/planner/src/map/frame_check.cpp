@@ -25,7 +25,7 @@ void FrameCheck::see(const DepthFrame& frame, const Pose& T_world_camera) {
   if (place % keep_every_ != 0 || !rigid_pose(T_world_camera)) return;
   if (kept_.size() == kMostKept) {
     keep_every_ *= 2;
-    for (std::size_t k = 0; 2 * k < kMostKept; ++k) {
+    for (std::size_t k = 1; 2 * k < kMostKept; ++k) {
       kept_[k] = std::move(kept_[2 * k]);
       places_[k] = places_[2 * k];
     }
@@ -52,6 +52,8 @@ FrameConsistency FrameCheck::result(const BeliefGrid& after) const {
     all.others += frame.others;
     all.seen_past += frame.seen_past;
   }
+  result.in_free = all.in_free;
+  result.seen_past = all.seen_past;
   result.share_in_free = all.share_in_free();
   result.share_seen_past = all.share_seen_past();
   result.suspicion = detail::suspicion_of(sensor_, kept_,
@@ -62,7 +64,8 @@ FrameConsistency FrameCheck::result(const BeliefGrid& after) const {
   for (std::size_t i = 0; i < result.frames.size(); ++i) {
     const FrameContradiction& frame = result.frames[i];
     const double share = std::max(frame.share_in_free(), frame.share_seen_past());
-    if (share >= most || frame.same_image_as) result.contradicting.push_back(i);
+    const bool is_copy = frame.same_image_as && share >= detail::kContradicting;
+    if (share >= most || is_copy) result.contradicting.push_back(i);
   }
   return result;
 }

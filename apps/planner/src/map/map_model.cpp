@@ -23,7 +23,7 @@ MapModelConfig with_plane(MapModelConfig config) {
   auto& own = config.integration.support_plane;
   if (own && own != config.surroundings.support_plane) {
     refuse("integration.support_plane is " + short_text(*own) +
-           " m, and surroundings.support_plane is not: state the table once, in surroundings");
+           " m, but surroundings.support_plane differs: set the plane only in surroundings");
   }
   own = config.surroundings.support_plane;
   return config;

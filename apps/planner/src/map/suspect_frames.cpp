@@ -213,14 +213,19 @@ Suspicion suspect_along_ray(const FrameMeetings& meeting, const Meetings& as_sai
     return by_ray.close > fit.met.close && by_ray.share_close() > fit.met.share_close();
   });
   if (!fits_best) return {};
-  return {"depth_along_ray", "of the readings for which it matters " + percent(*along_ray) +
-                                 " fit the other frames better if depths are along the ray, not "
-                                 "along z"};
+  return {"depth_along_ray",
+          "where it matters, " + percent(*along_ray) +
+              " of the readings fit the other frames better if depths are along the ray, not "
+              "along z"};
 }
 
 // A mistake by which the frames fit one another.
-Suspicion suspect_convention(const FrameMeetings& meeting, const Meetings& as_said) {
-  const std::vector<Fit> fits = fits_of(meeting, as_said);
+Suspicion suspect_convention(const FrameMeetings& meeting, const Meetings& as_said,
+                             bool has_copies) {
+  std::vector<Fit> fits = fits_of(meeting, as_said);
+  if (has_copies) {
+    std::erase_if(fits, [](const Fit& fit) { return fit.reading.needs_proof(); });
+  }
   if (Suspicion ray = suspect_along_ray(meeting, as_said, fits); !ray.kind.empty()) return ray;
   if (fits.empty()) return {};
   const Meetings& best = fits[0].met;
@@ -240,26 +245,48 @@ Suspicion suspect_convention(const FrameMeetings& meeting, const Meetings& as_sa
   return {fits[0].reading.kind, now + what};
 }
 
+bool contradicts(const FrameContradiction& frame, double share) {
+  return (frame.readings >= detail::kEnoughReadings && frame.share_in_free() > share) ||
+         (frame.others >= detail::kEnoughReadings && frame.share_seen_past() > share);
+}
+
+// How frames contradict one another; empty: they do not.
+std::string contradiction_of(const FrameConsistency& found) {
+  if (found.share_in_free > detail::kInFree && found.in_free >= detail::kEnoughContradictions) {
+    return percent(found.share_in_free) +
+           " of the readings lie in space that other frames saw as free";
+  }
+  if (found.share_seen_past > detail::kSeenPast &&
+      found.seen_past >= detail::kEnoughContradictions) {
+    return "frames see past " + percent(found.share_seen_past) +
+           " of the readings of earlier frames, as if space that they saw as free held surface";
+  }
+  const bool is_one = std::any_of(
+      found.frames.begin(), found.frames.end(),
+      [](const FrameContradiction& frame) { return contradicts(frame, detail::kOfAFrame); });
+  if (!is_one) return {};
+  return "up to " + percent(detail::largest_share(found)) +
+         " of a frame's readings lie in space that other frames saw as free";
+}
+
 // Frames that contradict one another for no reason that is known.
 Suspicion suspect_contradiction(const FrameConsistency& found) {
+  const std::string now = contradiction_of(found);
+  if (now.empty()) return {};
   const auto copies =
       std::count_if(found.frames.begin(), found.frames.end(), [](const FrameContradiction& frame) {
-        return frame.same_image_as &&
-               std::max(frame.share_in_free(), frame.share_seen_past()) > detail::kContradicting;
+        return frame.same_image_as && contradicts(frame, detail::kContradicting);
       });
-  const std::string now =
-      percent(found.share_in_free) + " of the readings lie in space that other frames saw as free";
   if (copies > 0) {
     return {"same_image",
             now + "; " + std::to_string(copies) + (copies == 1 ? " frame has" : " frames have") +
-                " the image of an earlier one at another pose: does the camera hang?"};
+                " the image of an earlier one at another pose: does the camera repeat images?"};
   }
-  if (!detail::is_contradictory(found)) return {};
   return {"contradiction",
           now +
               ": are the poses those of another frame (a flange, a body), late or early, or "
-              "numbered otherwise than the images; are the images mirrored, the intrinsics those "
-              "of this camera; did an object move, or do the poses drift?"};
+              "numbered differently from the images? Are the images mirrored, or the intrinsics "
+              "those of another camera? Did an object move, or do the poses drift?"};
 }
 
 }  // namespace
@@ -272,14 +299,6 @@ double detail::largest_share(const FrameConsistency& found) {
   return most;
 }
 
-bool detail::is_contradictory(const FrameConsistency& found) {
-  if (found.share_in_free > kInFree || found.share_seen_past > kSeenPast) return true;
-  return std::any_of(found.frames.begin(), found.frames.end(), [](const FrameContradiction& f) {
-    return (f.readings >= kEnoughReadings && f.share_in_free() > kOfAFrame) ||
-           (f.others >= kEnoughReadings && f.share_seen_past() > kOfAFrame);
-  });
-}
-
 Suspicion detail::suspicion_of(const Sensor& sensor, std::span<const DepthFrame> frames,
                                const FrameMeetings& meeting, std::optional<double> support_plane,
                                const FrameConsistency& found) {
@@ -289,8 +308,11 @@ Suspicion detail::suspicion_of(const Sensor& sensor, std::span<const DepthFrame>
   if (Suspicion camera = suspect_camera(sensor.camera); !camera.kind.empty()) return camera;
   if (Suspicion range = suspect_range(sensor, frames, meeting); !range.kind.empty()) return range;
   const Suspicion other = suspect_contradiction(found);
-  if (other.kind == "same_image") return other;
-  if (Suspicion known = suspect_convention(meeting, meeting.under({})); !known.kind.empty()) {
+  const bool has_copies = other.kind == "same_image";
+  // Poses that are shifted or images that are turned may fit a little better by chance where some
+  // images are copies.
+  if (Suspicion known = suspect_convention(meeting, meeting.under({}), has_copies);
+      !known.kind.empty()) {
     return known;
   }
   if (!other.kind.empty() || !support_plane) return other;

@@ -16,13 +16,14 @@ namespace viewgain::detail {
 /// A frame whose share is at least this contradicts the others.
 inline constexpr double kContradicting = 0.05;
 
-/// Above these shares of all readings frames contradict one another: right ones have up to 0.9 % in
-/// free space, at edges, and see past 0.2 % of others' readings.
-inline constexpr double kInFree = 0.015, kSeenPast = 0.01;
+/// Above these shares of all readings frames contradict one another. Right simulated frames have up
+/// to 0.9 % in free space, at edges, and see past 0.2 %; a recorded room up to 1.3 % and 1.9 %.
+inline constexpr double kInFree = 0.02, kSeenPast = 0.03;
+/// Of fewer contradicting readings nothing is said.
+inline constexpr std::size_t kEnoughContradictions = 20;
 /// The same of a single frame with this many readings or more.
 inline constexpr double kOfAFrame = 0.2;
 inline constexpr std::size_t kEnoughReadings = 50;
-[[nodiscard]] bool is_contradictory(const FrameConsistency& found);
 
 /// The largest share of one frame's readings in others' free space, or of others' in its own.
 [[nodiscard]] double largest_share(const FrameConsistency& found);

@@ -183,8 +183,8 @@ Suspicion suspect_body(const Sensor& sensor) {
   if (*std::max_element(size.begin(), size.end()) <= kLongestBody) return {};
   return {"body_unit", "the sensor's body is " + figure(size[0]) + " x " + figure(size[1]) + " x " +
                            figure(size[2]) +
-                           " m: its size is in metres, not in millimetres; such a body has no room "
-                           "anywhere"};
+                           " m: its size is in metres, not in millimetres; such a body fits "
+                           "nowhere"};
 }
 
 Suspicion suspect_mounting(const Sensor& sensor) {

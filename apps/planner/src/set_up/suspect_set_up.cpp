@@ -95,8 +95,8 @@ Suspicion suspect_solid_obstacles(const Obstacles& obstacles, std::span<const Po
   return {"views_in_obstacle",
           std::to_string(inside) + " of the map's " + std::to_string(views.size()) +
               " views were taken inside of an obstacle, where no view is possible: boxes and "
-              "closed meshes are solid; give the walls round a room as an open mesh or as a box "
-              "each"};
+              "closed meshes are solid. Give the walls of a room as an open mesh or as one box "
+              "per wall"};
 }
 
 Suspicion suspect_reach(const ReachRegion& reach, const BeliefGrid& map, const Sensor& sensor) {

@@ -63,19 +63,20 @@ void check_contradiction(const FrameFolderOptions& options, bool registers) {
 }
 
 void add_frame_folder_options(App& app, FrameFolderOptions& options) {
+  app.add_option("--depth-scale", options.depth_scale,
+                 "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
+                 "poses.txt, 1e-3 with pose files)");
   app.add_option(
-      "--depth-scale", options.depth_scale,
-      "metres per unit of the images (default: as frames.toml says, else 1e-4 with poses.txt, 1e-3 "
-      "with pose files)");
-  app.add_option("--out-of-range", options.out_of_range,
-                 "meaning of 65535: carve (no surface up to the maximal range) or invalid (no "
-                 "reading) (default: as frames.toml or the sensor's file says, else carve with "
-                 "poses.txt, invalid with pose files)")
+         "--out-of-range", options.out_of_range,
+         "meaning of 65535: carve (no surface up to max_range) or invalid (no reading) (default: "
+         "from frames.toml or the sensor file, else carve with poses.txt, invalid with pose "
+         "files)")
       ->check(one_of({"carve", "invalid"}, "meaning"));
   add_mask_options(app, options.mask, options.confidence, options.least_confidence);
   app.add_option("--on-contradiction", options.on_contradiction,
-                 "frames that contradict the others: skip those that --register refuses and warn "
-                 "of the rest, keep all (requires --register on), or end with an error")
+                 "what to do with frames that contradict the others: skip those that --register "
+                 "refuses and warn about the rest, keep all (requires --register on), or end with "
+                 "an error")
       ->check(one_of({"skip", "keep", "error"}, "answer"));
 }
 

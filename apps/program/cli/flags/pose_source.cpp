@@ -102,8 +102,8 @@ void add_cost_options(App& app, CostOptions& options, const std::string& of) {
   app.add_option("--cost-per-metre", options.per_metre, kCostPerMetreHelp);
   app.add_option(
       "--from", options.from,
-      "x,y,z of the camera, world [m]: where ways begin; default: where the last frame was taken, "
-      "used or not; of a map file: at its last view");
+      "x,y,z of the camera in the world [m], where path lengths begin (default: at the last frame, "
+      "used or not; for a map file at its last view)");
 }
 
 void check(const CostOptions& options, bool has_way) {

@@ -25,6 +25,7 @@
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/file_format.hpp"
+#include "program/commands/follow/follow_options.hpp"
 #include "program/commands/follow/followed_map.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "program/commands/frames/mask_use.hpp"
@@ -40,56 +41,11 @@ namespace viewgain::app {
 namespace {
 
 namespace fs = std::filesystem;
+using Options = FollowOptions;
 
 constexpr std::chrono::milliseconds kPause{100};  // between looks at the folder
 // While frames wait, views are proposed and all is written this often at most [s].
 constexpr double kLeastInterval = 0.5;
-
-struct Options {
-  CommonOptions common;
-  FrameFolderOptions frames;
-  double voxel = 0;
-  std::string workspace;
-  std::string jump_edge_filter = "5";
-  ScaleOptions scales;
-  std::string gain = default_gain();
-  std::optional<double> object_size;
-  std::string hazard;
-  std::string reach;
-  std::vector<std::string> obstacles;
-  std::string body;
-  std::optional<double> support_plane;
-  std::size_t top = 10;
-  PlanOptions plan;
-  double cost_per_metre = 0;
-  std::size_t max_views = PlannerConfig{}.max_views;
-  std::size_t stop_promises = PlannerConfig{}.broken_promises;
-  RegistrationOptions registration;
-  std::string out;
-};
-
-// All but what depends on the sensor.
-PlannerConfig planner_config(const Options& options) {
-  PlannerConfig config;
-  check_positive("--voxel", options.voxel);
-  config.grid.voxel_size = options.voxel;
-  config.grid.workspace = parse_box("--workspace", options.workspace);
-  if (options.support_plane) check_finite("--support-plane", *options.support_plane);
-  config.surroundings = {obstacles_of(options.obstacles), options.support_plane};
-  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
-  options.scales.set(config.integration);
-  config.gain.model = parse_gain_model(options.gain);
-  if (config.gain.model == GainModel::paper && (options.object_size || !options.hazard.empty())) {
-    refuse("--object-size and --hazard go with --gain surface or combined");
-  }
-  if (!options.reach.empty()) config.reach = read_reach_toml(options.reach);
-  config.max_views = options.max_views;
-  config.broken_promises = options.stop_promises;
-  check_at_least_0("--cost-per-metre", options.cost_per_metre);
-  check(options.plan);
-  config.ahead = options.plan.ahead();
-  return config;
-}
 
 // Files of these names that are somebody else's stay.
 void check_folder(const fs::path& out) {
@@ -306,6 +262,8 @@ class Following {
 
   // First the state: what is next takes longest, and can be made of it again.
   void write() {
+    // What is saved now a later call would go on with.
+    if (options_.frames.on_contradiction == "error") warn_of_contradictions(true);
     const std::set<std::string> frames = watch_->taken();
     map_->save();
     propose(frames);
@@ -395,40 +353,7 @@ Command add_follow(App& program) {
       "OUT/next.json. With --mask or --confidence a frame waits for its mask as for its pose. Ends "
       "by a signal or when a file FRAMES_DIR/done is there; called again with "
       "the same OUT it goes on, also after a kill.");
-  Options& o = *options;
-  app->add_option("FRAMES_DIR", o.frames.folder, "folder of frames, as for integrate")->required();
-  app->add_option("--voxel", o.voxel, "voxel size [m]")->required();
-  app->add_option("--workspace", o.workspace, "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels")
-      ->required();
-  app->add_option("--sensor", o.frames.sensor, kSensorHelp + "; default: FRAMES_DIR/sensor.toml");
-  add_frame_folder_options(*app, o.frames);
-  app->add_option("--jump-edge-filter", o.jump_edge_filter, kJumpEdgeHelp);
-  add_scale_options(*app, o.scales);
-  app->add_option("--gain", o.gain,
-                  "that views are ranked by: paper, surface or combined, as in score")
-      ->check(one_of_gain_models());
-  app->add_option("--object-size", o.object_size, kObjectSizeHelp);
-  app->add_option("--hazard", o.hazard, kHazardHelp);
-  app->add_option("--reach", o.reach, "TOML file: boxes, shells, half-spaces, poses in reach");
-  app->add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
-  app->add_option("--body", o.body, kBodyHelp);
-  app->add_option("--support-plane", o.support_plane,
-                  "height z of the table [m]: its readings carve but do not hit; default: none");
-  app->add_option("--top", o.top,
-                  "how many views to say, at most, each by what it adds to those before it")
-      ->check(counted(1, 1'000'000));
-  add_plan_options(*app, o.plan);
-  app->add_option("--cost-per-metre", o.cost_per_metre, kCostPerMetreHelp);
-  app->add_option("--max-views", o.max_views, "view budget: a reason to stop")
-      ->check(counted(1, 1'000'000));
-  app->add_option("--stop-promises", o.stop_promises, kStopPromisesHelp)
-      ->check(counted(0, 1'000'000));
-  add_registration_options(*app, o.registration);
-  app->add_option("--out", o.out, "folder for state.vdb, next.txt, next.json")->required();
-  add_trace_option(*app, o.common);
-  add_common_options(*app, o.common);
-  add_help(*app, kViewsGroup,
-           "follow frames --voxel 0.005 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out plan");
+  add_follow_options(*app, *options);
   return {app, [options] { follow(*options); }};
 }
 

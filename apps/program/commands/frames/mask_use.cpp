@@ -49,7 +49,8 @@ void MaskWatch::add(const FrameSequence& folder, const WatchedFrame& frame) {
 
 std::string MaskWatch::suspicion(const Sensor& sensor, const BeliefGrid& map, bool is_last) {
   const bool is_due = is_last || 2 * masked_.size() == kFrames || masked_.size() == kFrames;
-  if (is_suspected_ || !is_due) return {};
+  if (is_suspected_ || !is_due || judged_ == masked_.size()) return {};
+  judged_ = masked_.size();
   std::string what = suspect_masks(sensor, unmasked_, masked_, poses_, &map).what;
   is_suspected_ = !what.empty();
   return what;

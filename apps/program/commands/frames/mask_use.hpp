@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -30,6 +31,7 @@ class MaskWatch {
  private:
   std::vector<DepthFrame> unmasked_, masked_;
   std::vector<Pose> poses_;
+  std::size_t judged_ = 0;  // frames
   bool is_suspected_ = false;
 };
 

@@ -15,13 +15,13 @@
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
-#include "program/cli/flags/set_up_warnings.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/score/score_classic.hpp"
 #include "program/commands/score/score_options.hpp"
 #include "program/commands/score/score_report.hpp"
+#include "program/commands/score/score_set_up.hpp"
 #include "show/pictures/map_picture.hpp"
 #include "show/report/page.hpp"
 #include "viewgain/formats/reach_toml.hpp"
@@ -75,24 +75,6 @@ GainConfig gain_config(const Options& options) {
     config.weights.push_back({box_of("--weight", numbers), numbers[6]});
   }
   return config;
-}
-
-void warn_of_set_up(const Options& options, const Obstacles& obstacles, const BeliefGrid& grid,
-                    Sensor sensor) {
-  std::optional<ReachRegion> reach;
-  if (!options.reach.empty()) reach = read_reach_toml(options.reach);
-  if (!options.body.empty()) sensor.body_size = parse_size("--body", options.body);
-  if (options.min_range) sensor.min_range = *options.min_range;
-  if (options.max_range) sensor.max_range = *options.max_range;
-  app::warn_of_set_up({.sensor = sensor,
-                       .map = grid,
-                       .obstacle_values = &options.obstacles,
-                       .obstacles = &obstacles,
-                       .support_plane = options.support_plane,
-                       .reach_file = options.reach,
-                       .reach = reach ? &*reach : nullptr,
-                       .object_size = options.object_size});
-  if (options.feasible == "on") warn_of_views_in_obstacles(obstacles, grid);
 }
 
 std::shared_ptr<const VoxelScene> scene_of(const Options& options, const BeliefGrid& grid,

@@ -79,6 +79,11 @@ class VIEWGAIN_EXPORT FrameAgreement {
 
   /// Of readings of a frame, the errors of its pose and of the scale among them.
   [[nodiscard]] MeasurementSigmas sigmas(double range, const PoseSigma& pose_sigma) const;
+  /// Readings of smooth surface in the workspace, at each stride-th pixel of rows and columns.
+  [[nodiscard]] std::vector<Reading> sampled(const BeliefGrid& map, const DepthFrame& frame,
+                                             const Pose& T_world_camera,
+                                             const PoseSigma& pose_sigma, std::size_t stride) const;
+  [[nodiscard]] static bool lies_in_free(const BeliefGrid& grid, const Reading& reading);
   void look_at_others(const DepthFrame& frame, const Pose& T_world_camera,
                       const PoseSigma& pose_sigma, FrameContradiction& found) const;
   void look_for_copy(const DepthFrame& frame, const Pose& T_world_camera,

@@ -101,7 +101,7 @@ TEST_F(Implausible, SensorsInOtherUnits) {
     write_sensor_toml(dir / "frames/sensor.toml", sensor);
   };
   write("frames/done", "");
-  with([](Sensor& s) { s.noise = ConstantNoise{2, 0.0005}; });
+  with([](Sensor& s) { s.noise = ConstantNoise{2, 0.005}; });
   (void)run(integrate());
   for (const Strings& call : commands(false)) expect_said(call, "(sigma_axial) are for lengths in");
   with([](Sensor& s) { s.body_size = {65, 65, 76}; });
@@ -148,7 +148,7 @@ TEST_F(Implausible, ARoomsClosedMeshIsSolid) {
   for (Strings call : commands(true)) {
     if (call[0] == "score") call.insert(call.end(), {"--feasible", "on"});
     expect_said(test::joined(call, {"--obstacle", "room.off"}),
-                "6 of the map's 6 views were taken inside of an obstacle");
+                "views were taken inside of an obstacle");
   }
   // The map itself is as good with it.
   EXPECT_EQ(warnings(integrate({"--obstacle", "room.off"})), "");
@@ -159,11 +159,12 @@ TEST_F(Implausible, MasksThatShowTheObjectInWhite) {
   write_masks(true);
   for (const char* workspace : {kSmall, "-1.6,-1.6,-1.6,1.6,1.6,1.6"}) {
     for (const char* command : {"integrate", "next", "reconstruct", "follow"}) {
+      const char* ending = std::string(command) == "next" ? ".txt" : ".vdb";
       Strings call{command,   "frames", "--voxel", "0.05",  "--workspace",
-                   workspace, "--mask", "mask",    "--out", std::string("out_") + command + ".vdb"};
+                   workspace, "--mask", "mask",    "--out", std::string("out_") + command + ending};
       if (call[0] == "reconstruct") call.insert(call.end(), {"--pictures", "off"});
       fs::remove_all(dir / call.back());
-      fs::remove_all(dir / ("out_" + call[0] + ".vdb"));
+      fs::remove_all(dir / ("out_" + call[0] + ending));
       const std::string said = warnings(call);
       EXPECT_NE(said.find("invert them"), std::string::npos) << command << said;
       EXPECT_EQ(said.find("depth scale"), std::string::npos) << command << said;

@@ -214,7 +214,7 @@ TEST_F(RecordedFrames, NextSaysInWordsWhatItFound) {
   // Nothing can be reached: that is an answer.
   write("nowhere.toml", "[[box]]\nmin = [90, 90, 90]\nmax = [91, 91, 91]\n");
   const std::string none =
-      run_well({"next", "run/map.vdb", "--reach", "nowhere.toml", "--out", "none.txt"});
+      run({"next", "run/map.vdb", "--reach", "nowhere.toml", "--out", "none.txt"}).out;
   EXPECT_NE(none.find("no view is possible; dropped: "), std::string::npos) << none;
   EXPECT_NE(none.find("unreachable"), std::string::npos) << none;
   EXPECT_EQ(read("none.txt"), "# timestamp tx ty tz qx qy qz qw\n");
@@ -242,7 +242,7 @@ TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
        {test::joined(frames, {"--pose-noise", "0.01,1"}), "--pose-noise"},
        {test::joined(frames, {"--pose-sigma", "0.01,1"}), "--pose-sigma"},
        {test::joined(frames, {"--pose-sigma", "0,1", "--register", "on"}), "--pose-sigma"},
-       {test::joined(frames, {"--on-contradiction", "keep"}), "goes with --register on"},
+       {test::joined(frames, {"--on-contradiction", "keep"}), "requires --register on"},
        {test::joined(frames, {"--gain", "frontier_count"}), "--gain"},
        {test::joined(frames, {"--mask", "empty"}), "empty"},
        {{"reconstruct", "empty", "--voxel", "0.01", "--out", "new"}, "empty"},

@@ -15,6 +15,8 @@
 
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
 
 namespace viewgain {
 namespace {
@@ -192,7 +194,7 @@ TEST_F(Resume, OfFramesEveryFlagThatChangesBytesIsCompared) {
       {"seed", {"7", "--generator", "sphere"}},
       {"cost-per-metre", {"0.1"}},
       {"costs", {"costs.csv", "--poses", "frames/poses.txt"}},
-      {"from", {"0,0,0.6"}},
+      {"from", {"0,0,0.6", "--cost-per-metre", "0.1"}},
       {"plan", {"2"}},
       {"take", {"1", "--plan", "2"}},
       {"top", {"3"}},
@@ -253,16 +255,23 @@ TEST_F(Resume, OfFramesFilesThatFlagsNameAreCompared) {
       "reconstruct", "frames", "--voxel", "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
       "--pictures",  "off",    "--mask",  "masks", "--reach",     "reach.toml",
       "--resume",    "--out",  "out"};
-  fs::copy_file(dir / "frames/frame-000000.depth.png", mask);
+  const auto write_mask = [&](std::size_t pixel) {  // one pixel is ignored
+    const Sensor sensor = load_sensor((dir / "frames/sensor.toml").string());
+    Gray8Image image{sensor.camera.width, sensor.camera.height, {}};
+    image.pixels.resize(static_cast<std::size_t>(image.width * image.height));
+    image.pixels[pixel] = 255;
+    write_png(mask, image);
+  };
+  write_mask(0);
   const int status = ended_by(
       call, SIGKILL, [&] { return !left().empty() && fs::exists(left() / "checkpoint.json"); });
   ASSERT_TRUE(WIFSIGNALED(status)) << status;
   write("reach.toml", "# wider\n" + reach);
   expect_refused(call, "is of a run with other settings");
   write("reach.toml", reach);
-  fs::copy_file(dir / "frames/frame-000001.depth.png", mask, fs::copy_options::overwrite_existing);
+  write_mask(1);
   expect_refused(call, "is of a run with other settings");
-  fs::copy_file(dir / "frames/frame-000000.depth.png", mask, fs::copy_options::overwrite_existing);
+  write_mask(0);
   EXPECT_EQ(run(call).exit_code, 0);
 }
 

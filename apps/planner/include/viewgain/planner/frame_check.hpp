@@ -20,6 +20,8 @@ namespace viewgain {
 /// Whether the frames of a map fit one another.
 struct VIEWGAIN_EXPORT FrameConsistency {
   std::vector<FrameContradiction> frames{};  ///< one per frame in the map, in their order
+  std::size_t in_free = 0;     ///< of all their readings, those that others saw as free
+  std::size_t seen_past = 0;   ///< of readings of earlier frames, those that later ones see past
   double share_in_free = 0;    ///< of all their readings, those that others saw as free
   double share_seen_past = 0;  ///< of readings of earlier frames, those that later ones see past
   /// Which frames contradict the others, ascending; empty unless something is suspected.

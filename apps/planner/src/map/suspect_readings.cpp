@@ -32,8 +32,8 @@ struct Taken {
 };
 
 constexpr const char* kMaskRule =
-    ": nonzero pixels of a mask are ignored, and pixels of a confidence image under the least "
-    "confidence. If the masks show the object in white, invert them";
+    ": nonzero pixels of a mask and confidences below the least confidence are ignored. If the "
+    "masks show the object in white, invert them";
 
 // In the middle one of so many equal parts of a side?
 bool is_amid(std::size_t at, std::size_t size, std::size_t parts) {
@@ -127,10 +127,9 @@ Suspicion suspect_frame(const Sensor& sensor, const DepthFrame& frame, const Pos
     if (share > most) best = &other, most = share;
   }
   if (best == nullptr) return {};
-  return {best->kind, "of the readings in the middle of the image " +
-                          figure(std::round(100 * share_inside({}, middle))) +
-                          " % lie in the workspace; " + figure(std::round(100 * most)) +
-                          " % would if " + best->what};
+  return {best->kind, figure(std::round(100 * share_inside({}, middle))) +
+                          " % of the readings in the middle of the image lie in the workspace; " +
+                          figure(std::round(100 * most)) + " % would if " + best->what};
 }
 
 Suspicion suspect_masks(const Sensor& sensor, std::span<const DepthFrame> unmasked,
