@@ -49,7 +49,8 @@ Sensor sensor_of_a_wall() {
   return sensor;
 }
 
-GridConfig grid_of_a_wall() { return {0.01, {{-0.5, -0.5, 0.5}, {0.5, 0.5, 1.5}}, {}, 0.01}; }
+// Voxels that are larger than a pixel on the wall.
+GridConfig grid_of_a_wall() { return {0.02, {{-0.5, -0.5, 0.5}, {0.5, 0.5, 1.5}}, {}, 0.01}; }
 
 Pose beside(double x) { return {Eigen::Matrix3d::Identity(), Eigen::Vector3d(x, 0, 0)}; }
 
@@ -141,7 +142,8 @@ TEST(FrameAgreement, ErrorsThatAreDeclaredExplainADifference) {
 
 TEST(FrameAgreement, TheSameImageFromAnotherPlace) {
   const Sensor sensor = sensor_of_a_wall();
-  const DepthFrame wall = test::see_plane(sensor, 1), other = test::see_plane(sensor, 1.1);
+  const DepthFrame wall = test::see_plane(sensor, 1, 0.2),
+                   other = test::see_plane(sensor, 1.1, 0.2);
   const auto frames =
       agreement_of(sensor, grid_of_a_wall(),
                    {{wall, beside(0)}, {other, beside(0)}, {wall, beside(0)}, {wall, beside(0.1)}});

@@ -256,8 +256,8 @@ TEST_P(ApproximateInARoom, StandardErrorsCoverTheTruth) {
   std::vector<Pose> poses = test::poses_in(room()->snapshot(), 300, 3);
   // Before a wall that blocks most rays a part of them has too few with a gain to tell its scatter.
   std::erase_if(poses, [&](const Pose& pose) {
-    const ViewGain gain = evaluator.evaluate(pose);
-    return 2 * gain.hits < gain.rays;
+    const GainEvaluator::RayOutcomes outcomes = evaluator.outcomes(pose);
+    return 2 * outcomes.too_near > outcomes.rays;
   });
   EXPECT_GT(poses.size(), 150U);
   const std::vector<ViewGain> truth = evaluator.evaluate(poses);

@@ -136,8 +136,8 @@ TEST_P(NearWall, TakesWhatAnObstacleInItsPlaceTakes) {
   EXPECT_GT(seen, 500U);
   const ViewGain gain = own.evaluate(pose);
   EXPECT_GT(gain.gain, 0);
-  EXPECT_EQ(gain.hits, seen);
   if (std::get<0>(GetParam()) == GainModel::paper) {
+    EXPECT_EQ(gain.hits, seen);
     EXPECT_EQ(gain.gain, other.evaluate(pose).gain);
   }
 }
