@@ -65,11 +65,11 @@ TEST_F(Versions, TheFirstOnesFilesAreRead) {
   EXPECT_EQ(of_map->name, "small");
 
   const Sensor sensor = read_sensor_toml(dir / "sensor.toml");
-  // Its sensor is this one: a frame more leaves the note.
+  // A frame more of the same sensor leaves the note, though keys have new names.
   BeliefGrid grown = load_vdb(dir / "state.vdb");
   const std::string note = grown.notes().sensor;
   const auto pixels = static_cast<std::size_t>(sensor.camera.width * sensor.camera.height);
-  FrameIntegrator(sensor).integrate(
+  FrameIntegrator(*of_map).integrate(
       grown, {sensor.camera.width, sensor.camera.height, std::vector<float>(pixels, 0.3F)},
       grown.views().front());
   EXPECT_EQ(grown.notes().sensor, note);
@@ -114,7 +114,8 @@ TEST_F(Versions, NewerOnesAreRefused) {
   expect_refused(
       {{{"score", "state.vdb", "--sphere", "9,0.5", "--sensor", "sensor.toml"},
         "sensor.toml: line 2: key \"format\" is 2; this library reads files up to format 1"},
-       {{"candidates", "state.vdb", "--generator", "sphere", "--reach", "reach.toml", "--out", "p"},
+       {{"candidates", "state.vdb", "--generator", "sphere", "--reach", "reach.toml", "--out",
+         "p.txt"},
         "reach.toml: line 1: key \"format\" is 2; this library reads files up to format 1"}});
 
   change("sensor.toml", "\nformat = 2", "\nformat = 1");
