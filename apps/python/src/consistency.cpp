@@ -53,7 +53,7 @@ py::object to_python(const FrameConsistency& found) {
 }
 
 void bind_frame_check(py::module_& module) {
-  py::class_<Check>(
+  py::class_<Check> type(
       module, "FrameCheck",
       R"(Holds frames against one another while a ``FrameIntegrator`` puts them into a map.
 
@@ -63,7 +63,9 @@ Parameters
 ----------
 sensor : Sensor
 support_plane : float, optional
-    Height z of the table [m]; None: no table.)")
+    Height z of the table [m]; None: no table.)");
+  refuse_pickling(type);
+  type.def("__repr__", [](const Check& self) { return "<FrameCheck of " + self.sensor.name + ">"; })
       .def(py::init([](const Given<Sensor>& sensor, std::optional<double> support_plane) {
              return Check{*sensor, FrameCheck(*sensor, support_plane)};
            }),
