@@ -53,7 +53,7 @@ py::object to_python(const FrameConsistency& found) {
 }
 
 void bind_frame_check(py::module_& module) {
-  py::class_<Check> type(
+  auto type = bound_class<Check>(
       module, "FrameCheck",
       R"(Holds frames against one another while a ``FrameIntegrator`` puts them into a map.
 

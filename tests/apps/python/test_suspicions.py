@@ -100,7 +100,7 @@ def test_settings_in_other_units(sensor, poses):
     grid = viewgain.BeliefGrid(voxel_size=0.01, workspace=WORKSPACE, sensor=sensor)
     scene = viewgain.VoxelScene(grid)
     for more, words in [({"noise": viewgain.ConstantNoise(sigma_axial=2.0, sigma_lateral=0.005)}, "sigma_axial"),
-                        ({"pose_sigma": (5.0, 0.5)}, "5 m"), ({"pose_sigma": (0, 0.5)}, "28.65 degrees"),
+                        ({"pose_sigma": (5.0, 0.5)}, "5 m"), ({"pose_sigma": (0, 0.3)}, "17.19 degrees"),
                         ({"body_size": (65.0, 65.0, 76.0)}, "65 x 65 x 76 m"),
                         ({"min_range": 100.0, "max_range": 3000.0, "working_distance": 400.0}, "100 to 3000 m")]:
         odd = make_sensor(**more)
