@@ -31,8 +31,9 @@ VG_API vg_status vg_sensor_save(const vg_sensor* sensor, const char* path);
 VG_API vg_status vg_range_calibration_load(const char* preset_or_file,
                                            vg_range_calibration** calibration);
 
-/* Reads poses, of a name in .npy numpy's array, else TUM text: at most `capacity` of them, 16 numbers each, and says in *found
-   how many the file has. T_world_camera and timestamps [s] may be null: not wanted. */
+/* Reads poses, of a name in .npy numpy's array, else TUM text: at most `capacity` of them, 16
+   numbers each, and says in *found how many the file has. T_world_camera and timestamps [s] may be
+   null: not wanted. */
 VG_API vg_status vg_poses_load(const char* path, double* T_world_camera, double* timestamps,
                                size_t capacity, size_t* found);
 

@@ -219,8 +219,8 @@ VG_API vg_status vg_planner_rank_poses(vg_planner* planner, const double* poses,
 VG_API vg_status vg_planner_outcomes(vg_planner* planner, const double T_world_camera[16],
                                      vg_ray_outcomes* outcomes);
 
-/* The pose was commanded; reached: nonzero if the camera got there. In both cases it is not proposed
-   again and goes out of the proposal as it stands. Only for poses that were commanded. */
+/* The pose was commanded; reached: nonzero if the camera got there. In both cases it is not
+   proposed again and goes out of the proposal as it stands. Only for poses that were commanded. */
 VG_API vg_status vg_planner_tried(vg_planner* planner, const double T_world_camera[16],
                                   int32_t reached);
 
