@@ -142,7 +142,8 @@ class Kills:
                 shutil.rmtree(self.work / folder, ignore_errors=True)
             live = self.work / "live"
             live.mkdir()
-            shutil.copy(frames / "sensor.toml", live)
+            for name in ("sensor.toml", "frames.toml"):
+                shutil.copy(frames / name, live)
             (live / "poses.txt").write_text(poses[0] if poses[0].startswith("#") else "")
             lines = [line for line in poses if not line.startswith("#")]
             begin = time.monotonic()

@@ -79,7 +79,8 @@ def main():
 
     call("simulate", options.mesh, "--size", "0.35", "--recenter", "on", "--sphere", f"{POSES},0.6", "--sensor",
          work / "small.toml", "--noise", "on", "--out", some)
-    shutil.copy(some / "sensor.toml", live)
+    for name in ("sensor.toml", "frames.toml"):
+        shutil.copy(some / name, live)
     poses = [line.split() for line in (some / "poses.txt").read_text().splitlines() if not line.startswith("#")]
     order = random.Random(1).choices(range(POSES), k=options.frames)
     process = subprocess.Popen([program, "follow", str(live), *MAP, "--out", str(out), "--quiet"],

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "convert.hpp"
+#include "planner_handle.hpp"
 #include "viewgain/planner.h"
 #include "viewgain/planner/view_planner.hpp"
 #include "watcher.hpp"
@@ -20,10 +21,6 @@ using namespace viewgain::c_api;
 static_assert(VG_FRAME_VERDICTS == kFrameVerdictNames.size());
 static_assert(VG_FRAME_NO_MASK == static_cast<int>(FrameVerdict::no_mask));
 static_assert(VG_INFEASIBLE_MISSED == static_cast<int>(Infeasibility::too_near) + 1);
-
-struct vg_planner {
-  ViewPlanner planner;
-};
 
 namespace {
 
@@ -144,7 +141,6 @@ vg_planner_config viewgain::c_api::defaults() noexcept {
 VG_DEFINE_INIT(vg_planner_config)
 VG_DEFINE_INIT(vg_planner_view)
 VG_DEFINE_INIT(vg_registration)
-VG_DEFINE_INIT(vg_consistency)
 
 vg_status vg_planner_create(const vg_sensor* sensor, const vg_planner_config* config,
                             vg_planner** planner) {
@@ -203,30 +199,6 @@ vg_status vg_planner_frames(const vg_planner* planner, size_t* counts, size_t ve
     for (std::size_t i = 0; i < verdicts; ++i) {
       counts[i] = count_of(planner->planner.frames(), static_cast<FrameVerdict>(i));
     }
-  });
-}
-
-vg_status vg_planner_consistency(const vg_planner* planner, vg_consistency* found,
-                                 int32_t* contradicts, size_t capacity) {
-  return guarded("planner found", {planner, found}, [&] {
-    require_struct(found, "vg_consistency");
-    const FrameConsistency all = planner->planner.map().consistency();
-    if (contradicts != nullptr) {
-      if (capacity < all.frames.size()) {
-        refuse("capacity is " + std::to_string(capacity) + " for " +
-               std::to_string(all.frames.size()) + " frames");
-      }
-      std::fill_n(contradicts, all.frames.size(), 0);
-      for (const std::size_t frame : all.contradicting) contradicts[frame] = 1;
-    }
-    vg_consistency result{};
-    result.frames = all.frames.size();
-    result.contradicting = all.contradicting.size();
-    result.share_in_free = all.share_in_free;
-    result.share_seen_past = all.share_seen_past;
-    all.suspicion.kind.copy(result.kind, sizeof result.kind - 1);
-    all.suspicion.what.copy(result.what, sizeof result.what - 1);
-    write_struct(found, result);
   });
 }
 

@@ -58,7 +58,7 @@ class IntegrationReport(NamedTuple):
 
 @named("viewgain")
 class Suspicion(NamedTuple):
-    """What is probably wrong with frames, from ``suspect_frames``."""
+    """What is probably wrong with frames, from ``suspect_frames`` and ``FrameConsistency``."""
 
     kind: Annotated[str, "The mistake, such as depth_scale, world_to_camera or quaternion_order."]
     what: Annotated[str, "A sentence with the figure that made it suspicious."]
@@ -74,6 +74,9 @@ class FrameConsistency(NamedTuple):
     suspicion: Annotated[Optional[Suspicion], "The likely cause; None: the frames agree."]
     in_free: Annotated[_Floats, "(N,), float64: share_in_free of each frame in the map."]
     seen_past: Annotated[_Floats, "(N,), float64: share_seen_past of each."]
+    displacement: Annotated[float, "Median over the frames of their displacement against earlier frames [m]; NaN if none could be compared."]
+    expected: Annotated[float, "The displacement that the declared errors explain [m]."]
+    displacements: Annotated[_Floats, "(N,), float64: displacement of each frame; NaN where too little is seen twice."]
 
 
 @named("viewgain")

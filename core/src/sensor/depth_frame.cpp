@@ -5,6 +5,8 @@
 #include <string>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/frame_identity.hpp"
+#include "viewgain/support/text.hpp"
 
 namespace viewgain {
 
@@ -25,6 +27,18 @@ void check_frame_size(const DepthFrame& frame, const PinholeCamera& camera) {
     refuse("depth frame has " + std::to_string(frame.known_depth.size()) + " known depths for " +
            std::to_string(pixels) + " pixels");
   }
+}
+
+bool is_identity(const std::string& text) {
+  constexpr std::size_t kDigits = 16;
+  return text.size() >= kDigits + 2 && text.find_first_not_of("0123456789abcdef") == kDigits &&
+         text[kDigits] == ' ' && text.find('\n') == std::string::npos;
+}
+
+void check_identity(const std::string& identity) {
+  if (identity.empty() || is_identity(identity)) return;
+  refuse("the identity of a frame is " + quoted(identity) +
+         "; it must be 16 hexadecimal digits, a space and a name");
 }
 
 }  // namespace viewgain

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/frame_identity.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::detail {
@@ -16,12 +17,6 @@ namespace {
 
 constexpr const char* kSensorNote = "sensor";
 constexpr const char* kFramesNote = "frames";  // an identity per line
-
-bool is_identity(const std::string& text) {
-  constexpr std::size_t kDigits = 16;
-  return text.size() >= kDigits + 2 && text.find_first_not_of("0123456789abcdef") == kDigits &&
-         text[kDigits] == ' ' && text.find('\n') == std::string::npos;
-}
 
 // The lines of a sensor's description that say what its readings mean, without comments: name,
 // mounting and housing change no reading.
@@ -49,12 +44,6 @@ bool is_same_sensor(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
-
-void check_identity(const std::string& identity) {
-  if (identity.empty() || is_identity(identity)) return;
-  refuse("the identity of a frame is " + viewgain::quoted(identity) +
-         "; it must be 16 hexadecimal digits, a space and a name");
-}
 
 void check_notes(const MapNotes& notes) {
   for (const std::string& frame : notes.frames) {

@@ -14,8 +14,6 @@ namespace viewgain::detail {
 /// Throws Error(invalid_argument) for an identity that is none, and for another text by the name of
 /// the sensor's or the frames' note.
 void check_notes(const MapNotes& notes);
-/// The same of one frame's; an empty one is allowed.
-void check_identity(const std::string& identity);
 
 /// As a map's file has them, by name, and back. Throws as check_notes().
 [[nodiscard]] std::map<std::string, std::string> texts_of(const MapNotes& notes);

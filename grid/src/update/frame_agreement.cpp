@@ -6,11 +6,14 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string_view>
 #include <utility>
 
 #include "map/grid_layout.hpp"
+#include "update/map_update.hpp"
 #include "viewgain/core/noise.hpp"
+#include "viewgain/support/frame_displacement.hpp"
 #include "viewgain/support/hash64.hpp"
 
 namespace viewgain {
@@ -23,9 +26,12 @@ constexpr std::size_t kOthers = 600;      // of these, that a frame is held agai
 constexpr std::size_t kImages = 64;       // that are remembered
 // Of the range: what real cameras and trackers are off by beside what they declare.
 constexpr double kUndeclared = 0.01;
-constexpr double kSigmas = 3;    // that noise explains
-constexpr double kSteepest = 3;  // slope to the image plane of a surface that is looked at
-constexpr int kMostSteps = 12;   // along a ray, on either side of a reading
+constexpr double kSigmas = 3;          // that noise explains
+constexpr double kSteepest = 3;        // slope to the image plane of a surface that is looked at
+constexpr int kMostSteps = 12;         // along a ray, on either side of a reading
+constexpr double kLeastCosine = 0.4;   // of the angle of incidence, where distances are measured
+constexpr double kCommon = 0.0035;     // of the range, the most of noise that is the same for all
+constexpr double kSameSurface = 0.03;  // of the range, beside noise; farther off is another one
 
 // The same images from poses that differ by less say nothing.
 constexpr double kMoved = 0.005, kTurned = 0.01;  // [m], [rad]
@@ -50,6 +56,11 @@ float nearest_round(const DepthFrame& frame, std::size_t u, std::size_t v, std::
     }
   }
   return nearest;
+}
+
+// Errors of a pose as readings at this range have them, all alike.
+MeasurementSigmas of_pose(const PoseSigma& pose_sigma, double range) {
+  return {pose_sigma.translation, std::hypot(pose_sigma.translation, pose_sigma.rotation * range)};
 }
 
 bool is_free(const BeliefGrid& grid, const Eigen::Vector3d& p_world) {
@@ -105,7 +116,7 @@ std::vector<FrameAgreement::Reading> FrameAgreement::sampled(const BeliefGrid& m
       const MeasurementSigmas own = sigmas(range, pose_sigma);
       if (support_plane_ && is_of_plane(p_world.z() - *support_plane_, ray.z(), own)) continue;
       readings.push_back({p_world, ray.cast<float>(), static_cast<float>(own.axial),
-                          static_cast<float>(own.lateral),
+                          static_cast<float>(own.lateral), of_pose(both(pose_sigma), range),
                           static_cast<std::uint32_t>(frames_.size())});
     }
   }
@@ -115,6 +126,7 @@ std::vector<FrameAgreement::Reading> FrameAgreement::sampled(const BeliefGrid& m
 void FrameAgreement::look(const BeliefGrid& before, const DepthFrame& frame,
                           const Pose& T_world_camera_in, const PoseSigma& pose_sigma) {
   check_frame_size(frame, sensor_.camera);
+  detail::check_pose_sigma(pose_sigma);
   const Pose T_world_camera = detail::rigid_view(T_world_camera_in);
   FrameContradiction found;
   look_at_others(frame, T_world_camera, pose_sigma, found);
@@ -170,11 +182,44 @@ MeasurementSigmas FrameAgreement::sigmas(double range, const PoseSigma& pose_sig
           std::hypot(own.lateral, moved, sensor_.scale_sigma * range)};
 }
 
+// How far a reading of an earlier frame lies from what this one sees there, if that is flat, and
+// how far declared errors may move it: those of both poses, that of the scale, and so much of the
+// noise as all readings may have in common; for noisy cameras that is not all of it.
+void FrameAgreement::compare(const DepthFrame& frame, std::size_t u, std::size_t v,
+                             const Reading& earlier, const Pose& T_camera_world,
+                             const PoseSigma& pose_sigma, DisplacementFit& fit) const {
+  if (frame.shows_known(v * static_cast<std::size_t>(frame.width) + u)) return;
+  const Eigen::Vector3d p_camera = T_camera_world * earlier.p_world;
+  const double range = p_camera.norm();
+  const MeasurementSigmas noise = sensor_.noise_sigmas(range);
+  const auto plane = plane_at(frame, sensor_.camera, rays_, u, v, noise.axial);
+  if (!plane) return;
+  const double size = plane->norm(), cosine = std::min(1.0, 1 / (size * range));
+  const Eigen::Vector3d normal = *plane / size;
+  const double distance = normal.dot(p_camera) - 1 / size;
+  const double axial = std::hypot(sigmas(range, pose_sigma).axial, earlier.axial);
+  if (cosine < kLeastCosine || std::abs(distance) > kSigmas * axial + kSameSurface * range) return;
+  const double earlier_cosine =
+      std::abs(normal.dot(T_camera_world.rotation() * earlier.ray.cast<double>()));
+  const double by_pose = sigma_along_normal(of_pose(both(pose_sigma), range), cosine);
+  const double by_earlier = sigma_along_normal(earlier.of_pose, earlier_cosine);
+  const double by_noise = std::min(sigma_along_normal(noise, cosine), kCommon * range);
+  fit.add(p_camera, normal, distance,
+          std::hypot(by_noise, std::numbers::sqrt2 * std::hypot(by_pose, by_earlier),
+                     sensor_.scale_sigma * range));
+}
+
+PoseSigma FrameAgreement::both(const PoseSigma& pose_sigma) const {
+  return {std::hypot(sensor_.pose_sigma.translation, pose_sigma.translation),
+          std::hypot(sensor_.pose_sigma.rotation, pose_sigma.rotation)};
+}
+
 void FrameAgreement::look_at_others(const DepthFrame& frame, const Pose& T_world_camera,
                                     const PoseSigma& pose_sigma, FrameContradiction& found) const {
   const Pose T_camera_world = T_world_camera.inverse();
   const auto width = static_cast<std::size_t>(frame.width);
   const std::size_t step = kept_.size() / kOthers + 1;
+  DisplacementFit fit;
   for (std::size_t k = 0; k < kept_.size(); k += step) {
     const Eigen::Vector3d p_camera = T_camera_world * kept_[k].p_world;
     if (!sensor_.camera.sees(p_camera)) continue;
@@ -189,6 +234,7 @@ void FrameAgreement::look_at_others(const DepthFrame& frame, const Pose& T_world
     const MeasurementSigmas own = sigmas(range, pose_sigma);
     const double axial = std::hypot(own.axial, static_cast<double>(kept_[k].axial));
     const double lateral = std::hypot(own.lateral, static_cast<double>(kept_[k].lateral));
+    compare(frame, u, v, kept_[k], T_camera_world, pose_sigma, fit);
     // Where errors are larger than a pixel the surface may be seen beside it.
     const auto reach = static_cast<std::size_t>(
         std::max(1.0, std::ceil(kSigmas * lateral * sensor_.camera.fx / p_camera.z())));
@@ -201,6 +247,10 @@ void FrameAgreement::look_at_others(const DepthFrame& frame, const Pose& T_world
     ++found.others;
     found.seen_past += beyond > gate ? 1 : 0;
   }
+  if (!fit.tells()) return;
+  found.compared = fit.size();
+  found.displacement = fit.displacement();
+  found.expected = fit.expected();
 }
 
 void FrameAgreement::look_for_copy(const DepthFrame& frame, const Pose& T_world_camera,

@@ -17,7 +17,9 @@
 #include <string>
 #include <vector>
 
+#include "core/expect_error.hpp"
 #include "support/meshes.hpp"
+#include "viewgain/core/error.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/simulated_acquisition.hpp"
@@ -196,6 +198,32 @@ TEST(FrameCheck, MistakesAreNoticed) {
   EXPECT_EQ(noticed, mistakes.size());
 }
 
+// What is too small for readings to contradict each other, and yet more than is declared.
+TEST(FrameCheck, FramesThatLieBesideOneAnotherAreNoticed) {
+  const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+  const std::vector<std::function<Pose(const Pose&)>> changes{
+      [&](const Pose& T) { return turned(T, y, 1.18); },
+      [](const Pose& T) { return Pose(T.rotation(), T * Eigen::Vector3d(0.0175, 0, 0)); }};
+  std::size_t cases = 0;
+  for (const auto& change : changes) {
+    Taken wrong = taken(camera(), 4);
+    each_pose(change)(wrong);
+    const FrameConsistency found = consistency_of(camera(), wrong);
+    EXPECT_EQ(found.suspicion.kind, "displacement") << cases << found.suspicion.what;
+    EXPECT_GT(found.displacement, 1.5 * found.expected);
+    EXPECT_GE(2 * found.contradicting.size(), kFrames);
+    // The same where poses are declared to be off by that.
+    Sensor declared = camera();
+    declared.pose_sigma = {0.01, 0.02};
+    EXPECT_EQ(consistency_of(declared, wrong).suspicion.kind, "") << cases;
+    // Four frames are compared with earlier ones, too few.
+    wrong.frames.resize(5), wrong.poses.resize(5);
+    EXPECT_NE(consistency_of(camera(), wrong).suspicion.kind, "displacement") << cases;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 2U);
+}
+
 TEST(FrameCheck, AnObjectThatMovedIsNoticed) {
   const FrameConsistency found = consistency_of(camera(), taken(camera(), 5, -0.25));
   EXPECT_EQ(found.suspicion.kind, "contradiction");
@@ -245,6 +273,25 @@ TEST(FrameCheck, FewFramesSayNothing) {
   all.frames.resize(1), all.poses.resize(1);
   EXPECT_EQ(consistency_of(camera(), all).suspicion.kind, "");
   EXPECT_EQ(consistency_of(camera(), {}).suspicion.kind, "");
+}
+
+// What is refused is not counted.
+TEST(FrameCheck, AnIdentityOfAnotherFormChangesNothing) {
+  Taken all = taken(camera(), 8);
+  MapModelConfig config;
+  config.grid.voxel_size = 0.01;
+  config.grid.workspace = {{-0.5, -0.5, -0.3}, {0.5, 0.5, 0.2}};
+  MapModel map(camera(), config, {1});
+  const std::string hash = map.grid().content_hash();
+  all.frames[0].identity = "frame 0";
+  test::expect_error(ErrorCode::invalid_argument, "16 hexadecimal digits", [&] {
+    (void)map.update({all.poses[0], {all.frames[0]}});
+  });
+  EXPECT_EQ(map.consistency().frames.size(), 0U);
+  EXPECT_EQ(map.grid().content_hash(), hash);
+  all.frames[0].identity = "0123456789abcdef frame 0";
+  EXPECT_EQ(map.update({all.poses[0], {all.frames[0]}}).verdict, FrameVerdict::used);
+  EXPECT_EQ(map.consistency().frames.size(), 1U);
 }
 
 TEST(FrameCheck, NumbersAreWrittenAsRanges) {

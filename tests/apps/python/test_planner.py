@@ -63,9 +63,14 @@ def test_frames_are_held_against_one_another(sensor, camera, poses):
             assert len(found.in_free) == len(found.seen_past) == len(poses)
             assert (found.suspicion is not None) == wrong, found
             assert bool(found.contradicting) == wrong
-            assert (found.share_seen_past > 0.03) == wrong
+            assert (found.share_seen_past > 0.05) == wrong
+            assert len(found.displacements) == len(poses) and np.isnan(found.displacements[0])
+            assert found.expected > 0 and np.isclose(found.displacement, np.nanquantile(found.displacements, 0.5, method="higher"))
     with pytest.raises(ValueError):
         check.look(grid, depth[:-1], pose)
+    with pytest.raises(ValueError, match="sigma"):
+        check.look(grid, depth, pose, pose_sigma=(-1, 0))
+    assert len(check.result(grid).in_free) == len(poses)
 
 
 def test_registers_a_frame_against_its_map(sensor, camera, poses):

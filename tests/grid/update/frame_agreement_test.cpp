@@ -140,6 +140,34 @@ TEST(FrameAgreement, ErrorsThatAreDeclaredExplainADifference) {
   EXPECT_EQ(nearer_by(of_scale, {}), 0.0);
 }
 
+// Frames of which each second one is off along the optical axis. What is declared counts by the
+// standard deviation of a reading, 0.35 % of the range at most, and twice by poses and scale.
+TEST(FrameAgreement, FramesThatLieBesideOneAnother) {
+  const Sensor exact = test::small_sensor(88, 72);
+  Sensor of_pose = exact;
+  of_pose.pose_sigma = {0.01, 0};
+  std::size_t cases = 0;
+  for (const double off : {0.0, 0.004, 0.008}) {
+    std::vector<Taken> all;
+    for (int i = 0; i < 8; ++i) {
+      const Pose pose = test::ring_view(i % 2 == 0 ? 0 : 1);
+      const Pose stated(pose.rotation(), pose * Eigen::Vector3d(0, 0, i % 2 == 0 ? 0 : off));
+      all.push_back({test::see_spheres(exact, pose, test::three_spheres_in_a_room()), stated});
+    }
+    const auto frames = agreement_of(exact, test::object_grid(64), all);
+    const auto declared = agreement_of(of_pose, test::object_grid(64), all);
+    EXPECT_EQ(frames[0].compared, 0U);
+    ASSERT_GT(frames[1].compared, 100U);
+    EXPECT_LE(frames[1].displacement, off + 5e-4) << off;
+    EXPECT_GE(frames[1].displacement, 0.5 * off) << off;  // of surfaces that are seen from the side
+    EXPECT_LE(frames[1].expected, 0.0035 * 2) << off;
+    EXPECT_GT(declared[1].expected, 0.02);
+    EXPECT_LT(declared[1].expected, 0.03);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3U);
+}
+
 TEST(FrameAgreement, TheSameImageFromAnotherPlace) {
   const Sensor sensor = sensor_of_a_wall();
   const DepthFrame wall = test::see_plane(sensor, 1, 0.2),
@@ -189,6 +217,12 @@ TEST(FrameAgreement, WhatIsNoFrameIsRefused) {
   const Sensor sensor = sensor_of_a_wall();
   const BeliefGrid grid(grid_of_a_wall(), sensor);
   FrameAgreement agreement(sensor);
+  EXPECT_TRUE(agreement.frames(grid).empty());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const PoseSigma sigma : {PoseSigma{-1, 0}, PoseSigma{0, nan}}) {
+    test::expect_error(ErrorCode::invalid_argument, "sigma",
+                       [&] { agreement.look(grid, test::see_plane(sensor, 1), beside(0), sigma); });
+  }
   EXPECT_TRUE(agreement.frames(grid).empty());
   DepthFrame wall = test::see_plane(sensor, 1);
   Pose bent = beside(0);

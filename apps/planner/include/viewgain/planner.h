@@ -140,6 +140,8 @@ typedef struct vg_consistency {
   size_t contradicting;   /* of these, those that contradict the others */
   double share_in_free;   /* of all readings, those in space that other frames saw as free */
   double share_seen_past; /* of earlier frames' readings, those that later frames see past */
+  double displacement;    /* of frames against earlier ones, median [m]; NaN: none */
+  double expected;        /* the displacement that the declared errors explain [m] */
   char kind[32];          /* the likely cause; empty: the frames agree */
   char what[480];         /* a sentence for people; cut off if it is longer */
 } vg_consistency;
@@ -148,9 +150,26 @@ VG_API void vg_consistency_init(vg_consistency* found, size_t struct_size);
 
 /* Compares the frames that went into the map since the planner was made or loaded. `contradicts`
    may be null; else it has room for `capacity` entries, at least one per frame, and an entry is
-   nonzero for a frame that contradicts the others. Takes 20 ms, 0.5 s if frames do not fit. */
+   nonzero for a frame that contradicts the others. Takes 50 ms, 0.5 s if frames do not fit. */
 VG_API vg_status vg_planner_consistency(const vg_planner* planner, vg_consistency* found,
                                         int32_t* contradicts, size_t capacity);
+
+/* The same for frames that a vg_integrator puts into a map. One call at a time on a check. */
+typedef struct vg_frame_check vg_frame_check;
+/* support_plane: height of the table, world z [m]; NaN: none. */
+VG_API vg_status vg_frame_check_create(const vg_sensor* sensor, double support_plane,
+                                       vg_frame_check** check);
+/* Takes a frame that is about to be integrated into `before`; parameters as vg_integrate()'s.
+   Flying pixels contradict other frames: set them to 0 before.
+   Takes 0.5 ms for 25,344 pixels. */
+VG_API vg_status vg_frame_check_look(vg_frame_check* check, const vg_grid* before,
+                                     const float* depth, const double T_world_camera[16],
+                                     const double pose_sigma[2]);
+/* What the frames so far come to, by the map with all of them, as vg_planner_consistency(). */
+VG_API vg_status vg_frame_check_result(const vg_frame_check* check, const vg_grid* after,
+                                       vg_consistency* found, int32_t* contradicts,
+                                       size_t capacity);
+VG_API void vg_frame_check_release(vg_frame_check* check); /* null: nothing */
 
 /* What became of a frame that was registered. */
 enum {

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
 
 #include "map/frame_meetings.hpp"
 #include "map/suspicion.hpp"
@@ -12,6 +15,13 @@ namespace viewgain {
 namespace {
 
 constexpr std::size_t kMostKept = 12;
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 }  // namespace
 
@@ -46,26 +56,35 @@ FrameConsistency FrameCheck::result(const BeliefGrid& after) const {
   FrameConsistency result;
   result.frames = agreement_.frames(after);
   FrameContradiction all;
+  std::vector<double> displacement, expected;
   for (const FrameContradiction& frame : result.frames) {
     all.readings += frame.readings;
     all.in_free += frame.in_free;
     all.others += frame.others;
     all.seen_past += frame.seen_past;
+    if (frame.compared == 0) continue;
+    displacement.push_back(frame.displacement);
+    expected.push_back(frame.expected);
   }
+  result.displacement = median_of(std::move(displacement));
+  result.expected = median_of(std::move(expected));
   result.in_free = all.in_free;
   result.seen_past = all.seen_past;
   result.share_in_free = all.share_in_free();
   result.share_seen_past = all.share_seen_past();
-  result.suspicion = detail::suspicion_of(sensor_, kept_,
-                                          detail::FrameMeetings(sensor_, kept_, sequence_, places_),
-                                          support_plane_, result);
+  const double voxel_size = after.voxel_size();
+  const Suspicion contradiction = detail::suspect_contradiction(result, voxel_size);
+  const detail::FrameMeetings meetings(sensor_, kept_, sequence_, places_);
+  result.suspicion = detail::suspicion_of(sensor_, kept_, meetings, support_plane_, contradiction);
   if (result.suspicion.kind.empty()) return result;
   const double most = std::max(detail::kContradicting, 0.5 * detail::largest_share(result));
   for (std::size_t i = 0; i < result.frames.size(); ++i) {
     const FrameContradiction& frame = result.frames[i];
     const double share = std::max(frame.share_in_free(), frame.share_seen_past());
     const bool is_copy = frame.same_image_as && share >= detail::kContradicting;
-    if (share >= most || is_copy) result.contradicting.push_back(i);
+    const bool is_displaced =
+        contradiction.kind == "displacement" && detail::is_displaced(frame, voxel_size);
+    if (share >= most || is_copy || is_displaced) result.contradicting.push_back(i);
   }
   return result;
 }

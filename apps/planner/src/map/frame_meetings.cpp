@@ -14,9 +14,10 @@
 namespace viewgain::detail {
 namespace {
 
-constexpr std::size_t kPoints = 500;  // of a frame that are looked for in the others
-constexpr double kGate = 0.04;        // of the range: farther off is another surface
-constexpr double kParallax = 0.05;    // of the range: frames that are nearer tell nothing of poses
+// That are looked for in the other frames: of all frames, and of one.
+constexpr std::size_t kPoints = 2000, kLeastPoints = 160, kMostPoints = 1000;
+constexpr double kGate = 0.04;      // of the range: farther off is another surface
+constexpr double kParallax = 0.05;  // of the range: frames that are nearer tell nothing of poses
 
 Pose optical_of_body(const Pose& T) {
   Eigen::Matrix3d R;  // its columns: x right, y down, z forward in axes forward, left, up
@@ -111,17 +112,30 @@ FrameMeetings::FrameMeetings(const Sensor& sensor, std::span<const DepthFrame> f
       frames_(frames.begin(), frames.end()),
       sequence_(sequence),
       places_(std::move(places)),
-      rays_(sensor.camera.ray_table()) {
+      rays_(sensor.camera.ray_table()),
+      least_squared_(sensor.min_range * sensor.min_range),
+      most_squared_(sensor.max_range * sensor.max_range) {
   const JumpEdgeFilter filter(sensor.camera);
   for (DepthFrame& frame : frames_) filter.apply(frame);
-  const std::size_t pixels = rays_.size();
-  const std::size_t step = std::max<std::size_t>(1, pixels / (3 * kPoints));
+  const std::size_t points =
+      std::clamp(kPoints / std::max<std::size_t>(1, frames_.size()), kLeastPoints, kMostPoints);
   for (const DepthFrame& frame : frames_) {
-    std::vector<std::size_t>& own = samples_.emplace_back();
-    for (std::size_t i = step / 2; i < pixels; i += step) {
+    std::vector<std::size_t> seen;
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
       if (frame.depth[i] > 0 && std::isfinite(frame.depth[i]) && rays_[i].allFinite()) {
-        own.push_back(i);
+        seen.push_back(i);
       }
+    }
+    std::vector<std::size_t>& own = samples_.emplace_back();
+    const double step = static_cast<double>(seen.size()) / static_cast<double>(points);
+    if (step <= 1) {
+      own = std::move(seen);
+      continue;
+    }
+    // By the golden section within each step, so that they do not all lie in one column.
+    for (std::size_t k = 0; k < points; ++k) {
+      const double part = std::fmod(static_cast<double>(k) / std::numbers::phi, 1.0);
+      own.push_back(seen[static_cast<std::size_t>((static_cast<double>(k) + part) * step)]);
     }
   }
 }
@@ -144,16 +158,16 @@ Meetings FrameMeetings::under(const Convention& reading) const {
   Meetings sum;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     for (const std::size_t pixel : samples_[i]) {
-      const std::optional<double> z = depth(reading, i, pixel);
-      if (!z) continue;
+      const double z = depth(reading, i, pixel);
+      if (!(z > 0)) continue;
       ++sum.points;
       if (!T_world[i]) continue;
-      const Eigen::Vector3d p_world = *T_world[i] * (*z * ray(reading, pixel));
+      const Eigen::Vector3d p_world = *T_world[i] * (z * ray(reading, pixel));
       for (std::size_t j = 0; j < frames_.size(); ++j) {
         if (!T_world[j]) continue;
         // Frames from one place agree however poses and depths are read.
         const double baseline = (T_world[j]->translation() - T_world[i]->translation()).norm();
-        if (!(baseline > parallax * *z)) continue;
+        if (!(baseline > parallax * z)) continue;
         const std::optional<double> farther = beyond(reading, j, T_camera[j] * p_world);
         if (!farther || *farther < -1) continue;  // it looks elsewhere, or the point is hidden
         ++(*farther > 1 ? sum.seen_past : sum.met);
@@ -174,13 +188,13 @@ std::optional<double> FrameMeetings::share_better(const Convention& reading) con
   std::size_t better = 0, all = 0;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     for (const std::size_t pixel : samples_[i]) {
-      const std::optional<double> z = depth(as_said, i, pixel), other_z = depth(reading, i, pixel);
-      if (!z || !other_z) continue;
+      const double z = depth(as_said, i, pixel), other_z = depth(reading, i, pixel);
+      if (!(z > 0 && other_z > 0)) continue;
       for (std::size_t j = 0; j < frames_.size(); ++j) {
         if (j == i) continue;
         const Pose T = T_camera[j] * T_world[i];
-        const auto one = beyond(as_said, j, T * (*z * rays_[pixel]), true);
-        const auto other = beyond(reading, j, T * (*other_z * ray(reading, pixel)), true);
+        const auto one = beyond(as_said, j, T * (z * rays_[pixel]), true);
+        const auto other = beyond(reading, j, T * (other_z * ray(reading, pixel)), true);
         if (!one || !other) continue;
         const double a = std::abs(*one), b = std::abs(*other);
         if (std::min(a, b) > 0.5 || std::abs(a - b) < 0.1) continue;
@@ -209,35 +223,36 @@ Eigen::Vector3d FrameMeetings::ray(const Convention& reading, std::size_t pixel)
           stated.y() / reading.focal_factor, 1};
 }
 
-std::optional<double> FrameMeetings::depth(const Convention& reading, std::size_t frame,
-                                           std::size_t pixel) const {
+double FrameMeetings::depth(const Convention& reading, std::size_t frame, std::size_t pixel) const {
   double z = static_cast<double>(frames_[frame].depth[pixel]) * reading.depth_factor;
-  const double length = ray(reading, pixel).norm();
-  if (reading.is_along_ray) z /= length;
-  const double range = z * length;
-  if (!(range >= sensor_.min_range && range <= sensor_.max_range)) return std::nullopt;
-  return z;
+  if (!(z > 0)) return 0;
+  const double squared_length = ray(reading, pixel).squaredNorm();
+  if (reading.is_along_ray) z /= std::sqrt(squared_length);
+  const double squared = z * z * squared_length;
+  return squared >= least_squared_ && squared <= most_squared_ ? z : 0;
 }
 
-std::optional<double> FrameMeetings::depth(const Convention& reading, std::size_t frame, double u,
-                                           double v, bool is_flat) const {
+double FrameMeetings::depth(const Convention& reading, std::size_t frame, double u, double v,
+                            bool is_flat) const {
   const int width = sensor_.camera.width, height = sensor_.camera.height;
-  const auto at = [&](double x, double y) -> std::optional<double> {
-    if (!(x >= 0 && y >= 0 && x < width && y < height)) return std::nullopt;
-    const auto pixel =
+  const auto at = [&](int x, int y) -> double {
+    if (x < 0 || y < 0 || x >= width || y >= height) return 0;
+    const std::size_t pixel =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-    if (!rays_[pixel].allFinite()) return std::nullopt;
     return depth(reading, frame, flipped(reading, pixel));
   };
-  const std::optional<double> nearest = at(std::round(u), std::round(v));
-  if (!nearest) return std::nullopt;
-  const double x = std::floor(u), y = std::floor(v);
-  const double gate = *nearest * (is_flat ? 2 / sensor_.camera.fx : kGate);
+  if (!(u > -1 && v > -1 && u < width && v < height)) return 0;
+  const int x = static_cast<int>(u + 1) - 1, y = static_cast<int>(v + 1) - 1;  // rounded down
+  const double right = u - x, below = v - y;
+  const double nearest = at(right < 0.5 ? x : x + 1, below < 0.5 ? y : y + 1);
+  if (!(nearest > 0)) return 0;
+  const double gate = nearest * (is_flat ? 2 / sensor_.camera.fx : kGate);
   double z = 0;
-  for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
-    const std::optional<double> corner = at(x + dx, y + dy);
-    if (!corner || std::abs(*corner - *nearest) > gate) return is_flat ? std::nullopt : nearest;
-    z += *corner * (dx == 0 ? 1 - (u - x) : u - x) * (dy == 0 ? 1 - (v - y) : v - y);
+  for (int corner = 0; corner < 4; ++corner) {
+    const int dx = corner % 2, dy = corner / 2;
+    const double of_corner = at(x + dx, y + dy);
+    if (!(of_corner > 0 && std::abs(of_corner - nearest) <= gate)) return is_flat ? 0 : nearest;
+    z += of_corner * (dx == 0 ? 1 - right : right) * (dy == 0 ? 1 - below : below);
   }
   return z;
 }
@@ -248,9 +263,9 @@ std::optional<double> FrameMeetings::beyond(const Convention& reading, std::size
   const PinholeCamera& camera = sensor_.camera;
   const Eigen::Vector2d at = camera.project(
       {reading.focal_factor * reading.focal_x_factor * p.x(), reading.focal_factor * p.y(), p.z()});
-  const std::optional<double> z = depth(reading, frame, at.x(), at.y(), is_flat);
-  if (!z) return std::nullopt;
-  return (*z - p.z()) / (kGate * *z + 3 * *z / camera.fx);
+  const double z = depth(reading, frame, at.x(), at.y(), is_flat);
+  if (!(z > 0)) return std::nullopt;
+  return (z - p.z()) / (kGate * z + 3 * z / camera.fx);
 }
 
 }  // namespace viewgain::detail

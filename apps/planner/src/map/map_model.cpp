@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/frame_identity.hpp"
 #include "viewgain/support/stopwatch.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -98,6 +99,7 @@ FrameVerdict MapModel::judged(const Measurements& measurements) const {
     if (std::isfinite(sigma) && sigma >= 0) continue;
     refuse("the sigma " + short_text(sigma) + " of a pose is negative or not finite");
   }
+  for (const DepthFrame& frame : measurements.frames) check_identity(frame.identity);
   if (!rigid_pose(measurements.T_world_camera)) return FrameVerdict::lost_pose;
   try {
     for (const DepthFrame& frame : measurements.frames) check_frame_size(frame, sensor_.camera);
@@ -163,10 +165,10 @@ void MapModel::integrate(BeliefGrid& grid, const std::vector<DepthFrame>& frames
 
 MapUpdate MapModel::update(const Measurements& measurements) {
   MapUpdate update;
+  update.verdict = judged(measurements);
   for (const DepthFrame& frame : measurements.frames) {
     check_.see(frame, measurements.T_world_camera);
   }
-  update.verdict = judged(measurements);
   if (update.verdict != FrameVerdict::used) return update;
   const Stopwatch watch;
   const std::vector<DepthFrame> frames = filtered(measurements, &update.flying_pixels);

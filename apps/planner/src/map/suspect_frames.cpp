@@ -21,16 +21,13 @@ namespace viewgain {
 namespace {
 
 using detail::FrameMeetings, detail::kFocalLength, detail::kScale, detail::Meetings,
-    detail::Convention;
+    detail::Convention, detail::percent;
 
 constexpr double kOffCentre = 0.12;  // of the image's side
 constexpr double kEdges = 0.015;     // of right frames' readings, at edges of surfaces
 constexpr double kAlike = 0.1;       // what fits less well than the best by this is named, too
 
-std::string percent(double share) { return short_text(std::round(100 * share)) + " %"; }
-
-Suspicion suspect_camera(const PinholeCamera& camera) {
-  const std::vector<Eigen::Vector3d> rays = camera.ray_table();
+Suspicion suspect_camera(const PinholeCamera& camera, const std::vector<Eigen::Vector3d>& rays) {
   const auto lost = std::count_if(rays.begin(), rays.end(),
                                   [](const Eigen::Vector3d& ray) { return !ray.allFinite(); });
   if (const double share = static_cast<double>(lost) / static_cast<double>(rays.size());
@@ -55,9 +52,12 @@ Suspicion suspect_camera(const PinholeCamera& camera) {
 
 // Of the pixels with a depth, those within the sensor's range if depths are so many times larger.
 double share_in_range(const Sensor& sensor, std::span<const DepthFrame> frames, double factor) {
+  constexpr std::size_t kPixels = 10'000;  // of a frame are enough
   std::size_t in_range = 0, all = 0;
   for (const DepthFrame& frame : frames) {
-    for (const float z : frame.depth) {
+    const std::size_t step = frame.depth.size() / kPixels + 1;
+    for (std::size_t i = 0; i < frame.depth.size(); i += step) {
+      const float z = frame.depth[i];
       if (!(z > 0) || !std::isfinite(z)) continue;
       ++all;
       const double range = static_cast<double>(z) * factor;
@@ -86,6 +86,10 @@ bool is_better(const Meetings& other, const Meetings& as_said) {
 bool is_proof(const Meetings& other, const Meetings& as_said) {
   return other.share_past() < 0.05 && other.share_past() < 0.3 * as_said.share_past() &&
          other.share_close() > 0.8;
+}
+
+bool looks_right(const Meetings& met) {
+  return met.has_overlap() && met.share_past() <= kEdges && met.share_close() > 0.5;
 }
 
 struct Fit {
@@ -120,14 +124,23 @@ std::vector<Fit> fits_by_meetings(const FrameMeetings& meeting, const Meetings& 
 // contradict each other at edges, so that pairs are compared one by one.
 std::optional<Fit> fit_by_focal_length(const FrameMeetings& meeting, const Meetings& as_said) {
   constexpr double kMostBetter = 0.65;  // 3 % off: up to 0.6
+  constexpr double kSlightly = 0.15;    // the others are tried if these are better, or frames wrong
+  constexpr double kMuch = 0.02;        // more than noise
   Fit best;
   best.met = as_said;
-  for (Convention& reading : detail::other_readings()) {
-    if (reading.kind != kFocalLength) continue;
-    const Meetings other = meeting.under(reading);
-    if (!is_possible(other, as_said) || !(other.share_close() > best.met.share_close())) continue;
-    best = {std::move(reading), 0, other};
-  }
+  std::vector<Convention> readings = detail::other_readings();
+  std::erase_if(readings, [](const Convention& reading) { return reading.kind != kFocalLength; });
+  const auto keep_best = [&](bool slightly) {
+    for (const Convention& reading : readings) {
+      if ((std::abs(reading.focal_factor - 1) < kSlightly) != slightly) continue;
+      const Meetings other = meeting.under(reading);
+      if (!is_possible(other, as_said) || !(other.share_close() > best.met.share_close())) continue;
+      best = {reading, 0, other};
+    }
+  };
+  keep_best(true);
+  const bool is_much_better = best.met.share_close() > as_said.share_close() + kMuch;
+  if (is_much_better || !looks_right(as_said)) keep_best(false);
   if (best.reading.focal_factor == 1) return std::nullopt;
   const std::optional<double> better = meeting.share_better(best.reading);
   if (better ? *better < kMostBetter : !is_better(best.met, as_said)) return std::nullopt;
@@ -183,10 +196,10 @@ Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames
 }
 
 // Under a table nothing is seen.
-Suspicion suspect_plane(const Sensor& sensor, std::span<const DepthFrame> frames,
-                        const FrameMeetings& meeting, double plane) {
+Suspicion suspect_plane(std::span<const DepthFrame> frames, const FrameMeetings& meeting,
+                        double plane) {
   constexpr double kUnder = 0.05;  // no noise [m]
-  const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
+  const std::vector<Eigen::Vector3d>& rays = meeting.rays();
   std::size_t under = 0, all = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -209,6 +222,8 @@ Suspicion suspect_along_ray(const FrameMeetings& meeting, const Meetings& as_sai
   const std::optional<double> along_ray = meeting.share_better({.is_along_ray = true});
   if (!along_ray || *along_ray < 0.45) return {};
   const Meetings by_ray = meeting.under({.is_along_ray = true});
+  // Poses that are off by what they may be make any reading better for nearly half of the pairs.
+  if (!(by_ray.share_close() > as_said.share_close())) return {};
   const bool fits_best = std::all_of(fits.begin(), fits.end(), [&](const Fit& fit) {
     return by_ray.close > fit.met.close && by_ray.share_close() > fit.met.share_close();
   });
@@ -245,78 +260,26 @@ Suspicion suspect_convention(const FrameMeetings& meeting, const Meetings& as_sa
   return {fits[0].reading.kind, now + what};
 }
 
-bool contradicts(const FrameContradiction& frame, double share) {
-  return (frame.readings >= detail::kEnoughReadings && frame.share_in_free() > share) ||
-         (frame.others >= detail::kEnoughReadings && frame.share_seen_past() > share);
-}
-
-// How frames contradict one another; empty: they do not.
-std::string contradiction_of(const FrameConsistency& found) {
-  if (found.share_in_free > detail::kInFree && found.in_free >= detail::kEnoughContradictions) {
-    return percent(found.share_in_free) +
-           " of the readings lie in space that other frames saw as free";
-  }
-  if (found.share_seen_past > detail::kSeenPast &&
-      found.seen_past >= detail::kEnoughContradictions) {
-    return "frames see past " + percent(found.share_seen_past) +
-           " of the readings of earlier frames, as if space that they saw as free held surface";
-  }
-  const bool is_one = std::any_of(
-      found.frames.begin(), found.frames.end(),
-      [](const FrameContradiction& frame) { return contradicts(frame, detail::kOfAFrame); });
-  if (!is_one) return {};
-  return "up to " + percent(detail::largest_share(found)) +
-         " of a frame's readings lie in space that other frames saw as free";
-}
-
-// Frames that contradict one another for no reason that is known.
-Suspicion suspect_contradiction(const FrameConsistency& found) {
-  const std::string now = contradiction_of(found);
-  if (now.empty()) return {};
-  const auto copies =
-      std::count_if(found.frames.begin(), found.frames.end(), [](const FrameContradiction& frame) {
-        return frame.same_image_as && contradicts(frame, detail::kContradicting);
-      });
-  if (copies > 0) {
-    return {"same_image",
-            now + "; " + std::to_string(copies) + (copies == 1 ? " frame has" : " frames have") +
-                " the image of an earlier one at another pose: does the camera repeat images?"};
-  }
-  return {"contradiction",
-          now +
-              ": are the poses those of another frame (a flange, a body), late or early, or "
-              "numbered differently from the images? Are the images mirrored, or the intrinsics "
-              "those of another camera? Did an object move, or do the poses drift?"};
-}
-
 }  // namespace
-
-double detail::largest_share(const FrameConsistency& found) {
-  double most = 0;
-  for (const FrameContradiction& frame : found.frames) {
-    most = std::max({most, frame.share_in_free(), frame.share_seen_past()});
-  }
-  return most;
-}
 
 Suspicion detail::suspicion_of(const Sensor& sensor, std::span<const DepthFrame> frames,
                                const FrameMeetings& meeting, std::optional<double> support_plane,
-                               const FrameConsistency& found) {
+                               const Suspicion& contradiction) {
   for (const Suspicion& unit : suspect_sensor(sensor)) {
     if (explains_frames(unit)) return unit;
   }
-  if (Suspicion camera = suspect_camera(sensor.camera); !camera.kind.empty()) return camera;
+  if (Suspicion camera = suspect_camera(sensor.camera, meeting.rays()); !camera.kind.empty())
+    return camera;
   if (Suspicion range = suspect_range(sensor, frames, meeting); !range.kind.empty()) return range;
-  const Suspicion other = suspect_contradiction(found);
-  const bool has_copies = other.kind == "same_image";
+  const bool has_copies = contradiction.kind == "same_image";
   // Poses that are shifted or images that are turned may fit a little better by chance where some
   // images are copies.
   if (Suspicion known = suspect_convention(meeting, meeting.under({}), has_copies);
       !known.kind.empty()) {
     return known;
   }
-  if (!other.kind.empty() || !support_plane) return other;
-  return suspect_plane(sensor, frames, meeting, *support_plane);
+  if (!contradiction.kind.empty() || !support_plane) return contradiction;
+  return suspect_plane(frames, meeting, *support_plane);
 }
 
 Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frames,

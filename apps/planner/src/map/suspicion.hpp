@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 
 #include "map/frame_meetings.hpp"
 #include "viewgain/core/depth_frame.hpp"
@@ -17,22 +18,39 @@ namespace viewgain::detail {
 inline constexpr double kContradicting = 0.05;
 
 /// Above these shares of all readings frames contradict one another. Right simulated frames have up
-/// to 0.9 % in free space, at edges, and see past 0.2 %; a recorded room up to 1.3 % and 1.9 %.
-inline constexpr double kInFree = 0.02, kSeenPast = 0.03;
+/// to 0.9 % in free space, at edges, and see past 0.2 %; a recorded room up to 1.6 % and 3.6 %.
+inline constexpr double kInFree = 0.025, kSeenPast = 0.05;
 /// Of fewer contradicting readings nothing is said.
 inline constexpr std::size_t kEnoughContradictions = 20;
 /// The same of a single frame with this many readings or more.
 inline constexpr double kOfAFrame = 0.2;
 inline constexpr std::size_t kEnoughReadings = 50;
 
-/// The largest share of one frame's readings in others' free space, or of others' in its own.
+/// Of this many frames or more, the median displacement is over this many times what is declared,
+/// and over this part of a voxel. A recorded room: up to 1.2 times; right simulated frames: 0.8.
+inline constexpr double kDisplaced = 1.5, kOfAVoxel = 0.15;
+inline constexpr std::size_t kEnoughFrames = 5;
+
+/// The largest share of one frame's readings in others' free space, or of others' in its own, of
+/// frames with enough readings.
 [[nodiscard]] double largest_share(const FrameConsistency& found);
 
-/// What is probably wrong with the frames `meeting` holds, of a map whose frames `found` counts;
-/// without counts as far as the meetings tell.
+/// Does the frame lie farther from earlier ones than the sensor and the poses declare, and by more
+/// than a small part of a voxel [m]?
+[[nodiscard]] bool is_displaced(const FrameContradiction& frame, double voxel_size);
+
+/// Whether the frames of a map with this voxel size [m] contradict one another, and how: kinds
+/// same_image, contradiction and displacement.
+[[nodiscard]] Suspicion suspect_contradiction(const FrameConsistency& found, double voxel_size);
+
+/// What is probably wrong with the frames `meeting` holds; `contradiction` where no better reason
+/// is found.
 [[nodiscard]] Suspicion suspicion_of(const Sensor& sensor, std::span<const DepthFrame> frames,
                                      const FrameMeetings& meeting,
                                      std::optional<double> support_plane,
-                                     const FrameConsistency& found);
+                                     const Suspicion& contradiction);
+
+/// "12 %"
+[[nodiscard]] std::string percent(double share);
 
 }  // namespace viewgain::detail

@@ -58,6 +58,8 @@ std::size_t number_of(const std::filesystem::path& image, std::size_t place) {
 Json to_json(const FrameConsistency& found, const std::vector<std::size_t>& numbers) {
   Json json{{"share_in_free", found.share_in_free},
             {"share_seen_past", found.share_seen_past},
+            {"displacement", found.displacement},
+            {"expected", found.expected},
             {"kind", nullptr},
             {"what", nullptr},
             {"frames", numbers_of(found.contradicting, numbers)},
@@ -71,7 +73,13 @@ Json to_json(const FrameConsistency& found, const std::vector<std::size_t>& numb
     Json one{{"frame", numbers_of({i}, numbers)[0]},
              {"in_free", frame.share_in_free()},
              {"seen_past", frame.share_seen_past()},
+             {"displacement", nullptr},
+             {"expected", nullptr},
              {"same_image_as", nullptr}};
+    if (frame.compared > 0) {
+      one["displacement"] = frame.displacement;
+      one["expected"] = frame.expected;
+    }
     if (frame.same_image_as) one["same_image_as"] = numbers_of({*frame.same_image_as}, numbers)[0];
     json["per_frame"].push_back(std::move(one));
   }

@@ -10,14 +10,14 @@
 
 namespace viewgain {
 
-/// What a map knows of its origin, beside its contents. A value type.
+/// Where a map comes from. A value type.
 struct VIEWGAIN_EXPORT MapNotes {
-  /// That all readings come from, as sensor_toml() describes it; empty: of several sensors, or not
-  /// known. map_sensor() of viewgain::formats reads it.
+  /// The one sensor that all readings come from, as sensor_toml() writes it. Empty: several sensors,
+  /// or an unknown one. map_sensor() of viewgain::formats reads it.
   std::string sensor{};
-  /// The frames that went into it, each by its DepthFrame::identity; those without are not here.
+  /// The DepthFrame::identity of each frame in the map; frames without one are not listed.
   std::set<std::string> frames{};
-  /// Texts of programs by name.
+  /// Notes of programs, by name.
   std::map<std::string, std::string> others{};
   bool operator==(const MapNotes&) const = default;
 };

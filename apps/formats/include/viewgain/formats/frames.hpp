@@ -115,8 +115,8 @@ struct VIEWGAIN_EXPORT FrameSequence {
 open_depth_images(const std::filesystem::path& dir, const std::string& sensor = {},
                   std::optional<double> depth_scale = {});
 
-/// What was assumed because nothing says it, for a warning; empty: nothing. Depth images of our own
-/// layout could be in another unit, unless frames.toml or simulated.txt tells.
+/// A warning about what had to be assumed; empty: nothing. The unit of depth images in our own
+/// layout is assumed unless frames.toml or simulated.txt states it.
 [[nodiscard]] VIEWGAIN_EXPORT std::string assumed_text(const FrameSequence& frames);
 
 /// Reads the depth image, and the amplitude image (16 bit, 1e-3 m⁻²; full scale is

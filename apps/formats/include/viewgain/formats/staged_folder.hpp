@@ -26,8 +26,8 @@ class TemporaryNames;
 class VIEWGAIN_EXPORT StagedFolder {
  public:
   /// Creates the hidden folder, and the target's parents where they are missing. Throws Error(io).
-  /// With a name `taken_up` that folder of an ended process which has such a file is gone on with,
-  /// without what was half-written in it.
+  /// With a name `taken_up` it continues in the hidden folder of an ended process that has a file
+  /// of this name, and removes what was half-written there.
   explicit StagedFolder(const std::filesystem::path& target, const char* taken_up = nullptr);
   /// Removes what commit() has not moved, and those parents, unless something else is in them now.
   ~StagedFolder();

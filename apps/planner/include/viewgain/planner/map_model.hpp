@@ -100,7 +100,8 @@ class VIEWGAIN_EXPORT MapModel {
   /// used: the one place that says which can. lost_pose: the pose is not rigid (1e-3);
   /// wrong_size: a frame has another size than the sensor's images; nothing_in_range: no pixel
   /// says anything; outside: no voxel of the workspace would be hit or carved. Throws
-  /// Error(invalid_argument) for a sigma that is negative or not finite; nothing has changed then.
+  /// Error(invalid_argument) for a sigma that is negative or not finite, and for a
+  /// DepthFrame::identity of another form; nothing has changed then.
   /// Error(capacity) and Error(backend) are those of VoxelScene::build(): the frames are in the map
   /// then. Known depths of the frames are set anew by the obstacles. Frames without a reading in
   /// the workspace cost a copy of the map.

@@ -19,7 +19,8 @@ struct VIEWGAIN_EXPORT Suspicion {
   /// Empty: nothing. distortion, principal_point, focal_lengths (fx and fy far apart), depth_scale,
   /// world_to_camera, quaternion_order, body_frame, upward_camera, rolled_camera, pose_millimetres,
   /// mirrored, upside_down, numbering, time_offset, depth_along_ray, focal_length, same_image,
-  /// support_plane, contradiction (of another cause), those of suspect_set_up.hpp or, of poses
+  /// support_plane, contradiction (of another cause), displacement (frames lie beside one another,
+  /// see FrameCheck), those of suspect_set_up.hpp or, of poses
   /// alone, no_voxel.
   std::string kind{};
   std::string what{};  ///< a sentence with the figure that made it suspicious
@@ -30,7 +31,7 @@ struct VIEWGAIN_EXPORT Suspicion {
 /// common mistakes; the one by which most lie close is suspected, or several that fit alike. Says
 /// nothing of frames that do not overlap. `T_world_camera`: one per frame. Throws
 /// Error(invalid_argument) as check_frame_size(), and for another count of poses. Thread safe.
-/// Cost: a pass over the pixels and 20 ms for a dozen frames, 0.5 s where they do not fit.
+/// Cost: a pass over the pixels and 50 ms for a dozen frames, 0.5 s where they do not fit.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_frames(const Sensor& sensor,
                                                        std::span<const DepthFrame> frames,
                                                        std::span<const Pose> T_world_camera);

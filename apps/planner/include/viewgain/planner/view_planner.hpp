@@ -144,9 +144,9 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// The k best of the proposal, fewer if there are fewer; without a measure of the user's own
   /// those that gain nothing are left out, so none is an answer, too. Ties go to the earlier
   /// candidate. With a plan ahead the next k of its views, in its order; it is the same for any k,
-  /// and goes by the gain alone. Ways begin at RankConfig::current_pose; default: the pose
-  /// of the last frame, whether it could be used or not, or of a later tried() that was reached;
-  /// one that is lost leaves the pose before. Throws Error(invalid_argument) without a proposal
+  /// and goes by the gain alone. Paths start at RankConfig::current_pose. Default: the pose
+  /// of the last frame, usable or not, or of a later tried() that was reached; a lost pose changes
+  /// nothing. Throws Error(invalid_argument) without a proposal
   /// since the last view, and as rank_views().
   [[nodiscard]] Ranking rank(std::size_t k = 1, const RankConfig& config = {},
                              const BatchControl& control = {});

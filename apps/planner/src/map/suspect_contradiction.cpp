@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "map/suspicion.hpp"
+#include "viewgain/support/text.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+// "2.3 mm": two significant digits.
+std::string millimetres(double metres) {
+  const double digit = std::pow(10.0, std::floor(std::log10(std::max(metres, 1e-9))) - 1);
+  return short_text(std::round(metres / digit) * digit * 1000) + " mm";
+}
+
+bool contradicts(const FrameContradiction& frame, double share) {
+  return (frame.readings >= kEnoughReadings && frame.share_in_free() > share) ||
+         (frame.others >= kEnoughReadings && frame.share_seen_past() > share);
+}
+
+// How frames contradict one another; empty: they do not.
+std::string contradiction_of(const FrameConsistency& found) {
+  if (found.share_in_free > kInFree && found.in_free >= kEnoughContradictions) {
+    return percent(found.share_in_free) +
+           " of the readings lie in space that other frames saw as free";
+  }
+  if (found.share_seen_past > kSeenPast && found.seen_past >= kEnoughContradictions) {
+    return "frames see past " + percent(found.share_seen_past) +
+           " of the readings of earlier frames, as if space that they saw as free held surface";
+  }
+  const bool is_one =
+      std::any_of(found.frames.begin(), found.frames.end(),
+                  [](const FrameContradiction& frame) { return contradicts(frame, kOfAFrame); });
+  if (!is_one) return {};
+  return "up to " + percent(largest_share(found)) +
+         " of a frame's readings lie in space that other frames saw as free, or are seen past";
+}
+
+// Frames that lie beside one another by too little for the readings to contradict each other.
+Suspicion suspect_displacement(const FrameConsistency& found, double voxel_size) {
+  const auto compared =
+      std::count_if(found.frames.begin(), found.frames.end(),
+                    [](const FrameContradiction& frame) { return frame.compared > 0; });
+  FrameContradiction typical;
+  typical.displacement = found.displacement;
+  typical.expected = found.expected;
+  if (static_cast<std::size_t>(compared) < kEnoughFrames || !is_displaced(typical, voxel_size)) {
+    return {};
+  }
+  return {"displacement",
+          "surfaces lie " + millimetres(found.displacement) +
+              " from those of earlier frames; the declared errors of sensor and poses explain " +
+              millimetres(found.expected) +
+              ". Are the poses late, is the hand-eye calibration or the focal length off, or do "
+              "the poses drift? Registration (--register on) corrects small errors. If the poses "
+              "cannot be better, declare their errors (pose_sigma_rad in the sensor file)"};
+}
+
+}  // namespace
+
+std::string percent(double share) { return short_text(std::round(100 * share)) + " %"; }
+
+double largest_share(const FrameConsistency& found) {
+  double most = 0;
+  for (const FrameContradiction& frame : found.frames) {
+    if (frame.readings >= kEnoughReadings) most = std::max(most, frame.share_in_free());
+    if (frame.others >= kEnoughReadings) most = std::max(most, frame.share_seen_past());
+  }
+  return most;
+}
+
+bool is_displaced(const FrameContradiction& frame, double voxel_size) {
+  return frame.displacement > std::max(kDisplaced * frame.expected, kOfAVoxel * voxel_size);
+}
+
+Suspicion suspect_contradiction(const FrameConsistency& found, double voxel_size) {
+  const std::string now = contradiction_of(found);
+  if (now.empty()) return suspect_displacement(found, voxel_size);
+  const auto copies =
+      std::count_if(found.frames.begin(), found.frames.end(), [](const FrameContradiction& frame) {
+        return frame.same_image_as && contradicts(frame, kContradicting);
+      });
+  if (copies > 0) {
+    return {"same_image",
+            now + "; " + std::to_string(copies) + (copies == 1 ? " frame has" : " frames have") +
+                " the image of an earlier one at another pose: does the camera repeat images?"};
+  }
+  return {"contradiction",
+          now +
+              ": are the poses those of another frame (a flange, a body), late or early, or "
+              "numbered differently from the images? Are the images mirrored, or the intrinsics "
+              "those of another camera? Did an object move, or do the poses drift?"};
+}
+
+}  // namespace viewgain::detail
