@@ -88,7 +88,10 @@ def inverse(t, q):
 
 
 def scale(folder, value):
-    (folder / "depth-scale.txt").write_text(f"{value}\n")
+    text = (folder / "frames.toml").read_text()
+    text, count = re.subn(r"^depth_scale = .*$", f"depth_scale = {value}", text, flags=re.M)
+    assert count == 1, text
+    (folder / "frames.toml").write_text(text)
 
 
 def scaled_intrinsics(factor):

@@ -26,12 +26,13 @@ constexpr std::size_t kOthers = 600;      // of these, that a frame is held agai
 constexpr std::size_t kImages = 64;       // that are remembered
 // Of the range: what real cameras and trackers are off by beside what they declare.
 constexpr double kUndeclared = 0.01;
-constexpr double kSigmas = 3;          // that noise explains
-constexpr double kSteepest = 3;        // slope to the image plane of a surface that is looked at
-constexpr int kMostSteps = 12;         // along a ray, on either side of a reading
-constexpr double kLeastCosine = 0.4;   // of the angle of incidence, where distances are measured
-constexpr double kCommon = 0.0035;     // of the range, the most of noise that is the same for all
-constexpr double kSameSurface = 0.03;  // of the range, beside noise; farther off is another one
+constexpr double kSigmas = 3;            // that noise explains
+constexpr double kSteepest = 3;          // slope to the image plane of a surface that is looked at
+constexpr int kMostSteps = 12;           // along a ray, on either side of a reading
+constexpr double kLeastCosine = 0.4;     // of the angle of incidence, where distances are measured
+constexpr double kCommon = 0.0035;       // of the range, the most of noise that is the same for all
+constexpr double kSameDirection = 0.85;  // cosine between normals of one surface, at least
+constexpr double kSameSurface = 0.03;    // of the range, beside noise; farther off is another one
 
 // The same images from poses that differ by less say nothing.
 constexpr double kMoved = 0.005, kTurned = 0.01;  // [m], [rad]
@@ -117,10 +118,20 @@ std::vector<FrameAgreement::Reading> FrameAgreement::sampled(const BeliefGrid& m
       if (support_plane_ && is_of_plane(p_world.z() - *support_plane_, ray.z(), own)) continue;
       readings.push_back({p_world, ray.cast<float>(), static_cast<float>(own.axial),
                           static_cast<float>(own.lateral), of_pose(both(pose_sigma), range),
+                          seen_normal(frame, u, v, range, R_world_camera),
                           static_cast<std::uint32_t>(frames_.size())});
     }
   }
   return readings;
+}
+
+Eigen::Vector3f FrameAgreement::seen_normal(const DepthFrame& frame, std::size_t u, std::size_t v,
+                                            double range,
+                                            const Eigen::Matrix3d& R_world_camera) const {
+  const double noise = sensor_.noise_sigmas(range).axial;
+  const auto plane = plane_at(frame, sensor_.camera, rays_, u, v, noise);
+  if (!plane) return Eigen::Vector3f::Zero();
+  return (R_world_camera * plane->normalized()).cast<float>();
 }
 
 void FrameAgreement::look(const BeliefGrid& before, const DepthFrame& frame,
@@ -196,6 +207,8 @@ void FrameAgreement::compare(const DepthFrame& frame, std::size_t u, std::size_t
   if (!plane) return;
   const double size = plane->norm(), cosine = std::min(1.0, 1 / (size * range));
   const Eigen::Vector3d normal = *plane / size;
+  const Eigen::Vector3d earlier_normal = T_camera_world.rotation() * earlier.normal.cast<double>();
+  if (normal.dot(earlier_normal) < kSameDirection) return;
   const double distance = normal.dot(p_camera) - 1 / size;
   const double axial = std::hypot(sigmas(range, pose_sigma).axial, earlier.axial);
   if (cosine < kLeastCosine || std::abs(distance) > kSigmas * axial + kSameSurface * range) return;

@@ -13,7 +13,7 @@ namespace {
 // "2.3 mm": two significant digits.
 std::string millimetres(double metres) {
   const double digit = std::pow(10.0, std::floor(std::log10(std::max(metres, 1e-9))) - 1);
-  return short_text(std::round(metres / digit) * digit * 1000) + " mm";
+  return short_text(static_cast<float>(std::round(metres / digit) * digit * 1000)) + " mm";
 }
 
 bool contradicts(const FrameContradiction& frame, double share) {

@@ -125,7 +125,7 @@ std::vector<Fit> fits_by_meetings(const FrameMeetings& meeting, const Meetings& 
 std::optional<Fit> fit_by_focal_length(const FrameMeetings& meeting, const Meetings& as_said) {
   constexpr double kMostBetter = 0.65;  // 3 % off: up to 0.6
   constexpr double kSlightly = 0.15;    // the others are tried if these are better, or frames wrong
-  constexpr double kMuch = 0.02;        // more than noise
+  constexpr double kMuch = 0.015;       // more than noise
   Fit best;
   best.met = as_said;
   std::vector<Convention> readings = detail::other_readings();
@@ -139,9 +139,11 @@ std::optional<Fit> fit_by_focal_length(const FrameMeetings& meeting, const Meeti
     }
   };
   keep_best(true);
-  const bool is_much_better = best.met.share_close() > as_said.share_close() + kMuch;
-  if (is_much_better || !looks_right(as_said)) keep_best(false);
-  if (best.reading.focal_factor == 1) return std::nullopt;
+  const auto is_much_better = [&] {
+    return best.met.share_close() > as_said.share_close() + kMuch;
+  };
+  if (is_much_better() || !looks_right(as_said)) keep_best(false);
+  if (!is_much_better()) return std::nullopt;
   const std::optional<double> better = meeting.share_better(best.reading);
   if (better ? *better < kMostBetter : !is_better(best.met, as_said)) return std::nullopt;
   return best;

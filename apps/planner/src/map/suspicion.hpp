@@ -27,8 +27,8 @@ inline constexpr double kOfAFrame = 0.2;
 inline constexpr std::size_t kEnoughReadings = 50;
 
 /// Of this many frames or more, the median displacement is over this many times what is declared,
-/// and over this part of a voxel. A recorded room: up to 1.2 times; right simulated frames: 0.8.
-inline constexpr double kDisplaced = 1.5, kOfAVoxel = 0.15;
+/// and over this part of a voxel. A recorded room: 1.0 times, parts of it up to 1.4.
+inline constexpr double kDisplaced = 2, kOfAVoxel = 0.15;
 inline constexpr std::size_t kEnoughFrames = 5;
 
 /// The largest share of one frame's readings in others' free space, or of others' in its own, of

@@ -177,6 +177,7 @@ std::string FollowedMap::suspicion(bool is_last) {
   if (is_suspected_ || (!is_last && count_ < due_)) return {};
   while (due_ <= count_) due_ *= 2;
   std::string what = text_of(planner_.map().consistency(), numbers_);
+  if (what.empty()) what = refused_text(frames());
   is_suspected_ = !what.empty();
   return what;
 }

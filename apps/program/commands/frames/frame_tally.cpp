@@ -30,6 +30,19 @@ std::string frames_text(const FrameCounts& counts) {
   return frames_text(count_of(counts, FrameVerdict::carved), bad_frames(counts));
 }
 
+std::string refused_text(const FrameCounts& counts) {
+  constexpr std::size_t kFew = 3;
+  const std::size_t refused = count_of(counts, FrameVerdict::contradicts);
+  const std::size_t taken =
+      count_of(counts, FrameVerdict::used) + count_of(counts, FrameVerdict::carved);
+  if (refused < kFew || refused <= 2 * taken) return {};
+  return with_commas(refused) + " of " + with_commas(refused + taken) +
+         " frames contradict the others and were left out (--register on), so that the map holds " +
+         with_commas(taken) +
+         ". Registration corrects small errors only: are the poses those of "
+         "the camera, on time, and the intrinsics right?";
+}
+
 namespace {
 
 std::vector<std::size_t> numbers_of(const std::vector<std::size_t>& frames,
@@ -143,9 +156,14 @@ std::string FrameTally::none_inside(const FrameFolder& folder) const {
          " m per unit of the depth images (--depth-scale)";
 }
 
+std::string FrameTally::suspicion_of(const FrameConsistency& found) const {
+  std::string what = text_of(found, numbers_);
+  return what.empty() ? refused_text(counts_) : what;
+}
+
 void FrameTally::warn_of_contradictions(const FrameFolder& folder,
                                         const FrameConsistency& found) const {
-  const std::string what = text_of(found, numbers_);
+  const std::string what = suspicion_of(found);
   if (what.empty()) return;
   if (folder.refuses_contradictions()) refuse(folder.name() + ": " + what);
   std::fprintf(stderr, "viewgain: warning: %s: %s\n", folder.name().c_str(), what.c_str());
@@ -154,7 +172,7 @@ void FrameTally::warn_of_contradictions(const FrameFolder& folder,
 void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
                              const FrameConsistency& found, bool needs_surface) const {
   if (blames_masks(folder, map, needs_surface)) return;
-  const std::string suspicion = text_of(found, numbers_);
+  const std::string suspicion = suspicion_of(found);
   if (counts_.empty() || is_in_map(counts_.begin()->first)) {
     name_left_out();
     const bool has_surface = sees_plane_ || map.statistics().occupied > 0;

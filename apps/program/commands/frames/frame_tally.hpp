@@ -28,6 +28,8 @@ namespace viewgain::app {
 [[nodiscard]] Json frames_json(const FrameCounts& counts);
 /// "2 frames show free space alone; left out: 1 lost_pose, 2 outside", or nothing.
 [[nodiscard]] std::string frames_text(const FrameCounts& counts);
+/// What is to be said if registration left out more than two thirds of the frames; else empty.
+[[nodiscard]] std::string refused_text(const FrameCounts& counts);
 [[nodiscard]] std::string frames_text(std::size_t carved,
                                       const std::map<std::string, std::size_t>& bad);
 
@@ -68,6 +70,8 @@ class FrameTally {
 
   /// Names the first of each kind that was left out, unless quiet.
   void name_left_out() const;
+  /// What is suspected: of the frames in the map, else of those that were left out.
+  [[nodiscard]] std::string suspicion_of(const FrameConsistency& found) const;
 
   [[nodiscard]] const FrameCounts& counts() const noexcept { return counts_; }
   /// Of the frames in the map, in their order, as their names say.

@@ -79,6 +79,7 @@ class VIEWGAIN_EXPORT FrameAgreement {
     Eigen::Vector3f ray;           ///< unit, world
     float axial = 0, lateral = 0;  ///< standard deviations along the ray and across it [m]
     MeasurementSigmas of_pose{};   ///< of these the part that all of a frame's readings share
+    Eigen::Vector3f normal;        ///< of the surface, away from the camera, world; 0: not flat
     std::uint32_t frame = 0;
     bool in_free = false;
   };
@@ -95,6 +96,9 @@ class VIEWGAIN_EXPORT FrameAgreement {
                                              const Pose& T_world_camera,
                                              const PoseSigma& pose_sigma, std::size_t stride) const;
   [[nodiscard]] static bool lies_in_free(const BeliefGrid& grid, const Reading& reading);
+  [[nodiscard]] Eigen::Vector3f seen_normal(const DepthFrame& frame, std::size_t u, std::size_t v,
+                                            double range,
+                                            const Eigen::Matrix3d& R_world_camera) const;
   void look_at_others(const DepthFrame& frame, const Pose& T_world_camera,
                       const PoseSigma& pose_sigma, FrameContradiction& found) const;
   void compare(const DepthFrame& frame, std::size_t u, std::size_t v, const Reading& earlier,

@@ -3,12 +3,14 @@
 
 // Units and set-ups that are allowed and seldom meant: which commands say so, and of what.
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "apps/program_runner.hpp"
+#include "program/commands/frames/frame_tally.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -137,6 +139,19 @@ TEST_F(Implausible, FlagsInOtherUnits) {
   }
   expect_said(integrate({"--register", "on", "--pose-sigma", "5,0.5"}),
               "standard deviation of 5 m");
+}
+
+TEST(RefusedFrames, AreSaidWhereRegistrationLeavesOutMost) {
+  const auto said = [](std::size_t used, std::size_t refused) {
+    return app::refused_text({{FrameVerdict::used, used},
+                              {FrameVerdict::contradicts, refused},
+                              {FrameVerdict::wrong_size, 50}});
+  };
+  EXPECT_NE(said(1, 13).find("13 of 14 frames contradict the others"), std::string::npos);
+  EXPECT_NE(said(1, 3), "");
+  EXPECT_EQ(said(1, 2), "");
+  EXPECT_EQ(said(10, 10), "");  // as of a recorded room that overlaps little
+  EXPECT_EQ(said(5, 0), "");
 }
 
 TEST_F(Implausible, ARoomsClosedMeshIsSolid) {
