@@ -199,6 +199,7 @@ MeasurementSigmas FrameAgreement::sigmas(double range, const PoseSigma& pose_sig
 void FrameAgreement::compare(const DepthFrame& frame, std::size_t u, std::size_t v,
                              const Reading& earlier, const Pose& T_camera_world,
                              const PoseSigma& pose_sigma, DisplacementFit& fit) const {
+  if (earlier.normal.isZero()) return;
   if (frame.shows_known(v * static_cast<std::size_t>(frame.width) + u)) return;
   const Eigen::Vector3d p_camera = T_camera_world * earlier.p_world;
   const double range = p_camera.norm();

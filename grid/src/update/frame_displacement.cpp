@@ -14,7 +14,7 @@ namespace {
 constexpr double kHalfWidth = 0.02;     // of the square of pixels: tangent of its angle
 constexpr double kMostPixels = 3;       // and no more to each side
 constexpr double kUneven = 0.002;       // of the depth, what a plane may be off beside noise
-constexpr std::size_t kFewPairs = 60;   // of fewer nothing is said
+constexpr std::size_t kFewPairs = 60;   // fewer are not enough for a fit
 constexpr int kRounds = 4;              // of reweighting (Huber 1964)
 constexpr double kHuber = 1.5;          // standard deviations
 constexpr double kMadToSigma = 1.4826;  // of a normal distribution

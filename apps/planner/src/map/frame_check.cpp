@@ -82,8 +82,8 @@ FrameConsistency FrameCheck::result(const BeliefGrid& after) const {
     const FrameContradiction& frame = result.frames[i];
     const double share = std::max(frame.share_in_free(), frame.share_seen_past());
     const bool is_copy = frame.same_image_as && share >= detail::kContradicting;
-    const bool is_displaced =
-        contradiction.kind == "displacement" && detail::is_displaced(frame, voxel_size);
+    const bool is_displaced = contradiction.kind == "displacement" &&
+                              detail::is_displaced(frame.displacement, frame.expected, voxel_size);
     if (share >= most || is_copy || is_displaced) result.contradicting.push_back(i);
   }
   return result;

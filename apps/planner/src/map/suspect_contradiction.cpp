@@ -44,10 +44,8 @@ Suspicion suspect_displacement(const FrameConsistency& found, double voxel_size)
   const auto compared =
       std::count_if(found.frames.begin(), found.frames.end(),
                     [](const FrameContradiction& frame) { return frame.compared > 0; });
-  FrameContradiction typical;
-  typical.displacement = found.displacement;
-  typical.expected = found.expected;
-  if (static_cast<std::size_t>(compared) < kEnoughFrames || !is_displaced(typical, voxel_size)) {
+  if (static_cast<std::size_t>(compared) < kEnoughFrames ||
+      !is_displaced(found.displacement, found.expected, voxel_size)) {
     return {};
   }
   return {"displacement",
@@ -72,8 +70,8 @@ double largest_share(const FrameConsistency& found) {
   return most;
 }
 
-bool is_displaced(const FrameContradiction& frame, double voxel_size) {
-  return frame.displacement > std::max(kDisplaced * frame.expected, kOfAVoxel * voxel_size);
+bool is_displaced(double displacement, double expected, double voxel_size) {
+  return displacement > std::max(kDisplaced * expected, kOfAVoxel * voxel_size);
 }
 
 Suspicion suspect_contradiction(const FrameConsistency& found, double voxel_size) {

@@ -35,9 +35,9 @@ inline constexpr std::size_t kEnoughFrames = 5;
 /// frames with enough readings.
 [[nodiscard]] double largest_share(const FrameConsistency& found);
 
-/// Does the frame lie farther from earlier ones than the sensor and the poses declare, and by more
-/// than a small part of a voxel [m]?
-[[nodiscard]] bool is_displaced(const FrameContradiction& frame, double voxel_size);
+/// Is a displacement well over the one that the declared errors explain, and over a small part of a
+/// voxel? All in [m].
+[[nodiscard]] bool is_displaced(double displacement, double expected, double voxel_size);
 
 /// Whether the frames of a map with this voxel size [m] contradict one another, and how: kinds
 /// same_image, contradiction and displacement.

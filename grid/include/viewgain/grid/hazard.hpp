@@ -26,8 +26,8 @@ class OpenDirections;
 
 /// How likely rays meet the surface in unknown voxels. A rate of 0 means that there is no surface:
 /// no ray ends there. In front of a wall seen from behind, the surface is then expected in the
-/// voxels with positive rates, or nowhere if all are 0. Rates down to 1e-30 /m count; single precision
-/// takes smaller ones for 0.
+/// voxels with positive rates, or nowhere if all are 0. Rates down to 1e-30 /m count; single
+/// precision takes smaller ones for 0.
 struct VIEWGAIN_EXPORT HazardConfig {
   /// The hazard of unknown space: the rate at which a ray through it meets the surface, by where
   /// it lies to what is known (apps/docs/guide/surface_gain.md):

@@ -12,8 +12,8 @@ namespace viewgain {
 
 /// Where a map comes from. A value type.
 struct VIEWGAIN_EXPORT MapNotes {
-  /// The one sensor that all readings come from, as sensor_toml() writes it. Empty: several sensors,
-  /// or an unknown one. map_sensor() of viewgain::formats reads it.
+  /// The one sensor that all readings come from, as sensor_toml() writes it. Empty: several
+  /// sensors, or an unknown one. map_sensor() of viewgain::formats reads it.
   std::string sensor{};
   /// The DepthFrame::identity of each frame in the map; frames without one are not listed.
   std::set<std::string> frames{};

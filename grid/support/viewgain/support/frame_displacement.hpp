@@ -31,7 +31,7 @@ class VIEWGAIN_EXPORT DisplacementFit {
            double expected);
 
   [[nodiscard]] std::size_t size() const { return pairs_.size(); }
-  /// Are there 60 readings? Without them the others say nothing.
+  /// Are there at least 60 readings, as displacement() and expected() require?
   [[nodiscard]] bool tells() const;
   /// RMS of the motion along the normals [m], what noise adds taken off.
   [[nodiscard]] double displacement() const;

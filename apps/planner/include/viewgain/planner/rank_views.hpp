@@ -28,7 +28,8 @@ struct VIEWGAIN_EXPORT RankConfig {
   /// surface goes with 1 / voxel², so a cost per metre does, too.
   double cost_per_metre = 0;
   /// Where the camera is now, T_world_camera; only its centre is used. If it is missing,
-  /// ViewPlanner::rank() uses the last pose that it was given, and the functions count no path from it.
+  /// ViewPlanner::rank() uses the last pose that it was given, and the functions count no path from
+  /// it.
   std::optional<Pose> current_pose{};
   const ViewMeasure* measure = nullptr;     ///< instead of the gain, as in BestConfig
   const RunMeasure* run_measure = nullptr;  ///< likewise
