@@ -184,22 +184,39 @@ Truth::Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
   });
 }
 
+QualityFigures quality_figures(const GroundTruth& truth, const SurfaceMesh& surface,
+                               std::span<const FusedPoint> points, double tolerance,
+                               std::span<const std::uint8_t> visible) {
+  if (visible.size() != truth.samples().size()) {
+    refuse(std::to_string(truth.samples().size()) + " samples but " +
+           std::to_string(visible.size()) + " marks");
+  }
+  const PointArrays arrays = arrays_of(points);
+  const std::vector<double> distances = truth.distances_to(surface.vertices);
+  const auto share = [&](const std::vector<double>& of) {
+    return coverage(of, tolerance, visible);
+  };
+  QualityFigures figures;
+  figures.coverage = coverage(distances, tolerance);
+  figures.coverage_visible = share(distances);
+  figures.coverage_points = share(truth.distances_to(arrays.positions));
+  figures.coverage_triangles =
+      share(truth.distances_to(TriangleMesh{surface.vertices, surface.triangles}));
+  figures.coverage_2_5mm = coverage(distances, kNearer);
+  figures.surface_error = truth.error(surface.vertices);
+  figures.points_error = truth.error(arrays.positions);
+  figures.consistency = truth.consistency(arrays.positions, arrays.covariances);
+  return figures;
+}
+
 QualityFigures Truth::figures(const SurfaceMesh& surface,
                               std::span<const FusedPoint> points) const {
-  const PointArrays arrays = arrays_of(points);
-  const std::vector<double> distances = truth_.distances_to(surface.vertices);
-  QualityFigures figures;
-  figures.coverage = coverage(distances, tolerance_);
-  figures.coverage_visible = coverage(distances, tolerance_, visible_);
-  figures.coverage_2_5mm = coverage(distances, kNearer);
-  std::size_t covered = 0;
-  for (std::size_t i = 0; i < distances.size(); ++i) {
-    if (visible_[i] != 0 && distances[i] <= tolerance_) ++covered;
+  QualityFigures figures = quality_figures(truth_, surface, points, tolerance_, visible_);
+  const auto visible = std::count(visible_.begin(), visible_.end(), 1);
+  if (visible > 0) {
+    figures.covered_area =
+        figures.coverage_visible * static_cast<double>(visible) * area_per_sample_;
   }
-  figures.covered_area = static_cast<double>(covered) * area_per_sample_;
-  figures.surface_error = truth_.error(surface.vertices);
-  figures.points_error = truth_.error(arrays.positions);
-  figures.consistency = truth_.consistency(arrays.positions, arrays.covariances);
   return figures;
 }
 

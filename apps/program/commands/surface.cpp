@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -20,7 +19,6 @@
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/mesh/quality.hpp"
-#include "viewgain/planner/point_arrays.hpp"
 #include "viewgain/planner_mesh/mesh_area.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
@@ -84,24 +82,10 @@ QualityFigures figures_of(const SurfaceScene& mesh, const BeliefGrid& map,
   constexpr std::size_t kSamples = 10'000;
   constexpr std::uint64_t kSeed = 1;
   const GroundTruth truth(mesh.mesh(), kSamples, kSeed, exec);
-  const PointArrays arrays = arrays_of(points);
-  const std::vector<double> distances = truth.distances_to(surface.vertices);
-  const double tolerance = covered_within(map.voxel_size());
-  QualityFigures figures;
-  figures.coverage = coverage(distances, tolerance);
-  figures.coverage_visible = std::numeric_limits<double>::quiet_NaN();
-  figures.coverage_2_5mm = coverage(distances, kCovered / 2);
+  std::vector<std::uint8_t> seen(truth.samples().size());
   const std::optional<Sensor> sensor = map_sensor(map);
-  if (sensor && !map.views().empty()) {
-    const auto seen = seen_samples(truth, mesh, map.views(), *sensor, exec);
-    if (std::find(seen.begin(), seen.end(), 1) != seen.end()) {
-      figures.coverage_visible = coverage(distances, tolerance, seen);
-    }
-  }
-  figures.surface_error = truth.error(surface.vertices);
-  figures.points_error = truth.error(arrays.positions);
-  figures.consistency = truth.consistency(arrays.positions, arrays.covariances);
-  return figures;
+  if (sensor && !map.views().empty()) seen = seen_samples(truth, mesh, map.views(), *sensor, exec);
+  return quality_figures(truth, surface, points, covered_within(map.voxel_size()), seen);
 }
 
 void print(const QualityFigures& figures, double voxel_size) {
@@ -109,8 +93,11 @@ void print(const QualityFigures& figures, double voxel_size) {
   std::printf("of the truth %.2f %% within %g mm, %.2f %% within 2.5 mm", 100 * figures.coverage,
               tolerance, 100 * figures.coverage_2_5mm);
   if (!std::isnan(figures.coverage_visible)) {
-    std::printf("; of what the map's views have in sight %.2f %% within %g mm",
-                100 * figures.coverage_visible, tolerance);
+    std::printf(
+        "; of what the map's views have in sight %.2f %% within %g mm (%.2f %% by points, "
+        "%.2f %% by triangles)",
+        100 * figures.coverage_visible, tolerance, 100 * figures.coverage_points,
+        100 * figures.coverage_triangles);
   }
   std::printf("\nsurface off by %.2f mm (RMS), %.2f mm (95 %%); points by %.2f mm, %.2f mm\n",
               1e3 * figures.surface_error.rms, 1e3 * figures.surface_error.p95,

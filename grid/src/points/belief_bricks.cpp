@@ -147,6 +147,21 @@ bool BeliefBricks::is_unknown_voxel(Index3 voxel) const {
   return false;
 }
 
+void BeliefBricks::find_sides(ThreadPool& pool) {
+  pool.for_each_chunk(bricks_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t brick = begin; brick < end; ++brick) {
+      const BrickNeighborhood around(*this, brick);
+      for (unsigned offset = 0; offset < kBlockVoxels; ++offset) {
+        const std::int32_t i = bricks_[brick].belief[offset];
+        if (i == kNone) continue;
+        const Index3 v = offset_voxel(bricks_[brick].origin, offset);
+        beliefs_[static_cast<std::size_t>(i)].toward_free =
+            around.free_side(Eigen::Vector3d(v.x, v.y, v.z).array() + 0.5);
+      }
+    }
+  });
+}
+
 std::vector<std::pair<std::size_t, unsigned>> BeliefBricks::occupied_with_belief() const {
   std::vector<std::pair<std::size_t, unsigned>> result;
   for (std::size_t brick = 0; brick < bricks_.size(); ++brick) {

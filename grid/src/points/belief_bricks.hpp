@@ -15,6 +15,7 @@
 #include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/block_lattice.hpp"
 #include "viewgain/support/log_odds_code.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 
@@ -25,6 +26,8 @@ struct PlacedBelief {
   std::uint32_t hits = 0;
   SymmetricMatrix3 covariance{};                   ///< Λ_v⁻¹ [m²]
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< Λ_v⁻¹ η_v, from the voxel's centre [m]
+  /// BrickNeighborhood::free_side() of the voxel's centre, after BeliefBricks::find_sides().
+  Eigen::Vector3d toward_free = Eigen::Vector3d::Zero();
 };
 
 /// The beliefs and states of a map, laid out for looking at a voxel's neighbours: by bricks of 8³
@@ -36,6 +39,9 @@ class BeliefBricks {
   static constexpr std::int32_t kNone = -1;
 
   BeliefBricks(const GridSnapshot& snapshot, const std::vector<BeliefBlockAt>& blocks, int shift);
+
+  /// Gives each belief its free side. Costs about 0.2 µs a belief.
+  void find_sides(ThreadPool& pool);
 
   /// Voxels that are occupied and have a belief: brick and offset, in a fixed order.
   [[nodiscard]] std::vector<std::pair<std::size_t, unsigned>> occupied_with_belief() const;

@@ -11,6 +11,7 @@
 
 #include "belief_bricks.hpp"
 #include "hit_moments.hpp"
+#include "point_selection.hpp"
 #include "reading_sigma.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/belief_block.hpp"
@@ -26,60 +27,11 @@ constexpr double kMaxReach = BrickNeighborhood::kMaxReach;
 constexpr double kSupportRadius = 4.0;  // pooling lengths
 constexpr double kMostHeight = 6.0;     // half of a column's [voxels]
 constexpr int kSteps = 3;               // of a point towards its column's mean
-
-/// A point and what supports it.
-struct SupportedPoint {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [voxels]
-  double evidence = 0;
-};
-
-/// For each point, whether it has at least `share` of the upper quartile of the evidence within
-/// `radius` [voxels], its own included. Silhouettes leave a halo of readings that lie beside the
-/// surface and are few compared with those on it. share 0 keeps all.
-std::vector<std::uint8_t> well_supported(const std::vector<SupportedPoint>& points, double radius,
-                                         double share, ThreadPool& pool) {
-  PointCells<std::size_t> cells(radius);
-  for (std::size_t i = 0; i < points.size(); ++i) cells.at(points[i].position).push_back(i);
-  std::vector<std::uint8_t> kept(points.size());
-  pool.for_each_chunk(points.size(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> around;
-    for (std::size_t i = begin; i < end; ++i) {
-      around.clear();
-      cells.for_each_near(points[i].position, [&](std::size_t j) {
-        if ((points[j].position - points[i].position).squaredNorm() <= radius * radius) {
-          around.push_back(points[j].evidence);
-        }
-      });
-      const auto quartile = around.begin() + static_cast<std::ptrdiff_t>(around.size() * 3 / 4);
-      std::nth_element(around.begin(), quartile, around.end());
-      kept[i] = points[i].evidence >= share * *quartile ? 1 : 0;
-    }
-  });
-  return kept;
-}
-
-/// Takes points one by one and refuses those that are nearer than a distance to one it has taken.
-class PointThinning {
- public:
-  explicit PointThinning(double min_distance)
-      : cells_(std::max(min_distance, kLeastEdge)), limit_(min_distance * min_distance) {}
-
-  [[nodiscard]] bool accept(const Eigen::Vector3d& point) {
-    bool crowded = false;
-    cells_.for_each_near(point, [&](const Eigen::Vector3d& other) {
-      crowded = crowded || (other - point).squaredNorm() < limit_;
-    });
-    if (!crowded) cells_.at(point).push_back(point);
-    return !crowded;
-  }
-
- private:
-  /// Tinier cubes than this save nothing, and their numbers would not fit into an integer.
-  static constexpr double kLeastEdge = 0.1;
-
-  PointCells<Eigen::Vector3d> cells_;
-  double limit_;
-};
+constexpr double kRamp = 0.2;           // from one sheet to two [voxels]
+// What readings of one place share, and what pooling a column blurs, as shares of a reading's
+// sigma, of the column's scatter and of a voxel: perf/results/honesty.md says on what they were
+// fitted.
+constexpr double kOfSigma = 0.19, kOfScatter = 0.43, kOfVoxel = 0.02;
 
 void check(const FusedPointsConfig& config) {
   const auto need = [](bool ok, const char* name, double value) {
@@ -112,7 +64,9 @@ struct Seed {
   SymmetricMatrix3 information{};  ///< [m⁻²]
   SymmetricMatrix3 covariance{};   ///< of the position [m²]
   std::uint32_t hits = 0;
-  bool is_near = false;  ///< is the position in the voxel's neighbourhood?
+  double scatter = 0;     ///< variance of the column's means along the normal [voxels²]
+  bool has_side = false;  ///< does the normal point to the voxel's free side?
+  bool is_near = false;   ///< is the position in the voxel's neighbourhood?
 };
 
 /// The direction in which the readings around a voxel spread least.
@@ -123,10 +77,41 @@ Eigen::Vector3d local_normal(const HitMoments::Sums& around) {
   return solver.eigenvectors().col(0);
 }
 
+/// Those of the items whose mark, one an item, is not 0.
+template <typename Item>
+void keep(std::vector<Item>& items, const std::vector<std::uint8_t>& marks) {
+  std::size_t next = 0;
+  std::erase_if(items, [&](const Item&) { return marks[next++] == 0; });
+}
+
 /// Lengths of the configuration in voxels of the bricks.
 struct Lengths {
   double normal_radius, column_radius, min_distance, support_radius;
 };
+
+/// Sums over those beliefs of a column whose free side is that of its normal, or is not.
+struct Face {
+  SymmetricMatrix3 information{}, covariance{};
+  double hits = 0;
+  double height = 0, square = 0;  ///< Σ hits · h and h², h the belief's mean over the seed [voxels]
+
+  void add(const PlacedBelief& belief, double h) {
+    const double weight = belief.hits;
+    information += belief.information;
+    covariance += belief.covariance * (weight * weight);
+    hits += weight;
+    height += weight * h;
+    square += weight * h * h;
+  }
+};
+
+/// How far the beliefs of a wall's other face count, 0 to 1. Noise alone puts the means of the two
+/// halves of one sheet that was seen from both sides up to a sigma of a reading apart [voxels].
+double share_of_other(const Face& own, const Face& other, double sigma) {
+  if (own.hits == 0 || other.hits == 0) return 1;
+  const double apart = std::abs(own.height / own.hits - other.height / other.hits);
+  return std::clamp((sigma + kRamp - apart) / kRamp, 0.0, 1.0);
+}
 
 /// Moves the seed along its normal to the mean of its column and pools the column's beliefs.
 void pool_column(const BeliefBricks& bricks, BrickNeighborhood around, double voxel_size,
@@ -143,25 +128,24 @@ void pool_column(const BeliefBricks& bricks, BrickNeighborhood around, double vo
       const Index3 v = BrickNeighborhood::containing(seed.position);
       around = BrickNeighborhood(bricks, {v.x & ~7, v.y & ~7, v.z & ~7});
     }
-    SymmetricMatrix3 information{}, covariance{};
-    double height = 0;  // Σ hits · height of the belief's mean over the seed [voxels]
-    double hits = 0;
+    Face face, other;
     around.for_each_in_column(seed.position, n, radius, half_height,
                               [&](const PlacedBelief& belief, const Eigen::Vector3d& from_axis) {
-                                const double weight = belief.hits;
-                                information += belief.information;
-                                covariance += belief.covariance * (weight * weight);
-                                height += weight * n.dot(from_axis + belief.mean / voxel_size);
-                                hits += weight;
+                                const double h = n.dot(from_axis + belief.mean / voxel_size);
+                                (belief.toward_free.dot(n) < 0 ? other : face).add(belief, h);
                               });
+    const double share = share_of_other(face, other, sigma);
+    const double hits = face.hits + share * other.hits;
     if (hits == 0) return;
     // Only along the normal: across it the column is where the seed is. Each reading counts once:
     // those that graze the surface look sharp across it, but where it bends their error along the
     // ray leads off it, and weighted by information they blur thin parts.
-    seed.position += height / hits * n;
-    seed.information = information;
-    seed.covariance = covariance * (1 / (hits * hits));
+    const double height = (face.height + share * other.height) / hits;
+    seed.position += height * n;
+    seed.information = face.information + other.information * share;
+    seed.covariance = (face.covariance + other.covariance * (share * share)) * (1 / (hits * hits));
     seed.hits = static_cast<std::uint32_t>(hits);
+    seed.scatter = std::max((face.square + share * other.square) / hits - height * height, 0.0);
   }
 }
 
@@ -171,9 +155,15 @@ double evidence(const Seed& seed, double column_area) {
   return seed.hits * lateral_variance(seed.information, seed.hits) / column_area;
 }
 
-/// What of the resolution's floor is left after so much evidence, as readings of more views lie at
-/// other places in a voxel (perf/results/honesty.md).
-double floor_share(double evidence) { return std::min(1.0, 0.2 + 2.0 / std::max(evidence, 1.0)); }
+/// F of a pooled point along its normal [m²]: what its readings share, and what the column blurs.
+/// Falls as readings of more views lie at other places in a voxel.
+double pooled_floor(const Seed& seed, double evidence, double voxel_size) {
+  const double own = seed.hits * seed.normal.dot(seed.covariance * seed.normal);  // of one reading
+  const double left = std::min(1.0, 0.2 + 2.0 / std::max(evidence, 1.0));
+  return left *
+         (kOfSigma * kOfSigma * own +
+          voxel_size * voxel_size * (kOfScatter * kOfScatter * seed.scatter + kOfVoxel * kOfVoxel));
+}
 
 /// By how much a point moves if all ranges are off by the same factor 1 + x, over x [m]: the mean
 /// of the ways to it from the views before which it lies on the side of `normal`, by the readings
@@ -201,7 +191,9 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
   const bool pooled = !config.per_voxel;
   const Pooling pooling =
       pooled ? pooling_of(snapshot, scale) : Pooling{scale, std::ldexp(grid.voxel_size(), scale)};
-  const BeliefBricks bricks(snapshot, blocks, pooling.shift);
+  ThreadPool pool(exec.num_threads);
+  BeliefBricks bricks(snapshot, blocks, pooling.shift);
+  if (pooled) bricks.find_sides(pool);
   const double V = std::ldexp(grid.voxel_size(), pooling.shift);
   const double unit = pooling.length / V;
   const Lengths lengths{std::min(config.normal_radius * unit, kMaxReach),
@@ -226,20 +218,23 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
     });
   }
 
-  ThreadPool pool(exec.num_threads);
   std::vector<Seed> seeds(occupied.size());
   pool.for_each_chunk(occupied.size(), 256, [&](std::size_t begin, std::size_t end) {
     HitMoments moments(lengths.normal_radius);
+    BrickNeighborhood around(bricks, occupied[begin].first);
     for (std::size_t i = begin; i < end; ++i) {
       const auto [brick, offset] = occupied[i];
-      const BrickNeighborhood around(bricks, brick);
       if (i == begin || brick != occupied[i - 1].first) {
+        around = BrickNeighborhood(bricks, brick);
         moments.look_at(around, bricks.origin(brick));
       }
       const Index3 voxel = offset_voxel(bricks.origin(brick), offset);
       const PlacedBelief& own = *bricks.find(brick, offset);
       Seed& seed = seeds[i];
-      seed.normal = local_normal(moments.round(offset));
+      seed.normal = local_normal(moments.round(offset, own.toward_free));
+      const double along = seed.normal.dot(own.toward_free);
+      seed.has_side = along != 0;
+      if (along < 0) seed.normal = -seed.normal;
       const Eigen::Vector3d center = Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5;
       seed.position = center + own.mean / V;
       seed.information = own.information;
@@ -259,33 +254,36 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
   std::iota(kept.begin(), kept.end(), std::size_t{0});
   std::erase_if(
       kept, [&](std::size_t i) { return seeds[i].hits < config.min_hits || !seeds[i].is_near; });
-  if (pooled) {
-    std::stable_sort(kept.begin(), kept.end(),
-                     [&](std::size_t a, std::size_t b) { return seeds[a].hits > seeds[b].hits; });
-    PointThinning thinning(lengths.min_distance);
-    std::erase_if(kept, [&](std::size_t i) { return !thinning.accept(seeds[i].position); });
-    std::sort(kept.begin(), kept.end());
-    std::vector<SupportedPoint> support;
-    support.reserve(kept.size());
-    for (const std::size_t i : kept) {
-      support.push_back({seeds[i].position, evidence(seeds[i], column_area)});
-    }
-    const std::vector<std::uint8_t> good =
-        well_supported(support, lengths.support_radius, config.min_relative_evidence, pool);
-    std::size_t next = 0;
-    std::erase_if(kept, [&](std::size_t) { return good[next++] == 0; });
-  }
-
+  std::vector<PooledPoint> pooled_points(pooled ? kept.size() : 0);
   pool.for_each_chunk(kept.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       Seed& seed = seeds[kept[k]];
-      const BrickNeighborhood around(bricks, occupied[kept[k]].first);
-      if (seed.normal.dot(around.free_side(seed.position)) < 0) seed.normal = -seed.normal;
+      // A pooled point keeps the side that it was pooled by, wherever in a thin wall it has come to
+      // lie.
+      if (!seed.has_side) {
+        const BrickNeighborhood around(bricks, occupied[kept[k]].first);
+        if (seed.normal.dot(around.free_side(seed.position)) < 0) seed.normal = -seed.normal;
+      }
+      if (pooled) {
+        pooled_points[k] = {seed.position, seed.normal, evidence(seed, column_area), seed.hits};
+      }
     }
   });
+  if (pooled) {
+    // Before points are thinned, so that none goes for one that goes itself.
+    const std::vector<std::uint8_t> good =
+        well_supported(pooled_points, lengths.support_radius, config.min_relative_evidence, pool);
+    keep(kept, good);
+    keep(pooled_points, good);
+    std::vector<std::uint8_t> stays(kept.size());
+    const double cover = std::max(unit, lengths.min_distance);
+    for (const std::size_t k : thinned(pooled_points, lengths.min_distance, cover, pool)) {
+      stays[k] = 1;
+    }
+    keep(kept, stays);
+  }
 
   const double floor = config.floor_sigma.value_or(V / std::sqrt(12.0));
-  const bool falls = pooled && !config.floor_sigma;
   const Eigen::Matrix3d R = T_world_grid.rotation();
   std::vector<FusedPoint> points;
   points.reserve(kept.size());
@@ -293,10 +291,11 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
     const Seed& seed = seeds[i];
     const Eigen::Vector3d p = T_world_grid * (seed.position * V);
     const Eigen::Vector3d n = R * seed.normal;
-    const double share = falls ? floor_share(evidence(seed, column_area)) : 1.0;
-    Eigen::Matrix3d covariance =
-        R * seed.covariance.matrix() * R.transpose() +
-        Eigen::Matrix3d(Eigen::Vector3d::Constant(share * floor * floor).asDiagonal());
+    const double F = pooled && !config.floor_sigma
+                         ? pooled_floor(seed, evidence(seed, column_area), V)
+                         : floor * floor;
+    Eigen::Matrix3d covariance = R * seed.covariance.matrix() * R.transpose() +
+                                 Eigen::Matrix3d(Eigen::Vector3d::Constant(F).asDiagonal());
     if (config.scale_sigma > 0) {
       const Eigen::Vector3d moves = config.scale_sigma * mean_way(grid.views(), p, n);
       covariance += moves * moves.transpose();

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <unordered_map>
+#include <optional>
 #include <vector>
 
 #include "belief_bricks.hpp"
@@ -14,8 +14,10 @@
 namespace viewgain::detail {
 
 /// What the readings in balls round voxels of one brick sum up to: w = hits, d = from the ball's
-/// middle to a voxel's centre [voxels]. Sums along z stand ready, so that a ball costs two looks a
-/// row of it. They are of whole numbers below 2^53, hence exact in any order.
+/// middle to a voxel's centre [voxels]. So that a wall's two faces do not look like one thick
+/// cloud, voxels are left out if their free side is more than 120° from the coordinate axis nearest
+/// to the middle voxel's. Prefix sums along z make a ball cost two look-ups a row. They are sums of
+/// integers below 2^53, hence exact in any order.
 class HitMoments {
  public:
   struct Sums {
@@ -26,9 +28,7 @@ class HitMoments {
 
   /// Balls of a radius of at most BrickNeighborhood::kMaxReach [voxels].
   explicit HitMoments(double radius)
-      : reach_(static_cast<int>(radius)),
-        edge_(kBlockSize + 2 * reach_),
-        up_to_(static_cast<std::size_t>(edge_ * edge_ * (edge_ + 1))) {
+      : reach_(static_cast<int>(radius)), edge_(kBlockSize + 2 * reach_) {
     for (int x = -reach_; x <= reach_; ++x) {
       for (int y = -reach_; y <= reach_; ++y) {
         int half = -1;
@@ -40,24 +40,16 @@ class HitMoments {
 
   /// From here on the balls are round voxels of the brick in the middle, whose first voxel this is.
   void look_at(const BrickNeighborhood& around, Index3 origin) {
-    std::size_t row = 0;
-    for (int x = -reach_; x < kBlockSize + reach_; ++x) {
-      for (int y = -reach_; y < kBlockSize + reach_; ++y) {
-        Eigen::Array3d sum = Eigen::Array3d::Zero();
-        for (int z = 0; z < edge_; ++z) {
-          up_to_[row++] = sum;
-          const PlacedBelief* const belief =
-              around.find({origin.x + x, origin.y + y, origin.z + z - reach_});
-          if (belief != nullptr)
-            sum += static_cast<double>(belief->hits) * Eigen::Array3d(1, z, z * z);
-        }
-        up_to_[row++] = sum;
-      }
-    }
+    around_ = around;
+    origin_ = origin;
+    is_ready_ = {};
   }
 
-  /// Of the ball round a voxel of the brick.
-  [[nodiscard]] Sums round(unsigned offset) const {
+  /// Of the ball round a voxel of the brick whose free side is this; zero leaves out nothing.
+  [[nodiscard]] Sums round(unsigned offset, const Eigen::Vector3d& toward_free) {
+    const std::size_t side = side_of(toward_free);
+    if (!is_ready_[side]) add_up(side);
+    const std::vector<Eigen::Array3d>& up_to = up_to_[side];
     const Index3 middle = offset_voxel({0, 0, 0}, offset);
     const int z = middle.z + reach_;
     Eigen::Array3d all = Eigen::Array3d::Zero(), by_x = all, by_y = all;
@@ -68,7 +60,7 @@ class HitMoments {
       Eigen::Array3d rows = Eigen::Array3d::Zero(), rows_by_y = rows;
       for (int y = 0; y <= 2 * reach_; ++y, ++half) {
         if (*half < 0) continue;
-        const Eigen::Array3d* const row = &up_to_[static_cast<std::size_t>(
+        const Eigen::Array3d* const row = &up_to[static_cast<std::size_t>(
             ((middle.x + x) * edge_ + middle.y + y) * (edge_ + 1) + z)];
         const Eigen::Array3d run = row[*half + 1] - row[-*half];
         const double dy = y - reach_;
@@ -92,50 +84,49 @@ class HitMoments {
   }
 
  private:
-  int reach_, edge_;                   // [voxels]
-  std::vector<int> halves_;            // of a ball's rows along z; -1: none
-  std::vector<Eigen::Array3d> up_to_;  // Σ w (1, z, z²) of a row below z, z from the row's begin
-};
+  static constexpr std::size_t kSides = 7;  // both ways along three axes, and none
+  static constexpr double kOther = -0.5;    // cosine from which on a voxel is on the other side
 
-/// Items by the cube that a position lies in; cubes that share a key do no harm to callers that
-/// check distances.
-template <typename Item>
-class PointCells {
- public:
-  /// Edge of a cube; what is within it of a position lies in the 27 cubes round it.
-  explicit PointCells(double edge) : edge_(edge) {}
-
-  [[nodiscard]] std::vector<Item>& at(const Eigen::Vector3d& p) {
-    return cells_[key(cell(p.x()), cell(p.y()), cell(p.z()))];
+  [[nodiscard]] static std::size_t side_of(const Eigen::Vector3d& toward_free) {
+    Eigen::Index axis = 0;
+    if (toward_free.cwiseAbs().maxCoeff(&axis) == 0) return kSides - 1;
+    return 2 * static_cast<std::size_t>(axis) + (toward_free[axis] < 0 ? 1 : 0);
   }
 
-  /// f(item) for all items in the cube of p and its neighbours, in a fixed order.
-  template <typename F>
-  void for_each_near(const Eigen::Vector3d& p, F&& f) const {
-    const std::int64_t x = cell(p.x()), y = cell(p.y()), z = cell(p.z());
-    for (std::int64_t i = x - 1; i <= x + 1; ++i) {
-      for (std::int64_t j = y - 1; j <= y + 1; ++j) {
-        for (std::int64_t k = z - 1; k <= z + 1; ++k) {
-          const auto found = cells_.find(key(i, j, k));
-          if (found == cells_.end()) continue;
-          for (const Item& item : found->second) f(item);
+  [[nodiscard]] static bool is_other(const Eigen::Vector3d& toward_free, std::size_t side) {
+    if (side == kSides - 1) return false;
+    const double along = toward_free[static_cast<Eigen::Index>(side / 2)];
+    return (side % 2 == 0 ? along : -along) < kOther * toward_free.norm();
+  }
+
+  void add_up(std::size_t side) {
+    std::vector<Eigen::Array3d>& up_to = up_to_[side];
+    up_to.resize(static_cast<std::size_t>(edge_ * edge_ * (edge_ + 1)));
+    std::size_t row = 0;
+    for (int x = -reach_; x < kBlockSize + reach_; ++x) {
+      for (int y = -reach_; y < kBlockSize + reach_; ++y) {
+        Eigen::Array3d sum = Eigen::Array3d::Zero();
+        for (int z = 0; z < edge_; ++z) {
+          up_to[row++] = sum;
+          const PlacedBelief* const belief =
+              around_->find({origin_.x + x, origin_.y + y, origin_.z + z - reach_});
+          if (belief != nullptr && !is_other(belief->toward_free, side)) {
+            sum += static_cast<double>(belief->hits) * Eigen::Array3d(1, z, z * z);
+          }
         }
+        up_to[row++] = sum;
       }
     }
+    is_ready_[side] = true;
   }
 
- private:
-  [[nodiscard]] std::int64_t cell(double v) const {
-    return static_cast<std::int64_t>(std::floor(v / edge_));
-  }
-  [[nodiscard]] static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
-    return static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15ULL ^
-           static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4FULL ^
-           static_cast<std::uint64_t>(z) * 0x165667B19E3779F9ULL;
-  }
-
-  double edge_;
-  std::unordered_map<std::uint64_t, std::vector<Item>> cells_;
+  int reach_, edge_;         // [voxels]
+  std::vector<int> halves_;  // of a ball's rows along z; -1: none
+  std::optional<BrickNeighborhood> around_;
+  Index3 origin_{};
+  // By side: Σ w (1, z, z²) of a row below z, z from the row's begin.
+  std::array<std::vector<Eigen::Array3d>, kSides> up_to_;
+  std::array<bool, kSides> is_ready_{};
 };
 
 }  // namespace viewgain::detail

@@ -84,7 +84,6 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
     t.normal = cross.stableNormalized();
     triangles.push_back(t);
   }
-  if (triangles.empty()) refuse("the mesh has no area");
   return triangles;
 }
 
@@ -177,6 +176,12 @@ double quantile(std::vector<double>& values, double q) {
   return *it;
 }
 
+std::vector<Triangle> with_area(const TriangleMesh& mesh) {
+  std::vector<Triangle> triangles = triangles_of(mesh);
+  if (triangles.empty()) refuse("the mesh has no area");
+  return triangles;
+}
+
 }  // namespace
 
 struct GroundTruth::Impl {
@@ -187,10 +192,27 @@ struct GroundTruth::Impl {
 
   Impl(const TriangleMesh& mesh, std::size_t sample_count, std::uint64_t seed,
        const ExecConfig& exec)
-      : triangles(triangles_of(mesh)),
+      : triangles(with_area(mesh)),
         tree(boxes_of(triangles)),
         samples(sample(triangles, sample_count, seed)),
         pool(exec.num_threads) {}
+
+  // Of each sample to the nearest of the items with these boxes; item_distance(p, item) is squared.
+  template <typename ItemDistance>
+  [[nodiscard]] std::vector<double> distances_to(const std::vector<Eigen::AlignedBox3d>& boxes,
+                                                 const ItemDistance& item_distance) const {
+    std::vector<double> distances(samples.size(), std::numeric_limits<double>::infinity());
+    if (boxes.empty()) return distances;
+    const NearestItem nearest(boxes);
+    pool.for_each_chunk(distances.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Vector3d& s = samples[i].position;
+        const auto found = nearest.of(s, [&](std::uint32_t j) { return item_distance(s, j); });
+        distances[i] = std::sqrt(found.squared_distance);
+      }
+    });
+    return distances;
+  }
 
   // From the nearest point of the surface to the point, and the normal there.
   struct Offset {
@@ -225,20 +247,19 @@ const std::vector<SurfaceSample>& GroundTruth::samples() const noexcept { return
 
 std::vector<double> GroundTruth::distances_to(std::span<const std::array<double, 3>> points) const {
   check_finite(points);
-  std::vector<double> distances(impl_->samples.size(), std::numeric_limits<double>::infinity());
-  if (points.empty()) return distances;
   std::vector<Eigen::AlignedBox3d> boxes;
+  boxes.reserve(points.size());
   for (const auto& point : points) boxes.emplace_back(vector_of(point));
-  const NearestItem tree(boxes);
-  impl_->pool.for_each_chunk(distances.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d& s = impl_->samples[i].position;
-      const auto nearest =
-          tree.of(s, [&](std::uint32_t j) { return (vector_of(points[j]) - s).squaredNorm(); });
-      distances[i] = std::sqrt(nearest.squared_distance);
-    }
+  return impl_->distances_to(boxes, [&](const Vector3d& p, std::uint32_t j) {
+    return (vector_of(points[j]) - p).squaredNorm();
   });
-  return distances;
+}
+
+std::vector<double> GroundTruth::distances_to(const TriangleMesh& mesh) const {
+  const std::vector<Triangle> triangles = triangles_of(mesh);
+  return impl_->distances_to(boxes_of(triangles), [&](const Vector3d& p, std::uint32_t j) {
+    return (nearest_on_triangle(p, triangles[j]) - p).squaredNorm();
+  });
 }
 
 std::vector<double> GroundTruth::distances_of(std::span<const std::array<double, 3>> points) const {

@@ -194,11 +194,14 @@ TEST(FusedPointsShapes, HaloBesideAWellSeenSurfaceIsLeftOut) {
     return std::count_if(points.begin(), points.end(),
                          [](const FusedPoint& p) { return p.position[1] > 0.075; });
   };
-  const BeliefGrid grid = plate_and_row(3, 0.003);
+  const BeliefGrid grid = plate_and_row(4, 0.003);  // columns of 12 hits beside those of 100
   FusedPointsConfig all;
   all.min_relative_evidence = 0;
   EXPECT_EQ(fused_points(grid, all).size(), 156U);
   EXPECT_EQ(halo(fused_points(grid, all)), 12);
+  FusedPointsConfig tenth;
+  tenth.min_relative_evidence = 0.1;
+  EXPECT_EQ(halo(fused_points(grid, tenth)), 12);
   EXPECT_EQ(fused_points(grid).size(), 144U);
   EXPECT_EQ(halo(fused_points(grid)), 0);
 }
@@ -206,7 +209,7 @@ TEST(FusedPointsShapes, HaloBesideAWellSeenSurfaceIsLeftOut) {
 TEST(FusedPointsShapes, WhatWasSeenFromAfarStaysBesideWhatWasSeenFromNear) {
   // Three times as far: a ninth of the readings, each of which stands for nine times the area. As
   // few readings from near are the halo of the test above.
-  EXPECT_EQ(fused_points(plate_and_row(3, 0.009)).size(), 156U);
+  EXPECT_EQ(fused_points(plate_and_row(4, 0.009)).size(), 156U);
 }
 
 // Over what length readings are pooled: closed forms.

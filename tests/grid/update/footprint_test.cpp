@@ -37,7 +37,7 @@ TEST(Footprint, LeavesOfOneScaleAreTheMapOfLargerVoxels) {
   const Sensor sensor = sharp_sensor(10, 8);  // 7 voxels and more a pixel
   int maps = 0;
   std::uint64_t cells = 0, beliefs = 0, less_sure = 0;
-  std::size_t points = 0;
+  std::size_t points = 0, differ = 0;
   for (const Carve carve : {Carve::cones, Carve::lines}) {
     for (const Occupancy occupancy : {Occupancy::probabilistic, Occupancy::literal}) {
       for (int scale = 0; scale <= 3; ++scale) {
@@ -64,9 +64,13 @@ TEST(Footprint, LeavesOfOneScaleAreTheMapOfLargerVoxels) {
             std::sort(own.begin(), own.end(), order);
             std::sort(other.begin(), other.end(), order);
             for (std::size_t k = 0; k < own.size(); ++k) {
-              ASSERT_EQ(own[k].position, other[k].position);
-              ASSERT_EQ(own[k].covariance, other[k].covariance);
-              ASSERT_EQ(own[k].toward_free, other[k].toward_free);
+              // Where states differ, as below, so may the side of a voxel, what is pooled and the
+              // order of sums.
+              const bool same = own[k].position == other[k].position &&
+                                own[k].covariance == other[k].covariance &&
+                                own[k].toward_free == other[k].toward_free;
+              ASSERT_TRUE(same || !per_voxel);
+              if (!same) ++differ;
             }
             points += own.size();
           }
@@ -101,6 +105,7 @@ TEST(Footprint, LeavesOfOneScaleAreTheMapOfLargerVoxels) {
   EXPECT_GT(cells, 5'000'000U);
   EXPECT_GT(less_sure, 10'000U);
   EXPECT_GT(points, 200U);
+  EXPECT_LE(differ, points / 50);
   EXPECT_GT(beliefs, 1000U);
 }
 

@@ -95,6 +95,27 @@ TEST(Quality, SampleToPointMatchesBruteForce) {
   }
 }
 
+TEST(Quality, SampleToTrianglesMatchesBruteForce) {
+  const GroundTruth truth(sphere_mesh(0.1, 16), 300);
+  const TriangleMesh soup = random_soup(40, 0.05);
+  TriangleMesh mesh = soup;  // with a triangle without area among the samples: left out
+  const auto corner = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.push_back(array_of(truth.samples()[7].position));
+  mesh.triangles.push_back({corner, corner, corner});
+  const std::vector<double> distances = truth.distances_to(mesh);
+  ASSERT_EQ(distances.size(), 300U);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    double expected = kInfinity;
+    for (const auto& t : soup.triangles) {
+      expected =
+          std::min(expected, brute_distance(truth.samples()[i].position, vec(mesh.vertices[t[0]]),
+                                            vec(mesh.vertices[t[1]]), vec(mesh.vertices[t[2]])));
+    }
+    EXPECT_NEAR(distances[i], expected, 1e-12);
+  }
+  for (const double none : truth.distances_to(TriangleMesh{})) EXPECT_EQ(none, kInfinity);
+}
+
 TEST(Quality, SamplesAreSpreadByArea) {
   // Two squares, one of nine times the other's area, cut into unequal triangles.
   TriangleMesh mesh = plate_mesh(0.3);
@@ -209,7 +230,7 @@ TEST(Quality, WithoutPointsThereAreNoFigures) {
       truth.consistency(far, std::vector<SymmetricMatrix3>(1, SymmetricMatrix3::identity()));
   EXPECT_EQ(outlier.outliers, 1U);
   EXPECT_TRUE(std::isnan(outlier.mean_clipped));
-  const std::vector<double> distances = truth.distances_to({});
+  const std::vector<double> distances = truth.distances_to(Points{});
   ASSERT_EQ(distances.size(), 10U);
   for (const double d : distances) EXPECT_EQ(d, kInfinity);
   EXPECT_EQ(coverage(distances, 1), 0.0);

@@ -140,6 +140,8 @@ void print_left(const RunOutputs& outputs, const char* files) {
 Json quality_json(const QualityFigures& quality, const char* visible) {
   return {{"coverage", quality.coverage},
           {visible, quality.coverage_visible},
+          {"coverage_points", quality.coverage_points},
+          {"coverage_triangles", quality.coverage_triangles},
           {"coverage_2_5mm", quality.coverage_2_5mm},
           {"rms_error", quality.surface_error.rms},
           {"p95_error", quality.surface_error.p95},
@@ -267,9 +269,11 @@ std::string RunReport::text(StopReason reason) const {
     text += formatted("last candidates: %zu feasible; dropped: %s\n",
                       last.record.proposal.candidates.size(), counts_text(dropped).c_str());
   }
-  text += formatted("coverage at %g mm %.2f %% of all, %.2f %% of the visible; at 2.5 mm %.2f %%\n",
-                    1e3 * tolerance_, 100 * q.coverage, 100 * q.coverage_visible,
-                    100 * q.coverage_2_5mm);
+  text += formatted(
+      "coverage at %g mm %.2f %% of all, %.2f %% of the visible (by points %.2f %%, by triangles "
+      "%.2f %%); at 2.5 mm %.2f %%\n",
+      1e3 * tolerance_, 100 * q.coverage, 100 * q.coverage_visible, 100 * q.coverage_points,
+      100 * q.coverage_triangles, 100 * q.coverage_2_5mm);
   text += formatted(
       "error of the surface: RMS %.2f mm, 95 %% under %.2f mm; of the points: %.2f, %.2f\n",
       1e3 * q.surface_error.rms, 1e3 * q.surface_error.p95, 1e3 * q.points_error.rms,

@@ -63,6 +63,10 @@ class VIEWGAIN_EXPORT GroundTruth {
   [[nodiscard]] std::vector<double> distances_to(
       std::span<const std::array<double, 3>> points) const;
 
+  /// One a sample, the distance to the nearest point of a mesh's triangles [m]; infinity without
+  /// any. Triangles without area are left out. Throws also as the constructor for a bad mesh.
+  [[nodiscard]] std::vector<double> distances_to(const TriangleMesh& mesh) const;
+
   /// One a point, its distance to the surface [m].
   [[nodiscard]] std::vector<double> distances_of(
       std::span<const std::array<double, 3>> points) const;

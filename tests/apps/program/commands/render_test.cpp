@@ -145,6 +145,7 @@ TEST_F(Surface, IsThatOfTheRunThatMadeTheMap) {
   EXPECT_EQ(read("p.ply"), read("run/points.ply"));
   const json last = json::parse(read("run/run.json"))["per_view"].back();
   EXPECT_NEAR(result["area"].get<double>(), last["surface_area"].get<double>(), 1e-12);
+  EXPECT_GT(result["truth"]["coverage_triangles"], result["truth"]["coverage_seen"]);
   for (const char* figure : {"coverage", "coverage_2_5mm", "rms_error", "p95_error",
                              "rms_error_points", "p95_error_points", "consistency",
                              "consistency_median", "consistency_above_9", "outliers"}) {

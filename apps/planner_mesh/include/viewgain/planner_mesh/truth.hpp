@@ -67,13 +67,24 @@ inline constexpr double kCovered = 5e-3;
 /// How good one model is, against a ground truth. Lengths in [m].
 struct VIEWGAIN_EXPORT QualityFigures {
   double coverage = 0;              ///< share of all samples that the surface covers
-  double coverage_visible = 0;      ///< share of the visible ones
+  double coverage_visible = 0;      ///< share of the visible ones; NaN if there are none
+  double coverage_points = 0;       ///< the same by the points
+  double coverage_triangles = 0;    ///< the same by the surface's triangles, not its vertices
   double coverage_2_5mm = 0;        ///< share of all samples, 2.5 mm, surface
   double covered_area = 0;          ///< of the mesh, where visible samples are covered [m²]
   ErrorStatistics surface_error{};  ///< of surface.ply
   ErrorStatistics points_error{};   ///< of points.ply
   Consistency consistency{};        ///< of the points
 };
+
+/// The figures of a surface and its points, in any order, but for covered_area. `visible` has a
+/// mark for each of the truth's samples; a sample is covered within `tolerance` [m]. Throws and
+/// costs as the members of GroundTruth.
+[[nodiscard]] VIEWGAIN_EXPORT QualityFigures quality_figures(const GroundTruth& truth,
+                                                             const SurfaceMesh& surface,
+                                                             std::span<const FusedPoint> points,
+                                                             double tolerance,
+                                                             std::span<const std::uint8_t> visible);
 
 /// From where the visible samples are looked for, and when they are covered.
 struct VIEWGAIN_EXPORT VisibilityConfig {
@@ -109,8 +120,7 @@ class VIEWGAIN_EXPORT Truth {
   Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
         const VisibilityConfig& config, const ExecConfig& exec);
 
-  /// How good a surface and its points, in any order, are. Throws and costs as the members of
-  /// GroundTruth.
+  /// How good a surface and its points are: quality_figures() and the covered area.
   [[nodiscard]] QualityFigures figures(const SurfaceMesh& surface,
                                        std::span<const FusedPoint> points) const;
 

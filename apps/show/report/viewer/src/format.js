@@ -34,6 +34,7 @@ export const withUnit = (value, unit) => {
 
 const meanings = {
   coverage: "surface covered", coverage_visible: "visible surface covered", coverage_2_5mm: "covered to 2.5 mm",
+  coverage_points: "visible surface covered by points", coverage_triangles: "visible surface covered by triangles",
   rms_error: "RMS error of the surface", p95_error: "95 % of the surface's errors are under",
   rms_error_points: "RMS error of the points", p95_error_points: "95 % of the points' errors are under",
   consistency: "consistency: mean error² / predicted variance, 1 is honest", consistency_median: "its median",
