@@ -88,7 +88,7 @@ BeliefGrid plate(double thickness, int above, int below, double slant) {
 
 TEST(ThinWalls, BothFacesOfAPlateArePoints) {
   std::size_t cases = 0;
-  for (const double voxels : {2.0, 3.0, 5.0}) {
+  for (const double voxels : {1.5, 2.0, 3.0, 5.0}) {
     for (const auto& [above, below] : {std::pair{6, 6}, {4, 20}, {2, 60}}) {
       for (const double slant : {0.0, std::numbers::pi / 3}) {
         const double height = voxels * kVoxel / 2;
@@ -104,7 +104,7 @@ TEST(ThinWalls, BothFacesOfAPlateArePoints) {
       }
     }
   }
-  EXPECT_EQ(cases, 18U);
+  EXPECT_EQ(cases, 24U);
 }
 
 // The walls of a hollow box: a plate is one of them, and cameras stand inside and outside.
