@@ -21,20 +21,7 @@ import numpy as np
 
 import mistakes
 import viewgain
-
-
-def box(low, high):
-    corners = [[(low, high)[i >> k & 1][k] for k in range(3)] for i in range(8)]
-    return corners, [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-
-
-def write_off(path, parts):
-    corners, faces = [], []
-    for own, sides in parts:
-        faces += [[len(corners) + i for i in side] for side in sides]
-        corners += own
-    rows = [" ".join(map(repr, map(float, c))) for c in corners] + [" ".join(map(str, [len(f), *f])) for f in faces]
-    path.write_text(f"OFF\n{len(corners)} {len(faces)} 0\n" + "\n".join(rows) + "\n")
+from meshes import box, write_off
 
 
 def room(_):

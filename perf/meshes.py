@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes from files, for the scripts."""
+"""Meshes from and into files, for the scripts."""
 import sys
 
 import numpy as np
@@ -36,3 +36,19 @@ def scaled(vertices, size):
     """The middle of the box in the origin; its longest side `size` [m], or as it is for None."""
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     return (vertices - (low + high) / 2) * (1 if size is None else size / (high - low).max())
+
+
+def box(low, high):
+    """Corners and faces of a box."""
+    corners = [[(low, high)[i >> k & 1][k] for k in range(3)] for i in range(8)]
+    return corners, [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+
+
+def write_off(path, parts):
+    """Writes parts, each of corners and faces, as one OFF file."""
+    corners, faces = [], []
+    for own, sides in parts:
+        faces += [[len(corners) + i for i in side] for side in sides]
+        corners += own
+    rows = [" ".join(map(repr, map(float, c))) for c in corners] + [" ".join(map(str, [len(f), *f])) for f in faces]
+    path.write_text(f"OFF\n{len(corners)} {len(faces)} 0\n" + "\n".join(rows) + "\n")

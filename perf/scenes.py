@@ -16,16 +16,11 @@ import numpy as np
 import scipy.spatial.transform
 
 import meshes
+from meshes import box
 
 Y_TO_Z = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)
 APART = 0.008     # least gap between the boxes of two objects [m]
 SIZES = .09, .15  # longest sides of objects [m]
-
-
-def box(low, high):
-    corners = np.array([[(low, high)[i >> k & 1][k] for k in range(3)] for i in range(8)], float)
-    return corners, np.array([(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6),
-                              (0, 6, 2), (1, 3, 7), (1, 7, 5)])
 
 
 def standing(path, size, turn):
@@ -116,18 +111,13 @@ def main():
     parser.add_argument("--out", required=True, type=pathlib.Path)
     args = parser.parse_args()
     parts, reach, view = KINDS[args.kind](np.random.default_rng(args.seed), args.meshes)
-    starts = np.cumsum([0] + [len(vertices) for vertices, _ in parts])
-    vertices = np.concatenate([vertices for vertices, _ in parts])
-    triangles = np.concatenate([part[1] + start for part, start in zip(parts, starts)])
+    vertices = np.concatenate([corners for corners, _ in parts])
     middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2  # where reconstruct puts the world's origin
     vertices = vertices - middle
     low, high = vertices.min(axis=0) - .03, vertices.max(axis=0) + .03
     eye, at = np.array(view, float) - middle
     args.out.mkdir(parents=True, exist_ok=True)
-    with open(args.out / "scene.off", "w", encoding="utf-8") as file:
-        file.write(f"OFF\n{len(vertices)} {len(triangles)} 0\n")
-        np.savetxt(file, vertices, "%.7f")
-        np.savetxt(file, np.column_stack([np.full(len(triangles), 3), triangles]), "%d")
+    meshes.write_off(args.out / "scene.off", [(np.round(corners - middle, 7).tolist(), faces) for corners, faces in parts])
     (args.out / "reach.toml").write_text(f"[[box]]\nmin = {numbers(reach[0] - middle)}\nmax = {numbers(reach[1] - middle)}\n")
     (args.out / "flags.toml").write_text(
         f'mesh = "{args.out / "scene.off"}"\nreach = "{args.out / "reach.toml"}"\nsensor = "d435"\nvoxel = 0.005\n'

@@ -37,12 +37,12 @@ class Scenes(unittest.TestCase):
         pairs = 0
         for seed, (name, make) in itertools.product(range(3), scenes.KINDS.items()):
             parts, _, _ = make(np.random.default_rng(seed), self.paths)
-            objects = [vertices for vertices, triangles in parts if len(triangles) == 8]
-            walls = np.concatenate([vertices for vertices, triangles in parts if len(triangles) == 12])
+            objects = [vertices for vertices, faces in parts if len(faces) == 8]
+            walls = np.concatenate([np.array(vertices, float) for vertices, faces in parts if len(faces) == 6])
             self.assertEqual(len(objects), 6, name)
             for vertices in objects:
                 self.assertTrue((vertices[:, :2] > walls.min(axis=0)[:2]).all() and (vertices[:, :2] < walls.max(axis=0)[:2]).all())
-            for a, b in itertools.combinations(objects + [v for v, t in parts if len(t) == 12], 2):
+            for a, b in itertools.combinations(objects + [np.array(v, float) for v, t in parts if len(t) == 6], 2):
                 if len(a) == 8 and len(b) == 8:
                     continue  # two walls
                 apart = np.maximum(a.min(axis=0) - b.max(axis=0), b.min(axis=0) - a.max(axis=0)).max()

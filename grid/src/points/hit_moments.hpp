@@ -13,11 +13,11 @@
 
 namespace viewgain::detail {
 
-/// What the readings in balls round voxels of one brick sum up to: w = hits, d = from the ball's
-/// middle to a voxel's centre [voxels]. So that a wall's two faces do not look like one thick
-/// cloud, voxels are left out if their free side is more than 120° from the coordinate axis nearest
-/// to the middle voxel's. Prefix sums along z make a ball cost two look-ups a row. They are sums of
-/// integers below 2^53, hence exact in any order.
+/// Sums over the readings in balls round the voxels of one brick: w = hits, d = from the ball's
+/// middle to a voxel's centre [voxels]. A ball leaves out voxels that face the other way, so that a
+/// wall's two faces do not look like one thick cloud. These are voxels whose free side is more than
+/// 120° from the coordinate axis nearest to the middle voxel's free side. Prefix sums along z make
+/// a ball cost two look-ups per row. The sums are of integers below 2^53, hence exact in any order.
 class HitMoments {
  public:
   struct Sums {

@@ -18,10 +18,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kSameSide = 0.5;  // least cosine between normals of one side
-constexpr int kDirections = 8;     // in which a ball's rim is looked at
+constexpr int kDirections = 8;     // of the rim of a disc
 constexpr double kLeastGap = 0.4;  // of `cover`: nearer points are not put back
 
-// Points by cubes, one array a component, so that a loop over them can be vectorised.
+// Points with one array per component, so that a loop over them can be vectorised.
 struct Columns {
   std::vector<double> x, y, z, nx, ny, nz, evidence;
 
@@ -39,7 +39,7 @@ struct Columns {
   }
 };
 
-// Is the rim of the ball round the point, in its tangent plane, within `cover` of the others?
+// Is the rim of the disc of radius `cover` in the point's tangent plane within `cover` of others?
 bool rim_is_covered(const PooledPoint& point, double cover, const std::vector<Vector3d>& others) {
   const Vector3d u = point.toward_free.unitOrthogonal(), w = point.toward_free.cross(u);
   for (int k = 0; k < kDirections; ++k) {
@@ -129,7 +129,7 @@ std::vector<std::size_t> thinned(const std::vector<PooledPoint>& points, double 
     });
     return !is_beside && !rim_is_covered(points[i], cover, others);
   };
-  // What is put back only covers more, so that few have to be looked at once more.
+  // Putting points back only closes holes, so that the second pass checks these candidates alone.
   std::vector<std::uint8_t> holes(rest.size());
   pool.for_each_chunk(rest.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<Vector3d> others;

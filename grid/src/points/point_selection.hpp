@@ -19,21 +19,20 @@ struct PooledPoint {
   std::uint32_t hits = 0;
 };
 
-/// For each point, whether it has at least `share` of the upper quartile of the evidence of the
-/// points within `radius` [voxels] whose normals are within 60° of its own, itself included.
-/// Silhouettes leave a halo of readings beside the surface, few compared with those on it; the
-/// other face of a thin wall may have been seen far more often and is ignored. share 0 keeps all.
+/// For each point, 1 if its evidence is at least `share` of the upper quartile among the points
+/// within `radius` [voxels] whose normals are within 60° of its own, itself included. This drops
+/// the halo that silhouettes leave beside a surface: it has few readings. The other face of a thin
+/// wall is ignored, as it may have been seen far more often. share 0 keeps all.
 [[nodiscard]] std::vector<std::uint8_t> well_supported(const std::vector<PooledPoint>& points,
                                                        double radius, double share,
                                                        ThreadPool& pool);
 
-/// Ascending indices of the points to keep; lengths in voxels. Most hits first, a point is taken
-/// unless one already taken on its side (normals within 90°) is within `min_distance`. Then
-/// rejected points are put back, most hits first, if the circle of radius `cover` round them in the
-/// tangent plane, looked at in 8 directions, is not within `cover` of those taken, unless one of
-/// these is within 0.4 `cover`. So what lies within r >= `cover` of any point lies, but for rare
-/// gaps, within r of one that is kept. A function of the set of points alone; min_distance 0 keeps
-/// all.
+/// Ascending indices of the points to keep. Lengths are in voxels; min_distance 0 keeps all. Points
+/// are taken most hits first, unless one on their side (normals within 90°) is within
+/// `min_distance`. Then rejected points are put back if they would leave a hole and none taken is
+/// within 0.4 `cover`. A hole is a place on the rim of the disc of radius `cover` round a point, in
+/// its tangent plane, that is not within `cover` of those taken; 8 places are tried. Depends on the
+/// set of points alone.
 [[nodiscard]] std::vector<std::size_t> thinned(const std::vector<PooledPoint>& points,
                                                double min_distance, double cover, ThreadPool& pool);
 

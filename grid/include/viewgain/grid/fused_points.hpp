@@ -45,10 +45,9 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
                                 ///< [pooling lengths]
   double column_radius = 1.0;   ///< of the column whose beliefs are pooled [pooling lengths]
   double column_sigmas = 1.75;  ///< its half height, in sigmas of one reading across the surface
-  /// Least distance between pooled points that face the same way (within 90°) [pooling lengths];
-  /// 0 keeps all. Those 0.4 lengths or more apart are kept where dropping one would leave a hole:
-  /// what is within one length (or min_distance, if that is more) of a pooled point is, but for
-  /// rare gaps, as near to one that is kept.
+  /// Least distance between pooled points whose normals are within 90° [pooling lengths]; 0 keeps
+  /// all. A nearer point, down to 0.4 lengths, is kept if dropping it would leave a hole. Holes are
+  /// judged by discs of one length, or of min_distance if that is more; rare small gaps remain.
   double min_distance = 0.75;
   /// Square root of F [m], the variance that is added in all directions for errors that a point's
   /// readings share and for blur by pooling. Default F: edge² / 12 with per_voxel; else

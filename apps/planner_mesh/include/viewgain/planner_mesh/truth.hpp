@@ -77,9 +77,10 @@ struct VIEWGAIN_EXPORT QualityFigures {
   Consistency consistency{};        ///< of the points
 };
 
-/// The figures of a surface and its points, in any order, but for covered_area. `visible` has a
-/// mark for each of the truth's samples; a sample is covered within `tolerance` [m]. Throws and
-/// costs as the members of GroundTruth.
+/// All figures of a surface and its points except covered_area, which stays 0. `visible` holds one
+/// mark per sample of the ground truth. A sample is covered if a point is within `tolerance` [m].
+/// Throws if the number of marks is wrong. Other errors and costs are those of GroundTruth's
+/// members.
 [[nodiscard]] VIEWGAIN_EXPORT QualityFigures quality_figures(const GroundTruth& truth,
                                                              const SurfaceMesh& surface,
                                                              std::span<const FusedPoint> points,
