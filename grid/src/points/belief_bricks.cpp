@@ -3,7 +3,6 @@
 #include "belief_bricks.hpp"
 
 #include <algorithm>
-#include <bit>
 
 namespace viewgain::detail {
 namespace {
@@ -27,6 +26,23 @@ bool is_in_one_cube(const VoxelBox& tile, unsigned shift) {
          same(tile.min.z, tile.max.z);
 }
 
+// For a row of 8 bits: the number of set bits and the sum of their positions. A table, because
+// without -mpopcnt the compiler makes std::popcount a function call.
+struct RowSums {
+  std::int8_t count = 0, places = 0;
+};
+constexpr std::array<RowSums, 256> kRowSums = [] {
+  std::array<RowSums, 256> sums{};
+  for (unsigned row = 0; row < 256; ++row) {
+    for (int place = 0; place < 8; ++place) {
+      if ((row >> place & 1U) == 0) continue;
+      ++sums[row].count;
+      sums[row].places = static_cast<std::int8_t>(sums[row].places + place);
+    }
+  }
+  return sums;
+}();
+
 }  // namespace
 
 BeliefBricks::BeliefBricks(const GridSnapshot& snapshot, const std::vector<BeliefBlockAt>& blocks,
@@ -42,7 +58,7 @@ BeliefBricks::BeliefBricks(const GridSnapshot& snapshot, const std::vector<Belie
   for (const BeliefBlockAt& block : blocks) add_beliefs(block, snapshot.voxel_size);
   for (PlacedBelief& belief : beliefs_) {
     belief.covariance = belief.information.inverse();
-    belief.mean = belief.covariance * belief.vector;
+    belief.mean = belief.covariance * belief.vector / std::ldexp(snapshot.voxel_size, shift_);
   }
   find_states(snapshot);
 }
@@ -192,45 +208,44 @@ Eigen::Vector3d BrickNeighborhood::free_side(const Eigen::Vector3d& position) co
       {voxel.x + kRadius + 1, voxel.y + kRadius + 1,
        voxel.z + kRadius +
            1}}.intersection(bricks_->workspace_cells());
-  // Of the rows along z as bits.
-  const auto count = [](std::uint32_t bits) { return std::popcount(bits); };
-  const auto places = [&](std::uint32_t bits) {
-    return count(bits & 0b0101010U) + 2 * count(bits & 0b1001100U) + 4 * count(bits & 0b1110000U);
-  };
-  const std::uint32_t all = (1U << static_cast<unsigned>(near.max.z - near.min.z)) - 1U;
+  const auto end_of = [](std::int32_t v, std::int32_t max) { return std::min(max, (v | 7) + 1); };
   Index3 sum{0, 0, 0};
+  // By what lies in one layer of one block.
   for (std::int32_t x = near.min.x; x < near.max.x; ++x) {
-    for (std::int32_t y = near.min.y; y < near.max.y; ++y) {
-      Row row;
-      for (std::int32_t z = near.min.z; z < near.max.z; z = (z | 7) + 1) {
-        const Row part = row_from({x, y, z});
-        const auto shift = static_cast<unsigned>(z - near.min.z);
-        row.free |= part.free << shift & all;
-        row.unknown |= part.unknown << shift & all;
+    for (std::int32_t y0 = near.min.y; y0 < near.max.y; y0 = end_of(y0, near.max.y)) {
+      for (std::int32_t z0 = near.min.z; z0 < near.max.z; z0 = end_of(z0, near.max.z)) {
+        const Layer layer = layer_from({x, y0, z0});
+        const auto count = static_cast<unsigned>(end_of(z0, near.max.z) - z0);
+        const std::uint64_t bits = ((1U << count) - 1U) << static_cast<unsigned>(z0 & 7);
+        for (std::int32_t y = y0; y < end_of(y0, near.max.y); ++y) {
+          const auto row = static_cast<unsigned>(y & 7) << 3U;
+          const RowSums& free = kRowSums[layer.free >> row & bits];
+          const RowSums& unknown = kRowSums[layer.unknown >> row & bits];
+          const int more_free = free.count - unknown.count;
+          sum.x += (x - voxel.x) * more_free;
+          sum.y += (y - voxel.y) * more_free;
+          sum.z += ((z0 & ~7) - voxel.z) * more_free + free.places - unknown.places;
+        }
       }
-      const int more_free = count(row.free) - count(row.unknown);
-      sum.x += (x - voxel.x) * more_free;
-      sum.y += (y - voxel.y) * more_free;
-      sum.z += (near.min.z - voxel.z) * more_free + places(row.free) - places(row.unknown);
     }
   }
   return {static_cast<double>(sum.x), static_cast<double>(sum.y), static_cast<double>(sum.z)};
 }
 
-BrickNeighborhood::Row BrickNeighborhood::row_from(Index3 v) const {
+BrickNeighborhood::Layer BrickNeighborhood::layer_from(Index3 v) const {
   const std::int32_t brick = brick_of(v);
-  const auto first = static_cast<unsigned>(v.z & 7);
   if (brick != BeliefBricks::kNone) {
-    const auto of_brick = [&](const LeafMask& mask) {
-      const auto row = static_cast<unsigned>(v.y & 7) << 3U;
-      return static_cast<std::uint32_t>(mask[static_cast<std::size_t>(v.x & 7)] >> row & 255U);
-    };
-    const std::uint32_t non_free = of_brick(bricks_->non_free(static_cast<std::size_t>(brick)));
-    const std::uint32_t occupied = of_brick(bricks_->occupied(static_cast<std::size_t>(brick)));
-    return {(~non_free & 255U) >> first, (non_free & ~occupied) >> first};
+    const auto x = static_cast<std::size_t>(v.x & 7);
+    const std::uint64_t non_free = bricks_->non_free(static_cast<std::size_t>(brick))[x];
+    const std::uint64_t occupied = bricks_->occupied(static_cast<std::size_t>(brick))[x];
+    return {~non_free, non_free & ~occupied};
   }
-  const std::uint32_t rest = 255U >> first;
-  return bricks_->is_unknown_tile(v) ? Row{0, rest} : Row{rest, 0};
+  Layer layer;
+  for (std::int32_t y = v.y; y <= (v.y | 7); ++y) {
+    const std::uint64_t row = std::uint64_t{255} << (static_cast<unsigned>(y & 7) << 3U);
+    (bricks_->is_unknown_tile({v.x, y, v.z}) ? layer.unknown : layer.free) |= row;
+  }
+  return layer;
 }
 
 }  // namespace viewgain::detail

@@ -25,7 +25,7 @@ struct PlacedBelief {
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();  ///< η_v [m⁻¹]
   std::uint32_t hits = 0;
   SymmetricMatrix3 covariance{};                   ///< Λ_v⁻¹ [m²]
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< Λ_v⁻¹ η_v, from the voxel's centre [m]
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< Λ_v⁻¹ η_v, from the centre [voxels]
   /// BrickNeighborhood::free_side() of the voxel's centre, after BeliefBricks::find_sides().
   Eigen::Vector3d toward_free = Eigen::Vector3d::Zero();
 };
@@ -40,7 +40,7 @@ class BeliefBricks {
 
   BeliefBricks(const GridSnapshot& snapshot, const std::vector<BeliefBlockAt>& blocks, int shift);
 
-  /// Gives each belief its free side. Costs about 0.2 µs a belief.
+  /// Gives each belief its free side. Costs about 0.1 µs a belief.
   void find_sides(ThreadPool& pool);
 
   /// Voxels that are occupied and have a belief: brick and offset, in a fixed order.
@@ -125,22 +125,26 @@ class BrickNeighborhood {
     const Eigen::Index b = (axis + 1) % 3, c = (axis + 2) % 3;
     const double reach = half_height * steepest + radius;
     const double spread = radius / steepest;
-    Eigen::Vector3d center;
+    // Centres are sums, one component each: read as a vector, components just written are slow.
+    const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis), unit_b = Eigen::Vector3d::Unit(b),
+                          unit_c = Eigen::Vector3d::Unit(c);
+    std::array<std::int32_t, 3> v{};
     for (double layer = std::ceil(start[axis] - reach - 0.5); layer + 0.5 <= start[axis] + reach;
          ++layer) {
-      center[axis] = layer + 0.5;
-      const double h = (center[axis] - start[axis]) / n[axis];
+      v[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(layer);
+      const double h = (layer + 0.5 - start[axis]) / n[axis];
       const double at_b = start[b] + h * n[b], at_c = start[c] + h * n[c];
       for (double i = std::ceil(at_b - spread - 0.5); i + 0.5 <= at_b + spread; ++i) {
-        center[b] = i + 0.5;
+        v[static_cast<std::size_t>(b)] = static_cast<std::int32_t>(i);
+        const Eigen::Vector3d row = (layer + 0.5) * unit + (i + 0.5) * unit_b;
         for (double j = std::ceil(at_c - spread - 0.5); j + 0.5 <= at_c + spread; ++j) {
-          center[c] = j + 0.5;
-          const Eigen::Vector3d d = center - start;
+          const Eigen::Vector3d d = row + (j + 0.5) * unit_c - start;
           const double along = d.dot(n);
           if (std::abs(along) > half_height || d.squaredNorm() - along * along > radius * radius) {
             continue;
           }
-          const PlacedBelief* belief = find(containing(center));
+          v[static_cast<std::size_t>(c)] = static_cast<std::int32_t>(j);
+          const PlacedBelief* belief = find({v[0], v[1], v[2]});
           if (belief != nullptr) f(*belief, d);
         }
       }
@@ -172,12 +176,12 @@ class BrickNeighborhood {
   }
 
  private:
-  /// Voxels along z as bits.
-  struct Row {
-    std::uint32_t free = 0, unknown = 0;
+  /// Voxels of one x in a block as bits, rows along z side by side.
+  struct Layer {
+    std::uint64_t free = 0, unknown = 0;
   };
-  /// From a voxel to the end of its block.
-  [[nodiscard]] Row row_from(Index3 v) const;
+  /// Those of the voxel's block from its row on; in blocks without a brick rows are uniform.
+  [[nodiscard]] Layer layer_from(Index3 v) const;
 
   /// Number of the brick of a voxel, kNone if there is none or it is not in the neighbourhood.
   [[nodiscard]] std::int32_t brick_of(Index3 v) const {

@@ -131,7 +131,7 @@ void pool_column(const BeliefBricks& bricks, BrickNeighborhood around, double vo
     Face face, other;
     around.for_each_in_column(seed.position, n, radius, half_height,
                               [&](const PlacedBelief& belief, const Eigen::Vector3d& from_axis) {
-                                const double h = n.dot(from_axis + belief.mean / voxel_size);
+                                const double h = n.dot(from_axis + belief.mean);
                                 (belief.toward_free.dot(n) < 0 ? other : face).add(belief, h);
                               });
     const double share = share_of_other(face, other, sigma);
@@ -236,14 +236,14 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
       seed.has_side = along != 0;
       if (along < 0) seed.normal = -seed.normal;
       const Eigen::Vector3d center = Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5;
-      seed.position = center + own.mean / V;
+      seed.position = center + own.mean;
       seed.information = own.information;
       seed.covariance = own.covariance;
       seed.hits = own.hits;
       if (pooled && around.is_near(seed.position)) {
         // The voxel was given its readings from as far as noise carries: the mean of a few may lie
         // so far off the surface that a column round it would miss that.
-        seed.position = center + (own.mean / V).cwiseMax(-0.5).cwiseMin(0.5);
+        seed.position = center + own.mean.cwiseMax(-0.5).cwiseMin(0.5);
         pool_column(bricks, around, V, own, config, lengths.column_radius, seed);
       }
       seed.is_near = around.is_near(seed.position);

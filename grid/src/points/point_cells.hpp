@@ -4,45 +4,55 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
 
 namespace viewgain::detail {
 
-/// Items by the cube that a position [voxels] lies in. Cubes of one map do not share a key.
-template <typename Item>
+/// Buckets of points by the cube that a position [voxels] lies in. Cubes of one map do not share a
+/// key.
+template <typename Bucket>
 class PointCells {
  public:
-  /// Edge of a cube [voxels], at least kLeastEdge: what is within it of a position lies in the 27
-  /// cubes round it.
+  /// Edge of a cube [voxels], at least kLeastEdge.
   explicit PointCells(double edge) : edge_(std::max(edge, kLeastEdge)) {}
 
-  [[nodiscard]] std::vector<Item>& at(const Eigen::Vector3d& p) {
+  [[nodiscard]] Bucket& at(const Eigen::Vector3d& p) {
     return cells_[key(cell(p.x()), cell(p.y()), cell(p.z()))];
   }
 
-  /// f(item) for all items in the cube of p and its neighbours, in a fixed order.
+  [[nodiscard]] double edge() const { return edge_; }
+
+  /// Whether f(bucket) is true for any cube within `radius` of p along each axis. Visits the cubes
+  /// in a fixed order and stops at the first true.
   template <typename F>
-  void for_each_near(const Eigen::Vector3d& p, F&& f) const {
-    const std::int64_t x = cell(p.x()), y = cell(p.y()), z = cell(p.z());
-    for (std::int64_t i = x - 1; i <= x + 1; ++i) {
-      for (std::int64_t j = y - 1; j <= y + 1; ++j) {
-        for (std::int64_t k = z - 1; k <= z + 1; ++k) {
+  [[nodiscard]] bool any_near(const Eigen::Vector3d& p, double radius, F&& f) const {
+    const double reach = 1.001 * radius;  // whichever way sums and quotients are rounded
+    std::array<std::int64_t, 3> low{}, high{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = cell(p[static_cast<Eigen::Index>(axis)] - reach);
+      high[axis] = cell(p[static_cast<Eigen::Index>(axis)] + reach);
+    }
+    for (std::int64_t i = low[0]; i <= high[0]; ++i) {
+      for (std::int64_t j = low[1]; j <= high[1]; ++j) {
+        for (std::int64_t k = low[2]; k <= high[2]; ++k) {
           const auto found = cells_.find(key(i, j, k));
-          if (found == cells_.end()) continue;
-          for (const Item& item : found->second) f(item);
+          if (found != cells_.end() && f(found->second)) return true;
         }
       }
     }
+    return false;
   }
 
-  /// The items of each cube that has some.
-  [[nodiscard]] std::vector<const std::vector<Item>*> groups() const {
-    std::vector<const std::vector<Item>*> result;
+  /// The bucket of each cube that has one.
+  [[nodiscard]] std::vector<const Bucket*> buckets() const {
+    std::vector<const Bucket*> result;
     result.reserve(cells_.size());
-    for (const auto& [key, items] : cells_) result.push_back(&items);
+    for (const auto& [key, bucket] : cells_) result.push_back(&bucket);
     return result;
   }
 
@@ -59,7 +69,7 @@ class PointCells {
   }
 
   double edge_;
-  std::unordered_map<std::uint64_t, std::vector<Item>> cells_;
+  std::unordered_map<std::uint64_t, Bucket> cells_;
 };
 
 }  // namespace viewgain::detail

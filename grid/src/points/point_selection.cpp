@@ -23,12 +23,11 @@ constexpr double kLeastGap = 0.4;  // of `cover`: nearer points are not put back
 
 // Points with one array per component, so that a loop over them can be vectorised.
 struct Columns {
+  std::vector<std::size_t> numbers;
   std::vector<double> x, y, z, nx, ny, nz, evidence;
 
-  void clear() {
-    for (auto* column : {&x, &y, &z, &nx, &ny, &nz, &evidence}) column->clear();
-  }
-  void add(const PooledPoint& p) {
+  void add(std::size_t number, const PooledPoint& p) {
+    numbers.push_back(number);
     x.push_back(p.position.x());
     y.push_back(p.position.y());
     z.push_back(p.position.z());
@@ -37,6 +36,31 @@ struct Columns {
     nz.push_back(p.toward_free.z());
     evidence.push_back(p.evidence);
   }
+};
+
+// Counts the points within a radius that face the same way, and those of them whose evidence, times
+// `share`, is not above the point's. Counts are doubles, as GCC does not vectorise with integers.
+struct Supporters {
+  double all = 0, below = 0;
+
+  void add(const Columns& near, const PooledPoint& p, double radius, double share) {
+    for (std::size_t j = 0; j < near.x.size(); ++j) {
+      const double dx = near.x[j] - p.position.x(), dy = near.y[j] - p.position.y(),
+                   dz = near.z[j] - p.position.z();
+      const double cosine = near.nx[j] * p.toward_free.x() + near.ny[j] * p.toward_free.y() +
+                            near.nz[j] * p.toward_free.z();
+      const double within = dx * dx + dy * dy + dz * dz <= radius * radius ? 1.0 : 0.0;
+      const double counts = cosine >= kSameSide ? within : 0.0;
+      all += counts;
+      below += share * near.evidence[j] <= p.evidence ? counts : 0.0;
+    }
+  }
+};
+
+// A point that was taken.
+struct Taken {
+  Vector3d position;
+  std::size_t number;
 };
 
 // Is the rim of the disc of radius `cover` in the point's tangent plane within `cover` of others?
@@ -60,30 +84,24 @@ std::vector<std::uint8_t> well_supported(const std::vector<PooledPoint>& points,
                                          double share, ThreadPool& pool) {
   std::vector<std::uint8_t> kept(points.size(), 1);
   if (share == 0) return kept;
-  PointCells<std::size_t> cells(radius);
-  for (std::size_t i = 0; i < points.size(); ++i) cells.at(points[i].position).push_back(i);
-  const std::vector<const std::vector<std::size_t>*> groups = cells.groups();
+  PointCells<Columns> cells(radius);
+  for (std::size_t i = 0; i < points.size(); ++i) cells.at(points[i].position).add(i, points[i]);
+  const std::vector<const Columns*> groups = cells.buckets();
   pool.for_each_chunk(groups.size(), 4, [&](std::size_t begin, std::size_t end) {
-    Columns near;
+    std::vector<const Columns*> near;
     for (std::size_t g = begin; g < end; ++g) {
       near.clear();
-      cells.for_each_near(points[groups[g]->front()].position,
-                          [&](std::size_t j) { near.add(points[j]); });
-      for (const std::size_t i : *groups[g]) {
-        const PooledPoint& p = points[i];
+      const std::vector<std::size_t>& numbers = groups[g]->numbers;
+      (void)cells.any_near(points[numbers.front()].position, cells.edge(),
+                           [&](const Columns& columns) {
+                             near.push_back(&columns);
+                             return false;
+                           });
+      for (const std::size_t i : numbers) {
+        Supporters supporters;
+        for (const Columns* columns : near) supporters.add(*columns, points[i], radius, share);
         // evidence >= share · quartile, without sorting: more than 3/4 of them must not exceed it.
-        int all = 0, below = 0;
-        for (std::size_t j = 0; j < near.x.size(); ++j) {
-          const double dx = near.x[j] - p.position.x(), dy = near.y[j] - p.position.y(),
-                       dz = near.z[j] - p.position.z();
-          const double cosine = near.nx[j] * p.toward_free.x() + near.ny[j] * p.toward_free.y() +
-                                near.nz[j] * p.toward_free.z();
-          const int counts = (dx * dx + dy * dy + dz * dz <= radius * radius ? 1 : 0) &
-                             (cosine >= kSameSide ? 1 : 0);
-          all += counts;
-          below += counts & (share * near.evidence[j] <= p.evidence ? 1 : 0);
-        }
-        kept[i] = below > all * 3 / 4 ? 1 : 0;
+        kept[i] = supporters.below > std::floor(supporters.all * 3 / 4) ? 1 : 0;
       }
     }
   });
@@ -103,31 +121,45 @@ std::vector<std::size_t> thinned(const std::vector<PooledPoint>& points, double 
     };
     return key(a) < key(b);
   });
-  PointCells<std::size_t> cells(std::max(min_distance, 2 * cover));
-  const auto for_each_beside = [&](std::size_t i, const auto& f) {
-    cells.for_each_near(points[i].position, [&](std::size_t j) {
-      if (points[j].toward_free.dot(points[i].toward_free) >= 0) {
-        f(j, (points[j].position - points[i].position).squaredNorm());
-      }
+  PointCells<std::vector<Taken>> cells(std::max(min_distance, 2 * cover));
+  // Whether f(position) is true for any taken point on the same side that passes is_within(squared
+  // distance). is_within must reject points beyond the radius.
+  const auto any_beside = [&](std::size_t i, double radius, const auto& is_within, const auto& f) {
+    const PooledPoint& point = points[i];
+    return cells.any_near(point.position, radius, [&](const std::vector<Taken>& bucket) {
+      return std::any_of(bucket.begin(), bucket.end(), [&](const Taken& other) {
+        return is_within((other.position - point.position).squaredNorm()) &&
+               points[other.number].toward_free.dot(point.toward_free) >= 0 && f(other.position);
+      });
     });
   };
+  const auto is_any_closer = [&](std::size_t i, double distance) {
+    return any_beside(
+        i, distance, [&](double squared) { return squared < distance * distance; },
+        [](const Vector3d&) { return true; });
+  };
   std::vector<std::size_t> taken, rest;
+  const auto take = [&](std::size_t i) {
+    taken.push_back(i);
+    cells.at(points[i].position).push_back({points[i].position, i});
+  };
   for (const std::size_t i : order) {
-    bool crowded = false;
-    for_each_beside(i, [&](std::size_t, double squared) {
-      crowded = crowded || squared < min_distance * min_distance;
-    });
-    (crowded ? rest : taken).push_back(i);
-    if (!crowded) cells.at(points[i].position).push_back(i);
+    if (is_any_closer(i, min_distance)) {
+      rest.push_back(i);
+    } else {
+      take(i);
+    }
   }
   const auto leaves_hole = [&](std::size_t i, std::vector<Vector3d>& others) {
+    if (is_any_closer(i, kLeastGap * cover)) return false;
     others.clear();
-    bool is_beside = false;
-    for_each_beside(i, [&](std::size_t j, double squared) {
-      is_beside = is_beside || squared < std::pow(kLeastGap * cover, 2);
-      if (squared <= 4 * cover * cover) others.push_back(points[j].position);
-    });
-    return !is_beside && !rim_is_covered(points[i], cover, others);
+    (void)any_beside(
+        i, 2 * cover, [&](double squared) { return squared <= 4 * cover * cover; },
+        [&](const Vector3d& position) {
+          others.push_back(position);
+          return false;
+        });
+    return !rim_is_covered(points[i], cover, others);
   };
   // Putting points back only closes holes, so that the second pass checks these candidates alone.
   std::vector<std::uint8_t> holes(rest.size());
@@ -137,9 +169,7 @@ std::vector<std::size_t> thinned(const std::vector<PooledPoint>& points, double 
   });
   std::vector<Vector3d> others;
   for (std::size_t k = 0; k < rest.size(); ++k) {
-    if (holes[k] == 0 || !leaves_hole(rest[k], others)) continue;
-    taken.push_back(rest[k]);
-    cells.at(points[rest[k]].position).push_back(rest[k]);
+    if (holes[k] != 0 && leaves_hole(rest[k], others)) take(rest[k]);
   }
   std::sort(taken.begin(), taken.end());
   return taken;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "point_grid.hpp"
+#include "viewgain/core/exec_config.hpp"
 
 namespace viewgain::detail {
 
@@ -17,6 +18,6 @@ namespace viewgain::detail {
 /// vertex, and they are sorted. The points should be about 1 apart, as CGAL has absolute
 /// tolerances. The same points give the same triangles but for the side of a component.
 [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> advancing_front(
-    std::span<const Point3> points, std::span<const double> max_edge);
+    std::span<const Point3> points, std::span<const double> max_edge, const ExecConfig& exec);
 
 }  // namespace viewgain::detail

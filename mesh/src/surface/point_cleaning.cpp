@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -24,11 +25,19 @@ PointGrid::PointGrid(std::span<const Point3> points, double cell_size)
     keyed[i] = {key_of(cell_of(p[0]), cell_of(p[1]), cell_of(p[2])), static_cast<std::uint32_t>(i)};
   }
   std::sort(keyed.begin(), keyed.end());
+  std::size_t count = 0;
   for (std::size_t i = 0; i < keyed.size(); ++i) {
     order_[i] = keyed[i].second;
     sorted_[i] = points[keyed[i].second];
-    const auto place = static_cast<std::uint32_t>(i);
-    cells_.try_emplace(keyed[i].first, Range{place, place}).first->second.end = place + 1;
+    if (i == 0 || keyed[i].first != keyed[i - 1].first) ++count;
+  }
+  const auto bits = static_cast<unsigned>(std::bit_width(2 * count | 1U));  // 1 for no points
+  cells_.resize(std::size_t{1} << bits);
+  shift_ = 64U - bits;
+  for (std::uint32_t i = 0; i < keyed.size(); ++i) {
+    Cell& cell = cells_[slot_of(keyed[i].first)];
+    if (cell.end == 0) cell = {keyed[i].first, i, i};
+    cell.end = i + 1;
   }
 }
 
@@ -161,12 +170,14 @@ std::vector<std::uint32_t> large_components(std::span<const OrientedPoint> point
   std::iota(parent.begin(), parent.end(), 0U);
   for (const std::uint32_t i : grid.order()) {
     const double spacing = spacing_at(points[i], config);
+    std::uint32_t root = root_of(parent, i);
     grid.for_each_within(positions[i], config.join_distance * spacing,
                          [&](std::uint32_t j, double) {
                            if (j >= i && spacing_at(points[j], config) == spacing)
                              return;  // j finds i
-                           const std::uint32_t a = root_of(parent, i), b = root_of(parent, j);
-                           parent[std::max(a, b)] = std::min(a, b);
+                           const std::uint32_t other = root_of(parent, j);
+                           parent[std::max(root, other)] = std::min(root, other);
+                           root = std::min(root, other);
                          });
   }
   std::vector<std::uint32_t> size(points.size(), 0);

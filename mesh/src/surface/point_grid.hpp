@@ -8,8 +8,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
+
+#include "viewgain/support/hash64.hpp"
 
 namespace viewgain::detail {
 
@@ -37,9 +38,8 @@ class PointGrid {
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          const auto cell = cells_.find(key_of(x, y, z));
-          if (cell == cells_.end()) continue;
-          for (std::uint32_t i = cell->second.begin; i < cell->second.end; ++i) {
+          const Cell& cell = cells_[slot_of(key_of(x, y, z))];
+          for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
             const double d2 = squared_distance(sorted_[i], p);
             if (d2 <= radius * radius) visit(order_[i], d2);
           }
@@ -64,13 +64,25 @@ class PointGrid {
            (static_cast<std::uint64_t>(y) & kMask) << 21U | (static_cast<std::uint64_t>(z) & kMask);
   }
 
+  // Of the cell with this key, or the free one to put it in.
+  [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
+    std::size_t slot = key * kMixStep >> shift_;
+    while (cells_[slot].end != 0 && cells_[slot].key != key) {
+      slot = (slot + 1) & (cells_.size() - 1);
+    }
+    return slot;
+  }
+
   double inverse_cell_size_;
   std::vector<std::uint32_t> order_;
   std::vector<Point3> sorted_;  // the points in that order: a cell's lie side by side
-  struct Range {
-    std::uint32_t begin = 0, end = 0;  // into order_
+  struct Cell {
+    std::uint64_t key = 0;
+    std::uint32_t begin = 0, end = 0;  // into order_; both 0: no cell
   };
-  std::unordered_map<std::uint64_t, Range> cells_;
+  // A hash table with open addressing, at most half full, as searches look up 27 cells and more.
+  std::vector<Cell> cells_;
+  unsigned shift_;  // leaves of a hash the number of a slot
 };
 
 }  // namespace viewgain::detail

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "advancing_front.hpp"
+#include "keyed_sort.hpp"
 #include "point_cleaning.hpp"
 #include "surface_access.hpp"
 #include "viewgain/core/error.hpp"
@@ -53,9 +54,7 @@ namespace {
 using Triangle = std::array<std::uint32_t, 3>;
 
 // The directed edge from corner k.
-std::uint64_t edge_of(const Triangle& t, std::size_t k) {
-  return static_cast<std::uint64_t>(t[k]) << 32U | t[(k + 1) % 3];
-}
+std::uint64_t edge_of(const Triangle& t, std::size_t k) { return key_of(t[k], t[(k + 1) % 3]); }
 
 std::uint64_t reversed(std::uint64_t edge) { return edge << 32U | edge >> 32U; }
 
@@ -65,7 +64,7 @@ std::uint64_t reversed(std::uint64_t edge) { return edge << 32U | edge >> 32U; }
 // direction, or that repeats a vertex; of the triangles at fault the earlier ones stay.
 void drop_non_manifold(std::vector<Triangle>& triangles) {
   // With each directed edge in one face at most, an edge has at most two, in opposite directions.
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> edges;
+  std::vector<Keyed> edges;
   edges.reserve(3 * triangles.size());
   std::vector<bool> at_fault(triangles.size(), false);
   for (std::uint32_t f = 0; f < triangles.size(); ++f) {
@@ -73,7 +72,7 @@ void drop_non_manifold(std::vector<Triangle>& triangles) {
     at_fault[f] = t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
     for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(edge_of(t, k), f);
   }
-  std::sort(edges.begin(), edges.end());
+  sort_by_key(edges);
   for (std::size_t e = 1; e < edges.size(); ++e) {
     if (edges[e].first == edges[e - 1].first) at_fault[edges[e].second] = true;
   }
@@ -85,7 +84,7 @@ void drop_non_manifold(std::vector<Triangle>& triangles) {
 }
 
 FaceComponents face_components(const std::vector<Triangle>& triangles) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> edges;
+  std::vector<Keyed> edges;
   edges.reserve(3 * triangles.size());
   for (std::uint32_t f = 0; f < triangles.size(); ++f) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -93,7 +92,7 @@ FaceComponents face_components(const std::vector<Triangle>& triangles) {
       edges.emplace_back(std::min(edge, reversed(edge)), f);
     }
   }
-  std::sort(edges.begin(), edges.end());
+  sort_by_key(edges);
 
   std::vector<std::uint32_t> parent(triangles.size());
   std::iota(parent.begin(), parent.end(), 0U);
@@ -119,15 +118,17 @@ FaceComponents face_components(const std::vector<Triangle>& triangles) {
 // Leaves out components of fewer than min_vertices vertices.
 void drop_small(std::vector<Triangle>& triangles, FaceComponents& components,
                 std::size_t min_vertices) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> members;  // component, vertex
+  std::vector<Keyed> members;  // component by vertex
   members.reserve(3 * triangles.size());
   for (std::size_t f = 0; f < triangles.size(); ++f) {
-    for (const std::uint32_t v : triangles[f]) members.emplace_back(components.of_face[f], v);
+    for (const std::uint32_t v : triangles[f]) {
+      members.emplace_back(key_of(v, components.of_face[f]), components.of_face[f]);
+    }
   }
-  std::sort(members.begin(), members.end());
+  sort_by_key(members);
   members.erase(std::unique(members.begin(), members.end()), members.end());
   std::vector<std::size_t> vertices(components.count, 0);
-  for (const auto& [component, vertex] : members) ++vertices[component];
+  for (const auto& [key, component] : members) ++vertices[component];
 
   constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> renumbered(components.count, kDropped);
@@ -298,8 +299,8 @@ SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points, const Sur
   for (const OrientedPoint& p : selection.points) {
     max_edge.push_back(config.max_edge * (detail::spacing_at(p, config) / config.spacing));
   }
-  std::vector<Triangle> triangles =
-      detail::advancing_front(triangulation_points(selection.points, config.spacing), max_edge);
+  std::vector<Triangle> triangles = detail::advancing_front(
+      triangulation_points(selection.points, config.spacing), max_edge, exec);
   std::erase_if(triangles, [&](const Triangle& t) {
     return area_vector(selection.points, t).norm() < kMinArea * config.spacing * config.spacing;
   });
