@@ -11,19 +11,24 @@
 
 using namespace viewgain;
 
-PlannerConfig bin_cell() {
-  PlannerConfig config;
-  config.grid.voxel_size = 0.005;
-  config.grid.workspace = {{-0.20, -0.15, 0.0}, {0.20, 0.15, 0.20}};
-  config.surroundings.support_plane = 0.0;  // the bin's floor
+ScorerConfig bin_map() {
+  ScorerConfig config;
+  config.voxel_size = 0.005;
+  config.workspace = {{-0.20, -0.15, 0.0}, {0.20, 0.15, 0.20}};
+  config.support_plane = 0.0;  // the bin's floor
   // Its four walls, 2 cm thick and 20 cm high.
-  config.surroundings.obstacles.boxes = {{{-0.22, -0.17, 0}, {-0.20, 0.17, 0.2}},
-                                         {{0.20, -0.17, 0}, {0.22, 0.17, 0.2}},
-                                         {{-0.22, -0.17, 0}, {0.22, -0.15, 0.2}},
-                                         {{-0.22, 0.15, 0}, {0.22, 0.17, 0.2}}};
+  config.obstacles.boxes = {{{-0.22, -0.17, 0}, {-0.20, 0.17, 0.2}},
+                            {{0.20, -0.17, 0}, {0.22, 0.17, 0.2}},
+                            {{-0.22, -0.17, 0}, {0.22, -0.15, 0.2}},
+                            {{-0.22, 0.15, 0}, {0.22, 0.17, 0.2}}};
+  config.clearance = 0.01;
+  return config;
+}
+
+PlannerConfig robot() {
+  PlannerConfig config;
   config.reach.shells = {{{0.0, 0.0, 0.1}, 0.40, 0.75}};
   config.reach.half_spaces = {{{0, 0, 1}, 0.30}};  // nowhere under 0.3 m
-  config.clearance = 0.01;
   return config;
 }
 
@@ -37,11 +42,11 @@ int main(int argc, char** argv) try {
   const Sensor sensor = load_sensor(argv[1]);
   const FrameSequence frames = open_frames(argv[2], argv[1]);
   const std::filesystem::path state = argv[3];
-  ViewPlanner planner = exists(state) ? ViewPlanner::load(state, sensor, bin_cell())
-                                      : ViewPlanner(sensor, bin_cell());
+  ViewPlanner planner = exists(state) ? ViewPlanner::load(state, sensor, bin_map(), robot())
+                                      : ViewPlanner(ViewScorer(sensor, bin_map()), robot());
   planner.add_poses({"shell", shell_poses(300, 0.45, 0.70, 1, {0.0, 0.0, 0.1})});
 
-  const std::size_t first = planner.grid().views().size();
+  const std::size_t first = planner.scorer().grid().views().size();
   for (std::size_t i = first; i < frames.images.size() && i < first + std::stoul(argv[4]); ++i) {
     const AddedView view = planner.add(load_frame(frames, i), frames.poses[i]);
     std::printf("view %zu: %.1f cm2 of new surface, %.0f nat", i, 1e4 * view.update.new_area,

@@ -29,46 +29,42 @@ frame = see(start)
 viewgain.plot.depth(frame).figure.savefig("depth.png")
 
 # %% Map: all is unknown until frames go in.
-grid = viewgain.BeliefGrid(voxel_size=0.005, workspace=[[-0.15, -0.15, -0.15], [0.15, 0.15, 0.15]], sensor=sensor)
-integrator = viewgain.FrameIntegrator(sensor)
-print(integrator.integrate(grid, frame, start))
-print(grid)
+scorer = viewgain.ViewScorer(sensor, voxel_size=0.005, workspace=[[-0.15, -0.15, -0.15], [0.15, 0.15, 0.15]], gain="surface")
+print(scorer.add(frame, start))
+print(scorer.grid)
 
 # %% Candidates: 500 poses round the ball, less those that the robot cannot reach or in which the camera would collide.
 sphere = viewgain.sphere_poses(500, 0.5)
-scene = viewgain.VoxelScene(grid)
 reach = viewgain.ReachRegion(half_spaces=[[0, 1, 0, -0.35]])  # y >= -0.35 m: no nearer to the wall than 15 cm
-checker = viewgain.FeasibilityChecker(scene, reach=reach)     # a body of 6.5 x 6.5 x 7.6 cm, as no body_size is given
+checker = viewgain.FeasibilityChecker(scorer.scene, reach=reach)   # a body of 6.5 x 6.5 x 7.6 cm, as no body_size is given
 poses = sphere[checker.feasible(sphere)]
 print(f"{len(poses)} of 500 are possible")
 
 # %% Gains: how much is each expected to add?
-evaluator = viewgain.GainEvaluator(scene, sensor, gain="surface")
-gains = evaluator.evaluate(poses)
+gains = scorer.evaluate(poses)
 viewgain.plot.gains(poses, gains, label="new surface [m²]").figure.savefig("gains.png")
 
 # %% Why: what the best view sees of the map, and where its gain comes from.
 best = poses[np.nanargmax(gains)]  # a bad pose gains NaN, which np.argmax would choose
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.5), layout="constrained")
-viewgain.plot.depth(evaluator.depth(best), axes=left)
-viewgain.plot.contributions(viewgain.GainEvaluator(scene, sensor, gain="paper"), best, axes=right)
+viewgain.plot.depth(scorer.evaluator.depth(best), axes=left)
+viewgain.plot.contributions(viewgain.GainEvaluator(scorer.scene, sensor, gain="paper"), best, axes=right)
 figure.savefig("why.png")
 
 # %% Go there, and so on: four more views, and how much of the box is known after each of the five.
 def share_known():
+    grid = scorer.grid
     return 1 - grid.statistics().unknown / np.prod(grid.shape)
 
 
 pose, taken, known = best, [start], [share_known()]
 for _ in range(4):
-    integrator.integrate(grid, see(pose), pose)
+    scorer.add(see(pose), pose)
     taken.append(pose)
     known.append(share_known())
-    scene = scene.update(grid)
-    checker = viewgain.FeasibilityChecker(scene, reach=reach)  # what is possible changes with the map
+    checker = viewgain.FeasibilityChecker(scorer.scene, reach=reach)  # what is possible changes with the map
     poses = sphere[checker.feasible(sphere, taken)]
-    evaluator = evaluator.with_scene(scene)
-    pose = poses[evaluator.race(poses, 1)[0]]
+    pose = poses[scorer.best(poses).indices[0]]
 plt.figure()
 plt.plot(range(1, 6), 100 * np.array(known), "o-"), plt.ylim(0, 100), plt.xlabel("views"), plt.ylabel("known [%]")
 plt.savefig("known.png")

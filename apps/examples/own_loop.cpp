@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
-#include <viewgain/planner/map_model.hpp>
 #include <viewgain/planner/simulated_acquisition.hpp>
 #include <viewgain/viewgain.hpp>
 
@@ -28,12 +27,12 @@ class NearingRing : public ViewpointGeneration {
 // The representation is viewgain's own; the loop asks how far it is.
 class Map : public RepresentationUpdate {
  public:
-  Map(const Sensor& sensor, const MapModelConfig& config) : model(sensor, config) {}
+  Map(const Sensor& sensor, const ScorerConfig& config) : scorer(sensor, config) {}
   ModelProgress update(const Measurements& measurements) override {
-    model.update(measurements);
-    return model.progress();
+    scorer.add(measurements);
+    return scorer.progress();
   }
-  MapModel model;
+  ViewScorer scorer;
 };
 
 // Takes the candidate with the most nats a metre of way.
@@ -41,13 +40,14 @@ class GainPerMetre : public DecisionMaking {
  public:
   explicit GainPerMetre(const Map& map) : map_(map) {}
   std::optional<Decision> decide(const Pose& from, std::span<const Candidate> candidates) override {
-    const GainEvaluator evaluator(map_.model.scene(), map_.model.sensor());
+    std::vector<Pose> poses;
+    for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
+    const std::vector<ViewGain> gains = map_.scorer.evaluate(poses);
     Decision best;
     double best_rate = 0;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      const Pose& pose = candidates[i].T_world_camera;
-      const double way = (pose.translation() - from.translation()).norm() + 0.05;  // [m]
-      const double gain = evaluator.evaluate(pose).gain;
+      const double way = (poses[i].translation() - from.translation()).norm() + 0.05;  // [m]
+      const double gain = gains[i].gain;
       if (gain / way <= best_rate) continue;
       best_rate = gain / way;
       best.candidate = i;
@@ -68,9 +68,9 @@ int main() try {
   SimulatedAcquisition camera(
       SimulatedSensor(std::make_shared<const SurfaceScene>(mesh_of(box)), sensor), 1, {});
 
-  MapModelConfig config;
-  config.grid.voxel_size = 0.01;
-  config.grid.workspace = {{-0.15, -0.15, -0.15}, {0.15, 0.15, 0.15}};
+  ScorerConfig config;
+  config.voxel_size = 0.01;
+  config.workspace = {{-0.15, -0.15, -0.15}, {0.15, 0.15, 0.15}};
   Map map(sensor, config);
   NearingRing ring;
   GainPerMetre choice(map);

@@ -52,19 +52,17 @@ std::vector<Figure> decision_figures(const BarsOptions& options) {
     }
   }
   // The same 500 by the step interface, side by side.
-  PlannerConfig config;
-  config.grid = {.voxel_size = before.voxel_size(),
-                 .workspace = before.workspace(),
-                 .T_world_grid = before.T_world_grid(),
-                 .prior_sigma = before.prior_sigma()};
+  ScorerConfig config{.voxel_size = before.voxel_size(),
+                      .workspace = before.workspace(),
+                      .T_world_grid = before.T_world_grid(),
+                      .prior_sigma = before.prior_sigma()};
   config.jump_edges.reset();
   config.gain.model = GainModel::paper;
   const std::vector<Pose> given = sphere_poses(500, kModelDistance);
   std::vector<double> by_parts, by_planner;
   for (int repetition = -1; repetition < options.repetitions; ++repetition) {
-    ViewPlanner planner(model.sensor(), config, exec);
+    ViewPlanner planner(ViewScorer(model.sensor(), config, exec));
     for (std::size_t i = 0; i < kViews; ++i) planner.add(model.acquire(views[i], i), views[i]);
-    (void)planner.evaluator();
     const double planned = seconds_of([&] {
       (void)planner.add(frame, views[kViews]);
       (void)planner.rank(given, 1);

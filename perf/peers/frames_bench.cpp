@@ -17,10 +17,10 @@
 #include "model_scene.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/mesh/quality.hpp"
-#include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/point_arrays.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::bench {
@@ -102,10 +102,9 @@ template <typename Visit>
 int run_to_goal(const ModelScene& model, const GroundTruth& truth, const GridConfig& grid,
                 Criterion criterion, std::uint64_t seed, const FramesOptions& options,
                 const ExecConfig& exec, Visit&& visit) {
-  MapModelConfig config;
-  config.grid = grid;
-  config.follow_surface = false;
-  MapModel map(model.sensor(), config, exec);
+  ScorerConfig config;
+  config.gain.model = GainModel::paper;
+  ViewScorer map(BeliefGrid(grid, model.sensor()), model.sensor(), config, exec);
   const std::vector<Pose> poses = sphere_poses(static_cast<std::size_t>(options.candidates),
                                                kModelDistance, model.stage().center);
   Pose pose = default_start(model.stage(), kModelDistance, seed, {}, {});
@@ -115,7 +114,7 @@ int run_to_goal(const ModelScene& model, const GroundTruth& truth, const GridCon
     Measurements measurements;
     measurements.T_world_camera = pose;
     measurements.frames = {model.acquire(pose, static_cast<std::uint64_t>(view - 1))};
-    map.update(measurements);
+    map.add(measurements);
     const auto positions = arrays_of(fused_points(map.grid(), {}, exec)).positions;
     const double covered = coverage(truth.distances_to(positions), kCovered);
     if (!there && covered >= kGoal) there = view;

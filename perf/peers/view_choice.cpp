@@ -12,12 +12,11 @@
 namespace viewgain::bench {
 namespace {
 
-PlannerConfig planner_config(Ranker ranker, const Box& workspace, double voxel, int stride) {
-  PlannerConfig config;
-  config.grid.voxel_size = voxel;
-  config.grid.workspace = workspace;
+ScorerConfig scorer_config(Ranker ranker, const Box& workspace, double voxel, int stride) {
+  ScorerConfig config;
+  config.voxel_size = voxel;
+  config.workspace = workspace;
   config.jump_edges.reset();  // their camera makes no flying pixels
-  config.check_feasibility = false;
   config.gain.pixel_stride = stride;
   config.gain.model = GainModel::paper;
   if (ranker == Ranker::combined) config.gain.model = GainModel::combined;
@@ -55,11 +54,11 @@ ViewChoice::ViewChoice(Ranker ranker, const Sensor& sensor, const Box& workspace
                        int stride, std::uint64_t seed, const ExecConfig& exec)
     : ranker_(ranker),
       seed_(seed),
-      planner_(sensor, planner_config(ranker, workspace, voxel, stride), exec) {}
+      scorer_(sensor, scorer_config(ranker, workspace, voxel, stride), exec) {}
 
 void ViewChoice::add(const DepthFrame& frame, const Pose& T_world_camera) {
   ++views_;
-  if (ranker_ != Ranker::random) planner_.add(frame, T_world_camera);
+  if (ranker_ != Ranker::random) scorer_.add(frame, T_world_camera);
   eye_ = T_world_camera.translation();
 }
 
@@ -72,7 +71,7 @@ std::vector<double> ViewChoice::values(std::span<const Pose> T_world_camera) {
     }
     return result;
   }
-  for (const ViewGain& gain : planner_.evaluator().evaluate(T_world_camera)) {
+  for (const ViewGain& gain : scorer_.evaluate(T_world_camera)) {
     result.push_back(ranker_ == Ranker::frontier ? gain.unknown_voxels : gain.gain);
   }
   return result;

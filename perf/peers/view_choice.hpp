@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "viewgain/core/exec_config.hpp"
-#include "viewgain/planner/view_planner.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 
 namespace viewgain::bench {
 
@@ -45,7 +45,7 @@ class ViewChoice {
 
   Ranker ranker_;
   std::uint64_t seed_;
-  ViewPlanner planner_;      ///< its map stays empty where the choice is random
+  ViewScorer scorer_;        ///< its map stays empty where the choice is random
   std::uint64_t views_ = 0;  ///< added
   Eigen::Vector3d eye_ = Eigen::Vector3d::Zero();
 };

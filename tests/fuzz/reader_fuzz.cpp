@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<std::pair<const char*, std::size_t (*)(std::string_view)>, 3> kCalls{
-    {{"c_calls", c_calls}, {"planner_calls", planner_calls}, {"map.vdb", vdb_maps}}};
+    {{"c_calls", c_calls}, {"scorer_calls", scorer_calls}, {"map.vdb", vdb_maps}}};
 
 void write_seeds(const fs::path& seeds) {
   const auto write = [&](const std::string& reader, const std::string& name,
@@ -48,7 +48,7 @@ void write_seeds(const fs::path& seeds) {
     const std::string reader = "mesh" + fs::path(row.file).extension().string();
     if (fs::exists(seeds / reader)) write(reader, row.file, row.bytes);
   }
-  for (const char* calls : {"c_calls", "planner_calls"})
+  for (const char* calls : {"c_calls", "scorer_calls"})
     write(calls, "0", std::string(200, '\x01'));
   const std::vector<std::string> maps = vdb_seeds();
   for (std::size_t i = 0; i < maps.size(); ++i) write("map.vdb", std::to_string(i), maps[i]);

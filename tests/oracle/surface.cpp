@@ -170,10 +170,9 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
   for (const auto& [cell, added] : refined) {
     const auto& [x, y, z] = cell;
     const auto belief = grid.belief({x, y, z});
-    Eigen::Matrix3d before = prior;
-    if (belief) {
-      before += belief->information_matrix().matrix() / std::pow(4.0, grid.scale({x, y, z}));
-    }
+    if (!belief) continue;  // what was never measured is not refined
+    const Eigen::Matrix3d before =
+        prior + belief->information_matrix().matrix() / std::pow(4.0, grid.scale({x, y, z}));
     value.refinement_saturated +=
         weight_of(config, V, {x, y, z}) *
         (entropy_with_floor(before, floor) - entropy_with_floor(before + added, floor));

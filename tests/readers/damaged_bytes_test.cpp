@@ -182,7 +182,7 @@ std::size_t fuzzed_calls(const std::string& name, std::size_t (*call)(std::strin
 
 TEST(FuzzedCalls, AreTakenOrRefused) {
   EXPECT_GT(fuzzed_calls("c_calls", test::c_calls), 400U);
-  EXPECT_GT(fuzzed_calls("planner_calls", test::planner_calls), 400U);
+  EXPECT_GT(fuzzed_calls("scorer_calls", test::scorer_calls), 400U);
 }
 
 TEST(DamagedJson, IsReadOrRefused) {

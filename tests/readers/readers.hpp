@@ -37,8 +37,8 @@ void read_in_place(const Reader& reader, const TemporaryFolder& folder, std::str
 /// made, used and released in any order. Returns how many calls succeeded; throws std::logic_error
 /// where a status is a defect of the library, or what came back cannot be.
 std::size_t c_calls(std::string_view bytes);
-/// The same of a planner's calls.
-std::size_t planner_calls(std::string_view bytes);
+/// The same of a scorer's calls.
+std::size_t scorer_calls(std::string_view bytes);
 
 /// Reads the bytes behind the first one, which says by what and whether a seal that fits is put
 /// behind them, as a .vdb map. Returns whether it was one; throws what is no Error.

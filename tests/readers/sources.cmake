@@ -3,7 +3,7 @@ find_package(nlohmann_json CONFIG REQUIRED)
 set(apps ${PROJECT_SOURCE_DIR}/apps)
 set(VIEWGAIN_READERS
   ${CMAKE_CURRENT_LIST_DIR}/readers.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/../fuzz/c_calls.cpp ${CMAKE_CURRENT_LIST_DIR}/../fuzz/planner_calls.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/../fuzz/c_calls.cpp ${CMAKE_CURRENT_LIST_DIR}/../fuzz/scorer_calls.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../mesh/files/mesh_dialects.cpp
   ${apps}/program/cli/values.cpp ${apps}/program/commands/reconstruct/checkpoint.cpp
   ${apps}/program/commands/study/markdown.cpp ${apps}/program/commands/study/results.cpp)

@@ -31,6 +31,7 @@
 #include "viewgain/raycast/feasibility.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
+#include "viewgain/support/voxels_text.hpp"
 
 // What the opaque handles of viewgain.h are. Scenes are shared by what is made from them, so
 // handles may go in any order.
@@ -72,14 +73,29 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Takes `coarsest`, `fine` and `finest` over; throws Error(invalid_argument) for null instead of
 /// boxes.
-template <typename Config>
-void set_scales(const Config& given, IntegrationConfig& settings) {
+template <typename Config, typename Settings>
+void set_scales(const Config& given, Settings& settings) {
   settings.coarsest = given.coarsest;
   settings.finest = given.finest;
   require("fine", {sized(given.fine, given.fine_count)});
   for (const double* b = given.fine; settings.fine.size() < given.fine_count; b += 6) {
     settings.fine.push_back({{b[0], b[1], b[2]}, {b[3], b[4], b[5]}});
   }
+}
+
+/// The box of voxels that an array has a label for each of; throws Error(invalid_argument) unless
+/// it is inside the workspace.
+[[nodiscard]] inline VoxelBox box_in(const VoxelBox& workspace, const std::int32_t* first,
+                                     const std::int32_t* dims) {
+  const auto is_inside = [](std::int64_t a, std::int64_t n, std::int64_t min, std::int64_t max) {
+    return n >= 0 && a >= min && a + n <= max;
+  };
+  if (!is_inside(first[0], dims[0], workspace.min.x, workspace.max.x) ||
+      !is_inside(first[1], dims[1], workspace.min.y, workspace.max.y) ||
+      !is_inside(first[2], dims[2], workspace.min.z, workspace.max.z)) {
+    refuse("the box is not inside the workspace, voxels " + voxels_text(workspace));
+  }
+  return VoxelBox::from_dims({first[0], first[1], first[2]}, {dims[0], dims[1], dims[2]});
 }
 
 /// A number of C as an enumerator; throws Error(invalid_argument) unless it is in 0..last.

@@ -163,18 +163,8 @@ vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double max[3]
 vg_status vg_grid_update_box(vg_grid* grid, const int32_t first[3], const int32_t dims[3],
                              const uint8_t* labels, uint64_t* changed) {
   return guarded("grid first dims labels", {grid, first, dims, labels}, [&] {
-    const Index3 low{first[0], first[1], first[2]}, size{dims[0], dims[1], dims[2]};
-    // Before the array is looked at, which must have as many as the box.
-    const Index3 min = grid->grid.min_index(), whole = grid->grid.dims();
-    const auto is_inside = [](std::int64_t a, std::int64_t n, std::int64_t least,
-                              std::int64_t all) {
-      return n >= 0 && a >= least && a + n <= least + all;
-    };
-    if (!is_inside(low.x, size.x, min.x, whole.x) || !is_inside(low.y, size.y, min.y, whole.y) ||
-        !is_inside(low.z, size.z, min.z, whole.z)) {
-      refuse("the box is not inside the workspace");
-    }
-    const VoxelBox box = VoxelBox::from_dims(low, size);
+    const VoxelBox box =
+        box_in(VoxelBox::from_dims(grid->grid.min_index(), grid->grid.dims()), first, dims);
     const std::uint64_t count = grid->grid.update_box(box, {labels, box.volume()});
     if (changed != nullptr) *changed = count;
   });

@@ -32,15 +32,16 @@ class Watcher {
     };
     control.is_cancelled = [this] {
       const std::lock_guard lock(mutex_);
-      return watch_->poll(done_, total_, watch_->user) != 0;
+      was_stopped_ = was_stopped_ || watch_->poll(done_, total_, watch_->user) != 0;
+      return was_stopped_;
     };
     return control;
   }
 
-  /// At the end of the call. Throws Stopped unless all was done.
+  /// At the end of the call. Throws Stopped if poll ended it.
   void finish(bool complete) {
     if (!watch_) return;
-    if (!complete) {
+    if (!complete && was_stopped_) {
       throw Stopped("stopped by poll after " + std::to_string(done_) + " of " +
                     std::to_string(total_) + " poses");
     }
@@ -51,6 +52,7 @@ class Watcher {
   std::optional<vg_watch> watch_;
   std::size_t total_;
   std::size_t done_ = 0;
+  bool was_stopped_ = false;
   std::mutex mutex_;
 };
 

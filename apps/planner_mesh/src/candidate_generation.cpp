@@ -77,34 +77,34 @@ std::vector<Candidate> candidates_of(const EstimatedViews& estimated) {
   return candidates;
 }
 
-BoundaryGeneration::BoundaryGeneration(const MapModel& map, const BoundaryViewsConfig& config,
+BoundaryGeneration::BoundaryGeneration(const ViewScorer& scorer, const BoundaryViewsConfig& config,
                                        const ExecConfig& exec)
-    : map_(map), config_(config), exec_(exec) {}
+    : scorer_(scorer), config_(config), exec_(exec) {}
 
 BoundaryGeneration::BoundaryGeneration(const SurfaceModel& model, const BoundaryViewsConfig& config,
                                        const ExecConfig& exec)
-    : map_(model.map()), model_(&model), config_(config), exec_(exec) {}
+    : scorer_(model.scorer()), model_(&model), config_(config), exec_(exec) {}
 
 Proposal BoundaryGeneration::generate(const Pose&) {
   estimated_ = {};
   SurfaceMesh made;
-  if (model_ == nullptr) made = surface_of(fused_points(map_.grid(), {}, exec_), exec_);
+  if (model_ == nullptr) made = surface_of(fused_points(scorer_.grid(), {}, exec_), exec_);
   const SurfaceMesh& surface = model_ != nullptr ? model_->surface() : made;
-  if (map_.grid().views().empty() || surface.triangles.empty()) {
-    PoseSet sphere = make_pose_set("sphere", around_workspace(map_.grid(), map_.sensor()));
+  if (scorer_.grid().views().empty() || surface.triangles.empty()) {
+    PoseSet sphere = make_pose_set("sphere", around_workspace(scorer_.grid(), scorer_.sensor()));
     Proposal proposal;
     for (std::size_t i = 0; i < sphere.poses.size(); ++i) {
       proposal.candidates.push_back({sphere.poses[i], sphere.generator, std::nullopt, i});
     }
     return proposal;
   }
-  estimated_ =
-      boundary_views(surface, map_.scene(), map_.grid().views(), map_.sensor(), config_, exec_);
+  estimated_ = boundary_views(surface, scorer_.scene(), scorer_.grid().views(), scorer_.sensor(),
+                              config_, exec_);
   Proposal proposal{candidates_of(estimated_), {}};
   const std::size_t found = proposal.candidates.size();
   if (found >= kFewCandidates) return proposal;
   const std::vector<Pose> views =
-      hazard_views(*map_.scene(), config_.working_distance, 0.5 * config_.estimator.patch_length,
+      hazard_views(*scorer_.scene(), config_.working_distance, 0.5 * config_.estimator.patch_length,
                    kFewCandidates - found);
   for (std::size_t i = 0; i < views.size(); ++i) {
     proposal.candidates.push_back({views[i], std::string(kHazardViews), std::nullopt, i});

@@ -62,19 +62,19 @@ SurfaceModel::SurfaceModel(const Sensor& sensor, const SurfaceModelConfig& confi
     : config_(with_scale(config, sensor)),
       exec_(exec),
       truth_(std::move(truth)),
-      map_(sensor, config.map, exec) {}
+      scorer_(sensor, config.map, exec) {}
 
 SurfaceModel::SurfaceModel(BeliefGrid grid, const Sensor& sensor, const SurfaceModelConfig& config,
                            const ExecConfig& exec)
     : config_(with_scale(config, sensor)),
       exec_(exec),
-      map_(std::move(grid), sensor, config.map, exec) {
+      scorer_(std::move(grid), sensor, config.map, exec) {
   derive_surface();
 }
 
 ModelProgress SurfaceModel::update(const Measurements& measurements) {
   const bool first = grid().views().empty();
-  const MapUpdate update = map_.update(measurements);
+  const MapUpdate update = scorer_.add(measurements);
   if (first && update.counts.readings_inside == 0) {
     throw Error(
         ErrorCode::invalid_argument,
@@ -86,10 +86,10 @@ ModelProgress SurfaceModel::update(const Measurements& measurements) {
 }
 
 ModelProgress SurfaceModel::rebuild(std::span<const Measurements> measurements) {
-  map_ = MapModel(map_.sensor(), config_.map, exec_);
+  scorer_ = ViewScorer(scorer_.sensor(), config_.map, exec_);
   MapUpdate sum;
   for (const Measurements& m : measurements) {
-    MapUpdate last = map_.update(m);
+    MapUpdate last = scorer_.add(m);
     for (const auto& [stage, seconds] : sum.seconds) last.seconds[stage] += seconds;
     sum = std::move(last);
   }
@@ -106,7 +106,7 @@ ModelProgress SurfaceModel::progress_after(const MapUpdate& update) {
     quality_.push_back(truth_->figures(surface_, points_));
     seconds["quality"] = quality_watch.seconds();
   }
-  ModelProgress progress = map_.progress();
+  ModelProgress progress = scorer_.progress();
   progress.surface_area = mesh_area(surface_);
   progress.new_area = is_in_map(update.verdict) ? update.new_area : 0.0;
   if (truth_) progress.coverage = quality_.back().coverage_visible;
@@ -115,7 +115,7 @@ ModelProgress SurfaceModel::progress_after(const MapUpdate& update) {
 }
 
 std::vector<FusedPoint> SurfaceModel::points_after(const Measurements& measurements) const {
-  return fused_points(map_.grid_after(measurements), config_.points, exec_);
+  return fused_points(scorer_.grid_after(measurements), config_.points, exec_);
 }
 
 void SurfaceModel::derive_surface() {
@@ -123,9 +123,11 @@ void SurfaceModel::derive_surface() {
   surface_ = surface_of(points_, exec_);
 }
 
-RegisteredModel::RegisteredModel(SurfaceModel& model, const MapModelConfig& map,
-                                 const PoseSigma& sigma, const ExecConfig& exec)
-    : model_(model), sigma_(sigma), alignment_(model.map().sensor(), map, exec) {}
+RegisteredModel::RegisteredModel(SurfaceModel& model, const PoseSigma& sigma,
+                                 const ExecConfig& exec)
+    : model_(model),
+      sigma_(sigma),
+      alignment_(model.scorer().sensor(), model.scorer().config(), exec) {}
 
 ModelProgress RegisteredModel::update(const Measurements& measurements) {
   if (measurements.frames.empty()) refuse("a view without a frame cannot be registered");

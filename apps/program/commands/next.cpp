@@ -59,10 +59,9 @@ SensedMap map_of(const Options& options, const ExecConfig& exec, std::optional<F
     progress.update(i + 1, map.folder().size());
   }
   map.require_frames(true);
-  frames = {map.counts(),        map.tried(),
-            map.last_pose(),     map.config().surroundings.obstacles,
-            map.masked_pixels(), map.consistency_json()};
-  return {map.model().grid().clone(), map.model().sensor()};
+  frames = {map.counts(),           map.tried(),         map.last_pose(),
+            map.config().obstacles, map.masked_pixels(), map.consistency_json()};
+  return {map.scorer().grid().clone(), map.scorer().sensor()};
 }
 
 void next(const Options& options) {

@@ -23,9 +23,9 @@
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
 #include "viewgain/planner/simulated_acquisition.hpp"
-#include "viewgain/planner/suspect_set_up.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
+#include "viewgain/raycast/suspect_set_up.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain::app {

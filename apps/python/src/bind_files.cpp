@@ -19,7 +19,7 @@
 #include "viewgain/formats/pose_files.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
-#include "viewgain/planner/suspect_frames.hpp"
+#include "viewgain/raycast/suspect_frames.hpp"
 
 namespace viewgain::python {
 namespace {

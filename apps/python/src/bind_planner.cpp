@@ -47,25 +47,27 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
                               int coarsest, const py::object& fine, int finest,
                               const py::object& state, const std::string& tracer, int num_threads) {
   Sensor sensor = *of;
+  ScorerConfig map;
+  map.voxel_size = voxel_size;
+  map.workspace = box(workspace, "workspace");
+  map.T_world_grid = optional_pose(T_world_grid, "T_world_grid").value_or(Pose());
+  map.prior_sigma = prior_sigma;
+  map.obstacles = obstacles_of(boxes, meshes);
+  map.support_plane = support_plane;
+  if (!jump_edges) map.jump_edges.reset();
+  map.coarsest = coarsest;
+  map.fine = optional_boxes(fine, "fine");
+  map.finest = finest;
+  map.hazard.object_size = object_size;
+  map.gain.model = parse_gain_model(gain);
+  map.gain.criterion = parse_criterion(criterion);
+  map.clearance = clearance;
   PlannerConfig config;
-  config.grid.voxel_size = voxel_size;
-  config.grid.workspace = box(workspace, "workspace");
-  config.grid.T_world_grid = optional_pose(T_world_grid, "T_world_grid").value_or(Pose());
-  config.grid.prior_sigma = prior_sigma;
-  config.surroundings = {obstacles_of(boxes, meshes), support_plane};
-  if (!jump_edges) config.jump_edges.reset();
-  config.integration.coarsest = coarsest;
-  config.integration.fine = optional_boxes(fine, "fine");
-  config.integration.finest = finest;
-  config.hazard.object_size = object_size;
-  config.gain.model = parse_gain_model(gain);
-  config.gain.criterion = parse_criterion(criterion);
   if (reach.value != nullptr) config.reach = *reach.value;
   if (!body_size.is_none()) {
     const Eigen::Vector3d size = vector3(body_size, "body_size");
     sensor.body_size = {size.x(), size.y(), size.z()};
   }
-  config.clearance = clearance;
   config.check_feasibility = check_feasibility;
   config.max_views = max_views;
   config.idle_views = idle_views;
@@ -77,10 +79,10 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
   const ExecConfig exec{num_threads, parse_tracer(tracer)};
   const std::string file = state.is_none() ? "" : readable_file(state);
   ViewPlanner planner = outside_gil([&] {
-    return file.empty() ? ViewPlanner(sensor, config, exec)
-                        : ViewPlanner::load(file, sensor, config, exec);
+    return file.empty() ? ViewPlanner(ViewScorer(sensor, map, exec), config)
+                        : ViewPlanner::load(file, sensor, map, config, exec);
   });
-  warn(suspicions_of_set_up(sensor, config, planner.grid()));
+  warn(suspicions_of_set_up(planner.scorer(), config.reach));
   return std::make_unique<Planner>(sensor, std::move(planner));
 }
 
@@ -113,7 +115,7 @@ Judged judged(ViewPlanner& planner, const Sensor& sensor, const DepthFrame& fram
   if (update.verdict == FrameVerdict::used || update.verdict == FrameVerdict::carved ||
       update.verdict == FrameVerdict::outside) {
     result.suspicion =
-        suspicion_of_frame(sensor, frame, T_world_camera, planner.grid(), update.counts);
+        suspicion_of_frame(sensor, frame, T_world_camera, planner.scorer().grid(), update.counts);
   }
   return result;
 }
@@ -187,7 +189,7 @@ py::object propose(Planner& self) {
 
 Suspicion suspicion_on_map(Planner& self, std::span<const Pose> poses) {
   return self.run([&](ViewPlanner& planner) {
-    return suspicion_of_poses(planner.map().scene(), self.sensor(), poses);
+    return suspicion_of_poses(planner.scorer().scene(), self.sensor(), poses);
   });
 }
 
@@ -234,15 +236,17 @@ py::object rank(Planner& self, std::size_t k, const py::object& poses, const py:
 
 void bind_planner(py::module_& module) {
   const PlannerConfig defaults;
+  const ScorerConfig map_defaults;
   auto type = bound_class<Planner>(module, "ViewPlanner", kPlannerDoc);
   refuse_pickling(type);
   type.def(py::init(&make), "sensor"_a, py::kw_only(), "voxel_size"_a, "workspace"_a,
            "T_world_grid"_a = py::none(), "prior_sigma"_a = py::none(),
            "support_plane"_a = py::none(), "boxes"_a = py::none(), "meshes"_a = py::tuple(),
-           "gain"_a = gain_model_name(defaults.gain.model),
-           "criterion"_a = criterion_name(defaults.gain.criterion), "object_size"_a = py::none(),
-           "reach"_a = py::none(), "body_size"_a = py::none(), "clearance"_a = defaults.clearance,
-           "jump_edges"_a = true, "check_feasibility"_a = true, "max_views"_a = defaults.max_views,
+           "gain"_a = gain_model_name(map_defaults.gain.model),
+           "criterion"_a = criterion_name(map_defaults.gain.criterion),
+           "object_size"_a = py::none(), "reach"_a = py::none(), "body_size"_a = py::none(),
+           "clearance"_a = map_defaults.clearance, "jump_edges"_a = true,
+           "check_feasibility"_a = true, "max_views"_a = defaults.max_views,
            "idle_views"_a = defaults.idle_views, "broken_promises"_a = defaults.broken_promises,
            "plan"_a = defaults.ahead.plan, "take"_a = defaults.ahead.take,
            "stop_gain"_a = py::none(), "stop_area"_a = py::none(), "coarsest"_a = 0,
@@ -277,7 +281,7 @@ void bind_planner(py::module_& module) {
             }
             self.use([&](ViewPlanner& planner) {
               planner.add_generation(
-                  std::make_shared<PythonGeneration>(generator, name, planner.map()));
+                  std::make_shared<PythonGeneration>(generator, name, planner.scorer()));
             });
           },
           "generator"_a, "name"_a = "generator", kAddGeneratorDoc)
@@ -301,7 +305,7 @@ void bind_planner(py::module_& module) {
           "consistency",
           [](Planner& self) {
             return to_python(
-                self.run([](ViewPlanner& planner) { return planner.map().consistency(); }));
+                self.run([](ViewPlanner& planner) { return planner.scorer().consistency(); }));
           },
           kConsistencyDoc)
       .def("register_frame", &register_frame, "depth"_a, "T_world_camera"_a, py::kw_only(),
@@ -316,8 +320,9 @@ void bind_planner(py::module_& module) {
           "outcomes",
           [](Planner& self, const py::object& T_world_camera) {
             const Pose pose = one_pose(T_world_camera, "T_world_camera");
-            return named_outcomes(
-                self.run([&](ViewPlanner& planner) { return planner.evaluator().outcomes(pose); }));
+            return named_outcomes(self.run([&](ViewPlanner& planner) {
+              return planner.scorer().evaluator()->outcomes(pose);
+            }));
           },
           "T_world_camera"_a,
           R"(Why a pose's gain is what it is on the map as it stands: what becomes of its rays.
@@ -352,7 +357,7 @@ RayOutcomes)")
           "grid",
           [](Planner& self) {
             return self.run([](ViewPlanner& planner) {
-              return std::make_shared<SharedGrid>(planner.grid().clone());
+              return std::make_shared<SharedGrid>(planner.scorer().grid().clone());
             });
           },
           "BeliefGrid: a copy of the map as it is; what is changed in it does not reach the "

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "arrays.hpp"
-#include "viewgain/planner/frame_check.hpp"
+#include "viewgain/raycast/frame_check.hpp"
 
 namespace viewgain::python {
 

@@ -61,11 +61,11 @@ class Planner {
 class PythonGeneration : public ViewpointGeneration {
  public:
   /// The map is its planner's.
-  PythonGeneration(py::object callable, std::string name, const MapModel& map)
-      : call_(std::move(callable)), name_(std::move(name)), map_(map) {}
+  PythonGeneration(py::object callable, std::string name, const ViewScorer& scorer)
+      : call_(std::move(callable)), name_(std::move(name)), scorer_(scorer) {}
 
   Proposal generate(const Pose&) override {
-    const auto grid = std::make_shared<SharedGrid>(map_.grid().clone());
+    const auto grid = std::make_shared<SharedGrid>(scorer_.grid().clone());
     const std::vector<Pose> poses =
         with_gil([&] { return pose_list(call_(grid), "what the generator returns"); });
     Proposal proposal;
@@ -78,29 +78,7 @@ class PythonGeneration : public ViewpointGeneration {
  private:
   PythonCall call_;
   std::string name_;
-  const MapModel& map_;
+  const ViewScorer& scorer_;
 };
-
-std::vector<Suspicion> suspicions_of_set_up(const Sensor& sensor, const PlannerConfig& config,
-                                            const BeliefGrid& grid) {
-  std::vector<Suspicion> all = suspect_sensor(sensor, grid.voxel_size());
-  all.push_back(suspect_workspace(grid, sensor));
-  const auto add_obstacle = [&](const Box& bounds) {
-    all.push_back(suspect_obstacle(bounds, grid, sensor));
-    if (!all.back().kind.empty()) all.back().what = "an obstacle " + all.back().what;
-  };
-  const Obstacles& obstacles = config.surroundings.obstacles;
-  for (const Box& box : obstacles.boxes) add_obstacle(box);
-  for (const TriangleMesh& mesh : obstacles.meshes) add_obstacle(obstacle_bounds(mesh));
-  if (const auto& plane = config.surroundings.support_plane) {
-    all.push_back(suspect_support_plane(*plane, grid, sensor));
-  }
-  all.push_back(suspect_reach(config.reach, grid, sensor));
-  if (const auto& size = config.hazard.object_size) {
-    all.push_back(suspect_object_size(*size, grid));
-  }
-  all.push_back(suspect_clearance(config.clearance));
-  return all;
-}
 
 }  // namespace viewgain::python

@@ -35,4 +35,28 @@ Suspicion suspicion_of_frame(const Sensor& sensor, const DepthFrame& frame,
   return suspect_frame(sensor, frame, T_world_camera, grid);
 }
 
+std::vector<Suspicion> suspicions_of_set_up(const ViewScorer& scorer, const ReachRegion& reach) {
+  const Sensor& sensor = scorer.sensor();
+  const BeliefGrid& grid = scorer.grid();
+  const ScorerConfig& config = scorer.config();
+  std::vector<Suspicion> all = suspect_sensor(sensor, grid.voxel_size());
+  all.push_back(suspect_workspace(grid, sensor));
+  const auto add_obstacle = [&](const Box& bounds) {
+    all.push_back(suspect_obstacle(bounds, grid, sensor));
+    if (!all.back().kind.empty()) all.back().what = "an obstacle " + all.back().what;
+  };
+  const Obstacles& obstacles = config.obstacles;
+  for (const Box& box : obstacles.boxes) add_obstacle(box);
+  for (const TriangleMesh& mesh : obstacles.meshes) add_obstacle(obstacle_bounds(mesh));
+  if (const auto& plane = config.support_plane) {
+    all.push_back(suspect_support_plane(*plane, grid, sensor));
+  }
+  all.push_back(suspect_reach(reach, grid, sensor));
+  if (const auto& size = config.hazard.object_size) {
+    all.push_back(suspect_object_size(*size, grid));
+  }
+  all.push_back(suspect_clearance(config.clearance));
+  return all;
+}
+
 }  // namespace viewgain::python

@@ -8,10 +8,12 @@
 #include "evaluator.hpp"
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/core/reach.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/planner/suspect_set_up.hpp"
+#include "viewgain/raycast/suspect_set_up.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 
 namespace viewgain::python {
 
@@ -30,5 +32,9 @@ inline void warn(const Suspicion& suspicion) { warn(std::span(&suspicion, 1)); }
 [[nodiscard]] Suspicion suspicion_of_frame(const Sensor& sensor, const DepthFrame& frame,
                                            const Pose& T_world_camera, const BeliefGrid& grid,
                                            const IntegrationReport& counts);
+
+/// What is probably wrong with a scorer's sensor and settings, or with the reach of poses.
+[[nodiscard]] std::vector<Suspicion> suspicions_of_set_up(const ViewScorer& scorer,
+                                                          const ReachRegion& reach);
 
 }  // namespace viewgain::python

@@ -3,12 +3,13 @@
 """Scores camera poses by expected information gain.
 
 >>> import numpy, viewgain
->>> labels = numpy.zeros((64, 64, 64), numpy.uint8)             # 0 unknown, 1 free, 2 occupied
 >>> sensor = viewgain.sensor_preset("sr4000")
->>> grid = viewgain.BeliefGrid.from_labels(labels, voxel_size=0.005, sensor=sensor)
->>> evaluator = viewgain.GainEvaluator(viewgain.VoxelScene(grid), sensor)
+>>> workspace = [(0, 0, 0), (0.32, 0.32, 0.32)]
+>>> scorer = viewgain.ViewScorer(sensor, voxel_size=0.005, workspace=workspace)
+>>> changed = scorer.set((0, 0, 0), numpy.ones((64, 64, 32), numpy.uint8))   # 0 unknown, 1 free, 2 occupied
 >>> poses = viewgain.sphere_poses(500, 0.6, center=(0.16, 0.16, 0.16))   # (500, 4, 4) T_world_camera
->>> gains = evaluator.evaluate(poses)                           # (500,), nat
+>>> gains = scorer.evaluate(poses)                              # (500,), nat
+>>> best = scorer.best(poses, 3).indices                        # best first
 
 Frames and units: a pose is ``T_world_camera``, a 4x4 matrix that maps points of the camera's optical
 frame (x right, y down, z forward) to the world; lengths are metres, gains nats. Surfaces and the whole
@@ -29,6 +30,6 @@ except ImportError as error:
 from ._viewgain import *
 from ._viewgain import __version__
 from .codes import HitKind, Infeasibility, ViewStatus, VoxelState
-from .results import (AddedView, ChosenViews, Cloud, Frame, FrameConsistency, FrameRegistration, GridStatistics, IntegrationReport, Proposal,
+from .results import (AddedView, BestViews, ChosenViews, Cloud, Frame, FrameConsistency, FrameRegistration, GridStatistics, IntegrationReport, MapUpdate, Proposal,
                       RacedViews, Ranking, RayOutcomes, Sigmas, SimulatedFrame, Suspicion, TimedPoses, ViewTour)
 from . import plot

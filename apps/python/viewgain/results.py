@@ -66,7 +66,7 @@ class Suspicion(NamedTuple):
 
 @named("viewgain")
 class FrameConsistency(NamedTuple):
-    """Whether frames fit one another, from ``ViewPlanner.consistency`` and ``FrameCheck.result``."""
+    """Whether frames fit one another, from ``consistency`` of ``ViewScorer`` and ``ViewPlanner``, and ``FrameCheck.result``."""
 
     share_in_free: Annotated[float, "Of all readings, those in space that other frames saw as free."]
     share_seen_past: Annotated[float, "Of readings of earlier frames, those that later frames see past."]
@@ -109,6 +109,16 @@ class ChosenViews(NamedTuple):
 
     indices: Annotated[NDArray[np.int64], "(k,), int64: indices into the poses with their leading axes flattened, best first."]
     gains: Annotated[NDArray[np.void], "(k,), structured: as from ``evaluate_detailed``, in its unit; of a set, what each adds."]
+
+
+@named("viewgain")
+class BestViews(NamedTuple):
+    """The best of many poses, from ``ViewScorer.best``."""
+
+    indices: Annotated[NDArray[np.int64], "(k,), int64: indices into the poses with their leading axes flattened, best first."]
+    gains: Annotated[NDArray[np.void], "(k,), structured: as from ``evaluate_detailed``, in its unit; costs are not subtracted."]
+    worth: Annotated[_Floats, "(k,), float64: the gain less the cost."]
+    complete: Annotated[bool, "False: the time limit, or a stop, ended the call before all was done."]
 
 
 @named("viewgain")
@@ -194,6 +204,22 @@ class AddedView(NamedTuple):
     total_area: Annotated[float, "Sum of the new areas so far [m**2]."]
     unknown_voxels: Annotated[int, "Unknown voxels that are left."]
     verdict: Annotated[str, "What became of the frame: used, carved (free space alone), lost_pose, no_pose, unreadable, wrong_size, nothing_in_range, outside, contradicts."]
+
+
+@named("viewgain")
+class MapUpdate(NamedTuple):
+    """What a frame has changed, from ``ViewScorer.add``."""
+
+    readings: Annotated[int, "Pixels or points whose range is within the sensor's limits."]
+    plane_readings: Annotated[int, "Pixels or points that see the support plane; not among readings."]
+    out_of_range: Annotated[int, "Pixels or points that carve up to max_range."]
+    invalid: Annotated[int, "Pixels or points that say nothing."]
+    readings_inside: Annotated[int, "Readings that lie in the workspace."]
+    voxels_hit: Annotated[int, "Voxels that readings lie in."]
+    voxels_crossed: Annotated[int, "Voxels that rays pass and no reading lies in."]
+    flying_pixels: Annotated[int, "Pixels that the jump-edge filter removed."]
+    new_area: Annotated[float, "New surface that the frame has shown, its area across the rays [m**2]; NaN by gain \"paper\"."]
+    verdict: Annotated[str, "What became of the frame: used, carved (free space alone), nothing_in_range or outside."]
 
 
 @named("viewgain")

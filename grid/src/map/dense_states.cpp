@@ -14,6 +14,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/block_lattice.hpp"
 #include "viewgain/support/log_odds_code.hpp"
+#include "viewgain/support/voxels_text.hpp"
 
 namespace viewgain {
 namespace {
@@ -91,7 +92,10 @@ BeliefGrid BeliefGrid::from_states(const GridConfig& config, std::span<const std
 
 std::uint64_t BeliefGrid::update_box(const VoxelBox& box, std::span<const std::uint8_t> states) {
   GridStorage& s = *storage_;
-  if (box.intersection(s.lattice) != box) refuse("the box is not inside the workspace");
+  if (box.intersection(s.lattice) != box) {
+    refuse("the box, voxels " + voxels_text(box) + ", is not inside the workspace, voxels " +
+           voxels_text(s.lattice));
+  }
   if (states.size() != box.volume()) {
     refuse("array of " + std::to_string(states.size()) + " states for a box of " +
            std::to_string(box.volume()) + " voxels");

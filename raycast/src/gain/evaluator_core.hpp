@@ -135,6 +135,20 @@ struct RefiningHits {
   std::vector<std::uint32_t> offsets, members;
   std::vector<MatrixHalf> known_a, known_b;
   std::vector<double> each;
+
+  /// Keeps those of so many places whose voxels have a reading: what has none, as in a map of
+  /// labels, is not refined. Returns how many there are.
+  std::uint32_t keep_measured(std::uint32_t count) {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (known_a[i].value[0] == 0) continue;
+      members[kept] = i;
+      known_a[kept] = known_a[i];
+      known_b[kept] = known_b[i];
+      ++kept;
+    }
+    return kept;
+  }
 };
 
 /// Objects that no call is using, so that a call need not make one. Thread safe.

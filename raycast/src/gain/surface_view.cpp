@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "trace/scene_tracing.hpp"
@@ -176,7 +175,6 @@ double SurfaceView::saturated_gain(Workspace& workspace) const {
   if (refining.leaves.size() < room) {
     refining.leaves.resize(room), refining.offsets.resize(room), refining.members.resize(room);
     refining.known_a.resize(room), refining.known_b.resize(room), refining.each.resize(room);
-    std::iota(refining.members.begin(), refining.members.end(), 0U);
   }
   for (std::uint32_t i = 0; i < count; ++i) {
     const Index3 voxel = occupied.voxel(i);
@@ -185,18 +183,19 @@ double SurfaceView::saturated_gain(Workspace& workspace) const {
   }
   gain_kernels_.look_up(refining.leaves.data(), refining.offsets.data(), count,
                         refining.known_a.data(), refining.known_b.data());
+  const std::uint32_t measured = refining.keep_measured(count);
   const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
   double* each = weights.empty() ? nullptr : refining.each.data();
   LogProduct ratios;
   gain_kernels_.finish_with_floor(prior_information_, floor_variance_,
                                   {occupied.sums(), refining.members.data(),
-                                   refining.known_a.data(), refining.known_b.data(), count},
+                                   refining.known_a.data(), refining.known_b.data(), measured},
                                   ratios, each);
   if (each == nullptr) return 0.5 * ratios.log();
   double sum = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    sum += task_weight(weights, occupied.voxel(i), scene_.snapshot.voxel_size) * 0.5 *
-           std::log(each[i]);
+  for (std::uint32_t i = 0; i < measured; ++i) {
+    const Index3 voxel = occupied.voxel(refining.members[i]);
+    sum += task_weight(weights, voxel, scene_.snapshot.voxel_size) * 0.5 * std::log(each[i]);
   }
   return sum;
 }
@@ -274,12 +273,13 @@ void SurfaceView::sample(const PoseFrame& frame, Workspace& workspace, double ra
 }
 
 double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const {
-  SymmetricMatrix3 before = SymmetricMatrix3::identity(prior_information_);
   const GridSnapshot::Leaf* leaf = scene_.snapshot.find_leaf(voxel);
-  if (leaf != nullptr && leaf->beliefs) {
-    if (const Belief* belief = leaf->beliefs->find(block_offset(voxel)))
-      before += belief->information_matrix() * surface_share(leaf->beliefs->scale);
-  }
+  if (leaf == nullptr || !leaf->beliefs) return 0;
+  const Belief* belief = leaf->beliefs->find(block_offset(voxel));
+  if (belief == nullptr) return 0;
+  const SymmetricMatrix3 before =
+      SymmetricMatrix3::identity(prior_information_) +
+      belief->information_matrix() * surface_share(leaf->beliefs->scale);
   const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
   const double weight =
       weights.empty() ? 1.0 : task_weight(weights, voxel, scene_.snapshot.voxel_size);

@@ -52,11 +52,17 @@ std::shared_ptr<const VoxelScene> VoxelScene::update(
     const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
     const ExecConfig& exec) {
   if (!before) refuse("there is no scene to update");
+  return update(before, grid.snapshot(before->snapshot()), exec);
+}
+
+std::shared_ptr<const VoxelScene> VoxelScene::update(
+    const std::shared_ptr<const VoxelScene>& before, GridSnapshot snapshot,
+    const ExecConfig& exec) {
+  if (!before) refuse("there is no scene to update");
   (void)thread_count(exec.num_threads);
   const detail::SceneData& data = SceneAccess::data(*before);
   return make_traceable(
-      detail::gather_scene(grid.snapshot(data.snapshot), data.surroundings, data.hazard, &data),
-      &data);
+      detail::gather_scene(std::move(snapshot), data.surroundings, data.hazard, &data), &data);
 }
 
 VoxelScene::VoxelScene(std::unique_ptr<const detail::SceneData> data) : data_(std::move(data)) {}

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -110,63 +108,6 @@ TEST(CFormats, FramesAreCorrectedByTheFilesTable) {
   refused(nullptr, VG_INVALID_ARGUMENT, "preset_or_file is null");
   refused(folder.file("bad.toml", "width = 3\n").c_str(), VG_FORMAT, "bad.toml");
   EXPECT_EQ(vg_range_calibration_load(path.c_str(), nullptr), VG_INVALID_ARGUMENT);
-}
-
-TEST(CFormats, OctomapsTreesComeBackAsTheyWere) {
-  const test::TemporaryFolder folder;
-  const std::string path = (folder.path() / "map.ot").string();
-  const std::uint8_t labels[2] = {2, 1};
-  const std::int32_t dims[3] = {2, 1, 1};
-  const double origin[3] = {0, 0, 0};
-  vg_grid *grid = nullptr, *read = nullptr;
-  ASSERT_EQ(vg_grid_from_labels(labels, dims, origin, 0.025, 0.05, &grid), VG_OK);
-  ASSERT_EQ(vg_grid_save_octomap(grid, path.c_str()), VG_OK) << vg_last_error();
-  ASSERT_EQ(vg_grid_load_octomap(path.c_str(), NAN, &read), VG_OK) << vg_last_error();
-  vg_grid_info info;
-  vg_grid_info_init(&info, sizeof info);
-  ASSERT_EQ(vg_grid_get_info(read, &info), VG_OK);
-  EXPECT_EQ(info.voxel_size, 0.025);
-  EXPECT_EQ(info.prior_sigma, 0.0125);
-  EXPECT_EQ(info.occupied, 1U);
-  EXPECT_EQ(info.free, 1U);
-  vg_grid_release(read);
-  EXPECT_EQ(vg_grid_load_octomap(folder.file("text.ot", "no map").c_str(), NAN, &read), VG_FORMAT);
-  EXPECT_EQ(read, nullptr);
-  EXPECT_EQ(vg_grid_load_octomap(nullptr, NAN, &read), VG_INVALID_ARGUMENT);
-  EXPECT_EQ(vg_grid_save_octomap(nullptr, path.c_str()), VG_INVALID_ARGUMENT);
-  vg_grid_release(grid);
-}
-
-TEST(CFormats, PosesComeBackAsTheyWere) {
-  const test::TemporaryFolder folder;
-  const std::string path = (folder.path() / "poses.txt").string();
-  const std::array<double, 3> center{0, 0, 0.1};
-  std::vector<double> poses(7 * 16), read(7 * 16, -1);
-  ASSERT_EQ(vg_sphere_poses(7, 0.5, center.data(), poses.data()), VG_OK);
-  const std::array<double, 7> times{0.5, 1, 2, 3, 4, 5, 1e9 + 0.25};
-  std::array<double, 7> read_times{};
-  ASSERT_EQ(vg_poses_save(path.c_str(), poses.data(), times.data(), 7), VG_OK) << vg_last_error();
-  std::size_t found = 0;
-  ASSERT_EQ(vg_poses_load(path.c_str(), nullptr, nullptr, 0, &found), VG_OK);
-  EXPECT_EQ(found, 7U);
-  ASSERT_EQ(vg_poses_load(path.c_str(), read.data(), read_times.data(), 6, &found), VG_OK);
-  EXPECT_EQ(found, 7U);
-  EXPECT_EQ(read[16 * 6], -1);  // beyond the capacity
-  ASSERT_EQ(vg_poses_load(path.c_str(), read.data(), read_times.data(), 7, &found), VG_OK);
-  for (std::size_t i = 0; i < read.size(); ++i) EXPECT_NEAR(read[i], poses[i], 1e-14) << i;
-  EXPECT_EQ(read_times, times);
-  ASSERT_EQ(vg_poses_save(path.c_str(), poses.data(), nullptr, 2), VG_OK);
-  ASSERT_EQ(vg_poses_load(path.c_str(), nullptr, read_times.data(), 7, &found), VG_OK);
-  EXPECT_EQ(found, 2U);
-  EXPECT_EQ(read_times[1], 1);
-
-  EXPECT_EQ(vg_poses_load("none.txt", nullptr, nullptr, 0, &found), VG_IO);
-  EXPECT_EQ(vg_poses_load(path.c_str(), nullptr, nullptr, 0, nullptr), VG_INVALID_ARGUMENT);
-  EXPECT_EQ(vg_poses_save(path.c_str(), nullptr, nullptr, 2), VG_INVALID_ARGUMENT);
-  poses[0] = 2;
-  EXPECT_EQ(vg_poses_save(path.c_str(), poses.data(), nullptr, 2), VG_INVALID_ARGUMENT);
-  ASSERT_EQ(vg_poses_load(path.c_str(), nullptr, nullptr, 0, &found), VG_OK);
-  EXPECT_EQ(found, 2U);  // as it was
 }
 
 }  // namespace

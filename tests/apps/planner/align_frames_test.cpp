@@ -132,9 +132,9 @@ TEST(AlignFrames, WhatLosesItsHoldGoesBackToWhereItWasReported) {
     return Eigen::Vector3d(0.008 * bumps, y, z);
   });
   const test::RegistrationScene scene(wall, false, {});
-  MapModelConfig map;
-  map.grid = scene.layout();
-  map.grid.workspace = {{-0.3, -0.4, -0.3}, {0.3, 1.4, 0.3}};
+  ScorerConfig map;
+  map.voxel_size = scene.kVoxel;
+  map.workspace = {{-0.3, -0.4, -0.3}, {0.3, 1.4, 0.3}};
   FrameAlignment frames(scene.sensor, map, {1});
   const auto view = [](double y, double x) { return look_at({x, y, 0}, {0, y, 0}); };
   const auto add = [&](double y, double off) {

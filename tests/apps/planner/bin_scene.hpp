@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "apps/planner/planner_set_up.hpp"
 #include "core/temporary_folder.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/vdb_io.hpp"
-#include "viewgain/planner/view_planner.hpp"
 #include "viewgain/raycast/obstacle_view.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
@@ -44,13 +44,14 @@ struct BinScene {
     return SimulatedSensor(block_scene, sensor, simulation, {1}).acquire(pose, frame);
   }
 
-  [[nodiscard]] PlannerConfig config(GainModel model = GainModel::combined) const {
-    PlannerConfig config;
-    config.grid.voxel_size = 0.006;
-    config.grid.workspace = {{-0.15, -0.12, 0.0}, {0.15, 0.12, 0.12}};
-    config.surroundings = {walls, 0.0};
-    config.jump_edges.reset();
-    config.gain.model = model;
+  [[nodiscard]] PlannerSetUp config(GainModel model = GainModel::combined) const {
+    PlannerSetUp config;
+    config.map.voxel_size = 0.006;
+    config.map.workspace = {{-0.15, -0.12, 0.0}, {0.15, 0.12, 0.12}};
+    config.map.obstacles = walls;
+    config.map.support_plane = 0.0;
+    config.map.jump_edges.reset();
+    config.map.gain.model = model;
     return config;
   }
 };
@@ -66,7 +67,7 @@ inline std::string seen_of(const ViewPlanner& planner) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "seen.vdb";
   planner.save(path);
-  return planner.grid().content_hash() + notes_of(path).at("planner");
+  return planner.scorer().grid().content_hash() + notes_of(path).at("planner");
 }
 
 }  // namespace viewgain::test

@@ -22,6 +22,7 @@ namespace {
 
 using test::BinScene;
 using test::expect_error;
+using test::PlannerSetUp;
 
 constexpr double kPerMetre = 700;  // ways of some decimetres change the order
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -40,17 +41,17 @@ class Asked : public ViewpointGeneration {
 
 class CurrentPose : public testing::TestWithParam<GainModel> {
  protected:
-  [[nodiscard]] PlannerConfig config() const {
-    PlannerConfig config = scene.config(GetParam());
-    config.idle_views = 0;
-    config.stop_area = 0;
-    config.stop_gain = 0;
+  [[nodiscard]] PlannerSetUp config() const {
+    PlannerSetUp config = scene.config(GetParam());
+    config.planner.idle_views = 0;
+    config.planner.stop_area = 0;
+    config.planner.stop_gain = 0;
     return config;
   }
   [[nodiscard]] ViewPlanner planner(PlanAhead ahead = {}) const {
-    PlannerConfig config = this->config();
-    config.ahead = ahead;
-    ViewPlanner made(scene.sensor, config, {1});
+    PlannerSetUp config = this->config();
+    config.planner.ahead = ahead;
+    ViewPlanner made = config.make(scene.sensor, {1});
     made.add_poses({"dome", scene.views});
     return made;
   }
@@ -66,7 +67,7 @@ class CurrentPose : public testing::TestWithParam<GainModel> {
     std::vector<Pose> poses;
     for (const bool of_proposal : {true, false}) {
       poses = of_proposal ? poses_of(planner.propose().candidates) : scene.views;
-      const std::vector<ViewGain> gains = planner.evaluator().evaluate(poses);
+      const std::vector<ViewGain> gains = planner.scorer().evaluator()->evaluate(poses);
       std::vector<double> worth(poses.size());
       for (std::size_t i = 0; i < poses.size(); ++i) {
         double square = 0;
@@ -105,14 +106,14 @@ TEST_P(CurrentPose, IsTheLastOneToldUnlessItIsGiven) {
     expect_ways_from(planner, home(), moved, when + ", then moved home");
     expect_ways_from(planner, pose, usual, when + ", and nothing has stayed of that");
     planner.save(path);
-    planner = ViewPlanner::load(path, scene.sensor, config(), {2});
+    planner = config().load(path, scene.sensor, {2});
     planner.add_poses({"dome", scene.views});
     expect_ways_from(planner, pose, usual, when + ", loaded");
     const auto asked = std::make_shared<Asked>();
     planner.add_generation(asked);
     (void)planner.propose();
     EXPECT_EQ(asked->poses, std::vector<Pose>{pose}) << when;
-    planner = ViewPlanner::load(path, scene.sensor, config(), {1});
+    planner = config().load(path, scene.sensor, {1});
     planner.add_poses({"dome", scene.views});
   };
   const auto& views = scene.views;
@@ -237,13 +238,13 @@ TEST_P(CurrentPose, OfAnOlderStateIsTheMapsLastView) {
   planner.save(path);
   MapNotes notes = load_vdb(path).notes();
   std::string& note = notes.others.at("planner");
-  ASSERT_TRUE(note.starts_with("version 3\n"));
+  ASSERT_TRUE(note.starts_with("version 4\n"));
   note.replace(0, 9, "version 2");
   const std::size_t line = note.find("last_pose ");
   ASSERT_NE(line, std::string::npos);
   note.erase(line, note.find('\n', line) + 1 - line);
-  save_vdb(planner.grid(), path, {.notes = notes});
-  ViewPlanner old = ViewPlanner::load(path, scene.sensor, config(), {1});
+  save_vdb(planner.scorer().grid(), path, {.notes = notes});
+  ViewPlanner old = config().load(path, scene.sensor, {1});
   old.add_poses({"dome", scene.views});
   expect_ways_from(old, scene.views[4], {.cost_per_metre = kPerMetre, .exact = true}, "old");
 }

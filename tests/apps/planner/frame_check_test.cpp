@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/planner/frame_check.hpp"
+#include "viewgain/raycast/frame_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,10 +21,10 @@
 #include "support/meshes.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose.hpp"
-#include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/simulated_acquisition.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 
 namespace viewgain {
 namespace {
@@ -86,13 +86,13 @@ Taken taken(const Sensor& sensor, std::uint64_t seed, double moved = 0) {
 }
 
 FrameConsistency consistency_of(const Sensor& sensor, const Taken& all) {
-  MapModelConfig config;
-  config.grid.voxel_size = 0.01;
-  config.grid.workspace = {{-0.5, -0.5, -0.3}, {0.5, 0.5, 0.2}};
-  config.follow_surface = config.keep_scene = false;
-  MapModel map(sensor, config, {1});
+  ScorerConfig config;
+  config.voxel_size = 0.01;
+  config.workspace = {{-0.5, -0.5, -0.3}, {0.5, 0.5, 0.2}};
+  config.gain.model = GainModel::paper;
+  ViewScorer map(sensor, config, {1});
   for (std::size_t i = 0; i < all.frames.size(); ++i) {
-    (void)map.update({all.poses[i], {all.frames[i]}});
+    (void)map.add({all.poses[i], {all.frames[i]}});
   }
   return map.consistency();
 }
@@ -280,19 +280,19 @@ TEST(FrameCheck, FewFramesSayNothing) {
 // What is refused is not counted.
 TEST(FrameCheck, AnIdentityOfAnotherFormChangesNothing) {
   Taken all = taken(camera(), 8);
-  MapModelConfig config;
-  config.grid.voxel_size = 0.01;
-  config.grid.workspace = {{-0.5, -0.5, -0.3}, {0.5, 0.5, 0.2}};
-  MapModel map(camera(), config, {1});
+  ScorerConfig config;
+  config.voxel_size = 0.01;
+  config.workspace = {{-0.5, -0.5, -0.3}, {0.5, 0.5, 0.2}};
+  ViewScorer map(camera(), config, {1});
   const std::string hash = map.grid().content_hash();
   all.frames[0].identity = "frame 0";
   test::expect_error(ErrorCode::invalid_argument, "16 hexadecimal digits", [&] {
-    (void)map.update({all.poses[0], {all.frames[0]}});
+    (void)map.add({all.poses[0], {all.frames[0]}});
   });
   EXPECT_EQ(map.consistency().frames.size(), 0U);
   EXPECT_EQ(map.grid().content_hash(), hash);
   all.frames[0].identity = "0123456789abcdef frame 0";
-  EXPECT_EQ(map.update({all.poses[0], {all.frames[0]}}).verdict, FrameVerdict::used);
+  EXPECT_EQ(map.add({all.poses[0], {all.frames[0]}}).verdict, FrameVerdict::used);
   EXPECT_EQ(map.consistency().frames.size(), 1U);
 }
 

@@ -151,7 +151,7 @@ TEST(HazardViews, AreNoneOfAnEmptyMapAndAtMostAsManyAsAskedFor) {
     ASSERT_EQ(first.size(), most);
     for (std::size_t i = 0; i < most; ++i) EXPECT_EQ(first[i].m, all[i].m);
   }
-  const BeliefGrid empty(test::model_config(test::half_sr4000(), 0.2, kVoxel).map.grid);
+  const BeliefGrid empty(test::model_config(test::half_sr4000(), 0.2, kVoxel).map.grid());
   EXPECT_TRUE(hazard_views(*VoxelScene::build(empty), kDistance, kSpacing, 10).empty());
   int cases = 0;
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::infinity(),
@@ -176,7 +176,7 @@ TEST(HazardViews, AreProposedWhereFewBoundariesAreOpen) {
           look_at({i & 1 ? 0.3 : -0.3, i & 2 ? 0.3 : -0.3, i & 4 ? 0.3 : -0.3}, {0, 0, 0}));
     }
     const SurfaceModel model = box_model(views);
-    BoundaryGeneration generation(model, default_boundary(model.map().sensor(), kVoxel));
+    BoundaryGeneration generation(model, default_boundary(model.scorer().sensor(), kVoxel));
     const Proposal proposal = generation.generate({});
     const std::size_t of_boundaries = generation.estimated().candidates.size();
     EXPECT_EQ(of_boundaries >= 200, count == 1) << of_boundaries;

@@ -35,11 +35,11 @@ inline Sensor half_sr4000() {
 
 inline SurfaceModelConfig model_config(const Sensor& sensor, double half_workspace, double voxel) {
   SurfaceModelConfig model;
-  GridConfig& grid = model.map.grid;
-  grid.voxel_size = voxel;
-  grid.workspace.min.fill(-half_workspace);
-  grid.workspace.max.fill(half_workspace);
-  grid.prior_sigma = default_prior_sigma(voxel, sensor);
+  ScorerConfig& map = model.map;
+  map.voxel_size = voxel;
+  map.workspace.min.fill(-half_workspace);
+  map.workspace.max.fill(half_workspace);
+  map.prior_sigma = default_prior_sigma(voxel, sensor);
   return model;
 }
 

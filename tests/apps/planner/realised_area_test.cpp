@@ -3,6 +3,8 @@
 
 // What a frame shows of new surface: planes whose area is known, and a frame of random readings
 // against a count by hand.
+#include "scorer/realised_area.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,16 +14,17 @@
 
 #include "apps/planner/planner_scene.hpp"
 #include "core/expect_error.hpp"
-#include "viewgain/planner/map_model.hpp"
 
 namespace viewgain {
 namespace {
+
+using detail::RealisedArea;
 
 constexpr double kVoxel = 0.005;
 constexpr double kEye = 0.4;  // above the plane z = 0 [m]
 
 BeliefGrid empty_map(double half = 0.3) {
-  return BeliefGrid(test::model_config(test::half_sr4000(), half, kVoxel).map.grid);
+  return BeliefGrid(test::model_config(test::half_sr4000(), half, kVoxel).map.grid());
 }
 
 // Looks straight down at the plane z = 0.

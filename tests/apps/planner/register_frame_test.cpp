@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/planner/planner_set_up.hpp"
 #include "apps/planner/registration_scene.hpp"
 #include "core/expect_error.hpp"
 #include "viewgain/planner/align_frames.hpp"
-#include "viewgain/planner/view_planner.hpp"
 
 namespace viewgain {
 namespace {
@@ -60,24 +60,24 @@ TEST(RegisterFrame, WithoutNoiseThePoseIsRecovered) {
 
 TEST(RegisterFrame, APlannerSaysWhatItsPartsSayAndStaysAsItWas) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), true, {});
-  PlannerConfig config;
-  config.grid.voxel_size = test::RegistrationScene::kVoxel;
-  config.grid.workspace = scene.grid.workspace();
-  ViewPlanner planner(scene.sensor, config, {1});
+  test::PlannerSetUp config;
+  config.map.voxel_size = test::RegistrationScene::kVoxel;
+  config.map.workspace = scene.grid.workspace();
+  ViewPlanner planner = config.make(scene.sensor, {1});
   const DepthFrame frame = scene.see(true_pose());
   const Pose reported = test::disturbed(true_pose(), kShift, kTurn, 1);
   EXPECT_EQ(planner.register_frame(frame, reported, kSigma).status,
             RegistrationStatus::too_little_overlap);
   for (const Pose& view : test::views_round()) planner.add(scene.see(view), view);
-  const std::string before = planner.grid().content_hash();
+  const std::string before = planner.scorer().grid().content_hash();
   const FrameRegistration found = planner.register_frame(frame, reported, kSigma);
   ASSERT_EQ(found.status, RegistrationStatus::registered) << found.reason;
   EXPECT_LT(test::error_of(found.T_world_camera, true_pose()).translation, 0.6 * kShift);
-  EXPECT_EQ(planner.grid().content_hash(), before);
-  MapModelConfig map;
-  map.jump_edges = config.jump_edges;
+  EXPECT_EQ(planner.scorer().grid().content_hash(), before);
+  ScorerConfig map;
+  map.jump_edges = config.map.jump_edges;
   const FrameAlignment part(scene.sensor, map, {2});
-  EXPECT_EQ(part.register_frame(planner.grid(), frame, reported, kSigma).T_world_camera,
+  EXPECT_EQ(part.register_frame(planner.scorer().grid(), frame, reported, kSigma).T_world_camera,
             found.T_world_camera);
 }
 
@@ -208,13 +208,13 @@ TEST(RegisterFrame, ReadingsOfTheTableAndOfWhatIsKnownAreLeftOut) {
   const test::RegistrationScene scene(test::bumpy_sphere(0.12, 0.015), false, test::views_round());
   const DepthFrame frame = scene.see(true_pose());
   const std::size_t all = registered(scene, frame, true_pose()).readings;
-  MapModelConfig map;
-  map.surroundings.support_plane = 0.0;
+  ScorerConfig map;
+  map.support_plane = 0.0;
   const FrameRegistration above =
       FrameAlignment(scene.sensor, map, {1}).register_frame(scene.grid, frame, true_pose(), kSigma);
   EXPECT_LT(above.readings, 0.7 * static_cast<double>(all));
   EXPECT_GT(above.readings, 0.3 * static_cast<double>(all));
-  map.surroundings.obstacles.boxes.push_back({{-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}});
+  map.obstacles.boxes.push_back({{-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}});
   EXPECT_EQ(FrameAlignment(scene.sensor, map, {1})
                 .register_frame(scene.grid, frame, true_pose(), kSigma)
                 .readings,

@@ -143,9 +143,10 @@ class RegistrationScene {
     return config;
   }
   [[nodiscard]] FrameAlignment alignment(int threads = 1) const {
-    MapModelConfig map;
+    ScorerConfig map;
     map.jump_edges.reset();  // the camera makes no flying pixels
-    map.grid = layout();
+    map.voxel_size = layout().voxel_size;
+    map.workspace = layout().workspace;
     return FrameAlignment(sensor, map, {threads});
   }
 

@@ -25,7 +25,7 @@ BeliefGrid map_of_ball(const Sensor& sensor, double scale_error, std::size_t tim
   const SimulatedSensor camera(std::make_shared<const SurfaceScene>(test::sphere_mesh(kRadius, 48)),
                                sensor,
                                {.noise = true, .lateral_noise = true, .scale_error = scale_error});
-  BeliefGrid grid(test::model_config(sensor, 0.125, 0.005).map.grid);
+  BeliefGrid grid(test::model_config(sensor, 0.125, 0.005).map.grid());
   FrameIntegrator integrator(sensor);
   const std::vector<Pose> views = sphere_poses(12, 0.4);
   for (std::size_t i = 0; i < times * views.size(); ++i) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "viewgain/planner/suspect_frames.hpp"
+#include "viewgain/raycast/suspect_frames.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "viewgain/planner/suspect_set_up.hpp"
+#include "viewgain/raycast/suspect_set_up.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,9 +21,9 @@
 #include "viewgain/core/generators.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/planner/register_frame.hpp"
-#include "viewgain/planner/suspect_frames.hpp"
 #include "viewgain/raycast/obstacle_view.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
+#include "viewgain/raycast/suspect_frames.hpp"
 
 namespace viewgain {
 namespace {

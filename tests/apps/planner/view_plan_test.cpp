@@ -18,13 +18,14 @@ namespace {
 
 using test::BinScene;
 using test::expect_error;
+using test::PlannerSetUp;
 
 class ViewPlan : public testing::Test {
  protected:
   [[nodiscard]] ViewPlanner planner(PlanAhead ahead, GainModel model = GainModel::combined) const {
-    PlannerConfig config = scene.config(model);
-    config.ahead = ahead;
-    ViewPlanner made(scene.sensor, config, {1});
+    PlannerSetUp config = scene.config(model);
+    config.planner.ahead = ahead;
+    ViewPlanner made = config.make(scene.sensor, {1});
     made.add_poses({"dome", scene.views});
     made.add(scene.see(scene.views[3]), scene.views[3]);
     return made;
@@ -50,7 +51,7 @@ TEST_F(ViewPlan, ViewsThatGoTogetherAreTheBestSets) {
   for (const GainModel model : {GainModel::paper, GainModel::surface, GainModel::combined}) {
     ViewPlanner planner = this->planner({}, model);
     const std::vector<Pose> poses = viewgain::poses_of(planner.propose().candidates);
-    const ViewSet set = planner.evaluator().best_set(poses, 4);
+    const ViewSet set = planner.scorer().evaluator()->best_set(poses, 4);
     const Ranking together = planner.rank(4, {.together = true, .exact = true});
     ASSERT_GE(together.views.size(), 2U);
     for (std::size_t i = 0; i < together.views.size(); ++i) {
@@ -76,8 +77,8 @@ TEST_F(ViewPlan, ThreeAreTakenInTheirOrderAndThenItIsPlannedAnew) {
     ASSERT_EQ(planned.size(), 3U);
     // The set is the greedy one, and no order of it is shorter.
     const Pose here = scene.views[3];
-    const ViewTour tour =
-        plan_tour(planner.evaluator(), all, {.max_stops = 3, .way = straight_ways(here, all)});
+    const ViewTour tour = plan_tour(*planner.scorer().evaluator(), all,
+                                    {.max_stops = 3, .way = straight_ways(here, all)});
     std::vector<Pose> expected;
     for (const std::size_t place : tour.tour.stops) {
       expected.push_back(all[tour.set.indices[place]]);
@@ -99,7 +100,8 @@ TEST_F(ViewPlan, ThreeAreTakenInTheirOrderAndThenItIsPlannedAnew) {
       const Ranking left = planner.rank(5);
       ASSERT_EQ(left.views.size(), 2 - taken);
       EXPECT_EQ(left.views[0].T_world_camera, planned[taken + 1]);
-      EXPECT_EQ(left.views[0].gain.gain, planner.evaluator().evaluate(planned[taken + 1]).gain);
+      EXPECT_EQ(left.views[0].gain.gain,
+                planner.scorer().evaluator()->evaluate(planned[taken + 1]).gain);
       EXPECT_TRUE(std::isnan(left.worth));
     }
   }
@@ -145,8 +147,8 @@ TEST_F(ViewPlan, ASavedPlannerGoesOnWithIt) {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "planner.vdb";
   const PlanAhead ahead{.plan = 3, .take = 3, .least_share = 0};
-  PlannerConfig config = scene.config();
-  config.ahead = ahead;
+  PlannerSetUp config = scene.config();
+  config.planner.ahead = ahead;
   ViewPlanner whole = planner(ahead), parts = planner(ahead);
   int planned = 0;
   for (int view = 0; view < 5; ++view) {
@@ -159,7 +161,7 @@ TEST_F(ViewPlan, ASavedPlannerGoesOnWithIt) {
     }
     ASSERT_EQ(next[0], next[1]);
     parts.save(path);
-    parts = ViewPlanner::load(path, scene.sensor, config, {2});
+    parts = config.load(path, scene.sensor, {2});
     parts.add_poses({"dome", scene.views});
     take(whole, next[0]);
     take(parts, next[0]);

@@ -95,7 +95,7 @@ def test_classes_say_how_they_are_pickled(name, evaluator, sensor):
                if inspect.isclass(thing) and not issubclass(thing, Exception)]
     for one in classes:
         assert "__reduce_ex__" in vars(one), one
-    assert len(classes) == (19 if name == MODULES[0] else 2)
+    assert len(classes) == (20 if name == MODULES[0] else 2)
     things = [evaluator, evaluator.scene, viewgain.BatchControl(),
               viewgain.FeasibilityChecker(evaluator.scene), viewgain.FrameIntegrator(sensor),
               viewgain.CloudIntegrator(sensor)]

@@ -43,5 +43,6 @@
 #include "viewgain/c/base.h"
 #include "viewgain/c/gain.h"
 #include "viewgain/c/map.h"
+#include "viewgain/c/scorer.h"
 
 #endif

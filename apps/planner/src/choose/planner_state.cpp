@@ -11,8 +11,8 @@
 namespace viewgain::detail {
 namespace {
 
-constexpr std::uint64_t kVersion = 3;
-constexpr std::uint64_t kOldest = 2;  // without last_pose
+constexpr std::uint64_t kVersion = 4;
+constexpr std::uint64_t kOldest = 2;  // without last_pose; 3: without first_views
 constexpr std::uint64_t kMost = std::uint64_t{1} << 53;
 constexpr std::array kReasons{StopReason::gain,          StopReason::area,        StopReason::cost,
                               StopReason::no_candidates, StopReason::unreachable, StopReason::idle,
@@ -89,7 +89,8 @@ constexpr std::array kEntries{
     Entry{"version", 2},       Entry{"seen_area", 2}, Entry{"before_choice", 13},
     Entry{"after_choice", 13}, Entry{"frames", 3},    Entry{"reached", 13},
     Entry{"missed", 13},       Entry{"planned", 13},  Entry{"promised", 13},
-    Entry{"of_view", 2},       Entry{"of_choice", 2}, Entry{"last_pose", 13}};
+    Entry{"first_views", 2},   Entry{"of_view", 2},   Entry{"of_choice", 2},
+    Entry{"last_pose", 13}};
 
 }  // namespace
 
@@ -105,6 +106,9 @@ std::string text_of(const PlannerState& state) {
   }
   for (const Pose& pose : state.reached) text += line_of("reached", pose);
   for (const Pose& pose : state.missed) text += line_of("missed", pose);
+  if (state.first_views > 0) {
+    text.append("first_views ").append(std::to_string(state.first_views)).append("\n");
+  }
   if (state.last_pose) text += line_of("last_pose", *state.last_pose);
   for (const Pose& pose : state.planned) text += line_of("planned", pose);
   if (state.promised) text += line_of("promised", *state.promised);
@@ -148,6 +152,8 @@ PlannerState state_of(const std::string& name, std::string_view text) {
       state.missed.push_back(pose_of(reader));
     } else if (key == "last_pose") {
       state.last_pose = pose_of(reader);
+    } else if (key == "first_views") {
+      state.first_views = static_cast<std::size_t>(reader.count(1, kMost));
     } else if (key == "planned") {
       state.planned.push_back(pose_of(reader));
     } else if (key == "promised") {

@@ -20,6 +20,7 @@ struct PlannerState {
   FrameCounts frames;                   ///< that were added or dropped
   std::vector<Pose> reached;            ///< commanded, and the camera got there
   std::vector<Pose> missed;             ///< commanded, and it did not
+  std::size_t first_views = 0;          ///< of the map that it began with
   std::optional<Pose> last_pose;        ///< where the camera is: the last pose that was told
   std::vector<Pose> planned;            ///< of a plan, still to be taken, in its order
   std::optional<Pose> promised;         ///< the best of the last ranking since the last view

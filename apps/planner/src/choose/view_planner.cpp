@@ -11,6 +11,7 @@
 
 #include "choose/planner_state.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/planner/align_frames.hpp"
 #include "viewgain/planner/stop_settings.hpp"
 #include "viewgain/support/stop_rules.hpp"
@@ -47,34 +48,21 @@ std::optional<StopReason> limit_reached(const PlanningConfig& limits, const Stop
 
 // What a planner's settings come to for its parts.
 
-MapModelConfig map_config(const PlannerConfig& config) {
-  MapModelConfig map;
-  map.grid = config.grid;
-  map.integration = config.integration;
-  map.jump_edges = config.jump_edges;
-  map.surroundings = config.surroundings;
-  map.hazard = config.hazard;
-  map.criterion = config.gain.criterion;
-  map.follow_surface = config.gain.model != GainModel::paper;
-  return map;
-}
-
-ProposerConfig proposer_config(const PlannerConfig& config, const Sensor& sensor) {
-  FeasibilityConfig feasibility = feasibility_of(sensor);
-  feasibility.clearance = config.clearance;
+ProposerConfig proposer_config(const PlannerConfig& config, const ViewScorer& scorer) {
+  FeasibilityConfig feasibility = feasibility_of(scorer.sensor());
+  feasibility.clearance = scorer.config().clearance;
   feasibility.reach = config.reach;
   feasibility.taken_tolerance = config.taken_tolerance;
   feasibility.max_near_share = config.max_near_share;
   return {std::move(feasibility), config.check_feasibility};
 }
 
-PlanningConfig planning_config(const PlannerConfig& config) {
+PlanningConfig planning_config(const PlannerConfig& config, const GainConfig& gain) {
   PlanningConfig planning;
   planning.max_views = config.max_views;
   planning.idle_views = config.idle_views;
   planning.broken_promises = config.broken_promises;
-  set_stop_rules(planning, config.gain.model, config.gain.criterion, config.stop_gain,
-                 config.stop_area);
+  set_stop_rules(planning, gain.model, gain.criterion, config.stop_gain, config.stop_area);
   return planning;
 }
 
@@ -82,35 +70,34 @@ PlanningConfig planning_config(const PlannerConfig& config) {
 
 struct ViewPlanner::Impl {
   PlannerConfig config;
-  ExecConfig exec;
+  ViewScorer scorer;
   PlanningConfig planning;
-  MapModel map;
   detail::PlannerState state;
   ViewProposer proposer;
-  std::optional<GainEvaluator> evaluator;
   std::optional<Proposal> proposal;
   bool is_of_plan = false;  // the proposal
   StageSeconds seconds;
   std::once_flag is_registering;
   std::optional<FrameAlignment> registration;  // once it is asked for
 
-  Impl(const PlannerConfig& config_in, const ExecConfig& exec_in, MapModel map_in)
-      : config(config_in),
-        exec(exec_in),
-        planning(planning_config(config_in)),
-        map(std::move(map_in)),
-        proposer(map.scene(), proposer_config(config, map.sensor()), exec) {
+  Impl(ViewScorer by, const PlannerConfig& with)
+      : config(with),
+        scorer(std::move(by)),
+        planning(planning_config(with, scorer.config().gain)),
+        proposer(scorer.scene(), proposer_config(with, scorer), scorer.exec()) {
     (void)StopRules(planning);  // refuses what no run can have
     config.ahead.check();
   }
 
-  GainEvaluator& current_evaluator() {
-    if (!evaluator) {
-      evaluator.emplace(map.scene(), map.sensor(), config.gain, exec);
-    } else if (&evaluator->scene() != map.scene().get()) {
-      evaluator = evaluator->with_scene(map.scene());
-    }
-    return *evaluator;
+  // From a map that has something already: what is there is not the first view's.
+  void begin() {
+    const std::vector<Pose>& views = scorer.grid().views();
+    const ModelProgress progress = scorer.progress();
+    state.first_views = views.size();
+    if (!views.empty()) state.last_pose = views.back();
+    state.after_choice.entropy_removed = progress.entropy_removed;
+    if (!views.empty()) state.after_choice.unknown_voxels = progress.unknown_voxels;
+    state.before_choice = state.after_choice;
   }
 
   // What a view that is over came to.
@@ -119,10 +106,10 @@ struct ViewPlanner::Impl {
     added.view = state.after_choice.views;
     const double before = state.after_choice.entropy_removed;
     added.update = std::move(update);
-    added.progress = map.progress();
+    added.progress = scorer.progress();
     ++state.frames[added.update.verdict];
     if (is_in_map(added.update.verdict)) {
-      // Without follow_surface nobody asks for the area.
+      // Without learn_hazard nobody asks for the area.
       if (!std::isnan(added.update.new_area)) state.seen_area += added.update.new_area;
     } else if (T_world_camera && rigid_pose(*T_world_camera)) {
       state.reached.push_back(*T_world_camera);
@@ -164,16 +151,15 @@ struct ViewPlanner::Impl {
 
   // What is left of the plan; nothing if it is not worth taking any more.
   Proposal planned_proposal() {
-    Proposal left = proposer.propose_these({std::string(kPlanned), state.planned}, map.grid(),
-                                           map.scene(), state.reached, state.missed);
-    keep_worth(current_evaluator(), config.ahead, state.seen_area, left);
+    Proposal left = proposer.propose_these({std::string(kPlanned), state.planned}, scorer.grid(),
+                                           scorer.scene(), state.reached, state.missed);
+    keep_worth(*scorer.evaluator(), config.ahead, state.seen_area, left);
     state.planned = poses_of(left.candidates);
     return left;
   }
 
-  Ranking plan(std::span<const Pose> poses, const RankConfig& rank_config,
+  Ranking plan(const GainEvaluator& by, std::span<const Pose> poses, const RankConfig& rank_config,
                const BatchControl& control) {
-    const GainEvaluator& by = current_evaluator();
     return is_of_plan ? rank_in_turn(by, poses, rank_config, control)
                       : plan_views(by, poses, config.ahead, state.seen_area, rank_config, control);
   }
@@ -212,11 +198,12 @@ struct ViewPlanner::Impl {
     require_a_usable_frame();
     const Stopwatch watch;
     if (!rank_config.current_pose) rank_config.current_pose = state.last_pose;
-    const GainEvaluator& by = current_evaluator();
+    const std::shared_ptr<const GainEvaluator> evaluator = scorer.evaluator();
+    const GainEvaluator& by = *evaluator;
     const bool plans = from != nullptr && config.ahead.is_on();
     // The first one says why to end, whatever k.
     Ranking ranking =
-        plans ? plan(poses, rank_config, control)
+        plans ? plan(by, poses, rank_config, control)
               : rank_views(by, poses, std::max<std::size_t>(k, 1), rank_config, control);
     if (from != nullptr && ranking.complete) {
       state.promised.reset();
@@ -236,10 +223,9 @@ struct ViewPlanner::Impl {
   }
 };
 
-ViewPlanner::ViewPlanner(const Sensor& sensor, const PlannerConfig& config, const ExecConfig& exec)
-    : impl_(std::make_unique<Impl>(config, exec, MapModel(sensor, map_config(config), exec))) {
-  // The configuration of the gain is refused here, not at the first ranking.
-  (void)impl_->current_evaluator();
+ViewPlanner::ViewPlanner(ViewScorer scorer, const PlannerConfig& config)
+    : impl_(std::make_unique<Impl>(std::move(scorer), config)) {
+  impl_->begin();
 }
 ViewPlanner::ViewPlanner(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 ViewPlanner::~ViewPlanner() = default;
@@ -264,9 +250,10 @@ void ViewPlanner::add_generation(std::shared_ptr<ViewpointGeneration> generation
 FrameRegistration ViewPlanner::register_frame(const DepthFrame& frame, const Pose& T_reported,
                                               const PoseSigma& sigma) const {
   Impl& m = *impl_;
-  std::call_once(m.is_registering,
-                 [&] { m.registration.emplace(m.map.sensor(), map_config(m.config), m.exec); });
-  return m.registration->register_frame(m.map.grid(), frame, T_reported, sigma);
+  std::call_once(m.is_registering, [&] {
+    m.registration.emplace(m.scorer.sensor(), m.scorer.config(), m.scorer.exec());
+  });
+  return m.registration->register_frame(m.scorer.grid(), frame, T_reported, sigma);
 }
 
 AddedView ViewPlanner::add(const DepthFrame& frame, const Pose& T_world_camera,
@@ -278,7 +265,7 @@ AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_wor
                            const PoseSigma& pose_sigma) {
   Impl& m = *impl_;
   if (frames.empty()) refuse("a view without a frame");
-  return m.counted(m.map.update({T_world_camera, {frames.begin(), frames.end()}, pose_sigma}),
+  return m.counted(m.scorer.add({T_world_camera, {frames.begin(), frames.end()}, pose_sigma}),
                    T_world_camera);
 }
 
@@ -299,8 +286,9 @@ const Proposal& ViewPlanner::propose() {
   if (!m.state.planned.empty()) proposal = m.planned_proposal();
   m.is_of_plan = !proposal.candidates.empty();
   if (!m.is_of_plan) {
-    proposal = m.proposer.propose(m.map.grid(), m.map.scene(), m.state.last_pose.value_or(Pose()),
-                                  m.state.reached, m.state.missed);
+    proposal =
+        m.proposer.propose(m.scorer.grid(), m.scorer.scene(), m.state.last_pose.value_or(Pose()),
+                           m.state.reached, m.state.missed);
   }
   m.state.of_choice.reset();
   m.state.after_choice = m.state.before_choice;
@@ -346,14 +334,15 @@ std::optional<StopReason> ViewPlanner::should_stop() const noexcept {
 }
 
 void ViewPlanner::save(const std::filesystem::path& path) const {
-  MapNotes notes = grid().notes();
+  const BeliefGrid& grid = impl_->scorer.grid();
+  MapNotes notes = grid.notes();
   notes.others[kNote] = detail::text_of(impl_->state);
-  save_vdb(grid(), path, {.notes = std::move(notes)});
+  save_vdb(grid, path, {.notes = std::move(notes)});
 }
 
 ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& sensor,
-                              const PlannerConfig& config, const ExecConfig& exec) {
-  const MapModelConfig map = map_config(config);
+                              const ScorerConfig& scorer, const PlannerConfig& config,
+                              const ExecConfig& exec) {
   BeliefGrid grid = load_vdb(path, exec);
   MapNotes notes = grid.notes();
   const auto note = notes.others.extract(kNote);  // save() writes it anew
@@ -361,7 +350,7 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
   if (note.empty()) {
     throw Error(ErrorCode::format, path.string() + ": is a map without the state of a planner");
   }
-  const BeliefGrid expected(map.grid, sensor);
+  const BeliefGrid expected(scorer.grid(), sensor);
   if (grid.voxel_size() != expected.voxel_size() || grid.dims() != expected.dims() ||
       grid.min_index() != expected.min_index() || grid.prior_sigma() != expected.prior_sigma() ||
       !(grid.T_world_grid() == expected.T_world_grid())) {
@@ -369,27 +358,24 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
            ", is laid out otherwise than the configuration says, " + layout_text(expected));
   }
   detail::PlannerState state = detail::state_of(path.string() + " (note planner)", note.mapped());
-  std::size_t added = 0;
+  std::size_t added = state.first_views;
   for (const auto& [verdict, count] : state.frames) added += is_in_map(verdict) ? count : 0;
   if (added != grid.views().size()) {
     refuse(path.string() + ": its map has " + std::to_string(grid.views().size()) +
            " views, of which its planner added " + std::to_string(added) +
            ": the map has grown since; begin a new planner");
   }
-  auto impl = std::make_unique<Impl>(config, exec, MapModel(std::move(grid), sensor, map, exec));
+  auto impl = std::make_unique<Impl>(ViewScorer(std::move(grid), sensor, scorer, exec), config);
   impl->state = std::move(state);
   // A state of version 2 does not say it.
-  const std::vector<Pose>& views = impl->map.grid().views();
+  const std::vector<Pose>& views = impl->scorer.grid().views();
   if (!impl->state.last_pose && !views.empty()) impl->state.last_pose = views.back();
   // The limits are those of today's configuration; what the last choice said stays.
   impl->state.of_view = limit_reached(impl->planning, impl->state.after_choice);
-  (void)impl->current_evaluator();
   return ViewPlanner(std::move(impl));
 }
 
-const MapModel& ViewPlanner::map() const noexcept { return impl_->map; }
-const BeliefGrid& ViewPlanner::grid() const noexcept { return impl_->map.grid(); }
-const GainEvaluator& ViewPlanner::evaluator() { return impl_->current_evaluator(); }
+const ViewScorer& ViewPlanner::scorer() const noexcept { return impl_->scorer; }
 const StageSeconds& ViewPlanner::seconds() const noexcept { return impl_->seconds; }
 
 }  // namespace viewgain

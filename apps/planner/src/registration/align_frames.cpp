@@ -218,11 +218,11 @@ struct FrameAlignment::Impl {
   mutable ThreadPool pool;
   std::optional<Added> added;
 
-  Impl(const Sensor& s, const MapModelConfig& map, const ExecConfig& e)
+  Impl(const Sensor& s, const ScorerConfig& map, const ExecConfig& e)
       : sensor(s),
-        grid(map.grid),
-        support_plane(map.surroundings.support_plane),
-        obstacles(map.surroundings.obstacles, s, e),
+        grid(map.grid()),
+        support_plane(map.support_plane),
+        obstacles(map.obstacles, s, e),
         exec(e),
         rays(s.camera.ray_table()),
         pool(e.num_threads) {
@@ -263,7 +263,7 @@ struct FrameAlignment::Impl {
   }
 };
 
-FrameAlignment::FrameAlignment(const Sensor& sensor, const MapModelConfig& map,
+FrameAlignment::FrameAlignment(const Sensor& sensor, const ScorerConfig& map,
                                const ExecConfig& exec) {
   sensor.validate();
   impl_ = std::make_unique<Impl>(sensor, map, exec);

@@ -10,7 +10,7 @@
 #include "program/cli/values.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/vdb_io.hpp"
-#include "viewgain/planner/suspect_frames.hpp"
+#include "viewgain/raycast/suspect_frames.hpp"
 #include "viewgain/support/file_names.hpp"
 #include "viewgain/support/text.hpp"
 

@@ -93,7 +93,7 @@ std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,
   return sigma;
 }
 
-void ScaleOptions::set(IntegrationConfig& config) const {
+void ScaleOptions::set(ScorerConfig& config) const {
   if (coarsest == 0 && !fine.empty()) refuse("--fine goes with --coarsest");
   if (finest > coarsest) refuse("--finest is at most --coarsest");
   config.coarsest = static_cast<int>(coarsest);

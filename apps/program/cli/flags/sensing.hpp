@@ -13,7 +13,7 @@
 #include "program/cli/json.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/grid/integrate.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 
@@ -84,7 +84,7 @@ struct ScaleOptions {
   std::vector<std::string> fine;
 
   /// Throws Error(invalid_argument) naming --fine or --finest.
-  void set(IntegrationConfig& config) const;
+  void set(ScorerConfig& config) const;
   /// For a run's settings, empty where they are the defaults.
   [[nodiscard]] Json settings() const;
 };

@@ -7,7 +7,7 @@
 
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
-#include "viewgain/planner/suspect_set_up.hpp"
+#include "viewgain/raycast/suspect_set_up.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -10,7 +10,7 @@
 #include "viewgain/core/reach.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
-#include "viewgain/planner/suspect_frames.hpp"
+#include "viewgain/raycast/suspect_frames.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain::app {

@@ -61,6 +61,7 @@ class Following {
  public:
   explicit Following(const Options& options)
       : options_(options),
+        map_config_(scorer_config(options)),
         config_(planner_config(options)),
         sigma_(registration_sigma(options.registration)),
         frames_(options.frames.folder),
@@ -196,11 +197,11 @@ class Following {
   void open_map() {
     warn_of_assumptions(options_.frames.folder, *watch_->folder());
     const Sensor& sensor = watch_->folder()->sensor;
-    config_.grid.prior_sigma = default_prior_sigma(options_.voxel, sensor);
-    const BeliefGrid empty(config_.grid);
+    map_config_.prior_sigma = default_prior_sigma(options_.voxel, sensor);
+    const BeliefGrid empty(map_config_.grid());
     if (!saved_) warn_of_few_voxels(empty);
-    config_.hazard = hazard_source(options_.hazard, options_.object_size, empty);
-    map_.emplace(sensor, body_, config_, out_ / "state.vdb", saved_, sigma_,
+    map_config_.hazard = hazard_source(options_.hazard, options_.object_size, empty);
+    map_.emplace(sensor, body_, map_config_, config_, out_ / "state.vdb", saved_, sigma_,
                  exec_of(options_.common));
     // What was next may be missing or older than the state, which has not heard of it: a frame that
     // waits is held against it.
@@ -211,7 +212,7 @@ class Following {
                     .map = map_->grid(),
                     .frames_follow = true,
                     .obstacle_values = &options_.obstacles,
-                    .obstacles = &config_.surroundings.obstacles,
+                    .obstacles = &map_config_.obstacles,
                     .support_plane = options_.support_plane,
                     .reach_file = options_.reach,
                     .reach = &config_.reach,
@@ -257,7 +258,7 @@ class Following {
     views_.ask(poses_of(next_), frames);
     if (next_.candidates > 0 || !next_.dropped.contains("obstacle")) return;
     if (std::exchange(told_of_obstacles_, true)) return;
-    warn_of_views_in_obstacles(config_.surroundings.obstacles, map_->grid());
+    warn_of_views_in_obstacles(map_config_.obstacles, map_->grid());
   }
 
   // First the state: what is next takes longest, and can be made of it again.
@@ -306,6 +307,7 @@ class Following {
   }
 
   const Options& options_;
+  ScorerConfig map_config_;
   PlannerConfig config_;
   std::optional<PoseSigma> sigma_;  // of the poses, if frames are registered
   std::optional<std::array<double, 3>> body_;

@@ -11,19 +11,25 @@
 
 namespace viewgain::app {
 
-PlannerConfig planner_config(const FollowOptions& options) {
-  PlannerConfig config;
+ScorerConfig scorer_config(const FollowOptions& options) {
+  ScorerConfig config;
   check_positive("--voxel", options.voxel);
-  config.grid.voxel_size = options.voxel;
-  config.grid.workspace = parse_box("--workspace", options.workspace);
+  config.voxel_size = options.voxel;
+  config.workspace = parse_box("--workspace", options.workspace);
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
-  config.surroundings = {obstacles_of(options.obstacles), options.support_plane};
+  config.support_plane = options.support_plane;
+  config.obstacles = obstacles_of(options.obstacles);
   config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
-  options.scales.set(config.integration);
+  options.scales.set(config);
   config.gain.model = parse_gain_model(options.gain);
   if (config.gain.model == GainModel::paper && (options.object_size || !options.hazard.empty())) {
     refuse("--object-size and --hazard go with --gain surface or combined");
   }
+  return config;
+}
+
+PlannerConfig planner_config(const FollowOptions& options) {
+  PlannerConfig config;
   if (!options.reach.empty()) config.reach = read_reach_toml(options.reach);
   config.max_views = options.max_views;
   config.broken_promises = options.stop_promises;

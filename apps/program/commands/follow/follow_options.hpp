@@ -43,7 +43,9 @@ struct FollowOptions {
 
 void add_follow_options(App& app, FollowOptions& options);
 
-/// All settings but those that depend on the sensor. Throws Error, naming the flag.
+/// Settings of the map, without those that depend on the sensor. Throws Error, naming the flag.
+[[nodiscard]] ScorerConfig scorer_config(const FollowOptions& options);
+/// Settings of the planner. Throws Error, naming the flag.
 [[nodiscard]] PlannerConfig planner_config(const FollowOptions& options);
 
 }  // namespace viewgain::app

@@ -20,8 +20,8 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
-#include "viewgain/planner/suspect_frames.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/raycast/suspect_frames.hpp"
 #include "viewgain/support/file_bytes.hpp"
 
 namespace viewgain::app {
@@ -30,14 +30,15 @@ namespace {
 namespace fs = std::filesystem;
 
 ViewPlanner planner_of(Sensor sensor, std::optional<std::array<double, 3>> body,
-                       const PlannerConfig& config, const fs::path& state,
+                       const ScorerConfig& map, const PlannerConfig& config, const fs::path& state,
                        const std::optional<SavedFrames>& saved, const ExecConfig& exec) {
   if (saved && saved->sensor && !is_same_sensor(*saved->sensor, sensor)) {
     refuse(state.string() + ": its frames are of " + saved->sensor->name + ", not of this " +
            sensor.name + "; name a new folder");
   }
   if (body) sensor.body_size = body;
-  return saved ? ViewPlanner::load(state, sensor, config, exec) : ViewPlanner(sensor, config, exec);
+  return saved ? ViewPlanner::load(state, sensor, map, config, exec)
+               : ViewPlanner(ViewScorer(sensor, map, exec), config);
 }
 
 // Not yet with a mask in it: they come with the frames.
@@ -161,22 +162,22 @@ std::vector<Pose> AskedViews::answered_by(const std::string& name) {
 }
 
 FollowedMap::FollowedMap(const Sensor& sensor, std::optional<std::array<double, 3>> body,
-                         const PlannerConfig& config, fs::path state,
+                         const ScorerConfig& map, const PlannerConfig& config, fs::path state,
                          const std::optional<SavedFrames>& saved,
                          const std::optional<PoseSigma>& sigma, const ExecConfig& exec)
     : sensor_(sensor),
-      model_(config.gain.model),
+      model_(map.gain.model),
       state_(std::move(state)),
-      planner_(planner_of(sensor, body, config, state_, saved, exec)),
+      planner_(planner_of(sensor, body, map, config, state_, saved, exec)),
       sigma_(sigma) {
-  const BoundaryViewsConfig boundary = default_boundary(sensor, planner_.grid().voxel_size());
-  planner_.add_generation(std::make_shared<BoundaryGeneration>(planner_.map(), boundary, exec));
+  const BoundaryViewsConfig boundary = default_boundary(sensor, grid().voxel_size());
+  planner_.add_generation(std::make_shared<BoundaryGeneration>(planner_.scorer(), boundary, exec));
 }
 
 std::string FollowedMap::suspicion(bool is_last) {
   if (is_suspected_ || (!is_last && count_ < due_)) return {};
   while (due_ <= count_) due_ *= 2;
-  std::string what = text_of(planner_.map().consistency(), numbers_);
+  std::string what = text_of(planner_.scorer().consistency(), numbers_);
   if (what.empty()) what = refused_text(frames());
   is_suspected_ = !what.empty();
   return what;

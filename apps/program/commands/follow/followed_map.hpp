@@ -107,7 +107,7 @@ class FollowedMap {
   /// Error(invalid_argument) if the saved frames are another sensor's.
   /// With `sigmas` of the poses frames are registered.
   FollowedMap(const Sensor& sensor, std::optional<std::array<double, 3>> body,
-              const PlannerConfig& config, std::filesystem::path state,
+              const ScorerConfig& map, const PlannerConfig& config, std::filesystem::path state,
               const std::optional<SavedFrames>& saved, const std::optional<PoseSigma>& sigma,
               const ExecConfig& exec);
 
@@ -116,7 +116,7 @@ class FollowedMap {
   [[nodiscard]] std::string suspicion(bool is_last);
   /// Whether the frames of this call fit one another.
   [[nodiscard]] Json consistency_json() const {
-    return to_json(planner_.map().consistency(), numbers_);
+    return to_json(planner_.scorer().consistency(), numbers_);
   }
 
   /// What registering the frame against the map comes to; nothing without sigmas.
@@ -144,7 +144,7 @@ class FollowedMap {
   void save() const;
 
   [[nodiscard]] const FrameCounts& frames() const { return planner_.frames(); }
-  [[nodiscard]] const BeliefGrid& grid() const { return planner_.grid(); }
+  [[nodiscard]] const BeliefGrid& grid() const { return planner_.scorer().grid(); }
 
  private:
   Sensor sensor_;  // with its own body

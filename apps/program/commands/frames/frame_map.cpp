@@ -16,27 +16,30 @@
 namespace viewgain::app {
 namespace {
 
-MapModelConfig config_of(const FrameFolder& folder, const FrameMapOptions& options,
-                         const ProposalOptions& proposal, bool quiet) {
+ScorerConfig config_of(const FrameFolder& folder, const FrameMapOptions& options,
+                       const ProposalOptions& proposal, bool quiet) {
   check_positive("--voxel", options.voxel);
-  MapModelConfig config;
+  ScorerConfig config;
   config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
-  config.surroundings = {obstacles_of(proposal.obstacles), proposal.support_plane};
-  options.scales.set(config.integration);
+  config.obstacles = obstacles_of(proposal.obstacles);
+  config.support_plane = proposal.support_plane;
+  options.scales.set(config);
   config.refine = options.refine;
-  config.grid.voxel_size = options.voxel;
-  config.grid.workspace = options.workspace.empty()
-                              ? seen_workspace(folder, config, options.voxel, quiet)
-                              : parse_box("--workspace", options.workspace);
-  const BeliefGrid empty(config.grid);
+  config.voxel_size = options.voxel;
+  config.workspace = options.workspace.empty()
+                         ? seen_workspace(folder, config, options.voxel, quiet)
+                         : parse_box("--workspace", options.workspace);
+  const BeliefGrid empty(config.grid());
   warn_of_few_voxels(empty);
   config.hazard = hazard_source(proposal.hazard, proposal.object_size, empty);
+  config.learn_hazard = true;
+  config.gain.model = GainModel::paper;  // no view is scored before all frames are in
   return config;
 }
 
 }  // namespace
 
-Box seen_workspace(const FrameFolder& folder, const MapModelConfig& config, double voxel,
+Box seen_workspace(const FrameFolder& folder, const ScorerConfig& config, double voxel,
                    bool quiet) {
   std::optional<JumpEdgeFilter> filter;
   if (config.jump_edges) filter.emplace(folder.sensor().camera, *config.jump_edges);
@@ -51,7 +54,7 @@ Box seen_workspace(const FrameFolder& folder, const MapModelConfig& config, doub
     }
     if (filter) filter->apply(reading.frame);
     return reading_bounds(folder.sensor(), reading.frame, folder.T_world_camera(i), {},
-                          config.surroundings.support_plane);
+                          config.support_plane);
   };
   const std::optional<Box> seen = workspace_around(folder.size(), voxel, bounds);
   if (!seen) refuse_without_readings(folder, tally);
@@ -81,9 +84,9 @@ FrameMap::FrameMap(const FrameMapOptions& options, const ProposalOptions& propos
                    const ExecConfig& exec)
     : folder_(options.folder),
       config_(config_of(folder_, options, proposal, quiet)),
-      model_(with_body(folder_.sensor(), proposal), config_, exec),
+      scorer_(with_body(folder_.sensor(), proposal), config_, exec),
       tally_(quiet) {
-  warn_of_set_up(proposal, config_.surroundings.obstacles, model_.grid(), model_.sensor(), true);
+  warn_of_set_up(proposal, config_.obstacles, scorer_.grid(), scorer_.sensor(), true);
 }
 
 MapUpdate FrameMap::add(std::size_t index) { return add(index, folder_.T_world_camera(index)); }
@@ -95,7 +98,7 @@ MapUpdate FrameMap::add(std::size_t index, const Pose& T_world_camera,
   if (reading.fault.verdict == FrameVerdict::used) {
     Measurements measurements{T_world_camera, {}, pose_sigma};
     measurements.frames.push_back(std::move(reading.frame));
-    update = model_.update(measurements);
+    update = scorer_.add(measurements);
     reading.fault.verdict = update.verdict;
     if (is_in_map(update.verdict)) masked_pixels_ += reading.masked_pixels;
     tally_.add(update.counts);

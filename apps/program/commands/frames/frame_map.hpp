@@ -14,7 +14,7 @@
 #include "program/commands/frames/frame_tally.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
 #include "viewgain/core/exec_config.hpp"
-#include "viewgain/planner/map_model.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 
 namespace viewgain::app {
 
@@ -34,14 +34,14 @@ void add_frame_map_options(App& app, FrameMapOptions& options);
 
 /// The workspace for what the frames see, but for the pixels that --jump-edge-filter takes; reads
 /// all of them. Throws Error(invalid_argument) if none has a reading.
-[[nodiscard]] Box seen_workspace(const FrameFolder& folder, const MapModelConfig& config,
+[[nodiscard]] Box seen_workspace(const FrameFolder& folder, const ScorerConfig& config,
                                  double voxel, bool quiet);
 
 /// The map as frames of a folder go into it, in the folder's order.
 class FrameMap {
  public:
   /// Throws Error, naming the flag or the file, as FrameFolder, parse_box(), hazard_source(),
-  /// obstacles_of() and MapModel. Without --workspace all frames are read for
+  /// obstacles_of() and ViewScorer. Without --workspace all frames are read for
   /// their bounds; throws if none has a reading.
   FrameMap(const FrameMapOptions& options, const ProposalOptions& proposal, bool quiet,
            const ExecConfig& exec);
@@ -57,8 +57,8 @@ class FrameMap {
 
   /// Throws as FrameTally::require_any().
   void require_frames(bool needs_surface = false) {
-    consistency_ = model_.consistency();
-    tally_.require_any(folder_, model_.grid(), consistency_, needs_surface);
+    consistency_ = scorer_.consistency();
+    tally_.require_any(folder_, scorer_.grid(), consistency_, needs_surface);
   }
   /// Whether the frames fit one another, for JSON; after require_frames().
   [[nodiscard]] Json consistency_json() const { return to_json(consistency_, tally_.numbers()); }
@@ -69,16 +69,16 @@ class FrameMap {
   /// Where the last frame was taken, whether it could be used or not; nothing: no pose yet.
   [[nodiscard]] const std::optional<Pose>& last_pose() const noexcept { return last_pose_; }
   [[nodiscard]] const FrameFolder& folder() const noexcept { return folder_; }
-  [[nodiscard]] const MapModelConfig& config() const noexcept { return config_; }
-  [[nodiscard]] const MapModel& model() const noexcept { return model_; }
+  [[nodiscard]] const ScorerConfig& config() const noexcept { return config_; }
+  [[nodiscard]] const ViewScorer& scorer() const noexcept { return scorer_; }
   [[nodiscard]] std::uint64_t masked_pixels() const noexcept { return masked_pixels_; }
 
  private:
   void count(std::size_t index, const Pose& T_world_camera, const FrameFault& fault);
 
   FrameFolder folder_;
-  MapModelConfig config_;
-  MapModel model_;
+  ScorerConfig config_;
+  ViewScorer scorer_;
   FrameTally tally_;
   FrameConsistency consistency_;
   std::vector<Pose> tried_;

@@ -8,7 +8,7 @@
 
 #include "program/cli/values.hpp"
 #include "program/commands/frames/mask_use.hpp"
-#include "viewgain/planner/suspect_frames.hpp"
+#include "viewgain/raycast/suspect_frames.hpp"
 
 namespace viewgain::app {
 

@@ -18,8 +18,8 @@
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/planner/frame_check.hpp"
 #include "viewgain/planner/register_frame.hpp"
+#include "viewgain/raycast/frame_check.hpp"
 
 namespace viewgain::app {
 

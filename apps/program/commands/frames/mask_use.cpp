@@ -10,7 +10,7 @@
 #include "program/cli/values.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/planner/suspect_set_up.hpp"
+#include "viewgain/raycast/suspect_set_up.hpp"
 
 namespace viewgain::app {
 namespace {

@@ -18,23 +18,23 @@
 namespace viewgain::app {
 namespace {
 
-IntegrationConfig config_of(const IntegrateOptions& options) {
-  IntegrationConfig config;
+// How readings change a map. No view is scored.
+ScorerConfig rules_of(const IntegrateOptions& options) {
+  ScorerConfig config;
   config.carve =
       options.carve == "cones" ? IntegrationConfig::Carve::cones : IntegrationConfig::Carve::lines;
   config.occupancy = options.occupancy_rule();
   options.scales.set(config);
+  config.support_plane = options.support_plane;
+  config.learn_hazard = options.calibrates_hazard();
+  config.gain.model = GainModel::paper;
   return config;
 }
 
-// What frames do to a map, as MapModel puts them in.
-MapModelConfig map_config(const IntegrateOptions& options) {
-  MapModelConfig config;
-  config.integration = config_of(options);
+ScorerConfig map_config(const IntegrateOptions& options) {
+  ScorerConfig config = rules_of(options);
   config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
-  config.surroundings = {obstacles_of(options.obstacles), options.support_plane};
-  config.follow_surface = options.calibrates_hazard();
-  config.keep_scene = false;
+  config.obstacles = obstacles_of(options.obstacles);
   return config;
 }
 
@@ -86,7 +86,7 @@ class FrameSource : public ReadingSource {
     return result;
   }
   MapUpdate integrate() override {
-    return map_->update({T_world_camera_, {loaded_.frame}, pose_sigma_});
+    return map_->add({T_world_camera_, {loaded_.frame}, pose_sigma_});
   }
   [[nodiscard]] std::optional<FrameConsistency> consistency() const override {
     return map_->consistency();
@@ -96,11 +96,11 @@ class FrameSource : public ReadingSource {
 
  private:
   FrameFolder folder_;
-  MapModelConfig config_;
+  ScorerConfig config_;
   ExecConfig exec_;
   std::optional<PoseSigma> reported_sigma_;  // if frames are registered
   std::optional<FrameAlignment> registration_;
-  std::optional<MapModel> map_;  // once it has started
+  std::optional<ViewScorer> map_;  // once it has started
   FrameReading loaded_;
   Pose T_world_camera_;
   PoseSigma pose_sigma_;  // by which it may be off
@@ -111,19 +111,13 @@ Sensor sensor_of(const IntegrateOptions& options) {
   return load_sensor(options.frames.sensor);
 }
 
-IntegrationConfig cloud_config(const IntegrateOptions& options) {
-  IntegrationConfig config = config_of(options);
-  config.support_plane = options.support_plane;
-  return config;
-}
-
 class CloudSource : public ReadingSource {
  public:
   explicit CloudSource(const IntegrateOptions& options)
       : files_(options.clouds),
         sensor_(sensor_of(options)),
         support_plane_(options.support_plane),
-        integrator_(sensor_, cloud_config(options), {options.common.threads}) {
+        integrator_(sensor_, rules_of(options).integration(), {options.common.threads}) {
     if (options.poses.empty()) {
       if (options.origin == "viewpoint") return;
       const std::vector<double> at = parse_numbers("--origin", options.origin, 3, 3);

@@ -17,8 +17,8 @@
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
-#include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/register_frame.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 
 namespace viewgain::app {
 

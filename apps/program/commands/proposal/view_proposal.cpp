@@ -141,7 +141,8 @@ SurfaceModel model_of(BeliefGrid grid, const Sensor& sensor, const ProposalOptio
                       Obstacles obstacles, const ExecConfig& exec) {
   SurfaceModelConfig config;
   config.map.hazard = hazard_source(options.hazard, options.object_size, grid);
-  config.map.surroundings = {std::move(obstacles), options.support_plane};
+  config.map.obstacles = std::move(obstacles);
+  config.map.support_plane = options.support_plane;
   return {std::move(grid), sensor, config, exec};
 }
 

@@ -83,9 +83,9 @@ void warn_of_set_up(const ReconstructOptions& options, const RunSetup& setup) {
   const bool has_noise = setup.pose_noise != PoseSigma{};
   app::warn_of_set_up(
       {.sensor = setup.sensor,
-       .map = BeliefGrid(setup.model.map.grid, setup.sensor),
+       .map = BeliefGrid(setup.model.map.grid(), setup.sensor),
        .obstacle_values = &options.obstacles,
-       .obstacles = &setup.model.map.surroundings.obstacles,
+       .obstacles = &setup.model.map.obstacles,
        .support_plane = options.sensing.support_plane,
        .reach_file = options.reach,
        .reach = &setup.reach,

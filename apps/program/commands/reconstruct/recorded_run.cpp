@@ -33,8 +33,8 @@
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/formats/staged_folder.hpp"
 #include "viewgain/planner/align_frames.hpp"
-#include "viewgain/planner/suspect_set_up.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/raycast/suspect_set_up.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/hash64.hpp"
@@ -71,13 +71,13 @@ struct Moment {
   GainEvaluator evaluator;
 
   Moment(const FrameMap& map, const ProposalOptions& proposal, const ExecConfig& exec)
-      : model(model_of(map.model().grid().clone(), map.model().sensor(), proposal,
-                       map.config().surroundings.obstacles, exec)),
+      : model(model_of(map.scorer().grid().clone(), map.scorer().sensor(), proposal,
+                       map.config().obstacles, exec)),
         generation(model,
-                   generation_config(proposal, map.model().sensor(), model.grid(),
+                   generation_config(proposal, map.scorer().sensor(), model.grid(),
                                      map.folder().name(), map.tried()),
                    exec),
-        evaluator(evaluator_of(proposal, model, map.model().sensor(), exec)) {}
+        evaluator(evaluator_of(proposal, model, map.scorer().sensor(), exec)) {}
 };
 
 // All frames of the folder aligned with one another, for a map into which none has gone yet: by the
@@ -85,7 +85,7 @@ struct Moment {
 std::map<std::size_t, FrameRegistration> align_folder(const FrameMap& map, const PoseSigma& sigma,
                                                       bool quiet, const ExecConfig& exec,
                                                       const std::stop_token& stop) {
-  FrameAlignment alignment(map.model().sensor(), map.config(), exec);
+  FrameAlignment alignment(map.scorer().sensor(), map.config(), exec);
   Progress progress("alignment of frame", quiet);
   const FrameFolder& folder = map.folder();
   std::vector<std::size_t> aligned;
@@ -141,7 +141,7 @@ class Recording {
       if (stop.stop_requested() && i >= aligned_until_) break;
       views_->add(i);
       if (options_.outputs.saves_maps()) {
-        save_vdb(map_->model().grid(), folder.map(i));
+        save_vdb(map_->scorer().grid(), folder.map(i));
       }
       const bool last = i + 1 == map_->folder().size();
       if (options_.outputs.draws() && shown.count(i) > 0 && !last && !views_->empty()) {
@@ -160,7 +160,7 @@ class Recording {
     Stopwatch watch;
     Moment moment(*map_, proposal_, exec_);
     views_->add_seconds("surface", watch.seconds());
-    warn_of_views(proposal_, map_->config().surroundings.obstacles, moment.model, sensor());
+    warn_of_views(proposal_, map_->config().obstacles, moment.model, sensor());
     ViewRecord& last = views_->last();
     watch = {};
     last.proposal = moment.generation.generate(last.T_world_camera);
@@ -215,8 +215,8 @@ class Recording {
   }
   [[nodiscard]] const NextViews& next() const { return next_; }
   [[nodiscard]] const FrameCounts& counts() const { return map_->counts(); }
-  [[nodiscard]] const Sensor& sensor() const { return map_->model().sensor(); }
-  [[nodiscard]] const BeliefGrid& grid() const { return map_->model().grid(); }
+  [[nodiscard]] const Sensor& sensor() const { return map_->scorer().sensor(); }
+  [[nodiscard]] const BeliefGrid& grid() const { return map_->scorer().grid(); }
 
  private:
   void show(RunFolder& folder, const Moment& moment) {
@@ -228,7 +228,7 @@ class Recording {
 
   [[nodiscard]] Json settings() const {
     const FrameSequence& frames = map_->folder().frames();
-    const BeliefGrid& grid = map_->model().grid();
+    const BeliefGrid& grid = map_->scorer().grid();
     const FrameFolderOptions& folder = options_.frames.folder;
     Json json{
         {"frames", map_->folder().name()},

@@ -59,7 +59,7 @@ void RecordedViews::add(std::size_t index) {
     add_seconds("read", watch.seconds() - sum_of(update.seconds));
     if (!is_in_map(update.verdict)) return;
   }
-  record.progress = map_.model().progress();
+  record.progress = map_.scorer().progress();
   record.realised_gain = record.progress.entropy_removed;
   if (!records_.empty()) {
     const ViewRecord& before = records_.back();

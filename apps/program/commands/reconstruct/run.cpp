@@ -55,11 +55,10 @@ void check_size(const RunSetup& setup) {
 // An obstacle where the run is to start.
 void check_start(const ReconstructOptions& options, const RunSetup& setup, const ExecConfig& exec) {
   if (options.obstacles.empty()) return;
-  const BeliefGrid grid(setup.model.map.grid);
+  const BeliefGrid grid(setup.model.map.grid());
   // The obstacles alone: at the table the camera may start.
-  const FeasibilityChecker checker(
-      VoxelScene::build(grid, {setup.model.map.surroundings.obstacles}, exec),
-      feasibility_of(setup.sensor));
+  const FeasibilityChecker checker(VoxelScene::build(grid, {setup.model.map.obstacles}, exec),
+                                   feasibility_of(setup.sensor));
   if (checker.check(setup.start) != Infeasibility::obstacle) return;
   const std::string which = options.start.empty() ? "the start pose, which --start would give"
                                                   : "--start " + options.start;
@@ -68,15 +67,16 @@ void check_start(const ReconstructOptions& options, const RunSetup& setup, const
 
 SurfaceModelConfig model_config(const ReconstructOptions& options, const Stage& stage) {
   SurfaceModelConfig model;
-  MapModelConfig& config = model.map;
-  config.grid.voxel_size = options.voxel;
-  config.grid.workspace = stage.workspace;
+  ScorerConfig& config = model.map;
+  config.voxel_size = options.voxel;
+  config.workspace = stage.workspace;
   config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
-  config.surroundings = {obstacles_of(options.obstacles), options.sensing.support_plane};
-  config.criterion = parse_criterion(options.criterion);
+  config.obstacles = obstacles_of(options.obstacles);
+  config.support_plane = options.sensing.support_plane;
+  config.gain.criterion = parse_criterion(options.criterion);
   config.refine = options.refine == "on";
-  options.scales.set(config.integration);
-  const BeliefGrid empty(config.grid);
+  options.scales.set(config);
+  const BeliefGrid empty(config.grid());
   warn_of_few_voxels(empty);
   config.hazard = hazard_source(options.hazard, options.object_size, empty);
   return model;
@@ -256,7 +256,7 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
   setup.model = model_config(options, setup.stage);
   check_start(options, setup, exec);
   setup.visibility.surroundings = setup.simulation.surroundings =
-      surroundings_of(setup.model.map.surroundings.obstacles, exec);
+      surroundings_of(setup.model.map.obstacles, exec);
   setup.generation = generation_config(options, setup);
   setup.planning = planning_config(options, setup.policy);
   setup.settings = settings_json(options, setup);
@@ -272,7 +272,7 @@ RunParts::RunParts(RunSetup from, std::size_t frames_per_view, const ExecConfig&
       model(setup.sensor, setup.model, truth, exec),
       generation(model, setup.generation, exec),
       decision(model, generation, setup.sensor, with_object(setup.policy, setup, truth), exec) {
-  if (setup.registration) registered.emplace(model, setup.model.map, *setup.registration, exec);
+  if (setup.registration) registered.emplace(model, *setup.registration, exec);
 }
 
 }  // namespace viewgain::app

@@ -116,12 +116,12 @@ Reconstruction reconstruct(
   const ExecConfig exec{num_threads, parse_tracer(tracer)};
   const Pose x_0 = one_pose(start, "start");
   SurfaceModelConfig model_config;
-  MapModelConfig& map_config = model_config.map;
-  map_config.grid.voxel_size = voxel_size;
-  map_config.grid.workspace = box(workspace, "workspace");
-  map_config.surroundings.support_plane = support_plane;
+  ScorerConfig& map_config = model_config.map;
+  map_config.voxel_size = voxel_size;
+  map_config.workspace = box(workspace, "workspace");
+  map_config.support_plane = support_plane;
   if (!jump_edges) map_config.jump_edges.reset();
-  map_config.criterion = parse_criterion(criterion);
+  map_config.gain.criterion = parse_criterion(criterion);
   PolicyConfig policy_config;
   policy_config.policy = parse_policy(policy);
   if (policy_config.policy == Policy::fibonacci) {
@@ -135,7 +135,7 @@ Reconstruction reconstruct(
     throw py::value_error("give candidates: without boundary, policy \"" + policy +
                           "\" has nothing to choose from");
   }
-  policy_config.criterion = map_config.criterion;
+  policy_config.criterion = map_config.gain.criterion;
   policy_config.model = parse_gain_model(gain);
   PlanningConfig planning;
   planning.max_views = max_views;

@@ -24,13 +24,14 @@ enum class FrameVerdict : std::uint8_t {
   contradicts,       ///< registered, it contradicts the map or the other frames
   changed,           ///< its number, or its image in a recording's list, was taken before
   no_mask,           ///< the mask that it needs never came
+  not_metres,        ///< nearly all depths are beyond 10 times the sensor's max_range
 };
 
 /// Names of the verdicts, in their order.
-inline constexpr std::array<std::string_view, 11> kFrameVerdictNames{
+inline constexpr std::array<std::string_view, 12> kFrameVerdictNames{
     "used",        "carved",     "lost_pose",        "no_pose",
     "unreadable",  "wrong_size", "nothing_in_range", "outside",
-    "contradicts", "changed",    "no_mask"};
+    "contradicts", "changed",    "no_mask",          "not_metres"};
 
 /// Its name. Throws std::out_of_range for a number that is none of them.
 [[nodiscard]] constexpr std::string_view frame_verdict_name(FrameVerdict verdict) {

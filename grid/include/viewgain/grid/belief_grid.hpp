@@ -87,10 +87,10 @@ class VIEWGAIN_EXPORT BeliefGrid {
   BeliefGrid& operator=(BeliefGrid&&) noexcept;
 
   /// From a dense array of states, [x][y][z] with z fastest, one per voxel of the workspace: 0
-  /// unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief yet). As such a map
-  /// never learns what was measured, GainModel::surface suits it: the others would have known
-  /// surface measured again and again. Throws Error(invalid_argument) for another size or another
-  /// state, and as the constructor. Cost: a pass over the array.
+  /// unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief yet). Such a map
+  /// does not know what was measured: GainModel::paper would have known surface measured again and
+  /// again, the other gains leave it out. Throws Error(invalid_argument) for another size or
+  /// another state, and as the constructor. Cost: a pass over the array.
   [[nodiscard]] static BeliefGrid from_states(const GridConfig& config,
                                               std::span<const std::uint8_t> states,
                                               const Sensor& sensor = {});
@@ -143,7 +143,7 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// largest there are. They have no log-odds and no belief afterwards; views and
   /// hazard counters stay as they are. For what has moved, and for maps that follow a robot.
   /// Returns how many of the voxels were known. Costs a pass over the map's blocks. Throws
-  /// Error(invalid_argument) for a bound that is not a number.
+  /// Error(invalid_argument) for a bound that is not a number, or a region inside out.
   std::uint64_t forget(const Box& region);
 
   /// Makes the voxels of a box of the lattice what a dense array says, [x][y][z] with z fastest, as

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -64,6 +67,10 @@ struct VIEWGAIN_EXPORT FeasibilityConfig {
 /// takes 10-50 µs for the 400 rays of an SR4000 and as much more as another sensor has more pixels.
 ///
 /// Thread safety: all const members may run from many threads at once on one checker.
+/// @code
+/// const FeasibilityChecker checker(VoxelScene::build(grid), feasibility_of(sensor));
+/// const FeasiblePoses possible = feasible_poses(checker, poses, grid.views());
+/// @endcode
 class VIEWGAIN_EXPORT FeasibilityChecker {
  public:
   /// Undoes the lens distortion of config.sensor and sorts the obstacles once. exec.num_threads is
@@ -103,5 +110,27 @@ class VIEWGAIN_EXPORT FeasibilityChecker {
   explicit FeasibilityChecker(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// Settings for a sensor: its body, its mounting and its min_range (see FeasibilityConfig::sensor).
+/// Without Sensor::body_size the body is the SR4000's. The reach is not limited.
+[[nodiscard]] VIEWGAIN_EXPORT FeasibilityConfig feasibility_of(const Sensor& sensor);
+
+/// The feasible poses of a list.
+struct VIEWGAIN_EXPORT FeasiblePoses {
+  std::vector<Pose> poses;                     ///< T_world_camera, in the order of the list
+  std::vector<std::size_t> numbers;            ///< index of each in the list
+  std::map<std::string, std::size_t> dropped;  ///< infeasibility_name() -> number of poses
+};
+
+/// Checks a list of T_world_camera. `taken`: views so far, in any order. Throws and costs as
+/// FeasibilityChecker::check().
+[[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses feasible_poses(const FeasibilityChecker& checker,
+                                                           std::span<const Pose> poses,
+                                                           std::span<const Pose> taken);
+
+/// The poses in reach, in their order, whatever the body meets there. What the region's predicate
+/// throws passes through. Costs O(poses · parts).
+[[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses reachable_poses(const ReachRegion& reach,
+                                                            std::span<const Pose> poses);
 
 }  // namespace viewgain

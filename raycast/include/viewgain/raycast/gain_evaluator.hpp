@@ -88,7 +88,8 @@ struct VIEWGAIN_EXPORT ViewGain {
   double refinement = std::numeric_limits<double>::quiet_NaN();   ///< paper: occupied voxels' share
   /// surface, combined: new surface to be expected, measured across the rays [m²].
   double area = std::numeric_limits<double>::quiet_NaN();
-  /// combined: entropy removed in occupied voxels, with a floor below which none is counted [nat].
+  /// combined: entropy removed in occupied voxels that have readings, with a floor below which
+  /// none is counted [nat]. Labelled voxels have none.
   double refinement_saturated = std::numeric_limits<double>::quiet_NaN();
   /// If GainConfig asks for it: the paper's eq. (6) over the touched voxels, Σ_v Σ_k ln[(Λ_v +
   /// ΣΛ_r)⁻¹]_kk, lengths in metres.
@@ -137,6 +138,11 @@ struct VIEWGAIN_EXPORT VoxelContribution {
 /// paper's (perf/README.md). That of approximate() grows with the rays that it traces.
 /// The constructor costs a PinholeCamera::ray() a pixel and, by the surface and the combined gain,
 /// the hazard of a scene that has none yet.
+/// @code
+/// const GainEvaluator evaluator(VoxelScene::build(grid), sensor);
+/// const std::vector<ViewGain> gains = evaluator.evaluate(poses);
+/// const BestViews best = evaluator.race(poses, 3);
+/// @endcode
 class VIEWGAIN_EXPORT GainEvaluator {
  public:
   /// What becomes of a view's rays, for asking why its gain is what it is. Each ray counts once, so

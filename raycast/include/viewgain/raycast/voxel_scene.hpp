@@ -42,6 +42,11 @@ struct VIEWGAIN_EXPORT Surroundings {
 /// near to far, and obstacles in Embree's BVH. Owns all that it reads; the grid may
 /// change or go. Copying a shared_ptr of it is how to share it. Thread safety: all members are
 /// const and may run from many threads.
+/// @code
+/// auto scene = VoxelScene::build(grid);
+/// integrator.integrate(grid, frame, T_world_camera);
+/// scene = VoxelScene::update(scene, grid);
+/// @endcode
 class VIEWGAIN_EXPORT VoxelScene {
  public:
   /// Takes a snapshot of the grid and sorts it (about 0.2 ms per 1,000 leaves), and builds a BVH of
@@ -65,6 +70,11 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// times build() where a frame has changed an eighth of a map of 512³ voxels (perf/README.md).
   [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
       const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
+      const ExecConfig& exec = {});
+  /// The same of a snapshot that BeliefGrid::snapshot() made from that of `before`. It is not
+  /// checked.
+  [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
+      const std::shared_ptr<const VoxelScene>& before, GridSnapshot snapshot,
       const ExecConfig& exec = {});
   ~VoxelScene();
   VoxelScene(const VoxelScene&) = delete;

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/planner/planner_set_up.hpp"
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
 #include "viewgain/core/generators.hpp"
@@ -22,7 +23,6 @@
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/reach_toml.hpp"
-#include "viewgain/planner/view_planner.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 
 namespace viewgain {
@@ -76,12 +76,13 @@ class Doors : public test::ProgramTest {
     return load_map(dir / map).content_hash();
   }
 
-  [[nodiscard]] PlannerConfig planner_config(const std::string& reach) const {
-    PlannerConfig config;
-    config.grid.voxel_size = 0.02;
-    config.grid.workspace = {{-0.2, -0.2, -0.1}, {0.2, 0.2, 0.2}};
-    config.surroundings = {{{{{0.12, -0.3, -0.1}, {0.14, 0.3, 0}}}, {}}, -0.1};
-    if (!reach.empty()) config.reach = read_reach_toml(dir / reach);
+  [[nodiscard]] test::PlannerSetUp planner_config(const std::string& reach) const {
+    test::PlannerSetUp config;
+    config.map.voxel_size = 0.02;
+    config.map.workspace = {{-0.2, -0.2, -0.1}, {0.2, 0.2, 0.2}};
+    config.map.obstacles.boxes = {{{0.12, -0.3, -0.1}, {0.14, 0.3, 0}}};
+    config.map.support_plane = -0.1;
+    if (!reach.empty()) config.planner.reach = read_reach_toml(dir / reach);
     return config;
   }
 
@@ -114,13 +115,13 @@ class Doors : public test::ProgramTest {
     }
 
     const FrameSequence frames = open_frames(dir / "frames");
-    ViewPlanner planner(frames.sensor, planner_config(reach), {1});
+    ViewPlanner planner = planner_config(reach).make(frames.sensor, {1});
     planner.add_generation(std::make_shared<BoundaryGeneration>(
-        planner.map(), default_boundary(frames.sensor, 0.02), ExecConfig{1}));
+        planner.scorer(), default_boundary(frames.sensor, 0.02), ExecConfig{1}));
     for (std::size_t i = 0; i < frames.images.size(); ++i) {
       planner.add(load_frame(frames, i), frames.poses[i]);
     }
-    EXPECT_EQ(planner.grid().content_hash(), hash);
+    EXPECT_EQ(planner.scorer().grid().content_hash(), hash);
     const Proposal& proposal = planner.propose();
     EXPECT_EQ(proposal.candidates.size(), of_map["candidates"].get<std::size_t>());
     std::vector<Named> own;
@@ -246,9 +247,9 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
   EXPECT_EQ(next["dropped"], there["dropped"]);
 
   const FrameSequence frames = open_frames(dir / "frames");
-  PlannerConfig config = planner_config("");
-  config.surroundings.obstacles = {};
-  ViewPlanner planner(frames.sensor, config, {1});
+  test::PlannerSetUp config = planner_config("");
+  config.map.obstacles = {};
+  ViewPlanner planner = config.make(frames.sensor, {1});
   for (std::size_t i = 0; i < frames.images.size(); ++i) {
     const FrameReading reading = read_frame(frames, i);
     reading.fault.verdict == FrameVerdict::used
@@ -257,7 +258,7 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
   }
   EXPECT_EQ(json(bad_frames(planner.frames())), bad);
   EXPECT_EQ(count_of(planner.frames(), FrameVerdict::used), 23U);
-  EXPECT_EQ(planner.grid().content_hash(), hash);
+  EXPECT_EQ(planner.scorer().grid().content_hash(), hash);
 
   // One that is gone when a run begins is that frame's fault alone, too.
   fs::remove(dir / image("25"));

@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/planner/planner_set_up.hpp"
 #include "apps/program_runner.hpp"
 #include "core/temporary_folder.hpp"
 #include "program/cli/json.hpp"
@@ -29,7 +30,6 @@
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/png.hpp"
-#include "viewgain/planner/view_planner.hpp"
 
 namespace viewgain {
 namespace {
@@ -161,11 +161,11 @@ class Follow : public test::ProgramTest {
     const BeliefGrid map = load_map(dir / "plan/state.vdb");
     const FrameSequence frames = open_frames(dir / "whole");
     ASSERT_EQ(map.views().size(), count);
-    PlannerConfig config;
-    config.grid.voxel_size = kVoxel;
-    config.grid.workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
-    config.jump_edges.reset();
-    ViewPlanner planner(frames.sensor, config, {1});
+    test::PlannerSetUp config;
+    config.map.voxel_size = kVoxel;
+    config.map.workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
+    config.map.jump_edges.reset();
+    ViewPlanner planner = config.make(frames.sensor, {1});
     std::set<std::string> identities;
     for (const Pose& view : map.views()) {
       const auto is_from_there = [&](const Pose& pose) {
@@ -179,7 +179,7 @@ class Follow : public test::ProgramTest {
     }
     EXPECT_EQ(identities.size(), count);
     EXPECT_EQ(map.notes().frames, identities);
-    EXPECT_EQ(map.content_hash(), planner.grid().content_hash());
+    EXPECT_EQ(map.content_hash(), planner.scorer().grid().content_hash());
   }
 
   Strings images, poses;  // the files' bytes

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/planner/planner_set_up.hpp"
 #include "apps/program_runner.hpp"
 #include "program/cli/json.hpp"
 #include "viewgain/core/error.hpp"
@@ -19,8 +20,6 @@
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
-#include "viewgain/planner.h"
-#include "viewgain/planner/view_planner.hpp"
 #include "viewgain/viewgain.h"
 
 namespace viewgain {
@@ -44,11 +43,11 @@ class Versions : public test::ProgramTest {
 
   [[nodiscard]] ViewPlanner planner_of(const char* name) const {
     const Sensor sensor = read_sensor_toml(dir / "sensor.toml");
-    PlannerConfig config;
-    config.grid.voxel_size = 0.0375;
-    config.grid.workspace = {{0, 0, 0}, {0.3, 0.3, 0.3}};
-    config.grid.prior_sigma = default_prior_sigma(0.0375, sensor);
-    return ViewPlanner::load(dir / name, sensor, config);
+    test::PlannerSetUp config;
+    config.map.voxel_size = 0.0375;
+    config.map.workspace = {{0, 0, 0}, {0.3, 0.3, 0.3}};
+    config.map.prior_sigma = default_prior_sigma(0.0375, sensor);
+    return config.load(dir / name, sensor);
   }
 };
 
@@ -85,7 +84,7 @@ TEST_F(Versions, TheFirstOnesFilesAreRead) {
   EXPECT_EQ(reach.poses.size(), 4U);
 
   const ViewPlanner planner = planner_of("state.vdb");
-  EXPECT_EQ(planner.grid().content_hash(), hash);
+  EXPECT_EQ(planner.scorer().grid().content_hash(), hash);
   EXPECT_EQ(count_of(planner.frames(), FrameVerdict::used), 2U);
 
   const json run = json::parse(read("run.json")), checkpoint = json::parse(read("checkpoint.json"));
@@ -122,7 +121,7 @@ TEST_F(Versions, NewerOnesAreRefused) {
   const BeliefGrid grid = load_vdb(dir / "state.vdb");
   MapNotes notes = grid.notes();
   std::string& planner = notes.others.at("planner");
-  planner.replace(planner.find("version 2"), 9, "version 4");
+  planner.replace(planner.find("version 2"), 9, "version 5");
   save_vdb(grid, dir / "newer.vdb", {.notes = notes});
   try {
     (void)planner_of("newer.vdb");
@@ -130,7 +129,7 @@ TEST_F(Versions, NewerOnesAreRefused) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what())
                   .find("newer.vdb (note planner):1: a planner's state of "
-                        "version 4; this library reads versions 2 to 3"),
+                        "version 5; this library reads versions 2 to 4"),
               std::string::npos)
         << error.what();
   }
@@ -197,10 +196,9 @@ VG_SIZE(vg_grid_config, 200);
 VG_SIZE(vg_grid_info, 288);
 VG_SIZE(vg_integrator_config, 56);
 VG_SIZE(vg_integration_report, 64);
-VG_SIZE(vg_planner_config, 544);
-VG_SIZE(vg_planner_view, 96);
-VG_SIZE(vg_registration, 496);
-VG_SIZE(vg_ranked_view, 160);
+VG_SIZE(vg_scorer_config, 480);
+VG_SIZE(vg_map_update, 64);
+VG_SIZE(vg_consistency, 568);
 #undef VG_SIZE
 
 }  // namespace

@@ -14,10 +14,12 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/octomap_io.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 
 namespace viewgain {
 
@@ -35,24 +37,28 @@ namespace viewgain {
   return grid_from_octomap_bytes(file.str(), config, "octomap::OcTree");
 }
 
-/// Makes the grid's voxels in a box what the tree says of them now: for a tree that grows, frame by
-/// frame. `region`: in the tree's frame [m], for instance round what insertPointCloud() has
-/// changed; what lies outside the grid's workspace is left out. Returns how many voxels have
-/// changed. Throws Error(invalid_argument) unless the voxel sizes are equal. As
-/// BeliefGrid::update_box(): where a state stays nothing changes. Cost: O(nodes and voxels in the
-/// box).
-inline std::uint64_t update_from_octree(BeliefGrid& grid, const octomap::OcTree& tree,
-                                        const Box& region) {
+/// Labels of a box of voxels, [x][y][z] with z fastest: 0 unknown, 1 free, 2 occupied.
+struct OctreeLabels {
+  VoxelBox box;                      ///< on the grid's lattice
+  std::vector<std::uint8_t> labels;  ///< one a voxel of the box
+};
+
+/// What the tree says of a map's voxels, of `voxel_size` [m]. `region`: in the tree's frame [m],
+/// for instance around what insertPointCloud() has changed; the part outside the workspace is left
+/// out. Throws Error(invalid_argument) unless the voxel sizes are equal. Cost: O(nodes and voxels
+/// in the box).
+[[nodiscard]] inline OctreeLabels labels_of_octree(double voxel_size, const VoxelBox& workspace,
+                                                   const octomap::OcTree& tree, const Box& region) {
   const double V = tree.getResolution();
-  if (std::abs(grid.voxel_size() - V) > 1e-9 * V) refuse("the tree's voxels are not the grid's");
+  if (std::abs(voxel_size - V) > 1e-9 * V) refuse("the tree's voxels are not the grid's");
   const auto index = [&](double x) {
     return static_cast<std::int32_t>(std::clamp(std::floor(x / V), -32768.0, 32767.0));
   };
   const VoxelBox wanted{
       {index(region.min[0]), index(region.min[1]), index(region.min[2])},
       {index(region.max[0]) + 1, index(region.max[1]) + 1, index(region.max[2]) + 1}};
-  const VoxelBox box = wanted.intersection(VoxelBox::from_dims(grid.min_index(), grid.dims()));
-  if (box.volume() == 0) return 0;
+  const VoxelBox box = wanted.intersection(workspace);
+  if (box.volume() == 0) return {};
   const auto ny = static_cast<std::size_t>(box.max.y - box.min.y),
              nz = static_cast<std::size_t>(box.max.z - box.min.z);
   std::vector<std::uint8_t> states(box.volume(), 0);
@@ -83,7 +89,24 @@ inline std::uint64_t update_from_octree(BeliefGrid& grid, const octomap::OcTree&
       }
     }
   }
-  return grid.update_box(box, states);
+  return {box, std::move(states)};
+}
+
+/// Makes a scorer's map what the tree says of it now, as ViewScorer::set(): for a tree that grows,
+/// frame by frame. Returns how many voxels have changed. Throws and costs as labels_of_octree()
+/// and ViewScorer::set().
+inline std::uint64_t update_from_octree(ViewScorer& scorer, const octomap::OcTree& tree,
+                                        const Box& region) {
+  const OctreeLabels now =
+      labels_of_octree(scorer.config().voxel_size, scorer.voxels(), tree, region);
+  return now.labels.empty() ? 0 : scorer.set(now.box, now.labels);
+}
+/// The same of a grid.
+inline std::uint64_t update_from_octree(BeliefGrid& grid, const octomap::OcTree& tree,
+                                        const Box& region) {
+  const OctreeLabels now = labels_of_octree(
+      grid.voxel_size(), VoxelBox::from_dims(grid.min_index(), grid.dims()), tree, region);
+  return now.labels.empty() ? 0 : grid.update_box(now.box, now.labels);
 }
 
 /// The tree that save_octomap would write, with OctoMap's default settings but for the resolution.

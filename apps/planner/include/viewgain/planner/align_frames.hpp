@@ -11,8 +11,8 @@
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
-#include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/register_frame.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 
 namespace viewgain {
 
@@ -65,10 +65,10 @@ namespace viewgain {
 /// Deterministic: the same bits for any number of threads.
 class VIEWGAIN_EXPORT FrameAlignment {
  public:
-  /// `map` is the config of the map that frames go into, or are held against. Undoes the lens
+  /// `map` has the settings of the map that frames go into, or are compared with. Undoes the lens
   /// distortion once. Throws Error(invalid_argument), naming the value, if the sensor, an obstacle
   /// or the filter is not valid.
-  FrameAlignment(const Sensor& sensor, const MapModelConfig& map, const ExecConfig& exec = {});
+  FrameAlignment(const Sensor& sensor, const ScorerConfig& map, const ExecConfig& exec = {});
   ~FrameAlignment();
   FrameAlignment(FrameAlignment&&) noexcept;
   FrameAlignment& operator=(FrameAlignment&&) noexcept;

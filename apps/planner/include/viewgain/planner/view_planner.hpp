@@ -12,54 +12,38 @@
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/frame_verdict.hpp"
-#include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/grid/belief_grid.hpp"
-#include "viewgain/grid/hazard.hpp"
-#include "viewgain/grid/vdb_io.hpp"
-#include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/pose_sets.hpp"
 #include "viewgain/planner/rank_views.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner/view_proposer.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
-#include "viewgain/raycast/voxel_scene.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 
 namespace viewgain {
 
-/// What a planner is set up with, each setting in one place. The body that must have room is the
-/// sensor's (Sensor::body_size, T_flange_camera; without a size FeasibilityConfig::Body's).
+/// Settings of a ViewPlanner that its ScorerConfig does not have.
 struct VIEWGAIN_EXPORT PlannerConfig {
-  /// A workspace that begins at the table has no voxels under it that stay unknown, which the
-  /// paper's gain would count.
-  GridConfig grid{};
-  /// How frames change the map. State support_plane in surroundings; another here is refused.
-  IntegrationConfig integration{};
-  Surroundings surroundings{};  ///< the table, known obstacles
-  std::optional<JumpEdgeFilter::Config> jump_edges =
-      JumpEdgeFilter::Config{};  ///< nothing: frames are taken as is
-  HazardConfig hazard{};         ///< of unknown space
-  GainConfig gain{};             ///< what ranks views
-  /// Where it is on, rank() of a proposal plans that many views, and propose() names what is left
-  /// of the plan while there is any.
-  PlanAhead ahead{};
-  ReachRegion reach{};   ///< its list of poses, if it has one, is among the candidates
-  double clearance = 0;  ///< round the body [m]
+  ReachRegion reach{};  ///< where the camera may be; a list of poses in it adds candidates
   ReachRegion::Tolerance taken_tolerance{};                    ///< when two poses are the same
-  double max_near_share = FeasibilityConfig{}.max_near_share;  ///< as there
-  /// False: every candidate is possible but those that were taken or tried.
+  double max_near_share = FeasibilityConfig{}.max_near_share;  ///< as in FeasibilityConfig
+  /// False: do not check body, obstacles and reach. Poses taken or tried are still left out.
   bool check_feasibility = true;
-  /// The rules of PlanningConfig; there is no coverage, and nobody asks its stop token.
-  std::size_t max_views = PlanningConfig{}.max_views;
-  std::size_t idle_views = PlanningConfig{}.idle_views;  ///< PlanningConfig's
-  /// PlanningConfig's, of views that were taken from where the best of the last ranking was.
+  /// If PlanAhead::is_on(), rank() of a proposal plans PlanAhead::plan views. propose() then
+  /// returns the rest of the plan.
+  PlanAhead ahead{};
+  std::size_t max_views = PlanningConfig{}.max_views;    ///< as in PlanningConfig
+  std::size_t idle_views = PlanningConfig{}.idle_views;  ///< as in PlanningConfig
+  /// As in PlanningConfig. Counts only views taken at the best pose of the last ranking.
   std::size_t broken_promises = PlanningConfig{}.broken_promises;
-  std::optional<double> stop_gain{};  ///< [nat, m² for trace]; set_stop_rules() has both defaults
-  /// A share of the surface so far: of the sum of what the views showed of new surface.
+  /// As in PlanningConfig [nat, m² for trace]; for the paper's gain only. See set_stop_rules().
+  std::optional<double> stop_gain{};
+  /// As in PlanningConfig; for the other gains only. The surface so far is the sum of
+  /// MapUpdate::new_area over the views. See set_stop_rules() for the default.
   std::optional<double> stop_area{};
 };
 
@@ -71,25 +55,33 @@ struct VIEWGAIN_EXPORT AddedView {
   double entropy_removed = 0;  ///< by this view [nat, or m² for trace]
 };
 
-/// Next best views for a robot's program that calls step by step: frames in, views out. The steps
-/// of Algorithm 1 without its loop.
+/// Next-best views, step by step: frames in, views out. It runs Algorithm 1 one step per call. To a
+/// ViewScorer it adds candidates, reach, stopping rules and a record of the poses tried.
 ///
-/// add() a frame, where reported poses are inexact at the one that register_frame() finds;
-/// propose() candidates; rank() them; ask should_stop(), which counts what they promise; move, and
-/// say how that went with tried(); add() the next frame. With PlannerConfig::ahead rank() plans
-/// some views, and propose() names what is left of the plan until its share is taken.
+/// One cycle: add() a frame, propose() candidates, rank() them and ask should_stop(). Then move the
+/// camera, report the result with tried(), and add() the next frame. If reported poses are inexact,
+/// add() each frame at the pose that register_frame() finds. With PlannerConfig::ahead, rank()
+/// plans several views. propose() then returns the rest of the plan, until PlanAhead::take views
+/// are taken.
 ///
-/// What is refused (Error(invalid_argument)) has changed nothing. What the user's own parts throw,
-/// a generation, the reach region's predicate or a measure, passes through propose() and rank().
-/// Thread safety: one call at a time. Deterministic, for any number of threads. One that was moved
-/// from can only be assigned to or destroyed. Cost of a step: that of its parts, add()
-/// MapModel::update(), propose() FeasibilityChecker::check() of the candidates and what generations
-/// take, rank() GainEvaluator::race() or best(), register_frame() fused_points() and
-/// FrameAlignment, save() and load() save_vdb() and load_vdb().
+/// A call that throws Error(invalid_argument) changes nothing. Exceptions from user code (a
+/// generation, the reach predicate, a measure) pass through propose() and rank(). Thread safety:
+/// one call at a time. Deterministic for any number of threads. A moved-from planner can only be
+/// assigned to or destroyed. Costs: add() as ViewScorer::add(); propose() as
+/// FeasibilityChecker::check() of the candidates, and the generations; rank() as
+/// GainEvaluator::race() or best(); register_frame() as fused_points() and FrameAlignment.
+/// @code
+/// ViewPlanner planner(ViewScorer(sensor, {.voxel_size = 0.005, .workspace = box}));
+/// planner.add_poses({"dome", dome_poses(500, 0.6)});
+/// planner.add(frame, T_world_camera);
+/// planner.propose();
+/// const Ranking next = planner.rank();
+/// @endcode
 class VIEWGAIN_EXPORT ViewPlanner {
  public:
-  /// Throws Error(invalid_argument), naming the value, for settings out of their range.
-  ViewPlanner(const Sensor& sensor, const PlannerConfig& config, const ExecConfig& exec = {});
+  /// `scorer`: an empty one or, to continue from a map, one with a map. Throws
+  /// Error(invalid_argument), naming the value, for settings out of their range.
+  explicit ViewPlanner(ViewScorer scorer, const PlannerConfig& config = {});
   ~ViewPlanner();
   ViewPlanner(ViewPlanner&&) noexcept;
   ViewPlanner& operator=(ViewPlanner&&) noexcept;
@@ -170,20 +162,17 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// "planner". Left out are what the constructor got, sets, generations and the last proposal.
   /// Atomic: after a kill at any moment the file is the one before or this one. Throws Error(io).
   void save(const std::filesystem::path& path) const;
-  /// Goes on where save() was called: with the same constructor's arguments, sets and generations
-  /// every later answer has the same bits, from the next propose(), add() or rank() of given poses
-  /// on. Throws as the constructor, Error(invalid_argument) if the map is laid out otherwise than
-  /// config.grid says or has grown since by other means than add(), Error(format) for a file of
-  /// another kind, and as load_vdb().
+  /// Continues where save() was called. With the same settings, sets and generations every later
+  /// answer has the same bits, from the next propose(), add() or rank() of given poses on. Throws
+  /// as the constructors; Error(invalid_argument) if the map has another layout than scorer.grid(),
+  /// or has grown since by other means than add(); Error(format) for a file of another kind; and as
+  /// load_vdb().
   [[nodiscard]] static ViewPlanner load(const std::filesystem::path& path, const Sensor& sensor,
-                                        const PlannerConfig& config, const ExecConfig& exec = {});
+                                        const ScorerConfig& scorer, const PlannerConfig& config,
+                                        const ExecConfig& exec = {});
 
-  /// Stays where it is when the planner is moved, and goes with it.
-  [[nodiscard]] const MapModel& map() const noexcept;
-  /// The map.
-  [[nodiscard]] const BeliefGrid& grid() const noexcept;
-  /// Of the scene as it is now. Valid until the next add().
-  [[nodiscard]] const GainEvaluator& evaluator();
+  /// The map, its scene and its evaluator. Its address stays the same when the planner is moved.
+  [[nodiscard]] const ViewScorer& scorer() const noexcept;
   /// What the steps since the last add() took, it included: integrate, snapshot, candidates, score.
   [[nodiscard]] const StageSeconds& seconds() const noexcept;
 

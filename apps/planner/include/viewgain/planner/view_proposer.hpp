@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -28,10 +27,6 @@
 
 namespace viewgain {
 
-/// What is asked of a sensor's poses: its body on its flange must have room, and what it sees must
-/// not be nearer than it can measure. No limits of reach.
-[[nodiscard]] VIEWGAIN_EXPORT FeasibilityConfig feasibility_of(const Sensor& sensor);
-
 /// Why a candidate is dropped that was commanded and not reached.
 inline constexpr std::string_view kMissed = "missed";
 
@@ -43,23 +38,6 @@ struct VIEWGAIN_EXPORT DroppedCandidate {
 
 /// Their poses, in the same order.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> poses_of(std::span<const Candidate> candidates);
-
-/// The poses that are possible, and why the others are not.
-struct VIEWGAIN_EXPORT FeasiblePoses {
-  std::vector<Pose> poses;                     ///< that are possible, in their order
-  std::vector<std::size_t> numbers;            ///< of each among those that were asked about
-  std::map<std::string, std::size_t> dropped;  ///< reason -> count
-};
-
-/// Costs as FeasibilityChecker::check(), whose `taken` are in any order.
-[[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses feasible_poses(const FeasibilityChecker& checker,
-                                                           std::span<const Pose> poses,
-                                                           std::span<const Pose> taken);
-
-/// The poses in reach, in their order, whatever the body meets there. What the region's predicate
-/// throws passes through.
-[[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses reachable_poses(const ReachRegion& reach,
-                                                            std::span<const Pose> poses);
 
 /// What a ViewProposer lets through.
 struct VIEWGAIN_EXPORT ProposerConfig {

@@ -12,11 +12,11 @@
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/mesh/surface.hpp"
 #include "viewgain/mesh/viewpoint_estimator.hpp"
-#include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/pose_sets.hpp"
 #include "viewgain/planner/view_proposer.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/feasibility.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 
 namespace viewgain {
 
@@ -60,9 +60,9 @@ boundary_views(const SurfaceMesh& surface, const std::shared_ptr<const VoxelScen
 /// and hazard_views().
 class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
  public:
-  /// Of the surface in a map, say ViewPlanner::map(), which must outlive it; it is made anew for
+  /// Of the surface in a map, say ViewPlanner::scorer(), which must outlive it; it is made anew for
   /// each proposal.
-  BoundaryGeneration(const MapModel& map, const BoundaryViewsConfig& config,
+  BoundaryGeneration(const ViewScorer& scorer, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
   /// Of a model's surface as it is; the model must outlive it.
   BoundaryGeneration(const SurfaceModel& model, const BoundaryViewsConfig& config,
@@ -76,7 +76,7 @@ class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
   [[nodiscard]] const EstimatedViews& estimated() const noexcept { return estimated_; }
 
  private:
-  const MapModel& map_;
+  const ViewScorer& scorer_;
   const SurfaceModel* model_ = nullptr;  // null: the surface is made of the map
   BoundaryViewsConfig config_;
   ExecConfig exec_;

@@ -15,16 +15,17 @@
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/mesh/surface.hpp"
 #include "viewgain/planner/align_frames.hpp"
-#include "viewgain/planner/map_model.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain {
 
 /// What changes the model.
 struct VIEWGAIN_EXPORT SurfaceModelConfig {
-  MapModelConfig map{};        ///< how the map is kept
+  /// How the map is kept. Its gain scores no view; choices have gains of their own.
+  ScorerConfig map{.learn_hazard = true, .gain = {.model = GainModel::paper}};
   FusedPointsConfig points{};  ///< how beliefs become points; scale_sigma is the sensor's
 };
 
@@ -42,15 +43,15 @@ struct VIEWGAIN_EXPORT SurfaceModelConfig {
 /// (UPDATEREPRESENTATIONS of Algorithm 1), and what is derived from them after each view.
 ///
 /// Thread safety: const members may run from many threads at once; nothing may run beside the
-/// others. Cost of update(): MapModel::update(), fused_points() and reconstruct_surface(); 8 and
+/// others. Cost of update(): ViewScorer::add(), fused_points() and reconstruct_surface(); 8 and
 /// 574 ms after eight views of the camel (perf/results/loop.md).
 class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
  public:
-  /// `truth` may be null: then there is no quality. Throws as MapModel.
+  /// `truth` may be null: then there is no quality. Throws as ViewScorer.
   SurfaceModel(const Sensor& sensor, const SurfaceModelConfig& config,
                std::shared_ptr<const Truth> truth, const ExecConfig& exec);
 
-  /// From an existing map: its surface and scene, ready for candidates. Throws as MapModel and
+  /// From an existing map: its surface and scene, ready for candidates. Throws as ViewScorer and
   /// fused_points().
   SurfaceModel(BeliefGrid grid, const Sensor& sensor, const SurfaceModelConfig& config,
                const ExecConfig& exec);
@@ -65,17 +66,15 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   ModelProgress rebuild(std::span<const Measurements> measurements);
 
   /// The points that the model would have after these measurements, which do not change it. Throws
-  /// as MapModel::update(). Costs a copy of the map beside what update() costs without a surface.
+  /// as ViewScorer::add(). Costs a copy of the map beside what update() costs without a surface.
   [[nodiscard]] std::vector<FusedPoint> points_after(const Measurements& measurements) const;
 
   /// The map behind the surface.
-  [[nodiscard]] const MapModel& map() const noexcept { return map_; }
+  [[nodiscard]] const ViewScorer& scorer() const noexcept { return scorer_; }
   /// The map.
-  [[nodiscard]] const BeliefGrid& grid() const noexcept { return map_.grid(); }
+  [[nodiscard]] const BeliefGrid& grid() const noexcept { return scorer_.grid(); }
   /// The scene of the map as it is.
-  [[nodiscard]] const std::shared_ptr<const VoxelScene>& scene() const noexcept {
-    return map_.scene();
-  }
+  [[nodiscard]] std::shared_ptr<const VoxelScene> scene() const { return scorer_.scene(); }
   /// Surface points of the last update, in the order of fused_points().
   [[nodiscard]] const std::vector<FusedPoint>& points() const noexcept { return points_; }
   /// The surface through the points of the last update.
@@ -92,7 +91,7 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   SurfaceModelConfig config_;
   ExecConfig exec_;
   std::shared_ptr<const Truth> truth_;
-  MapModel map_;
+  ViewScorer scorer_;
   std::vector<FusedPoint> points_;
   SurfaceMesh surface_;
   std::vector<QualityFigures> quality_;
@@ -108,10 +107,9 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
 /// and an update for every view so far.
 class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
  public:
-  /// `model` must be empty, made by `map`, and is kept by reference. `sigma`: by how
-  /// much each reported pose may be off. Throws Error(invalid_argument) as FrameAlignment.
-  RegisteredModel(SurfaceModel& model, const MapModelConfig& map, const PoseSigma& sigma,
-                  const ExecConfig& exec = {});
+  /// `model` must be empty and is kept by reference. `sigma`: by how much each reported pose may be
+  /// off. Throws Error(invalid_argument) as FrameAlignment.
+  RegisteredModel(SurfaceModel& model, const PoseSigma& sigma, const ExecConfig& exec = {});
 
   /// Stages as SurfaceModel::update() and register. Throws as FrameAlignment::add() and
   /// SurfaceModel::rebuild().

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/planner/suspect_set_up.hpp"
+#include "viewgain/raycast/suspect_set_up.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "set_up/figure.hpp"
+#include "check/figure.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 
 namespace viewgain {

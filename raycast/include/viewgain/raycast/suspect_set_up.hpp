@@ -14,7 +14,7 @@
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
-#include "viewgain/planner/suspect_frames.hpp"
+#include "viewgain/raycast/suspect_frames.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 /// @file

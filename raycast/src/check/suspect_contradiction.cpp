@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "map/suspicion.hpp"
+#include "check/suspicion.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::detail {

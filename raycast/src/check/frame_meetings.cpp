@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "map/frame_meetings.hpp"
+#include "check/frame_meetings.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

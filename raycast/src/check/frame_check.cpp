@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/planner/frame_check.hpp"
+#include "viewgain/raycast/frame_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
-#include "map/frame_meetings.hpp"
-#include "map/suspicion.hpp"
+#include "check/frame_meetings.hpp"
+#include "check/suspicion.hpp"
 
 namespace viewgain {
 namespace {

@@ -6,11 +6,11 @@
 #include <span>
 #include <string>
 
-#include "map/frame_meetings.hpp"
+#include "check/frame_meetings.hpp"
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/planner/frame_check.hpp"
-#include "viewgain/planner/suspect_frames.hpp"
+#include "viewgain/raycast/frame_check.hpp"
+#include "viewgain/raycast/suspect_frames.hpp"
 
 namespace viewgain::detail {
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "map/frame_meetings.hpp"
-#include "set_up/figure.hpp"
+#include "check/figure.hpp"
+#include "check/frame_meetings.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/planner/suspect_set_up.hpp"
+#include "viewgain/raycast/suspect_set_up.hpp"
 
 namespace viewgain {
 namespace {

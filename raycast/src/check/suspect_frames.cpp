@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-#include "viewgain/planner/suspect_frames.hpp"
+#include "viewgain/raycast/suspect_frames.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "map/frame_meetings.hpp"
-#include "map/suspicion.hpp"
+#include "check/frame_meetings.hpp"
+#include "check/suspicion.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/planner/suspect_set_up.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/raycast/suspect_set_up.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {

@@ -6,8 +6,8 @@
 #include <string>
 #include <variant>
 
-#include "set_up/figure.hpp"
-#include "viewgain/planner/suspect_set_up.hpp"
+#include "check/figure.hpp"
+#include "viewgain/raycast/suspect_set_up.hpp"
 
 namespace viewgain {
 namespace {

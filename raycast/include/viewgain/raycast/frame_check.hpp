@@ -13,7 +13,7 @@
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/frame_agreement.hpp"
-#include "viewgain/planner/suspect_frames.hpp"
+#include "viewgain/raycast/suspect_frames.hpp"
 
 namespace viewgain {
 

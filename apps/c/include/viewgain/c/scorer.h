@@ -1,0 +1,140 @@
+/* SPDX-FileCopyrightText: 2026 The viewgain authors
+   SPDX-License-Identifier: Apache-2.0 */
+#ifndef VIEWGAIN_C_SCORER_H
+#define VIEWGAIN_C_SCORER_H
+
+/* Part of viewgain/viewgain.h: frames or labels in, gains of poses out. C++'s ViewScorer. */
+
+#include "viewgain/c/gain.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A map, its scene and its evaluator, kept in step. vg_scorer_evaluate(), vg_scorer_best(),
+   vg_scorer_scene() and vg_scorer_evaluator() may run in any thread at any time, even while the map
+   changes: they use the map before or after that change. Changes (add, set, forget) wait for one
+   another. vg_scorer_save(), vg_scorer_grid() and vg_scorer_consistency() must not run during a
+   change. */
+typedef struct vg_scorer vg_scorer;
+
+/* Settings; a field without a comment is as in vg_scene_config. */
+typedef struct vg_scorer_config {
+  size_t struct_size;            /* as _init() sets it */
+  int32_t num_threads;           /* 0: all; never changes a result */
+  int32_t tracer;                /* VG_TRACER_AUTOMATIC; never changes a result */
+  int32_t gain;                  /* VG_GAIN_COMBINED */
+  int32_t pixel_stride;          /* 1: every pixel; s: every s-th of every s-th row */
+  double voxel_size;             /* 0.005 [m] */
+  double box_min[3], box_max[3]; /* the workspace, in the grid's frame: -0.25 to 0.25 [m] */
+  double T_world_grid[16];       /* identity */
+  double prior_sigma;            /* of unknown voxels [m]; NaN (the default):
+                                    vg_default_prior_sigma() */
+  double support_plane;          /* height z of a table without end, world [m]; NaN: none */
+  const double* boxes;           /* obstacles; readings of them only carve */
+  size_t box_count;
+  const double* vertices;
+  size_t vertex_count;
+  const uint32_t* triangles;
+  size_t triangle_count;
+  double jump_edge_angle;     /* of the filter for flying pixels: 5 degrees [rad]; 0: off */
+  double object_size;         /* longest side of the object [m]; NaN (the default): that of the
+                                 surface seen so far */
+  double body_size[3];        /* width, height, depth of the sensor's housing [m]; all 0 (the
+                                 default): vg_scorer_best() does not check feasibility */
+  int32_t has_flange;         /* nonzero: T_flange_camera is used, as in vg_feasibility_config */
+  double T_flange_camera[16]; /* identity */
+  double clearance;           /* free space required around the body [m]; 0 */
+  int32_t coarsest, finest;   /* scales of leaves, as in vg_integrator_config; 0 */
+  const double* fine;         /* likewise */
+  size_t fine_count;
+} vg_scorer_config;
+/* The defaults. */
+VG_API void vg_scorer_config_init(vg_scorer_config* config, size_t struct_size);
+
+/* An empty map. config null: the defaults. Keeps copies of what it is given. */
+VG_API vg_status vg_scorer_create(const vg_sensor* sensor, const vg_scorer_config* config,
+                                  vg_scorer** scorer);
+/* Continues from a file of vg_scorer_save(), or another .vdb map of viewgain. Its layout and prior
+   hold, whatever config says. */
+VG_API vg_status vg_scorer_load(const char* path, const vg_sensor* sensor,
+                                const vg_scorer_config* config, vg_scorer** scorer);
+/* Writes the map as .vdb, whole or not at all. */
+VG_API vg_status vg_scorer_save(const vg_scorer* scorer, const char* path);
+VG_API void vg_scorer_release(vg_scorer* scorer); /* null: nothing */
+
+/* What became of a frame: in the map with readings, or with free space alone; or why it is not. */
+enum {
+  VG_FRAME_USED = 0,
+  VG_FRAME_CARVED = 1,
+  VG_FRAME_LOST_POSE = 2,        /* not a rigid transform of finite numbers */
+  VG_FRAME_NOTHING_IN_RANGE = 6, /* no pixel says anything */
+  VG_FRAME_OUTSIDE = 7,          /* shows nothing of the workspace */
+  VG_FRAME_NOT_METRES = 11       /* nearly all depths are beyond 10 times max_range */
+};
+
+/* What a frame changed. */
+typedef struct vg_map_update {
+  size_t struct_size;                  /* as _init() sets it */
+  int32_t verdict;                     /* VG_FRAME_; from 2 on the map is unchanged */
+  uint64_t readings, readings_inside;  /* pixels; those in the workspace */
+  uint64_t voxels_hit, voxels_crossed; /* as in vg_integration_report */
+  uint64_t flying_pixels;              /* removed by the filter */
+  double new_area; /* new surface that it showed, across the rays [m^2]; NaN with VG_GAIN_PAPER */
+} vg_map_update;
+/* Makes `update` ready for a call. */
+VG_API void vg_map_update_init(vg_map_update* update, size_t struct_size);
+
+/* Adds a frame: `depth` and the others as in vg_integrate(). Filters it, marks obstacles, lets the
+   hazard learn and brings the scene up to date. `update` or null. A frame that cannot be used is
+   VG_OK; its verdict says why. */
+VG_API vg_status vg_scorer_add(vg_scorer* scorer, const float* depth, const float* amplitude,
+                               const double T_world_camera[16], const double pose_sigma[2],
+                               vg_map_update* update);
+/* Labels of a box of voxels, as vg_grid_update_box(). Labelled voxels have no refinement. */
+VG_API vg_status vg_scorer_set(vg_scorer* scorer, const int32_t first[3], const int32_t dims[3],
+                               const uint8_t* labels, uint64_t* changed);
+/* Makes a box of the grid's frame [m] unknown, as vg_grid_forget(): for what has moved. */
+VG_API vg_status vg_scorer_forget(vg_scorer* scorer, const double min[3], const double max[3],
+                                  uint64_t* forgotten);
+
+/* The gain of each pose on the current map, as vg_evaluate(). */
+VG_API vg_status vg_scorer_evaluate(const vg_scorer* scorer, const double* poses, size_t count,
+                                    double* gains, const vg_watch* watch);
+/* The k best poses, very probably, best first, as vg_race(). If body_size is set, only feasible
+   poses are chosen. costs: one per pose, subtracted from its gain, in the gain's unit, or null.
+   seconds: time limit of the call, as in vg_race_until(); INFINITY: none. */
+VG_API vg_status vg_scorer_best(const vg_scorer* scorer, const double* poses, size_t count,
+                                size_t k, const double* costs, double seconds, size_t* indices,
+                                double* gains, size_t* found, const vg_watch* watch);
+
+/* A copy of the map; the current scene; an evaluator of it, for the functions that take one. */
+VG_API vg_status vg_scorer_grid(const vg_scorer* scorer, vg_grid** grid);
+VG_API vg_status vg_scorer_scene(const vg_scorer* scorer, vg_scene** scene);
+VG_API vg_status vg_scorer_evaluator(const vg_scorer* scorer, vg_evaluator** evaluator);
+
+/* Whether the frames in the map fit one another, as C++'s FrameConsistency. */
+typedef struct vg_consistency {
+  size_t struct_size;     /* as _init() sets it */
+  size_t frames;          /* added */
+  size_t contradicting;   /* of these, those that contradict the others */
+  double share_in_free;   /* of all readings, those in space that other frames saw as free */
+  double share_seen_past; /* of earlier frames' readings, those that later frames see past */
+  double displacement;    /* of frames against earlier ones, median [m]; NaN: none */
+  double expected;        /* the displacement that the declared errors explain [m] */
+  char kind[32];          /* the likely cause; empty: the frames agree */
+  char what[480];         /* a sentence for people; cut off if it is longer */
+} vg_consistency;
+/* Makes `found` ready for a call. */
+VG_API void vg_consistency_init(vg_consistency* found, size_t struct_size);
+
+/* Compares the frames that were added since the scorer was made or loaded. `contradicts` may be
+   null; else it has room for `capacity` entries, at least one per frame, and an entry is nonzero
+   for a frame that contradicts the others. Takes 50 ms, 0.5 s if frames do not fit. */
+VG_API vg_status vg_scorer_consistency(const vg_scorer* scorer, vg_consistency* found,
+                                       int32_t* contradicts, size_t capacity);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace viewgain::python {
+
+// What the class ViewScorer and its methods say of themselves.
+
+inline constexpr const char* kScorerDoc =
+    R"(Depth frames or labelled voxels in, gains of camera poses out.
+
+Keeps a map, its scene and its evaluator in step: ``add`` frames, or ``set`` labels; then ``evaluate``
+poses, or ask for the ``best``.
+
+Parameters
+----------
+sensor : Sensor
+voxel_size : float
+    [m]
+workspace : array_like, (2, 3), optional
+    Lowest and highest corner of what is mapped, the grid's frame [m]; default: half a metre round the
+    origin.
+T_world_grid : array_like, (4, 4), optional
+    Places the grid's frame in the world; identity unless given.
+prior_sigma : float, optional
+    Standard deviation of the surface in an unknown voxel [m]; default: ``default_prior_sigma``.
+support_plane : float, optional
+    Height z of the table [m]. Readings of it carve free space, but never make a voxel occupied.
+boxes : array_like, (n, 2, 3), optional
+    Known obstacles: lowest and highest corners, world frame [m]. Rays and bodies stop at them; readings
+    of them only carve.
+meshes : iterable of (vertices, triangles), optional
+    The same as triangles: (n, 3), world frame [m], and (m, 3) indices.
+gain : {"combined", "surface", "paper"}
+    "combined": expected new surface, and refinement of known surface [nat]. "surface": expected new
+    surface [m**2]. "paper": entropy removed [nat].
+criterion : {"log_diagonal", "log_determinant", "trace"}
+    Used by gain "paper". "trace" cannot be used with gain "combined".
+pixel_stride : int
+    Every s-th pixel of every s-th row is a ray.
+weights : iterable of (box, weight)
+    Task weights, as in ``GainEvaluator``.
+refinement_weight : float, optional
+    As in ``GainEvaluator``.
+object_size : float, optional
+    Longest side of the object [m]; that of what is seen unless given.
+body_size : array_like, (3,), optional
+    Width, height, depth of the camera's housing, flange frame [m]; the sensor's unless given. With a
+    body ``best`` leaves out poses where it has no room.
+clearance : float
+    Round the body [m].
+jump_edges : bool
+    Remove flying pixels.
+coarsest : int
+    As in ``FrameIntegrator``.
+fine : array_like, (n, 2, 3), optional
+    As in ``FrameIntegrator``.
+finest : int
+    As in ``FrameIntegrator``.
+map : path-like, optional
+    A file to continue from: a .vdb of ``save`` or another map, or OctoMap's .ot or .bt. Its layout holds,
+    whatever ``voxel_size`` and ``workspace`` say.
+tracer : {"automatic", "embree", "sweep"}
+    How rays meet voxels, as in ``GainEvaluator``. Never changes a result.
+num_threads : int
+    0: all hardware threads. Never changes a result.
+
+Notes
+-----
+``evaluate``, ``best``, ``scene`` and ``evaluator`` may run in any thread at any time, even while the map
+changes: they use the map before or after that change. ``save``, ``consistency`` and ``grid`` wait for a
+change that is running. The GIL is released. Cost of a change: the change of the map, and some milliseconds
+for the scene.)";
+
+inline constexpr const char* kScorerAddDoc = R"(Adds a depth frame to the map.
+
+Removes flying pixels, marks known obstacles and lets the hazard of unknown space learn.
+
+Parameters
+----------
+depth : array_like, (height, width), floating point
+    As in ``FrameIntegrator.integrate``.
+T_world_camera : array_like, (4, 4)
+pose_sigma : array_like, (2,), optional
+    What this pose may be off beside the sensor's own pose_sigma [m], [rad].
+amplitude : array_like, (height, width), floating point, optional
+    As in ``FrameIntegrator.integrate``.
+
+Returns
+-------
+MapUpdate
+    Its verdict says whether the frame could be used.)";
+
+inline constexpr const char* kScorerSetDoc = R"(Labels a box of voxels.
+
+Labelled voxels have no refinement. Cost: a pass over the labels, and the scene's update.
+
+Parameters
+----------
+first : array_like, (3,), whole numbers
+    Lowest voxel of the box, on the grid's lattice.
+labels : array_like, (nx, ny, nz), whole numbers
+    0 unknown, 1 free, 2 occupied.
+
+Returns
+-------
+int
+    How many voxels changed.)";
+
+inline constexpr const char* kScorerForgetDoc =
+    R"(Makes the voxels of a region unknown again: for what has moved.
+
+Parameters
+----------
+region : array_like, (2, 3)
+    Lowest and highest corner, the grid's frame [m]; may be infinite.
+
+Returns
+-------
+int
+    How many voxels were known.)";
+
+inline constexpr const char* kScorerEvaluateDoc = R"(The gain of each pose on the current map.
+
+Cost and Ctrl-C: as ``GainEvaluator.evaluate``.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+measure : callable, optional
+    A gain of your own, as in ``GainEvaluator.evaluate_own``.
+strict : bool
+    Raise for a bad pose.
+control : BatchControl, optional
+
+Returns
+-------
+ndarray, (...), float64
+    NaN for a bad pose.)";
+
+inline constexpr const char* kScorerBestDoc =
+    R"(The k best poses, very probably, in two stages: as ``GainEvaluator.race``.
+
+With a body, infeasible poses are left out: no room for the body, or over 20 % of the view too near.
+
+Parameters
+----------
+T_world_camera : array_like, (..., 4, 4)
+k : int
+costs : array_like, (n,), optional
+    Subtracted from the gains, in their unit.
+seconds : float, optional
+    Time limit of the call; none unless given.
+control : BatchControl, optional
+
+Returns
+-------
+BestViews
+    Best first; fewer than k where fewer poses have a gain. A gain of 0 says that the view would show
+    nothing new.)";
+
+inline constexpr const char* kScorerConsistencyDoc =
+    R"(Whether the frames added so far fit one another.
+
+Cost: 50 ms, 0.5 s if they do not.
+
+Returns
+-------
+FrameConsistency)";
+
+inline constexpr const char* kScorerLoadDoc =
+    R"(A scorer that continues from a file, as with ``map``.
+
+Parameters
+----------
+path : path-like
+    A .vdb of ``save`` or another map, or OctoMap's .ot or .bt.
+*args, **settings
+    As for the class: the sensor, and settings other than the map's layout.
+
+Returns
+-------
+ViewScorer)";
+
+inline constexpr const char* kScorerSaveDoc =
+    R"(Writes the map as a .vdb file, whole or not at all; ``load`` continues from it.
+
+Parameters
+----------
+path : path-like)";
+
+}  // namespace viewgain::python

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "viewgain/core/box.hpp"
+#include "viewgain/core/camera.hpp"
+#include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/frame_verdict.hpp"
+#include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/grid/hazard.hpp"
+#include "viewgain/grid/integrate.hpp"
+#include "viewgain/raycast/frame_check.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+namespace viewgain {
+
+/// Settings of a ViewScorer. Each is set in one place; defaults suit an object on the origin.
+struct VIEWGAIN_EXPORT ScorerConfig {
+  double voxel_size = GridConfig{}.voxel_size;  ///< [m]
+  /// The part of the world that is mapped, in the grid's frame [m]; grown to whole voxels. If it
+  /// begins at the table, the paper's gain does not count the space under the table.
+  Box workspace = GridConfig{}.workspace;
+  Pose T_world_grid{};  ///< the grid's frame
+  /// Standard deviation of the surface in an unknown voxel [m]. Unset: default_prior_sigma().
+  std::optional<double> prior_sigma{};
+  std::optional<double> support_plane{};  ///< height z of an infinite table plane [m], world
+  /// Known obstacles, world frame. They block rays and bodies. Readings of them carve free space,
+  /// but never make a voxel occupied.
+  Obstacles obstacles{};
+  /// Removes flying pixels from frames; unset: frames are used as they are.
+  std::optional<JumpEdgeFilter::Config> jump_edges = JumpEdgeFilter::Config{};
+  // The next five are passed to IntegrationConfig, which explains them.
+  IntegrationConfig::Carve carve = IntegrationConfig{}.carve;  ///< which voxels a pixel crosses
+  IntegrationConfig::Occupancy occupancy = IntegrationConfig{}.occupancy;  ///< how states change
+  int coarsest = IntegrationConfig{}.coarsest;  ///< largest scale of a leaf, 0 to 3
+  int finest = IntegrationConfig{}.finest;      ///< smallest scale of a leaf outside `fine`
+  std::vector<Box> fine{};  ///< leaves that touch one of these boxes keep scale 0; grid's frame [m]
+  bool refine = true;       ///< false: readings in a voxel that already has one are ignored
+  HazardConfig hazard{};    ///< how likely rays are to meet the surface in unknown space
+  /// Whether each frame updates the hazard and MapUpdate::new_area is measured. Costs some
+  /// milliseconds per frame. Unset: true, but false for the paper's gain, which needs neither.
+  std::optional<bool> learn_hazard{};
+  GainConfig gain{};     ///< how views are scored
+  double clearance = 0;  ///< free space that best() requires around the sensor's body [m]
+
+  /// The layout of the map.
+  [[nodiscard]] GridConfig grid() const {
+    return {voxel_size, workspace, T_world_grid, prior_sigma};
+  }
+  /// How frames change the map.
+  [[nodiscard]] IntegrationConfig integration() const {
+    return {carve, occupancy, support_plane, coarsest, fine, finest};
+  }
+  /// What rays and bodies meet beside the map.
+  [[nodiscard]] Surroundings surroundings() const { return {obstacles, support_plane}; }
+};
+
+/// What frames from one pose changed.
+struct VIEWGAIN_EXPORT MapUpdate {
+  FrameVerdict verdict = FrameVerdict::used;  ///< unless is_in_map(), the map is unchanged
+  IntegrationReport counts{};                 ///< of all frames together
+  std::size_t flying_pixels = 0;              ///< removed by the jump-edge filter
+  /// Area of new surface in the first frame, perpendicular to the rays [m²]. Comparable with
+  /// ViewGain::area. It is Σ ω t² over readings in unknown voxels that are more than 1.2 pooling
+  /// lengths from known surface. NaN without ScorerConfig::learn_hazard.
+  double new_area = std::numeric_limits<double>::quiet_NaN();
+  StageSeconds seconds{};  ///< "integrate": filters and map; "snapshot": what scenes are made of
+};
+
+/// Depth frames or labelled voxels in, gains of camera poses out. Keeps a map, its scene and its
+/// evaluator in step.
+///
+/// Thread safety: evaluate(), best(), scene(), evaluator(), voxels(), sensor(), config() and exec()
+/// may run in any thread at any time. They do not wait for add(), set() or forget(): they use the
+/// map before or after that change. Of scoring calls at the same time, one uses all threads, the
+/// others only their caller's. Changes wait for one another. During a change do not call
+/// progress(), consistency(), grid_after() or save(), and do not read grid(). Cost: the first call
+/// after a change that needs the scene pays for VoxelScene::update() and, unless the gain is the
+/// paper's, for the hazard: some milliseconds.
+/// @code
+/// ViewScorer scorer(sensor, {.voxel_size = 0.005, .workspace = box, .support_plane = 0.0});
+/// scorer.add(frame, T_world_camera);
+/// const BestViews best = scorer.best(poses, 3);  // indices into poses, best first
+/// @endcode
+class VIEWGAIN_EXPORT ViewScorer {
+ public:
+  /// An empty map. Throws Error(invalid_argument), naming the value, for a sensor or a setting that
+  /// is not valid, for gain.prior_sigma, and for voxels as large as the workspace or larger than
+  /// the sensor's range; Error(backend) if Embree fails. Cost: PinholeCamera::ray_table() five
+  /// times.
+  explicit ViewScorer(const Sensor& sensor, const ScorerConfig& config = {},
+                      const ExecConfig& exec = {});
+  /// Starts from a map. Layout and prior are the map's, whatever the config says. Throws as above.
+  ViewScorer(BeliefGrid grid, const Sensor& sensor, const ScorerConfig& config = {},
+             const ExecConfig& exec = {});
+  ~ViewScorer();
+  /// One that was moved from can only be assigned to or destroyed.
+  ViewScorer(ViewScorer&&) noexcept;
+  ViewScorer& operator=(ViewScorer&&) noexcept;
+
+  /// Filters a frame, marks obstacles in it, updates the hazard and integrates the frame. A frame
+  /// that cannot be used does not throw; the verdict gives the reason. `pose_sigma` [m], [rad] is
+  /// the pose's uncertainty in addition to Sensor::pose_sigma. Throws Error(invalid_argument) for
+  /// an invalid sigma or frame identity, and as scene() if the hazard learns. Nothing has changed
+  /// then. Cost: FrameIntegrator::integrate(), and a snapshot.
+  MapUpdate add(const DepthFrame& frame, const Pose& T_world_camera,
+                const PoseSigma& pose_sigma = {});
+  /// The same of several frames from one pose.
+  MapUpdate add(const Measurements& measurements);
+
+  /// Labels the voxels of a box, [x][y][z] with z fastest: 0 unknown, 1 free, 2 occupied. Returns
+  /// how many voxels changed. Voxels without readings add no refinement to the combined gain.
+  /// Throws as BeliefGrid::update_box(). Cost: a pass over the labels, and a snapshot.
+  std::uint64_t set(const VoxelBox& box, std::span<const std::uint8_t> labels);
+
+  /// Makes a region of the grid's frame [m] unknown, for example after an object has moved. Returns
+  /// how many voxels were known. Throws as BeliefGrid::forget(). Cost: a pass over the map's
+  /// blocks.
+  std::uint64_t forget(const Box& region);
+
+  /// GainEvaluator::evaluate() on the current map: one gain per pose, in their order.
+  [[nodiscard]] std::vector<ViewGain> evaluate(std::span<const Pose> T_world_camera) const;
+  /// The same by a gain of the user's own, in its unit.
+  [[nodiscard]] std::vector<double> evaluate(std::span<const Pose> T_world_camera,
+                                             const ViewMeasure& measure) const;
+  /// The same by one that sees what rays pass on their way.
+  [[nodiscard]] std::vector<double> evaluate(std::span<const Pose> T_world_camera,
+                                             const RunMeasure& measure) const;
+
+  /// The k best poses, very probably: GainEvaluator::race(). Indices refer to T_world_camera, best
+  /// first. If Sensor::body_size is set, poses are left out where the body has no room, or where
+  /// over 20 % of the rays that end in the map end within min_range. The deadline includes that
+  /// check. A gain of 0 says that nothing new would be seen. Throws as race(), and as scene().
+  /// Cost: race(), and FeasibilityChecker::check().
+  [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
+                               const BestConfig& config = {},
+                               const BatchControl& control = {}) const;
+
+  /// The current scene, a snapshot: later changes of the map do not affect it. Throws as
+  /// VoxelScene::build().
+  [[nodiscard]] std::shared_ptr<const VoxelScene> scene() const;
+  /// The evaluator of the current scene. Later changes of the map do not affect it either.
+  [[nodiscard]] std::shared_ptr<const GainEvaluator> evaluator() const;
+  /// The map. Not a copy: do not read it while add(), set() or forget() runs. Valid until the
+  /// scorer is assigned to or destroyed.
+  [[nodiscard]] const BeliefGrid& grid() const noexcept;
+  [[nodiscard]] const VoxelBox& voxels() const noexcept;      ///< of the workspace; never changes
+  [[nodiscard]] const Sensor& sensor() const noexcept;        ///< that frames come from
+  [[nodiscard]] const ScorerConfig& config() const noexcept;  ///< with the map's layout and prior
+  [[nodiscard]] const ExecConfig& exec() const noexcept;      ///< as constructed
+
+  /// Entropy removed and unknown voxels; no coverage, no surface. Cost: BeliefGrid::statistics().
+  [[nodiscard]] ModelProgress progress() const;
+  /// Whether the frames added so far fit one another. Cost: FrameCheck::result().
+  [[nodiscard]] FrameConsistency consistency() const;
+  /// A copy of the map with these measurements integrated. The scorer does not change. Throws
+  /// Error(invalid_argument) for a wrong image size, a pose that is not rigid, and as add(). Cost:
+  /// a copy of the map, and FrameIntegrator::integrate() for each frame.
+  [[nodiscard]] BeliefGrid grid_after(const Measurements& measurements) const;
+
+  /// Writes the map with save_vdb(). A scorer loaded from it gives the same gains, but its
+  /// consistency() starts without frames. Throws as save_vdb().
+  void save(const std::filesystem::path& path) const;
+  /// Continues from a file written by save(), or from any other .vdb map. Throws as load_vdb() and
+  /// the constructor.
+  [[nodiscard]] static ViewScorer load(const std::filesystem::path& path, const Sensor& sensor,
+                                       const ScorerConfig& config = {},
+                                       const ExecConfig& exec = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace viewgain

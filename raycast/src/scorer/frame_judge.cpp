@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scorer/frame_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/frame_identity.hpp"
+#include "viewgain/support/text.hpp"
+
+namespace viewgain::detail {
+namespace {
+
+// In millimetres all readings would be out of range and carve the object away. Where some are near,
+// one value may stand for no reading.
+bool has_metres(const DepthFrame& frame, const Sensor& sensor) {
+  constexpr double kFar = 10;        // times max_range
+  constexpr std::size_t kMost = 19;  // far readings for each near one
+  std::size_t near = 0, far = 0;
+  float least = DepthFrame::kOutOfRange, most = 0;
+  for (const float z : frame.depth) {
+    if (!(z > 0) || !std::isfinite(z)) continue;
+    if (static_cast<double>(z) <= kFar * sensor.max_range) {
+      ++near;
+      continue;
+    }
+    ++far;
+    least = std::min(least, z);
+    most = std::max(most, z);
+  }
+  return far == 0 || far < kMost * near || (near > 0 && least == most);
+}
+
+}  // namespace
+
+FrameVerdict judged(const Measurements& measurements, const Sensor& sensor) {
+  for (const double sigma :
+       {measurements.pose_sigma.translation, measurements.pose_sigma.rotation}) {
+    if (std::isfinite(sigma) && sigma >= 0) continue;
+    refuse("the sigma " + short_text(sigma) + " of a pose is negative or not finite");
+  }
+  for (const DepthFrame& frame : measurements.frames) check_identity(frame.identity);
+  if (!rigid_pose(measurements.T_world_camera)) return FrameVerdict::lost_pose;
+  try {
+    for (const DepthFrame& frame : measurements.frames) check_frame_size(frame, sensor.camera);
+  } catch (const Error&) {
+    return FrameVerdict::wrong_size;
+  }
+  const auto& frames = measurements.frames;
+  const bool is_in_metres = std::all_of(frames.begin(), frames.end(), [&](const DepthFrame& frame) {
+    return has_metres(frame, sensor);
+  });
+  return is_in_metres ? FrameVerdict::used : FrameVerdict::not_metres;
+}
+
+}  // namespace viewgain::detail
