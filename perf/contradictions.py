@@ -123,7 +123,7 @@ def shift(axis, metres):
 def changes(scene):
     def poses(change):
         def apply(folder):
-            own, times = viewgain.read_poses(folder / "poses.txt", return_timestamps=True)
+            own, times = viewgain.read_timed_poses(folder / "poses.txt")
             viewgain.write_poses(folder / "poses.txt", np.stack([change(i, pose, own) for i, pose in enumerate(own)]), timestamps=times)
         return apply
 

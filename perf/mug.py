@@ -175,7 +175,7 @@ def main():
     print("| the best view by | sees anew of the handle |", "|---|---|", sep="\n")
     for name, weights in (("combined", []), ("combined, the task: the handle", [(room, 0.0), (HANDLE_BOX, 1.0)])):
         evaluator = viewgain.GainEvaluator(voxels, sensor, weights=weights)
-        print(f"| {name} | {100 * brings[evaluator.best(poses, 1)[0]]:.0f} % |")
+        print(f"| {name} | {100 * brings[evaluator.best(poses, 1).indices[0]]:.0f} % |")
 
 
 if __name__ == "__main__":

@@ -27,14 +27,14 @@ VIEWS, FEW, SAMPLES, NEAR = (1, 2, 4, 8), 14, 4000, 0.005
 
 def value(evaluator, poses):
     """What these views are worth together."""
-    chosen = evaluator.best_set(poses, len(poses), return_gains=True)
+    chosen = evaluator.best_set(poses, len(poses))
     return float(chosen.gains["gain"].sum())
 
 
 def share_of_best(evaluator, poses, k):
     """Of the best of all subsets of k what the greedy set has; nan where nothing gains."""
     best = max(value(evaluator, poses[list(subset)]) for subset in itertools.combinations(range(len(poses)), k))
-    greedy = evaluator.best_set(poses, k, return_gains=True).gains["gain"].sum()
+    greedy = evaluator.best_set(poses, k).gains["gain"].sum()
     return float(greedy) / best if best > 0 else np.nan
 
 
@@ -123,12 +123,12 @@ def main():
                 poses = around[left]
                 evaluator = viewgain.GainEvaluator(scene, sensor)
                 by_surface = viewgain.GainEvaluator(scene, sensor, gain="surface")
-                together = poses[evaluator.best_set(poses, 3)]
-                singles = poses[evaluator.best(poses, 3)]
+                together = poses[evaluator.best_set(poses, 3).indices]
+                singles = poses[evaluator.best(poses, 3).indices]
                 rows.append((views, model.newly_seen(together), model.newly_seen(singles), value(by_surface, together),
                              model.covered_after(together), model.covered_after(singles)))
                 print(f"map {len(rows)}: {path.stem}, seed {seed}, {views} views", flush=True)
-            model.add(around[left.pop(int(coarse.best(around[left], 1)[0]))])
+            model.add(around[left.pop(int(coarse.best(around[left], 1).indices[0]))])
     print_tables(choice, np.array(rows))
 
 

@@ -36,7 +36,7 @@ for i in range(first, min(len(frames), first + most)):
     print(f"view {i}: {1e4 * view.new_area:.1f} cm2 of new surface, {view.entropy_removed:.0f} nat", end="")
     proposal = planner.propose()
     best = planner.rank(3, cost_per_metre=20)  # [nat/m]
-    for index, pose, gain in zip(best.index, best.T_world_camera, best.gain):
+    for index, pose, gain in zip(best.indices, best.T_world_camera, best.gain):
         x, y, z = pose[:3, 3]
         print(f"; of {len(proposal.T_world_camera)} views the best is {index} at ({x:.3f}, {y:.3f}, {z:.3f}) m, "
               f"{gain:.1f} nat", end="")

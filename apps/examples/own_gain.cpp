@@ -23,11 +23,9 @@ class NearUnknown : public viewgain::ViewMeasure {
 
 int main(int argc, char** argv) try {
   if (argc != 2) throw std::runtime_error("usage: own_gain MAP.vdb");
-  const auto scene = viewgain::VoxelScene::build(viewgain::load_vdb(argv[1]));
-  const viewgain::GainEvaluator evaluator(scene, viewgain::sensor_preset("sr4000"));
+  const auto scorer = viewgain::ViewScorer::load(argv[1], viewgain::sensor_preset("sr4000"));
   const std::vector<viewgain::Pose> poses = viewgain::sphere_poses(200, 0.6);
-  std::vector<double> gains(poses.size());
-  evaluator.evaluate(poses, gains, NearUnknown());  // measure() runs on all cores
+  const std::vector<double> gains = scorer.evaluate(poses, NearUnknown());  // on all cores
   const auto best = std::max_element(gains.begin(), gains.end());
   std::printf("pose %td: %.1f unknown voxels per m2\n", best - gains.begin(), *best);
 } catch (const std::exception& error) {

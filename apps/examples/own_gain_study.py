@@ -18,10 +18,10 @@ for file, seed, sensor, voxel, size in itertools.product(*settings):
                         f"--tolerance={tolerance}", f"--max-views={views}", "--policy=sequence", "--stop-idle=0", "--stop-promises=0",
                         "--pictures=off", "--quiet", f"--out={work}/run", *more], check=True, stdout=subprocess.DEVNULL)
         run = json.loads((work / "run/run.json").read_text())
-        scene = viewgain.VoxelScene(viewgain.BeliefGrid.load(work / "run/map.vdb"))
+        scorer = viewgain.ViewScorer.load(work / "run/map.vdb", viewgain.Sensor.load(sensor))
         sphere = viewgain.sphere_poses(200, run["settings"]["distance"])
-        best = viewgain.GainEvaluator(scene, viewgain.Sensor.load(sensor)).best(sphere, measure=near_unknown)
-        poses = np.concatenate([poses, sphere[best]])
+        best = scorer.evaluate(sphere, measure=near_unknown).argmax()
+        poses = np.concatenate([poses, sphere[best:best + 1]])
         viewgain.write_poses(work / "own.txt", poses)
         more += [f"--poses={work}/own.txt"] * (views == 1)
     covered = [view["coverage_visible"] for view in run["per_view"]]

@@ -40,8 +40,6 @@ CALLED = {
     "measure": "[NDArray[np.float64], Any], float", "way": "[int, int], float", "acquire": "[NDArray[np.float64]], Any",
     "observer": "[ViewRecord], object",
 }
-# Of named tuples that a switch return_... gives.
-TUPLES = {"return_gains": "ChosenViews", "return_timestamps": "TimedPoses"}
 PROTOCOLS = {
     "__len__": "(self) -> int", "__getitem__": "(self, index: int) -> Frame", "__iter__": "(self) -> Iterator[Frame]",
 }
@@ -118,18 +116,10 @@ def function(name, doc, depth, owner, decorator=""):
     if result != "None" and returned is None:
         faults.append(f"{name}: the docstring says nothing of what it returns")
     result = "None" if result == "None" or returned is None else type_of(returned)
-    switch = next((a for a in arguments.kwonlyargs if a.arg in TUPLES), None)
-    text = ""
-    for value in (False, True) if switch else (None,):
-        if switch:
-            switch.annotation = ast.Name(f"Literal[{value}]")
-            if value:
-                arguments.kw_defaults[arguments.kwonlyargs.index(switch)], result = None, TUPLES[switch.arg]
-        lines = ["@overload"] * bool(switch) + [decorator] * bool(decorator)
-        lines.append(f"def {name}({ast.unparse(arguments)}) -> {result}:")
-        lines.append("    " + (indented(words.strip(), depth + 1) if words.strip() else "..."))
-        text += "".join("    " * depth + line + "\n" for line in lines)
-    return text
+    lines = [decorator] * bool(decorator)
+    lines.append(f"def {name}({ast.unparse(arguments)}) -> {result}:")
+    lines.append("    " + (indented(words.strip(), depth + 1) if words.strip() else "..."))
+    return "".join("    " * depth + line + "\n" for line in lines)
 
 
 def class_stub(name, one):

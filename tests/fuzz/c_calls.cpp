@@ -198,8 +198,8 @@ class Calls : CallBytes {
       expect(best(evaluator, poses.data(), count + 1, k, indices.data(), gains.data(), &found,
                   &until.watch));
     } else if (which == 18) {
-      expect(vg_race(evaluator, poses.data(), count + 1, k, byte(), indices.data(), gains.data(),
-                     &found, nullptr));
+      expect(vg_race(evaluator, poses.data(), count + 1, k, HUGE_VAL, byte(), indices.data(),
+                     gains.data(), &found, nullptr));
       std::vector<std::int32_t> reasons(count + 1);
       expect(
           vg_feasibility_check(feasibility, poses.data(), count + 1, at.data(), 1, reasons.data()));

@@ -168,24 +168,12 @@ vg_status vg_best(const vg_evaluator* evaluator, const double* poses, size_t cou
 }
 
 vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
-                  uint64_t seed, size_t* indices, double* gains, size_t* found,
+                  double deadline, uint64_t seed, size_t* indices, double* gains, size_t* found,
                   const vg_watch* watch) {
   return choice(evaluator, poses, count, k, count, indices, gains, found, watch,
                 [&](const std::vector<Pose>& among, const BatchControl& control) {
-                  return evaluator->evaluator.race(among, k, {.seed = seed}, control);
-                });
-}
-
-vg_status vg_race_until(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
-                        uint64_t seed, double seconds, size_t* indices, double* gains,
-                        size_t* found, size_t* estimated, size_t* scored) {
-  return choice(evaluator, poses, count, k, count, indices, gains, found, nullptr,
-                [&](const std::vector<Pose>& among, const BatchControl&) {
-                  BestViews best =
-                      evaluator->evaluator.race(among, k, {.deadline = seconds, .seed = seed});
-                  if (estimated != nullptr) *estimated = best.estimated;
-                  if (scored != nullptr) *scored = best.scored_indices.size();
-                  return best;
+                  const BestConfig config{.deadline = deadline, .seed = seed};
+                  return evaluator->evaluator.race(among, k, config, control);
                 });
 }
 

@@ -162,12 +162,12 @@ vg_status vg_scorer_evaluate(const vg_scorer* scorer, const double* poses, size_
 }
 
 vg_status vg_scorer_best(const vg_scorer* scorer, const double* poses, size_t count, size_t k,
-                         const double* costs, double seconds, size_t* indices, double* gains,
+                         const double* costs, double deadline, size_t* indices, double* gains,
                          size_t* found, const vg_watch* watch) {
   return guarded("scorer indices found", {scorer, sized(indices, k), found}, [&] {
     *found = 0;
     Watcher watcher(watch, count);
-    BestConfig config{.deadline = seconds};
+    BestConfig config{.deadline = deadline};
     if (costs != nullptr) config.costs = {costs, count};
     const BestViews best =
         scorer->scorer.best(poses_of(poses, count), k, config, watcher.control());

@@ -36,13 +36,39 @@ std::string wanted_text(const Shape& wanted) {
 // What numpy makes of [], whatever it is a list of.
 bool is_empty_list(const py::array& array) { return array.ndim() == 1 && array.shape(0) == 0; }
 
-// The pose of 16 numbers; NaN if its last row is none.
-Pose pose_of(const double* m) {
+// Poses are (4, 4), (3, 4) or 7 numbers in the last axes.
+constexpr const char* kPoseShapes = "(..., 4, 4), (..., 3, 4) or (..., 7) of tx ty tz qx qy qz qw";
+constexpr std::size_t kQuaternion = 7;
+constexpr double kMendableNorm = 1e-2;  // as in files of poses
+
+// How many axes of the array are a pose; 0: it holds none.
+py::ssize_t pose_axes(const py::array& array) {
+  const py::ssize_t n = array.ndim();
+  if (n >= 2 && array.shape(n - 1) == 4 && (array.shape(n - 2) == 4 || array.shape(n - 2) == 3)) {
+    return 2;
+  }
+  return n >= 1 && array.shape(n - 1) == static_cast<py::ssize_t>(kQuaternion) ? 1 : 0;
+}
+
+double norm_of(std::span<const double> m) {
+  return std::hypot(std::hypot(m[3], m[4]), std::hypot(m[5], m[6]));
+}
+
+// The pose of 16, 12 or 7 numbers; NaN if its last row or its quaternion is none.
+Pose pose_of(std::span<const double> m) {
   Pose pose;
-  std::copy_n(m, 12, pose.m.begin());
+  if (m.size() == kQuaternion) {
+    if (!(std::abs(norm_of(m) - 1.0) <= kMendableNorm)) {
+      pose.m[0] = std::numeric_limits<double>::quiet_NaN();
+      return pose;
+    }
+    const auto q = Eigen::Quaterniond(m[6], m[3], m[4], m[5]).normalized();
+    return {q.toRotationMatrix(), Eigen::Vector3d(m[0], m[1], m[2])};
+  }
+  std::copy_n(m.begin(), 12, pose.m.begin());
   const std::array<double, 4> last{0, 0, 0, 1};
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (!(std::abs(m[12 + i] - last[i]) <= kRigid)) {
+  for (std::size_t i = 12; i < m.size(); ++i) {
+    if (!(std::abs(m[i] - last[i - 12]) <= kRigid)) {
       pose.m[0] = std::numeric_limits<double>::quiet_NaN();
     }
   }
@@ -50,11 +76,15 @@ Pose pose_of(const double* m) {
 }
 
 // What is wrong with the pose, which is pose_of(m); empty if nothing.
-std::string fault_of(const Pose& pose, const double* m) {
-  if (!std::all_of(m, m + 16, [](double x) { return std::isfinite(x); })) {
+std::string fault_of(const Pose& pose, std::span<const double> m) {
+  if (!std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); })) {
     return "has a number that is not finite";
   }
-  if (!std::isfinite(pose.m[0])) return "has a last row that is not 0 0 0 1";
+  if (!std::isfinite(pose.m[0])) {
+    return m.size() == kQuaternion
+               ? "has a quaternion of norm " + short_text(norm_of(m)) + ", not 1"
+               : std::string("has a last row that is not 0 0 0 1");
+  }
   const double error = orthonormality_error(pose);
   if (!(error <= kRigid)) {
     return "has a rotation that is off by " + short_text(error) +
@@ -190,13 +220,21 @@ Shape leading_shape(const py::array& array, py::ssize_t last_axes) {
 }
 
 PoseBatch pose_batch(const py::handle& value, const char* name, bool strict) {
-  const Doubles array = items(value, name, {4, 4});
+  const Doubles array = doubles(value, name);
   PoseBatch batch;
-  batch.shape = leading_shape(array, 2);
-  const auto count = static_cast<std::size_t>(array.size() / 16);
+  if (is_empty_list(array)) {
+    batch.shape = {0};
+    return batch;
+  }
+  const py::ssize_t axes = pose_axes(array);
+  if (axes == 0) reject_shape(name, kPoseShapes, array);
+  batch.shape = leading_shape(array, axes);
+  std::size_t size = kQuaternion;
+  if (axes == 2) size = array.shape(array.ndim() - 2) == 4 ? 16 : 12;
+  const std::size_t count = static_cast<std::size_t>(array.size()) / size;
   batch.poses.reserve(count);
-  const double* m = array.data();
-  for (std::size_t i = 0; i < count; ++i, m += 16) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::span<const double> m(array.data() + i * size, size);
     batch.poses.push_back(pose_of(m));
     if (!strict) continue;
     const std::string fault = fault_of(batch.poses.back(), m);
@@ -207,8 +245,11 @@ PoseBatch pose_batch(const py::handle& value, const char* name, bool strict) {
   return batch;
 }
 
-Pose one_pose(const py::handle& value, const char* name) {
-  return pose_batch(doubles(value, name, {4, 4}), name, true).poses.front();
+Pose one_pose(const py::handle& value, const char* name, bool strict) {
+  const Doubles array = doubles(value, name);
+  const PoseBatch batch = pose_batch(array, name, strict);
+  if (!batch.shape.empty()) reject_shape(name, "(4, 4), (3, 4) or (7,) of one pose", array);
+  return batch.poses.front();
 }
 
 std::optional<Pose> optional_pose(const py::object& value, const char* name) {
@@ -217,7 +258,10 @@ std::optional<Pose> optional_pose(const py::object& value, const char* name) {
 }
 
 std::vector<Pose> pose_list(const py::handle& value, const char* name) {
-  return pose_batch(doubles(value, name, {-1, 4, 4}), name, true).poses;
+  const Doubles array = doubles(value, name);
+  PoseBatch batch = pose_batch(array, name, true);
+  if (batch.shape.size() != 1) reject_shape(name, "(n, 4, 4), (n, 3, 4) or (n, 7)", array);
+  return std::move(batch.poses);
 }
 
 py::array_t<double> to_array(std::span<const Pose> poses, const Shape& leading) {

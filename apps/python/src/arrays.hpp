@@ -60,19 +60,19 @@ using Shape = std::vector<py::ssize_t>;
 /// The shape of an array without its last axes.
 [[nodiscard]] Shape leading_shape(const py::array& array, py::ssize_t last_axes);
 
-/// Poses and the shape of the array without its last two axes.
+/// Poses and the shape of their array without the axes of a pose.
 struct PoseBatch {
   std::vector<Pose> poses;
   Shape shape;
 };
 
-/// T_world_camera (..., 4, 4). A last row that is off from 0 0 0 1 by more than 1e-3 makes a bad
-/// pose (NaN), as does a rotation that is off by more than 1e-3; with `strict`, or for single poses
-/// that a map is built from, these throw and name the pose's index.
+/// T_world_camera as (..., 4, 4), (..., 3, 4) or (..., 7) of tx ty tz qx qy qz qw [m], [1]. A last
+/// row or a rotation that is off by more than 1e-3, or a quaternion's norm by 1e-2, makes a bad
+/// pose (NaN); with `strict` it throws and names the pose's index.
 [[nodiscard]] PoseBatch pose_batch(const py::handle& value, const char* name, bool strict);
-[[nodiscard]] Pose one_pose(const py::handle& value, const char* name);
+[[nodiscard]] Pose one_pose(const py::handle& value, const char* name, bool strict = true);
 [[nodiscard]] std::optional<Pose> optional_pose(const py::object& value, const char* name);
-/// (n, 4, 4), every one good.
+/// Of one leading axis, every one good.
 [[nodiscard]] std::vector<Pose> pose_list(const py::handle& value, const char* name);
 
 [[nodiscard]] py::array_t<double> to_array(std::span<const Pose> poses, const Shape& leading);

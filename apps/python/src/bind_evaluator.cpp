@@ -30,6 +30,13 @@ namespace {
 // than they do.
 constexpr std::size_t kFewPoses = 8;
 
+py::array_t<std::int64_t> index_array(const std::vector<std::size_t>& indices) {
+  py::array_t<std::int64_t> array(static_cast<py::ssize_t>(indices.size()));
+  std::transform(indices.begin(), indices.end(), array.mutable_data(),
+                 [](std::size_t i) { return static_cast<std::int64_t>(i); });
+  return array;
+}
+
 std::unique_ptr<Evaluator> held(const Scene& scene, const Sensor& sensor,
                                 const std::string& criterion, int pixel_stride,
                                 GainEvaluator evaluator) {
@@ -39,6 +46,12 @@ std::unique_ptr<Evaluator> held(const Scene& scene, const Sensor& sensor,
 }
 
 }  // namespace
+
+py::object named_views(const BestViews& best) {
+  return named("BestViews", index_array(best.indices), to_array_1d<ViewGain>(best.gains),
+               to_array_1d<double>(best.worth), best.complete, best.estimated,
+               index_array(best.scored_indices), to_array_1d<ViewGain>(best.scored_gains));
+}
 
 GainConfig gain_config(const std::string& gain, const std::string& criterion, int pixel_stride,
                        std::optional<double> prior_sigma, std::optional<double> min_range,
@@ -129,31 +142,13 @@ py::object evaluate_detailed(const Evaluator& self, const py::object& T_world_ca
   return scalar_or_array(views);
 }
 
-py::array_t<std::int64_t> index_array(const std::vector<std::size_t>& indices) {
-  py::array_t<std::int64_t> array(static_cast<py::ssize_t>(indices.size()));
-  std::transform(indices.begin(), indices.end(), array.mutable_data(),
-                 [](std::size_t i) { return static_cast<std::int64_t>(i); });
-  return array;
-}
-
-py::object chosen(const BestViews& best, bool return_gains) {
-  py::object indices = index_array(best.indices);
-  if (!return_gains) return indices;
-  return named("ChosenViews", indices, to_array_1d<ViewGain>(best.gains));
-}
-
 // What best() and race() may subtract and ask instead of the gain.
 struct Worth {
-  std::vector<double> costs{};
-  std::optional<PythonMeasure> measure{};
+  std::vector<double> costs;
+  std::optional<PythonMeasure> measure;
 
-  Worth(const py::object& given_costs, const py::object& given_measure, bool return_gains)
-      : costs(costs_or_none(given_costs)), measure(measure_or_none(given_measure)) {
-    if (measure && return_gains) {
-      throw py::value_error(
-          "return_gains does not go with measure, whose numbers evaluate_own gives");
-    }
-  }
+  Worth(const py::object& given_costs, const py::object& given_measure)
+      : costs(costs_or_none(given_costs)), measure(measure_or_none(given_measure)) {}
   void into(BestConfig& config) const {
     config.costs = costs;
     if (measure) config.measure = &*measure;
@@ -161,55 +156,42 @@ struct Worth {
 };
 
 py::object best(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
-                const py::object& costs, const py::object& measure, bool return_gains,
+                const py::object& costs, const py::object& measure,
                 const GivenOrNone<Control>& control) {
   const PoseBatch batch = batch_of(self, T_world_camera);
-  const Worth worth(costs, measure, return_gains);
+  const Worth worth(costs, measure);
   BestConfig config;
   worth.into(config);
   BestViews result;
   run_batch(control, [&](const BatchControl& watched) {
     result = self.evaluator.best(batch.poses, k, config, watched);
   });
-  return chosen(result, return_gains);
+  return named_views(result);
 }
 
 py::object race(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
-                std::uint64_t seed, const py::object& costs, const py::object& measure,
-                bool return_gains, const GivenOrNone<Control>& control) {
+                const py::object& costs, const py::object& measure, std::optional<double> deadline,
+                std::uint64_t seed, const GivenOrNone<Control>& control) {
   const PoseBatch batch = batch_of(self, T_world_camera);
-  const Worth worth(costs, measure, return_gains);
-  BestConfig config{.seed = seed};
+  const Worth worth(costs, measure);
+  BestConfig config{.deadline = deadline.value_or(BestConfig{}.deadline), .seed = seed};
   worth.into(config);
   BestViews result;
   run_batch(control, [&](const BatchControl& watched) {
     result = self.evaluator.race(batch.poses, k, config, watched);
   });
-  return chosen(result, return_gains);
-}
-
-py::object race_until(const Evaluator& self, const py::object& T_world_camera, double seconds,
-                      std::size_t k, std::uint64_t seed, const GivenOrNone<Control>& control) {
-  const PoseBatch batch = batch_of(self, T_world_camera);
-  BestViews result;
-  run_batch(control, [&](const BatchControl& watched) {
-    result = self.evaluator.race(batch.poses, k, {.deadline = seconds, .seed = seed}, watched);
-  });
-  return named("RacedViews", index_array(result.indices), to_array_1d<ViewGain>(result.gains),
-               result.estimated, index_array(result.scored_indices),
-               to_array_1d<ViewGain>(result.scored_gains));
+  return named_views(result);
 }
 
 py::object best_set(const Evaluator& self, const py::object& T_world_camera, std::size_t k,
-                    bool return_gains, const GivenOrNone<Control>& control) {
+                    const GivenOrNone<Control>& control) {
   const PoseBatch batch = batch_of(self, T_world_camera);
   ViewSet set;
   run_batch(control, [&](const BatchControl& watched) {
     set = self.evaluator.best_set(batch.poses, k, watched);
   });
-  py::object indices = index_array(set.indices);
-  if (!return_gains) return indices;
-  return named("ChosenViews", indices, to_array_1d<ViewGain>(set.marginal));
+  return named("ViewSet", index_array(set.indices), to_array_1d<ViewGain>(set.marginal), set.gain,
+               set.complete);
 }
 
 // The way between poses by a table, or by a function of Python's to which the start is -1; none:
@@ -314,14 +296,12 @@ void bind_evaluator(py::module_& module) {
       .def("evaluate_detailed", &evaluate_detailed, "T_world_camera"_a, py::kw_only(),
            "strict"_a = false, "control"_a = py::none(), kEvaluateDetailedDoc)
       .def("best", &best, "T_world_camera"_a, "k"_a = 1, py::kw_only(), "costs"_a = py::none(),
-           "measure"_a = py::none(), "return_gains"_a = false, "control"_a = py::none(), kBestDoc)
-      .def("race", &race, "T_world_camera"_a, "k"_a = 1, py::kw_only(),
-           "seed"_a = race_defaults.seed, "costs"_a = py::none(), "measure"_a = py::none(),
-           "return_gains"_a = false, "control"_a = py::none(), kRaceDoc)
-      .def("race_until", &race_until, "T_world_camera"_a, "seconds"_a, "k"_a = 1, py::kw_only(),
-           "seed"_a = race_defaults.seed, "control"_a = py::none(), kRaceUntilDoc)
+           "measure"_a = py::none(), "control"_a = py::none(), kBestDoc)
+      .def("race", &race, "T_world_camera"_a, "k"_a = 1, py::kw_only(), "costs"_a = py::none(),
+           "measure"_a = py::none(), "deadline"_a = py::none(), "seed"_a = race_defaults.seed,
+           "control"_a = py::none(), kRaceDoc)
       .def("best_set", &best_set, "T_world_camera"_a, "k"_a, py::kw_only(),
-           "return_gains"_a = false, "control"_a = py::none(), kBestSetDoc)
+           "control"_a = py::none(), kBestSetDoc)
       .def("plan_tour", &tour, "T_world_camera"_a, "way"_a = py::none(), py::kw_only(),
            "max_stops"_a = py::none(), "first"_a = py::none(), "cost_per_way"_a = 0.0,
            "budget"_a = py::none(), "per_way"_a = false, "costs"_a = py::none(),

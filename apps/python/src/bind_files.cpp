@@ -65,12 +65,9 @@ py::array_t<double> pose_array(std::span<const Pose> poses) {
   return to_array(poses, {static_cast<py::ssize_t>(poses.size())});
 }
 
-py::object read_poses(const py::object& path, bool return_timestamps) {
+PoseList pose_list_of(const py::object& path) {
   const std::string file = readable_file(path);
-  const PoseList list = outside_gil([&] { return load_poses(file); });
-  py::object poses = pose_array(list.poses);
-  if (!return_timestamps) return poses;
-  return named("TimedPoses", poses, to_array_1d<double>(list.timestamps));
+  return outside_gil([&] { return load_poses(file); });
 }
 
 py::list suspicions(const Given<Sensor>& sensor, const py::sequence& frames) {
@@ -281,8 +278,9 @@ list of Suspicion
 void bind_files(py::module_& module) {
   bind_toml(module);
   bind_frames(module);
-  module.def("read_poses", &read_poses, "path"_a, py::kw_only(), "return_timestamps"_a = false,
-             R"(Poses of a file: TUM text (time tx ty tz qx qy qz qw), or a .npy.
+  module.def(
+      "read_poses", [](const py::object& path) { return pose_array(pose_list_of(path).poses); },
+      "path"_a, R"(Poses of a file: TUM text (time tx ty tz qx qy qz qw), or a .npy.
 
 Runs without the GIL. Cost: linear in the poses, 1 µs each.
 
@@ -291,13 +289,25 @@ Parameters
 path : path-like
     A name in .npy: rows with tx, ty, tz, qx, qy, qz, qw and perhaps timestamp, or (n, 4, 4)
     matrices, float64 or float32. Any other: TUM text.
-return_timestamps : bool
 
 Returns
 -------
-T_world_camera : ndarray, (n, 4, 4), float64
-timestamps : ndarray, (n,), float64
-    [s]; only if return_timestamps: a named tuple ``TimedPoses`` of the two then.)");
+ndarray, (n, 4, 4), float64)");
+  module.def(
+      "read_timed_poses",
+      [](const py::object& path) {
+        const PoseList list = pose_list_of(path);
+        return named("TimedPoses", pose_array(list.poses), to_array_1d<double>(list.timestamps));
+      },
+      "path"_a, R"(Poses of a file and their times; see ``read_poses``.
+
+Parameters
+----------
+path : path-like
+
+Returns
+-------
+TimedPoses)");
   module.def("write_poses", &write_poses, "path"_a, "T_world_camera"_a, "timestamps"_a = py::none(),
              R"(Writes poses as TUM text or .npy, by the name's ending, whole or not at all.
 

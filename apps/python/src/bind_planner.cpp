@@ -88,8 +88,7 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
 
 // A pose that may be lost, and is NaN then: numbers in the right shape.
 Pose loose_pose(const py::object& T_world_camera) {
-  constexpr const char* kName = "T_world_camera";
-  return pose_batch(doubles(T_world_camera, kName, {4, 4}), kName, false).poses.front();
+  return one_pose(T_world_camera, "T_world_camera", false);
 }
 
 py::object to_python(const AddedView& added) {
@@ -229,7 +228,7 @@ py::object rank(Planner& self, std::size_t k, const py::object& poses, const py:
     area.mutable_at(i) = view.gain.area;
     worth.mutable_at(i) = view.worth;
   }
-  return named("Ranking", index, to_array(ranked, {count}), gain, area, worth, ranking.complete);
+  return named("Ranking", index, gain, worth, ranking.complete, area, to_array(ranked, {count}));
 }
 
 }  // namespace

@@ -32,11 +32,12 @@ namespace {
 /// Python's ViewScorer. Its map is looked at by many threads or changed by one; gains need no lock.
 class Scorer {
  public:
-  Scorer(ViewScorer scorer, std::string criterion)
-      : scorer_(std::move(scorer)), criterion_(std::move(criterion)) {}
+  Scorer(ViewScorer scorer, py::dict settings)
+      : scorer_(std::move(scorer)), settings_(std::move(settings)) {}
 
   [[nodiscard]] const ViewScorer& get() const noexcept { return scorer_; }
-  [[nodiscard]] const std::string& criterion() const noexcept { return criterion_; }
+  /// The keywords that it was made with, the map's not.
+  [[nodiscard]] const py::dict& settings() const noexcept { return settings_; }
 
   /// Without the GIL; f must not touch Python.
   template <typename F>
@@ -54,22 +55,27 @@ class Scorer {
 
  private:
   ViewScorer scorer_;
-  std::string criterion_;
+  py::dict settings_;
   mutable std::shared_mutex mutex_;
 };
 
 std::unique_ptr<Scorer> make_scorer(
-    const Given<Sensor>& of, double voxel_size, const py::object& workspace,
+    const Given<Sensor>& of, std::optional<double> voxel_size, const py::object& workspace,
     const py::object& T_world_grid, std::optional<double> prior_sigma,
-    std::optional<double> support_plane, const py::object& boxes, const py::iterable& meshes,
+    std::optional<double> support_plane, const py::object& boxes, const py::iterable& given_meshes,
     const std::string& gain, const std::string& criterion, int pixel_stride,
-    const py::iterable& weights, std::optional<double> refinement_weight,
+    const py::iterable& given_weights, std::optional<double> refinement_weight,
     std::optional<double> object_size, const py::object& body_size, double clearance,
     bool jump_edges, int coarsest, const py::object& fine, int finest, const py::object& map,
     const std::string& tracer, int num_threads) {
+  const py::tuple meshes(given_meshes), weights(given_weights);  // of iterators: once
   Sensor sensor = *of;
   ScorerConfig config;
-  config.voxel_size = voxel_size;
+  config.voxel_size = voxel_size.value_or(config.voxel_size);
+  if (!map.is_none() && (voxel_size || !workspace.is_none() || !T_world_grid.is_none())) {
+    throw py::value_error(
+        "map brings its own voxel_size, workspace and T_world_grid; leave yours out");
+  }
   if (!workspace.is_none()) config.workspace = box(workspace, "workspace");
   config.T_world_grid = optional_pose(T_world_grid, "T_world_grid").value_or(Pose());
   config.prior_sigma = prior_sigma;
@@ -88,13 +94,32 @@ std::unique_ptr<Scorer> make_scorer(
     sensor.body_size = {size.x(), size.y(), size.z()};
   }
   const ExecConfig exec{num_threads, parse_tracer(tracer)};
-  const std::string file = map.is_none() ? "" : readable_file(map);
+  const SharedGrid* grid =
+      py::isinstance<SharedGrid>(map) ? &map.cast<const SharedGrid&>() : nullptr;
+  const std::string file = map.is_none() || grid != nullptr ? "" : readable_file(map);
+  if (prior_sigma && !map.is_none() && (grid != nullptr || !is_octomap(file))) {
+    throw py::value_error("map brings its own prior_sigma; leave yours out");
+  }
   ViewScorer scorer = outside_gil([&] {
+    if (grid != nullptr) {
+      return ViewScorer(grid->read([](const BeliefGrid& g) { return g.clone(); }), sensor, config,
+                        exec);
+    }
     if (file.empty()) return ViewScorer(sensor, config, exec);
-    return ViewScorer(load_map(file, &sensor, {}, exec), sensor, config, exec);
+    return ViewScorer(load_map(file, &sensor, {.prior_sigma = prior_sigma}, exec), sensor, config,
+                      exec);
   });
   warn(suspicions_of_set_up(scorer, {}));
-  return std::make_unique<Scorer>(std::move(scorer), criterion);
+  // Copies, which stay as they are when the caller's arrays change.
+  const py::object settings = py::module_::import("copy").attr("deepcopy")(
+      py::dict("sensor"_a = py::cast(*of), "support_plane"_a = support_plane, "boxes"_a = boxes,
+               "meshes"_a = meshes, "gain"_a = gain, "criterion"_a = criterion,
+               "pixel_stride"_a = pixel_stride, "weights"_a = weights,
+               "refinement_weight"_a = refinement_weight, "object_size"_a = object_size,
+               "body_size"_a = body_size, "clearance"_a = clearance, "jump_edges"_a = jump_edges,
+               "coarsest"_a = coarsest, "fine"_a = fine, "finest"_a = finest, "tracer"_a = tracer,
+               "num_threads"_a = num_threads));
+  return std::make_unique<Scorer>(std::move(scorer), settings);
 }
 
 py::object to_python(const MapUpdate& update) {
@@ -136,28 +161,26 @@ py::object evaluator_of(const Scorer& self) {
   const ViewScorer& scorer = self.get();
   Scene scene{scorer.scene()};
   GainEvaluator evaluator = scorer.evaluator()->with_scene(scene.scene);
-  const int stride = scorer.config().gain.pixel_stride;
-  return py::cast(
-      std::unique_ptr<Evaluator>(new Evaluator{py::cast(std::move(scene)), scorer.sensor(),
-                                               self.criterion(), stride, std::move(evaluator)}));
+  const GainConfig& gain = scorer.config().gain;
+  return py::cast(std::unique_ptr<Evaluator>(new Evaluator{
+      py::cast(std::move(scene)), scorer.sensor(), std::string(criterion_name(gain.criterion)),
+      gain.pixel_stride, std::move(evaluator)}));
 }
 
 py::object best_of(const Scorer& self, const py::object& T_world_camera, std::size_t k,
-                   const py::object& costs, std::optional<double> seconds,
+                   const py::object& costs, std::optional<double> deadline,
                    const GivenOrNone<Control>& control) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
   const ViewScorer& scorer = self.get();
   warn(outside_gil(
       [&] { return suspicion_of_poses(scorer.scene(), scorer.sensor(), batch.poses); }));
   const std::vector<double> own_costs = costs_or_none(costs);
-  const BestConfig config{.costs = own_costs, .deadline = seconds.value_or(BestConfig{}.deadline)};
+  const BestConfig config{.costs = own_costs, .deadline = deadline.value_or(BestConfig{}.deadline)};
   BestViews result;
   run_batch(control, [&](const BatchControl& watched) {
     result = scorer.best(batch.poses, k, config, watched);
   });
-  const std::vector<std::int64_t> indices(result.indices.begin(), result.indices.end());
-  return named("BestViews", to_array_1d<std::int64_t>(indices), to_array_1d<ViewGain>(result.gains),
-               to_array_1d<double>(result.worth), result.complete);
+  return named_views(result);
 }
 
 }  // namespace
@@ -165,8 +188,13 @@ py::object best_of(const Scorer& self, const py::object& T_world_camera, std::si
 void bind_scorer(py::module_& module) {
   const ScorerConfig defaults;
   auto type = bound_class<Scorer>(module, "ViewScorer", kScorerDoc);
-  refuse_pickling(type);
-  type.def(py::init(&make_scorer), "sensor"_a, py::kw_only(), "voxel_size"_a = defaults.voxel_size,
+  type.def("__reduce_ex__", [](const py::object& self, int) {
+    py::dict keywords = self.cast<const Scorer&>().settings().attr("copy")();
+    keywords["map"] = self.attr("grid");
+    const py::object partial = py::module_::import("functools").attr("partial");
+    return py::make_tuple(partial(py::type::of(self), **keywords), py::tuple());
+  });
+  type.def(py::init(&make_scorer), "sensor"_a, py::kw_only(), "voxel_size"_a = py::none(),
            "workspace"_a = py::none(), "T_world_grid"_a = py::none(), "prior_sigma"_a = py::none(),
            "support_plane"_a = py::none(), "boxes"_a = py::none(), "meshes"_a = py::tuple(),
            "gain"_a = gain_model_name(defaults.gain.model),
@@ -200,7 +228,7 @@ void bind_scorer(py::module_& module) {
           "T_world_camera"_a, py::kw_only(), "measure"_a = py::none(), "strict"_a = false,
           "control"_a = py::none(), kScorerEvaluateDoc)
       .def("best", &best_of, "T_world_camera"_a, "k"_a = 1, py::kw_only(), "costs"_a = py::none(),
-           "seconds"_a = py::none(), "control"_a = py::none(), kScorerBestDoc)
+           "deadline"_a = py::none(), "control"_a = py::none(), kScorerBestDoc)
       .def(
           "consistency",
           [](const Scorer& self) {

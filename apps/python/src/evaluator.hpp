@@ -58,6 +58,9 @@ struct Evaluator {
                                      std::optional<double> refinement_weight,
                                      bool posterior_entropy);
 
+/// A BestViews of results.py. Needs the GIL.
+[[nodiscard]] py::object named_views(const BestViews& best);
+
 /// Adds what looks into single views: trace, depth, contributions, gains of the user's own.
 void bind_views(py::module_& module, py::class_<Evaluator>& evaluator);
 

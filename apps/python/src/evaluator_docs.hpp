@@ -116,18 +116,14 @@ costs : array_like, (n,), optional
     Subtracted from the gains, in their unit.
 measure : callable, optional
     A gain of your own in the evaluator's place, as of ``evaluate_own``; asked for one view after the other.
-return_gains : bool
-    Not with measure.
 control : BatchControl, optional
     After a stop the result is what is best of those scored so far.
 
 Returns
 -------
-indices : ndarray, (k,), int64
-    Into the poses with their leading axes flattened, best first, ties to the lower index. Fewer than k
-    where fewer poses have a gain: bad ones are never chosen.
-gains : ndarray, (k,), structured
-    As from ``evaluate_detailed``; only if return_gains: a named tuple ``ChosenViews`` then.)";
+BestViews
+    Best first, ties to the lower index. Fewer than k where fewer poses have a gain: bad poses are never
+    chosen.)";
 
 inline constexpr const char* kRaceDoc =
     R"(The k best poses, very probably; see ``best``.
@@ -138,35 +134,17 @@ and more, the less the larger the images.
 
 Parameters
 ----------
-T_world_camera, k, costs, measure, return_gains, control
+T_world_camera, k, costs, measure, control
     As ``best``; the measure is asked about few rays first.
+deadline : float, optional
+    Time limit of the call [s], at least 0: half of it for estimates of poses from all over the list, the
+    rest for scoring the most promising in full. Views that threads are at are finished.
 seed : int
     Which rays, by the paper's gain; by the others they are in the middle.
 
 Returns
 -------
-indices : ndarray, (k,), int64
-gains : ndarray, (k,), structured
-    Only if return_gains. Both as from ``best``.)";
-
-inline constexpr const char* kRaceUntilDoc =
-    R"(The best that can be said in so many seconds; see ``race``.
-
-Poses from all over the list are estimated for half of the time at most, then the most promising scored in
-full. It ends once the views that the threads are at are done, and earlier where ``race`` would.
-
-Parameters
-----------
-T_world_camera : array_like, (..., 4, 4)
-seconds : float
-    From the call on; at least 0.
-k : int
-seed, control
-    As ``race``.
-
-Returns
--------
-RacedViews)";
+BestViews)";
 
 inline constexpr const char* kBestSetDoc =
     R"(Up to k poses that are good together, chosen one after the other.
@@ -178,17 +156,14 @@ Cost: up to k times that of some calls of ``evaluate``, and memory for the voxel
 
 Parameters
 ----------
-T_world_camera, k, return_gains
+T_world_camera, k
     As ``best``.
 control : BatchControl, optional
     After a stop the result is what was chosen so far.
 
 Returns
 -------
-indices : ndarray, (<= k,), int64
-    In the order of their choice.
-gains : ndarray, (<= k,), structured
-    What each adds to those before it; only if return_gains.)";
+ViewSet)";
 
 inline constexpr const char* kPlanTourDoc =
     R"(Poses that are good together, as ``best_set``, and a short way through them.

@@ -18,8 +18,8 @@ void bind_control(py::module_&), bind_noise(py::module_&), bind_camera(py::modul
     bind_sensors(py::module_&), bind_generators(py::module_&), bind_grid(py::module_&),
     bind_scene(py::module_&), bind_integrator(py::module_&), bind_cloud(py::module_&),
     bind_reach(py::module_&), bind_feasibility(py::module_&), bind_simulation(py::module_&),
-    bind_evaluator(py::module_&), bind_files(py::module_&), bind_frame_check(py::module_&),
-    bind_planner(py::module_&), bind_scorer(py::module_&);
+    bind_evaluator(py::module_&), bind_files(py::module_&), bind_planner(py::module_&),
+    bind_scorer(py::module_&);
 
 namespace {
 
@@ -83,7 +83,7 @@ PYBIND11_MODULE(_viewgain, module) {
   for (const auto bind :
        {bind_errors, bind_control, bind_noise, bind_camera, bind_sensors, bind_generators,
         bind_grid, bind_scene, bind_integrator, bind_cloud, bind_reach, bind_feasibility,
-        bind_simulation, bind_evaluator, bind_files, bind_frame_check, bind_scorer, bind_planner}) {
+        bind_simulation, bind_evaluator, bind_files, bind_scorer, bind_planner}) {
     bind(module);
   }
   module.attr("__name__") = name;

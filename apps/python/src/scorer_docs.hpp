@@ -15,8 +15,8 @@ poses, or ask for the ``best``.
 Parameters
 ----------
 sensor : Sensor
-voxel_size : float
-    [m]
+voxel_size : float, optional
+    [m]; 0.005 unless given.
 workspace : array_like, (2, 3), optional
     Lowest and highest corner of what is mapped, the grid's frame [m]; default: half a metre round the
     origin.
@@ -57,9 +57,9 @@ fine : array_like, (n, 2, 3), optional
     As in ``FrameIntegrator``.
 finest : int
     As in ``FrameIntegrator``.
-map : path-like, optional
-    A file to continue from: a .vdb of ``save`` or another map, or OctoMap's .ot or .bt. Its layout holds,
-    whatever ``voxel_size`` and ``workspace`` say.
+map : BeliefGrid or path-like, optional
+    A map to continue from, which is copied, or its file: a .vdb of ``save`` or another map, or OctoMap's .ot or
+    .bt. It brings its own voxel_size, workspace and T_world_grid.
 tracer : {"automatic", "embree", "sweep"}
     How rays meet voxels, as in ``GainEvaluator``. Never changes a result.
 num_threads : int
@@ -69,7 +69,8 @@ Notes
 -----
 ``evaluate``, ``best``, ``scene`` and ``evaluator`` may run in any thread at any time, even while the map
 changes: they use the map before or after that change. ``save``, ``consistency`` and ``grid`` wait for a
-change that is running. The GIL is released. Cost of a change: the change of the map, and some milliseconds
+change that is running. The GIL is released. Pickles hold settings and map, but not the frames that
+``consistency`` compares. Cost of a change: the change of the map, and some milliseconds
 for the scene.)";
 
 inline constexpr const char* kScorerAddDoc = R"(Adds a depth frame to the map.
@@ -149,8 +150,8 @@ T_world_camera : array_like, (..., 4, 4)
 k : int
 costs : array_like, (n,), optional
     Subtracted from the gains, in their unit.
-seconds : float, optional
-    Time limit of the call; none unless given.
+deadline : float, optional
+    Time limit of the call [s]; none unless given.
 control : BatchControl, optional
 
 Returns

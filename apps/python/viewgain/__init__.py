@@ -12,7 +12,8 @@
 >>> best = scorer.best(poses, 3).indices                        # best first
 
 Frames and units: a pose is ``T_world_camera``, a 4x4 matrix that maps points of the camera's optical
-frame (x right, y down, z forward) to the world; lengths are metres, gains nats. Surfaces and the whole
+frame (x right, y down, z forward) to the world; 3x4 matrices and rows of tx ty tz qx qy qz qw are taken, too, as float32 or
+float64 in any order of memory. Lengths are metres, gains nats. Surfaces and the whole
 reconstruction loop are in ``viewgain.mesh``, which is GPL-3.0-or-later. ``viewgain.plot`` draws, by matplotlib.
 
 Errors: ``ValueError`` names an argument of another shape, without real numbers, masked or out of its bounds, and a bad pose
@@ -27,9 +28,12 @@ try:
 except ImportError as error:
     raise ImportError(f"viewgain needs numpy, which cannot be imported: {error}") from error
 
+from . import _calls, _viewgain
+
+_calls.explain(_viewgain)
 from ._viewgain import *
 from ._viewgain import __version__
 from .codes import HitKind, Infeasibility, ViewStatus, VoxelState
-from .results import (AddedView, BestViews, ChosenViews, Cloud, Frame, FrameConsistency, FrameRegistration, GridStatistics, IntegrationReport, MapUpdate, Proposal,
-                      RacedViews, Ranking, RayOutcomes, Sigmas, SimulatedFrame, Suspicion, TimedPoses, ViewTour)
+from .results import (AddedView, BestViews, Cloud, Frame, FrameConsistency, FrameRegistration, GridStatistics, IntegrationReport, MapUpdate, Proposal,
+                      Ranking, RayOutcomes, Sigmas, SimulatedFrame, Suspicion, TimedPoses, ViewSet, ViewTour)
 from . import plot

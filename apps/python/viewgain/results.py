@@ -66,7 +66,7 @@ class Suspicion(NamedTuple):
 
 @named("viewgain")
 class FrameConsistency(NamedTuple):
-    """Whether frames fit one another, from ``consistency`` of ``ViewScorer`` and ``ViewPlanner``, and ``FrameCheck.result``."""
+    """Whether frames fit one another, from ``consistency`` of ``ViewScorer`` and ``ViewPlanner``."""
 
     share_in_free: Annotated[float, "Of all readings, those in space that other frames saw as free."]
     share_seen_past: Annotated[float, "Of readings of earlier frames, those that later frames see past."]
@@ -104,32 +104,26 @@ class GridStatistics(NamedTuple):
 
 
 @named("viewgain")
-class ChosenViews(NamedTuple):
-    """The best of many poses, from ``best``, ``race`` and ``best_set`` with ``return_gains=True``."""
+class ViewSet(NamedTuple):
+    """Poses that are good together, from ``GainEvaluator.best_set``."""
 
-    indices: Annotated[NDArray[np.int64], "(k,), int64: indices into the poses with their leading axes flattened, best first."]
-    gains: Annotated[NDArray[np.void], "(k,), structured: as from ``evaluate_detailed``, in its unit; of a set, what each adds."]
+    indices: Annotated[NDArray[np.int64], "(<= k,), int64: indices into the poses with their leading axes flattened, in the order of their choice."]
+    gains: Annotated[NDArray[np.void], "(<= k,), structured: what each adds to those before it, as from ``evaluate_detailed``."]
+    gain: Annotated[float, "Of all together, in the gain's unit."]
+    complete: Annotated[bool, "False: a stop ended the call before the last choice."]
 
 
 @named("viewgain")
 class BestViews(NamedTuple):
-    """The best of many poses, from ``ViewScorer.best``."""
+    """The best of many poses, from ``best`` of ``ViewScorer`` and ``GainEvaluator``, and ``GainEvaluator.race``."""
 
     indices: Annotated[NDArray[np.int64], "(k,), int64: indices into the poses with their leading axes flattened, best first."]
-    gains: Annotated[NDArray[np.void], "(k,), structured: as from ``evaluate_detailed``, in its unit; costs are not subtracted."]
-    worth: Annotated[_Floats, "(k,), float64: the gain less the cost."]
+    gains: Annotated[NDArray[np.void], "(k,), structured: as from ``evaluate_detailed``, in its unit, without costs; empty with a measure."]
+    worth: Annotated[_Floats, "(k,), float64: the gain, or the measure, less the cost."]
     complete: Annotated[bool, "False: the time limit, or a stop, ended the call before all was done."]
-
-
-@named("viewgain")
-class RacedViews(NamedTuple):
-    """The best of many poses that could be found in time, from ``race_until``, and what was done."""
-
-    indices: Annotated[NDArray[np.int64], "(<= k,), int64: as ``ChosenViews``, of poses that were scored in full."]
-    gains: Annotated[NDArray[np.void], "(<= k,), structured: of these, as from ``evaluate_detailed``."]
     estimated: Annotated[int, "Poses that were scored by some of their rays; 0 where all are scored in full."]
     scored: Annotated[NDArray[np.int64], "(n,), int64: indices of the poses that were scored in full, rising."]
-    scored_gains: Annotated[NDArray[np.void], "(n,), structured: of these."]
+    scored_gains: Annotated[NDArray[np.void], "(n,), structured: of these; empty with a measure."]
 
 
 @named("viewgain")
@@ -159,7 +153,7 @@ class Cloud(NamedTuple):
 
 @named("viewgain")
 class TimedPoses(NamedTuple):
-    """Poses with their times, from ``read_poses`` with ``return_timestamps=True``."""
+    """Poses with their times, from ``read_timed_poses``."""
 
     T_world_camera: Annotated[_Floats, "(n, 4, 4), float64."]
     timestamps: Annotated[_Floats, "(n,), float64 [s]."]
@@ -248,12 +242,12 @@ class ViewTour(NamedTuple):
 class Ranking(NamedTuple):
     """The best candidates in their order, from ``ViewPlanner.rank``.
 
-    A tuple of these six: ``len(ranking)`` is 6, and ``len(ranking.index)`` says how many views there are.
+    A tuple of these six: ``len(ranking)`` is 6, and ``len(ranking.indices)`` says how many views there are.
     """
 
-    index: Annotated[NDArray[np.int64], "(k,), int64: indices into ``poses`` where they are given, else into the proposal's candidates, in which poses of ``add_poses`` have other places."]
-    T_world_camera: Annotated[_Floats, "(k, 4, 4), float64."]
+    indices: Annotated[NDArray[np.int64], "(k,), int64: indices into ``poses`` where they are given, else into the proposal's candidates, in which poses of ``add_poses`` have other places."]
     gain: Annotated[_Floats, "(k,), float64 [nat; by gain \"surface\" m**2]; together or in a new plan what each view adds; NaN with ``measure``, whose value is in ``worth``."]
-    area: Annotated[_Floats, "(k,), float64: new surface to be expected [m**2]; NaN by gain \"paper\"."]
     worth: Annotated[_Floats, "(k,), float64: the gain less the cost, in its unit; 0 or less: the way costs more than the view brings."]
     complete: Annotated[bool, "False if a stop was requested."]
+    area: Annotated[_Floats, "(k,), float64: new surface to be expected [m**2]; NaN by gain \"paper\"."]
+    T_world_camera: Annotated[_Floats, "(k, 4, 4), float64."]

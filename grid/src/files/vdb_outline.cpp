@@ -258,11 +258,9 @@ std::uint64_t follow_file(std::string& image) {
   Reader reader(file, 0);
   if (!file.starts_with(kMagic) || reader.number<std::int64_t>() != 0x56444220) {
     if (file.starts_with("# Octomap OcTree")) {
-      throw Fault(
-          "is an OctoMap tree, no OpenVDB file; load_octomap reads it, and the program by "
-          "its ending, .ot or .bt");
+      throw Fault("is an OctoMap tree, no OpenVDB file; give it the ending .ot or .bt");
     }
-    throw Fault("is no OpenVDB file; maps are .vdb, or .ot and .bt of OctoMap (load_octomap)");
+    throw Fault("is no OpenVDB file; maps are .vdb, or .ot and .bt of OctoMap");
   }
   if (reader.number<std::uint32_t>() < kOldestVersion) {
     throw Fault("has an OpenVDB format that is too old");

@@ -251,7 +251,8 @@ static void of_evaluators(const vg_scene* scene) {
   CHECK_REFUSED(vg_evaluate(evaluator, pose, 1, &gain, &watch), "vg_watch");
   CHECK_REFUSED(vg_evaluate_views(evaluator, pose, 1, &view, 8, NULL), "is 8 bytes");
   CHECK_REFUSED(vg_best(evaluator, pose, 1, 1, &index, NULL, NULL, NULL), "found is null");
-  CHECK_REFUSED(vg_race(NULL, pose, 1, 1, 1, &index, NULL, &found, NULL), "evaluator is null");
+  CHECK_REFUSED(vg_race(NULL, pose, 1, 1, HUGE_VAL, 1, &index, NULL, &found, NULL),
+                "evaluator is null");
   CHECK_REFUSED(vg_best_set(evaluator, NULL, 1, 1, &index, NULL, &found, NULL), "poses is null");
   CHECK_REFUSED(vg_depth_image(evaluator, pose, depth, NULL, 7), "7 pixels");
   CHECK_REFUSED(vg_contributions(evaluator, pose, &part, 1, 1, &found), "vg_contribution");

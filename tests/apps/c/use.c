@@ -196,15 +196,13 @@ static void choices(const vg_evaluator* evaluator) {
   for (i = 0; i < POSES; ++i) CHECK(i == 7 || gains[i] <= chosen[0]);
   CHECK_OK(vg_best(evaluator, poses, 3, 5, indices, NULL, &found, NULL));
   CHECK(found == 3);
-  CHECK_OK(vg_race(evaluator, poses, POSES, 1, 1, others, chosen, &found, NULL));
+  CHECK_OK(vg_race(evaluator, poses, POSES, 1, HUGE_VAL, 1, others, chosen, &found, NULL));
   CHECK(found == 1 && chosen[0] == gains[others[0]]);
-  CHECK_OK(
-      vg_race_until(evaluator, poses, POSES, 2, 1, HUGE_VAL, others, chosen, &found, &i, NULL));
-  CHECK(found == 2 && chosen[0] == gains[others[0]] && i <= POSES);
-  CHECK_OK(vg_race_until(evaluator, poses, POSES, 2, 1, 0, others, NULL, &found, NULL, &i));
-  CHECK(found == 0 && i == 0);
-  CHECK_REFUSED(vg_race_until(evaluator, poses, POSES, 2, 1, -1, others, NULL, &found, NULL, NULL),
-                "deadline");
+  CHECK_OK(vg_race(evaluator, poses, POSES, 2, 1e6, 1, others, chosen, &found, NULL));
+  CHECK(found == 2 && chosen[0] == gains[others[0]]);
+  CHECK_OK(vg_race(evaluator, poses, POSES, 2, 0, 1, others, NULL, &found, NULL));
+  CHECK(found == 0);
+  CHECK_REFUSED(vg_race(evaluator, poses, POSES, 2, -1, 1, others, NULL, &found, NULL), "deadline");
   CHECK_OK(vg_best_set(evaluator, poses, POSES, 3, others, chosen, &found, NULL));
   CHECK(found == 3 && chosen[0] == gains[others[0]] && others[0] != others[1]);
   CHECK_OK(vg_order_stops(&costs[0][0], 3, others, &chosen[0]));
@@ -229,8 +227,8 @@ static void choices(const vg_evaluator* evaluator) {
   CHECK_FAILS(vg_best(evaluator, poses, POSES, 1, indices, NULL, &found, &watch), VG_STOPPED,
               "stopped by poll");
   left = 10;
-  CHECK_FAILS(vg_race(evaluator, poses, POSES, 1, 1, indices, NULL, &found, &watch), VG_STOPPED,
-              "stopped by poll");
+  CHECK_FAILS(vg_race(evaluator, poses, POSES, 1, HUGE_VAL, 1, indices, NULL, &found, &watch),
+              VG_STOPPED, "stopped by poll");
   left = 10;
   CHECK_FAILS(vg_best_set(evaluator, poses, POSES, 2, indices, NULL, &found, &watch), VG_STOPPED,
               "0 of 2");

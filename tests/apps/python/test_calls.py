@@ -40,7 +40,7 @@ def test_a_pool_that_lived_before_a_fork_works_after_it(evaluator, grid, sensor,
 
     assert in_child(same)
     assert in_child(lambda: in_child(same))
-    assert in_child(lambda: np.array_equal(evaluator.best(poses, 3), np.argsort(-gains)[:3]))
+    assert in_child(lambda: np.array_equal(evaluator.best(poses, 3).indices, np.argsort(-gains)[:3]))
 
     def from_nothing():
         scene = viewgain.VoxelScene(grid, boxes=[[[5, 5, 5], [6, 6, 6]]])

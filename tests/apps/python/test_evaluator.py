@@ -36,25 +36,24 @@ def test_choices_agree_with_the_gains(grid, sensor, poses, criterion):
         viewgain.VoxelScene(grid), sensor, gain="paper", pixel_stride=4, criterion=criterion)
     gains = evaluator.evaluate(poses)
     order = np.argsort(-gains, kind="stable")
-    best, of_best = evaluator.best(poses.reshape(2, 30, 4, 4), k=5, return_gains=True)
-    assert best.dtype == np.int64 and np.array_equal(best, order[:5])
-    assert np.array_equal(of_best["gain"], gains[best])
-    assert np.array_equal(evaluator.best(poses, k=5), best)
-    raced, of_raced = evaluator.race(poses, k=2, return_gains=True)
-    assert np.array_equal(of_raced["gain"], gains[raced])
-    late = evaluator.race_until(poses, 1e6, k=2)
-    assert np.array_equal(late.indices, raced) and np.array_equal(late.gains["gain"], gains[raced])
+    best = evaluator.best(poses.reshape(2, 30, 4, 4), k=5)
+    assert best.indices.dtype == np.int64 and np.array_equal(best.indices, order[:5])
+    assert np.array_equal(best.gains["gain"], gains[best.indices]) and np.array_equal(best.worth, gains[best.indices])
+    raced = evaluator.race(poses, k=2)
+    assert raced.complete and np.array_equal(raced.gains["gain"], gains[raced.indices])
+    late = evaluator.race(poses, k=2, deadline=1e6)
+    assert np.array_equal(late.indices, raced.indices) and np.array_equal(late.gains["gain"], gains[raced.indices])
     assert late.estimated in (0, 60) and np.array_equal(late.scored_gains["gain"], gains[late.scored])
-    none = evaluator.race_until(poses, 0)
-    assert none.indices.size == none.estimated == none.scored.size == 0
+    none = evaluator.race(poses, deadline=0)
+    assert none.indices.size == none.estimated == none.scored.size == 0 and not none.complete
     for tracer in ("embree", "sweep"):
         traced = viewgain.GainEvaluator(evaluator.scene, sensor, gain="paper", pixel_stride=4, criterion=criterion, tracer=tracer)
         assert np.array_equal(traced.evaluate(poses), gains)
     with pytest.raises(ValueError, match="valid are automatic, embree, sweep"):
         viewgain.GainEvaluator(evaluator.scene, sensor, tracer="bvh")
-    chosen, marginal = evaluator.best_set(poses, 3, return_gains=True)
-    assert chosen[0] == order[0] and marginal["gain"][0] == gains[order[0]]
-    assert np.array_equal(evaluator.best_set(poses, 3), chosen)
+    chosen = evaluator.best_set(poses, 3)
+    assert chosen.indices[0] == order[0] and chosen.gains["gain"][0] == gains[order[0]]
+    assert chosen.complete and np.isclose(chosen.gain, chosen.gains["gain"].sum(), rtol=1e-9)
     estimates = evaluator.approximate(poses, share=0.5)
     assert estimates.shape == (60,) and np.all(estimates["standard_error"] >= 0)
     whole = evaluator.approximate(poses, share=1)
@@ -79,11 +78,11 @@ def test_bad_poses_are_nan_or_refused(evaluator, poses):
             evaluator.evaluate(bad[: index + 1][[0] * index + [index]], strict=True)
     with pytest.raises(ValueError, match=r"T_world_camera\[1, 0\]"):
         evaluator.evaluate_detailed(bad[[0, 6, 1, 0]].reshape(2, 2, 4, 4), strict=True)
-    assert 1 not in evaluator.best(bad, k=2)
+    assert 1 not in evaluator.best(bad, k=2).indices
 
 
 def test_wrong_shapes_and_dtypes_are_named(evaluator, poses):
-    for wrong, text in [(np.zeros((4, 3)), r"\(4, 3\)"), (np.zeros((5, 3, 4)), r"\(5, 3, 4\)"),
+    for wrong, text in [(np.zeros((4, 3)), r"\(4, 3\)"), (np.zeros((5, 3, 3)), r"\(5, 3, 3\)"),
                         (np.zeros(16), r"\(16,\)"), (np.float64(1), r"\(\)")]:
         for call in (evaluator.evaluate, evaluator.best, evaluator.race, evaluator.approximate,
                      evaluator.depth, evaluator.contributions, evaluator.trace):
@@ -93,9 +92,8 @@ def test_wrong_shapes_and_dtypes_are_named(evaluator, poses):
         evaluator.evaluate(poses.astype(complex))
     with pytest.raises(ValueError, match="<U"):
         evaluator.evaluate(poses.astype(str))
-    for wrong, text in [(poses, r"\(60, 4, 4\)"), (np.zeros((3, 3)), r"\(3, 3\)")]:
-        with pytest.raises(ValueError, match=r"the shape \(4, 4\), not " + text):
-            evaluator.depth(wrong)
+    with pytest.raises(ValueError, match=r"the shape \(4, 4\), \(3, 4\) or \(7,\) of one pose, not \(60, 4, 4\)"):
+        evaluator.depth(poses)
     with pytest.raises(ValueError, match=r"the shape \(3,\), not \(2,\)"):
         viewgain.sphere_poses(3, 1.0, center=(0, 0))
     with pytest.raises(TypeError):
@@ -200,11 +198,11 @@ def test_a_gain_of_ones_own(evaluator, poses):
                           (evaluator.best(poses, 5, measure=unknown, costs=costs), values - costs),
                           (evaluator.race(poses[:20], 5, measure=unknown), values[:20]),
                           (evaluator.best(poses, 5, costs=costs), evaluator.evaluate(poses) - costs)):
-        assert np.array_equal(chosen, np.argsort(-worth, kind="stable")[:5])
+        assert np.array_equal(chosen.indices, np.argsort(-worth, kind="stable")[:5])
+        assert np.array_equal(chosen.worth, worth[chosen.indices])
     with pytest.raises(KeyError, match="mine"):
         evaluator.race(poses, measure=broken)
-    with pytest.raises(ValueError, match="return_gains"):
-        evaluator.best(poses, measure=unknown, return_gains=True)
+    assert evaluator.best(poses, measure=unknown).gains.size == 0
     with pytest.raises(ValueError, match="costs"):
         evaluator.best(poses, costs=costs[:3])
 
@@ -309,7 +307,7 @@ def test_frames_say_what_the_hazard_is(sensor):
 
 
 def test_a_tour_weighs_the_way_and_keeps_to_its_budget(evaluator, poses):
-    chosen, marginal = evaluator.best_set(poses, 3, return_gains=True)
+    chosen, marginal = evaluator.best_set(poses, 3)[:2]
     free = evaluator.plan_tour(poses, max_stops=3)
     assert np.array_equal(free.indices, chosen) and free.way == 0
     assert np.array_equal(free.gains["gain"], marginal["gain"]) and np.array_equal(free.worth, marginal["gain"])

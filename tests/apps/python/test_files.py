@@ -59,10 +59,10 @@ def test_poses(tmp_path):
     poses = viewgain.sphere_poses(9, 0.5)
     path = tmp_path / "poses.txt"
     viewgain.write_poses(path, poses)
-    read, times = viewgain.read_poses(path, return_timestamps=True)
+    read, times = viewgain.read_timed_poses(path)
     assert np.allclose(read, poses, atol=1e-14) and np.array_equal(times, np.arange(9))
     viewgain.write_poses(path, poses[:2], [0.25, 1e9 + 0.125])
-    assert np.array_equal(viewgain.read_poses(path, return_timestamps=True)[1], [0.25, 1e9 + 0.125])
+    assert np.array_equal(viewgain.read_timed_poses(path)[1], [0.25, 1e9 + 0.125])
     assert viewgain.read_poses(path).shape == (2, 4, 4)
     bad = poses.copy()
     bad[3, 0, 0] = np.nan

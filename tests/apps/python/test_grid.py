@@ -25,22 +25,22 @@ def test_labels_come_back(labels, grid):
 
 def test_octomap_files(tmp_path, grid, sensor):
     path = tmp_path / "map.ot"
-    grid.save_octomap(path)
+    grid.save(path)
     # A tree lies in the world's frame.
     workspace = np.array([[0, 0, 0], [0.32, 0.32, 0.32]]) + grid.T_world_grid[:3, 3]
-    again = viewgain.BeliefGrid.load_octomap(path, workspace=workspace, prior_sigma=0.005)
+    again = viewgain.BeliefGrid.load(path, workspace=workspace, prior_sigma=0.005)
     assert again.prior_sigma == 0.005 and again.voxel_size == 0.01
     assert np.array_equal(again.states(), grid.states())
-    of_sensor = viewgain.BeliefGrid.load_octomap(str(path), sensor=sensor)
+    of_sensor = viewgain.BeliefGrid.load(str(path), sensor=sensor)
     assert of_sensor.prior_sigma == grid.prior_sigma
     assert np.count_nonzero(of_sensor.states() == 2) == np.count_nonzero(grid.states() == 2)
     path.write_bytes(path.read_bytes()[:200])
     with pytest.raises(viewgain.Error, match="map.ot"):
-        viewgain.BeliefGrid.load_octomap(path, sensor=sensor)
+        viewgain.BeliefGrid.load(path, sensor=sensor)
     with pytest.raises(FileNotFoundError):
-        viewgain.BeliefGrid.load_octomap(tmp_path / "none.ot")
+        viewgain.BeliefGrid.load(tmp_path / "none.ot")
     with pytest.raises(ValueError, match=r"\(2,\)"):
-        viewgain.BeliefGrid.load_octomap(path, workspace=[0, 1])
+        viewgain.BeliefGrid.load(path, workspace=[0, 1])
 
 
 def test_files(tmp_path, grid):
@@ -59,7 +59,7 @@ def test_files(tmp_path, grid):
         grid.save(tmp_path)
     assert folder.value.filename == str(tmp_path)
     with pytest.raises(NotADirectoryError):
-        grid.save_octomap(path / "map.ot")
+        grid.save(path / "map.ot")
     with pytest.raises(TypeError):
         viewgain.BeliefGrid.load(3)
     path.write_bytes(path.read_bytes()[:200])
@@ -86,8 +86,7 @@ def test_names_of_files_are_bytes(tmp_path, grid):
         viewgain.BeliefGrid.load(f"{tmp_path}/\udcfe.vdb")
     assert missing.value.filename == f"{tmp_path}/\udcfe.vdb"
     grid.save(tmp_path / "a.vdb")
-    for call in (viewgain.BeliefGrid.load, viewgain.BeliefGrid.load_octomap, grid.save,
-                 grid.save_octomap):
+    for call in (viewgain.BeliefGrid.load, grid.save):
         with pytest.raises(ValueError, match="null"):
             call(f"{tmp_path}/a\0b.vdb")
     assert sorted(os.listdir(folder)) == [b"a.vdb", b"m\xff.vdb"]

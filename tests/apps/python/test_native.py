@@ -115,9 +115,9 @@ def test_results_of_several_things_are_named_tuples(grid, sensor, evaluator, pos
                                         "property float z\nend_header\n1 2 3\n")
     planner = viewgain.ViewPlanner(sensor, voxel_size=0.02, workspace=[[-0.16] * 3, [0.16] * 3])
     planner.add_poses(poses)
-    results = [frames, clouds, grid.statistics(), sensor.sigmas(1.0), evaluator.best(poses, 2, return_gains=True),
-               evaluator.best_set(poses, 2, return_gains=True), evaluator.plan_tour(poses, max_stops=2), viewgain.load_cloud(tmp_path / "cloud.ply"),
-               viewgain.read_poses(tmp_path / "poses.txt", return_timestamps=True),
+    results = [frames, clouds, grid.statistics(), sensor.sigmas(1.0), evaluator.best(poses, 2),
+               evaluator.best_set(poses, 2), evaluator.plan_tour(poses, max_stops=2), viewgain.load_cloud(tmp_path / "cloud.ply"),
+               viewgain.read_timed_poses(tmp_path / "poses.txt"),
                viewgain.SimulatedSensor(*box_mesh([-0.1] * 3, [0.1] * 3), sensor).acquire(poses[0]),
                planner.add(np.full((144, 176), 0.5), poses[0]), planner.propose(), planner.rank(2), evaluator.outcomes(poses[0])]
     fields = 0
@@ -134,7 +134,7 @@ def test_results_of_several_things_are_named_tuples(grid, sensor, evaluator, pos
         with pytest.raises(KeyError):
             result["count_of_nothing"]
         assert result[0] is next(iter(result)) and len(result[:1]) == 1
-    assert len(results) == 14 and fields == 2 * 7 + 5 + 2 + 2 + 2 + 4 + 2 + 2 + 2 + 14 + 3 + 6 + 7
+    assert len(results) == 14 and fields == 2 * 7 + 5 + 2 + 7 + 4 + 4 + 2 + 2 + 2 + 14 + 3 + 6 + 7
     assert frames.readings + frames.out_of_range + frames.invalid + frames.plane_readings == 144 * 176
     assert clouds.readings == 1 and results[8].timestamps.tolist() == [0.5, 1.5]
 
@@ -196,7 +196,7 @@ def test_arrays_of_other_libraries_come_in_by_dlpack(grid, labels, sensor, evalu
             evaluator.evaluate(OtherArray(poses, device))
     with pytest.raises(ValueError, match=r"depth must be floating point \[m\].*uint16"):
         frame(OtherArray(depth.astype(np.uint16)), poses[0])
-    with pytest.raises(ValueError, match=r"shape \(..., 4, 4\), not \(2, 3\)"):
+    with pytest.raises(ValueError, match=r"shape \(..., 4, 4\), .* not \(2, 3\)"):
         evaluator.evaluate(OtherArray(points))
 
 

@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
 """ViewScorer against the parts that it is made of, and what it refuses."""
+import copy
+import pickle
 import threading
 
 import numpy as np
@@ -47,7 +49,7 @@ def test_gains_after_frames_are_those_of_the_parts(sensor, gain):
     assert np.array_equal(scorer.evaluator.evaluate(POSES), by_parts)
     best = scorer.best(POSES, 3)
     assert isinstance(best, viewgain.BestViews) and len(best.indices) == 3 and best.complete
-    assert np.array_equal(best.indices, scorer.evaluator.race(POSES, 3))
+    assert np.array_equal(best.indices, scorer.evaluator.race(POSES, 3).indices)
     assert np.array_equal(best.gains["gain"], gains[best.indices])
     assert scorer.consistency().suspicion is None
 
@@ -79,7 +81,7 @@ def test_a_measure_and_costs(sensor):
     costs = np.zeros(len(POSES))
     costs[gains.argmax()] = 1e9
     assert scorer.best(POSES, costs=costs).indices[0] != gains.argmax()
-    late = scorer.best(POSES, 2, seconds=0)
+    late = scorer.best(POSES, 2, deadline=0)
     assert len(late.indices) <= 2 and not late.complete
     priced = scorer.best(POSES, 3, costs=np.full(len(POSES), 2.0))
     assert np.array_equal(priced.worth, priced.gains["gain"] - 2)
@@ -101,11 +103,33 @@ def test_files_come_back(sensor, tmp_path):
     scorer.save(tmp_path / "map.vdb")
     again = viewgain.ViewScorer.load(tmp_path / "map.vdb", sensor)
     assert np.array_equal(again.evaluate(POSES), scorer.evaluate(POSES))
-    scorer.grid.save_octomap(tmp_path / "map.ot")
-    octree = viewgain.ViewScorer(sensor, map=tmp_path / "map.ot", **SETTINGS)
-    assert octree.evaluate(POSES).shape == (len(POSES),)
+    scorer.grid.save(tmp_path / "map.ot")
+    octree = viewgain.ViewScorer(sensor, map=tmp_path / "map.ot", prior_sigma=0.003)
+    assert octree.evaluate(POSES).shape == (len(POSES),) and octree.grid.prior_sigma == 0.003
     with pytest.raises(FileNotFoundError, match="none.vdb"):
-        viewgain.ViewScorer(sensor, map="none.vdb", **SETTINGS)
+        viewgain.ViewScorer(sensor, map="none.vdb")
+    of_grid = viewgain.ViewScorer(sensor, map=scorer.grid)
+    assert np.array_equal(of_grid.evaluate(POSES), scorer.evaluate(POSES))
+    # What the map has is not said twice.
+    for said in ({"voxel_size": 0.01}, {"workspace": WORKSPACE}, {"T_world_grid": np.eye(4)}, {"prior_sigma": 0.01}):
+        with pytest.raises(ValueError, match="map brings its own"):
+            viewgain.ViewScorer(sensor, map=tmp_path / "map.vdb", **said)
+
+
+@pytest.mark.parametrize("again", [copy.deepcopy, *(lambda one, p=p: pickle.loads(pickle.dumps(one, p)) for p in (0, 2, 5))])
+def test_pickles_have_settings_and_map(sensor, again):
+    corner = ([(0, 0, 0), (0.05, 0.05, 0.05)], 3.0)
+    scorer = viewgain.ViewScorer(sensor, boxes=[[(0.05, 0.05, 0), (0.1, 0.1, 0.1)]], gain="combined", weights=iter([corner]),
+                                 refinement_weight=0.5, body_size=(0.05, 0.05, 0.05), jump_edges=False, num_threads=1, **SETTINGS)
+    for i in range(2):
+        scorer.add(frame(sensor, POSES[5 * i], i)[0], POSES[5 * i])
+    copied = again(scorer)
+    assert np.array_equal(copied.evaluate(POSES), scorer.evaluate(POSES)) and scorer.evaluate(POSES).max() > 0
+    assert copied.best(POSES, 4).indices.tolist() == scorer.best(POSES, 4).indices.tolist()
+    depth = frame(sensor, POSES[12], 7)[0]
+    assert copied.add(depth, POSES[12]) == scorer.add(depth, POSES[12])
+    assert copied.grid.content_hash() == scorer.grid.content_hash()
+    assert copied.evaluator.num_threads == 1
 
 
 def test_refuses(sensor):
@@ -128,8 +152,6 @@ def test_refuses(sensor):
         scorer.best(POSES, costs=[1.0])
     with pytest.raises(ValueError, match="trace"):
         viewgain.ViewScorer(sensor, criterion="trace", **SETTINGS)
-    with pytest.raises(TypeError, match="pickle"):
-        scorer.__reduce_ex__(2)
     assert scorer.grid.content_hash() == viewgain.ViewScorer(sensor, **SETTINGS).grid.content_hash()
     assert repr(scorer).startswith("<ViewScorer of")
 

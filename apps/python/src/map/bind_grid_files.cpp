@@ -26,13 +26,6 @@ namespace viewgain::python {
 
 namespace {
 
-// A .ot that holds OpenVDB's data would be refused by all that read OctoMap's files.
-void refuse_octomap_name(const std::string& file) {
-  const std::string end = small_ending(file);
-  if (end != ".ot" && end != ".bt") return;
-  refuse(file + ": save writes OpenVDB; for an OctoMap .ot call save_octomap");
-}
-
 /// A folder of this process alone, which goes with it.
 class TemporaryFolder {
  public:
@@ -135,97 +128,65 @@ Returns
 BeliefGrid)")
       .def_static(
           "load",
-          [](const py::object& path) {
-            const std::string file = readable_file(path);
-            const WithoutGil without_gil;
-            return std::make_shared<SharedGrid>(load_vdb(file));
-          },
-          "path"_a, R"(Reads a map that ``save`` or the program viewgain wrote.
-
-Cost: linear in the file, 50 ms for 4 MB. Runs without the GIL.
-
-Parameters
-----------
-path : path-like
-    An OpenVDB file, .vdb; ``load_octomap`` reads OctoMap's .ot and .bt.
-
-Returns
--------
-BeliefGrid)")
-      .def_static(
-          "load_octomap",
           [](const py::object& path, const py::object& workspace, std::optional<double> prior_sigma,
-             const GivenOrNone<Sensor>& given, double occupied_from) {
+             const GivenOrNone<Sensor>& given, std::optional<double> occupied_from) {
             const std::string file = readable_file(path);
             const Sensor* sensor = given.value;
             OctomapConfig config;
             if (!workspace.is_none()) config.workspace = box(workspace, "workspace");
-            config.occupied_from = static_cast<float>(occupied_from);
-            config.prior_sigma = prior_sigma;
-            require_prior(prior_sigma, sensor);
-            const WithoutGil without_gil;
-            const std::string bytes = file_bytes(file);  // once: a pipe cannot be opened again
-            if (!prior_sigma) {
-              config.prior_sigma =
-                  default_prior_sigma(octomap_resolution_of_bytes(bytes, file), *sensor);
+            if (is_octomap(file)) {
+              require_prior(prior_sigma, sensor);
+            } else if (!workspace.is_none() || prior_sigma || occupied_from) {
+              refuse(file +
+                     ": workspace, prior_sigma and occupied_from are for OctoMap's .ot and "
+                     ".bt; a .vdb has its own");
             }
-            return std::make_shared<SharedGrid>(grid_from_octomap_bytes(bytes, config, file));
+            if (occupied_from) config.occupied_from = static_cast<float>(*occupied_from);
+            config.prior_sigma = prior_sigma;
+            const WithoutGil without_gil;
+            return std::make_shared<SharedGrid>(load_map(file, sensor, config));
           },
           "path"_a, py::kw_only(), "workspace"_a = py::none(), "prior_sigma"_a = py::none(),
-          "sensor"_a = py::none(), "occupied_from"_a = 0.0,
-          R"(Reads OctoMap's .ot or .bt; states are kept, and the log-odds of a .ot.
+          "sensor"_a = py::none(), "occupied_from"_a = py::none(),
+          R"(Reads a map: a .vdb of ``save`` or the program viewgain, or OctoMap's .ot or .bt.
 
-Cost: linear in the tree, 20 ms for 128**3 voxels with 40,000 occupied ones. Runs without the GIL.
+Of OctoMap's, states are kept, and the log-odds of a .ot. Cost: linear in the file, 50 ms for 4 MB of a
+.vdb, 20 ms for a tree of 128**3 voxels with 40,000 occupied ones. Runs without the GIL.
 
 Parameters
 ----------
 path : path-like
 workspace : array_like, (2, 3), optional
-    Lowest and highest corner [m], in the tree's frame; default: the box of its known voxels.
+    OctoMap: lowest and highest corner [m], in the tree's frame; default: the box of its known voxels.
 prior_sigma : float, optional
-    Standard deviation of an unknown voxel's position [m].
+    OctoMap: standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional
-    As for a new grid: one of the two is needed.
-occupied_from : float
-    Log-odds from which a voxel of a .ot is occupied.
+    OctoMap: as for a new grid; this or prior_sigma is needed.
+occupied_from : float, optional
+    OctoMap: log-odds from which a voxel of a .ot is occupied; 0 unless given.
 
 Returns
 -------
 BeliefGrid)")
       .def(
-          "save_octomap",
-          [](const SharedGrid& grid, const py::object& path) {
-            const std::string file = writable_file(path);
-            grid.read([&](const BeliefGrid& g) { save_octomap(g, file); });
-          },
-          "path"_a,
-          R"(Writes states and log-odds as an OctoMap .ot, in the world's frame where
-T_world_grid is a shift by whole voxels, else in the grid's own.
-
-Cost: linear in the tree, 50 ms for 128**3 voxels with 40,000 occupied ones.
-
-Parameters
-----------
-path : path-like
-    Must end in .ot; .bt is read, but not written.)")
-      .def(
           "save",
           [](const SharedGrid& grid, const py::object& path, bool with_covariance) {
-            refuse_octomap_name(file_path(path));
             const std::string file = writable_file(path);
-            grid.read([&](const BeliefGrid& g) { save_vdb(g, file, {with_covariance}); });
+            grid.read([&](const BeliefGrid& g) { return save_map(g, file, {with_covariance}); });
           },
           "path"_a, py::kw_only(), "with_covariance"_a = false,
-          R"(Writes the map as a plain OpenVDB file; nothing half-written is left behind.
+          R"(Writes the map as an OpenVDB file, or as an OctoMap .ot, whole or not at all.
 
-Cost: linear in the blocks of voxels, 80 ms for 128**3 voxels with 40,000 occupied ones, 4 MB.
+A .ot has states and log-odds alone, in the world's frame where T_world_grid is a shift by whole voxels,
+else in the grid's own. Cost: linear in the blocks of voxels, 80 ms for 128**3 voxels with 40,000 occupied
+ones, 4 MB.
 
 Parameters
 ----------
 path : path-like
-    Must end in .vdb; ``save_octomap`` writes an OctoMap .ot.
+    Must end in .vdb or .ot.
 with_covariance : bool
-    Adds covariances and mean places, for viewers.)");
+    Adds covariances and mean places to a .vdb, for viewers.)");
 }
 
 }  // namespace viewgain::python

@@ -13,4 +13,9 @@ except ModuleNotFoundError as error:
     if error.name != __name__ + "._mesh":
         raise
     raise ImportError(_text, name=__name__) from None
+from .. import _calls
+from . import _mesh
+
+_calls.explain(_mesh)
+from ._mesh import *
 from .results import BoundaryCandidates, BoundaryClass, ViewRecord

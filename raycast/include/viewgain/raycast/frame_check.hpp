@@ -24,8 +24,9 @@ struct VIEWGAIN_EXPORT FrameConsistency {
   std::size_t seen_past = 0;   ///< of readings of earlier frames, those that later ones see past
   double share_in_free = 0;    ///< of all their readings, those that others saw as free
   double share_seen_past = 0;  ///< of readings of earlier frames, those that later ones see past
-  /// Medians over the frames of FrameContradiction's [m]; NaN if no frame could be compared.
-  double displacement = 0, expected = 0;
+  /// Median over the frames of FrameContradiction's [m]; NaN if no frame could be compared.
+  double displacement = 0;
+  double expected = 0;  ///< likewise
   /// Which frames contradict the others, ascending; empty unless something is suspected.
   std::vector<std::size_t> contradicting{};
   Suspicion suspicion{};  ///< the likely cause; its kind is empty where the frames agree

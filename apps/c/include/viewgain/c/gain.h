@@ -167,20 +167,13 @@ VG_API vg_status vg_best(const vg_evaluator* evaluator, const double* poses, siz
 
 /* The k best poses, very probably, faster: poses are compared by about 400 of their rays, and the
    best of these scored in full. `seed` says which rays, for VG_GAIN_PAPER; for the others they are
-   in the middle of the image's cells. `indices`, `gains` and *found as for vg_best(), best
-   first. The same for a seed and any number of threads. */
+   in the middle of the image's cells. `indices`, `gains` and *found as for vg_best(). The same for
+   a seed and any number of threads.
+   deadline: time limit of the call [s], >= 0, or INFINITY. Half of it at most goes to comparing
+   poses from all over the list; then those that were scored in full count, VG_OK. */
 VG_API vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
-                         uint64_t seed, size_t* indices, double* gains, size_t* found,
-                         const vg_watch* watch);
-
-/* The best that can be said in so many seconds from the call on (>= 0): poses from all over the
-   list are estimated for half of the time at most, then the most promising scored in full; VG_OK,
-   whatever was reached. *found, fewer than k where fewer were scored in full, `indices` and `gains`
-   as for vg_race(). *estimated and *scored (null: not wanted) say how many poses were scored by
-   some of their rays and how many in full; the others were not looked at. */
-VG_API vg_status vg_race_until(const vg_evaluator* evaluator, const double* poses, size_t count,
-                               size_t k, uint64_t seed, double seconds, size_t* indices,
-                               double* gains, size_t* found, size_t* estimated, size_t* scored);
+                         double deadline, uint64_t seed, size_t* indices, double* gains,
+                         size_t* found, const vg_watch* watch);
 
 /* Up to k poses that are good together, in the order of their choice; gains: what each adds to
    those before it. VG_STOPPED: those chosen so far. */

@@ -32,22 +32,22 @@ typedef struct vg_scorer_config {
                                     vg_default_prior_sigma() */
   double support_plane;          /* height z of a table without end, world [m]; NaN: none */
   const double* boxes;           /* obstacles; readings of them only carve */
-  size_t box_count;
-  const double* vertices;
-  size_t vertex_count;
-  const uint32_t* triangles;
-  size_t triangle_count;
-  double jump_edge_angle;     /* of the filter for flying pixels: 5 degrees [rad]; 0: off */
-  double object_size;         /* longest side of the object [m]; NaN (the default): that of the
-                                 surface seen so far */
-  double body_size[3];        /* width, height, depth of the sensor's housing [m]; all 0 (the
-                                 default): vg_scorer_best() does not check feasibility */
-  int32_t has_flange;         /* nonzero: T_flange_camera is used, as in vg_feasibility_config */
-  double T_flange_camera[16]; /* identity */
-  double clearance;           /* free space required around the body [m]; 0 */
-  int32_t coarsest, finest;   /* scales of leaves, as in vg_integrator_config; 0 */
-  const double* fine;         /* likewise */
-  size_t fine_count;
+  size_t box_count;              /* how many */
+  const double* vertices;        /* obstacles as triangles */
+  size_t vertex_count;           /* how many */
+  const uint32_t* triangles;     /* likewise */
+  size_t triangle_count;         /* how many */
+  double jump_edge_angle;        /* of the filter for flying pixels: 5 degrees [rad]; 0: off */
+  double object_size;            /* longest side of the object [m]; NaN (the default): that of the
+                                    surface seen so far */
+  double body_size[3];           /* width, height, depth of the sensor's housing [m]; all 0 (the
+                                    default): vg_scorer_best() does not check feasibility */
+  int32_t has_flange;            /* nonzero: T_flange_camera is used, as in vg_feasibility_config */
+  double T_flange_camera[16];    /* identity */
+  double clearance;              /* free space required around the body [m]; 0 */
+  int32_t coarsest, finest;      /* scales of leaves, as in vg_integrator_config; 0 */
+  const double* fine;            /* likewise */
+  size_t fine_count;             /* how many */
 } vg_scorer_config;
 /* The defaults. */
 VG_API void vg_scorer_config_init(vg_scorer_config* config, size_t struct_size);
@@ -103,14 +103,16 @@ VG_API vg_status vg_scorer_evaluate(const vg_scorer* scorer, const double* poses
                                     double* gains, const vg_watch* watch);
 /* The k best poses, very probably, best first, as vg_race(). If body_size is set, only feasible
    poses are chosen. costs: one per pose, subtracted from its gain, in the gain's unit, or null.
-   seconds: time limit of the call, as in vg_race_until(); INFINITY: none. */
+   deadline: time limit of the call [s], as in vg_race(); INFINITY: none. */
 VG_API vg_status vg_scorer_best(const vg_scorer* scorer, const double* poses, size_t count,
-                                size_t k, const double* costs, double seconds, size_t* indices,
+                                size_t k, const double* costs, double deadline, size_t* indices,
                                 double* gains, size_t* found, const vg_watch* watch);
 
-/* A copy of the map; the current scene; an evaluator of it, for the functions that take one. */
+/* A copy of the map. */
 VG_API vg_status vg_scorer_grid(const vg_scorer* scorer, vg_grid** grid);
+/* The current scene, for the functions that take one. */
 VG_API vg_status vg_scorer_scene(const vg_scorer* scorer, vg_scene** scene);
+/* An evaluator of the current scene, for the functions that take one. */
 VG_API vg_status vg_scorer_evaluator(const vg_scorer* scorer, vg_evaluator** evaluator);
 
 /* Whether the frames in the map fit one another, as C++'s FrameConsistency. */
