@@ -33,6 +33,11 @@ using Shape = std::vector<py::ssize_t>;
 /// "(3, 4)"
 [[nodiscard]] std::string shape_text(const py::array& array);
 
+/// Throws py::value_error: the argument must have the wanted shape, not the array's.
+[[noreturn]] void reject_shape(const char* name, const std::string& wanted, const py::array& array);
+/// Whether it is what numpy makes of [], whatever that is a list of.
+[[nodiscard]] bool is_empty_list(const py::array& array);
+
 /// What numpy.asarray makes of the value, or numpy.from_dlpack of one that has __dlpack__ and no
 /// __array__. A TypeError or ValueError on the way becomes ValueError with the text `refusal`, and
 /// so does an array in another device's memory; others pass, MemoryError and KeyboardInterrupt
@@ -59,24 +64,6 @@ using Shape = std::vector<py::ssize_t>;
 [[nodiscard]] Doubles items(const py::handle& value, const char* name, const Shape& item);
 /// The shape of an array without its last axes.
 [[nodiscard]] Shape leading_shape(const py::array& array, py::ssize_t last_axes);
-
-/// Poses and the shape of their array without the axes of a pose.
-struct PoseBatch {
-  std::vector<Pose> poses;
-  Shape shape;
-};
-
-/// T_world_camera as (..., 4, 4), (..., 3, 4) or (..., 7) of tx ty tz qx qy qz qw [m], [1]. A last
-/// row or a rotation that is off by more than 1e-3, or a quaternion's norm by 1e-2, makes a bad
-/// pose (NaN); with `strict` it throws and names the pose's index.
-[[nodiscard]] PoseBatch pose_batch(const py::handle& value, const char* name, bool strict);
-[[nodiscard]] Pose one_pose(const py::handle& value, const char* name, bool strict = true);
-[[nodiscard]] std::optional<Pose> optional_pose(const py::object& value, const char* name);
-/// Of one leading axis, every one good.
-[[nodiscard]] std::vector<Pose> pose_list(const py::handle& value, const char* name);
-
-[[nodiscard]] py::array_t<double> to_array(std::span<const Pose> poses, const Shape& leading);
-[[nodiscard]] py::array_t<double> to_array(const Pose& pose);
 
 /// Whatever has a __float__; else throws TypeError with the name and the value.
 [[nodiscard]] double number(const py::handle& value, const char* name);

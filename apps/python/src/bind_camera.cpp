@@ -17,6 +17,7 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
+#include "pose_arrays.hpp"
 #include "viewgain/core/camera.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/support/text.hpp"

@@ -19,6 +19,7 @@
 #include "evaluator_docs.hpp"
 #include "gil.hpp"
 #include "given.hpp"
+#include "pose_arrays.hpp"
 #include "suspicions.hpp"
 #include "viewgain/raycast/view_tour.hpp"
 

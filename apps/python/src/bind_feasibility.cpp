@@ -13,6 +13,7 @@
 #include "evaluator.hpp"
 #include "gil.hpp"
 #include "given.hpp"
+#include "pose_arrays.hpp"
 #include "viewgain/core/reach.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 

@@ -15,6 +15,7 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
+#include "pose_arrays.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/pose_files.hpp"
 #include "viewgain/formats/reach_toml.hpp"

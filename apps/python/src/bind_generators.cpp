@@ -7,6 +7,7 @@
 #include <string>
 
 #include "arrays.hpp"
+#include "pose_arrays.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/tour.hpp"
 

@@ -26,6 +26,7 @@
 #include "map/shared_grid.hpp"
 #include "planner_class.hpp"
 #include "planner_docs.hpp"
+#include "pose_arrays.hpp"
 #include "suspicions.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/planner/view_planner.hpp"

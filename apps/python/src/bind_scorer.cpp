@@ -21,6 +21,7 @@
 #include "given.hpp"
 #include "map/depth_images.hpp"
 #include "map/shared_grid.hpp"
+#include "pose_arrays.hpp"
 #include "scorer_docs.hpp"
 #include "suspicions.hpp"
 #include "viewgain/formats/map_file.hpp"

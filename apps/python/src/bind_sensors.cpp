@@ -12,6 +12,7 @@
 #include "classes.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
+#include "pose_arrays.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/support/noise_fields.hpp"
 #include "viewgain/support/text.hpp"

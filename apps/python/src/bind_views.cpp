@@ -14,6 +14,7 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/depth_images.hpp"
+#include "pose_arrays.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::python {

@@ -17,6 +17,7 @@
 
 #include "arrays.hpp"
 #include "gil.hpp"
+#include "pose_arrays.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/raycast/view_measure.hpp"

@@ -13,6 +13,7 @@
 #include "arrays.hpp"
 #include "gil.hpp"
 #include "map/shared_grid.hpp"
+#include "pose_arrays.hpp"
 #include "viewgain/planner/view_planner.hpp"
 
 namespace viewgain::python {

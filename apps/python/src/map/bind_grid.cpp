@@ -15,6 +15,7 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "grid_class.hpp"
+#include "pose_arrays.hpp"
 #include "shared_grid.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/fused_points.hpp"

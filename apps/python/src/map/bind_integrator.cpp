@@ -16,6 +16,7 @@
 #include "evaluator.hpp"
 #include "gil.hpp"
 #include "given.hpp"
+#include "pose_arrays.hpp"
 #include "shared_grid.hpp"
 #include "suspicions.hpp"
 #include "viewgain/core/sensor.hpp"

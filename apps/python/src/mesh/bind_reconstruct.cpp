@@ -14,6 +14,7 @@
 #include "given.hpp"
 #include "map/depth_images.hpp"
 #include "map/shared_grid.hpp"
+#include "pose_arrays.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/policies.hpp"

@@ -15,6 +15,7 @@
 #include "gil.hpp"
 #include "given.hpp"
 #include "map/shared_grid.hpp"
+#include "pose_arrays.hpp"
 #include "viewgain/formats/ply.hpp"
 #include "viewgain/mesh/boundary.hpp"
 #include "viewgain/mesh/surface.hpp"
