@@ -1,6 +1,6 @@
 # The program viewgain and the C++ library, on Debian 12, from the packages that CPack makes:
 #   docker build -t viewgain .
-#   docker run --rm -v "$PWD:/data" viewgain score map.vdb --sphere 2000,0.6 --sensor sr4000
+#   docker run --rm -v "$PWD:/data" viewgain score map.vdb --poses sphere:2000,0.6 --sensor sr4000
 FROM debian:12 AS build
 COPY apps/install_dependencies.sh /source/apps/
 RUN apt-get update && /source/apps/install_dependencies.sh --packages && rm -rf /var/lib/apt/lists/*

@@ -21,7 +21,7 @@ report=on
 
 "$viewgain" reconstruct build/meshes/camel.off --sensor sr4000 --size 0.35 --voxel 0.003125 --max-views 12 \
   --up y --save-maps on --report "$report" --seed 1 --out "$out"
-"$viewgain" score "$out/maps/03.vdb" --sphere 2000,0.6 --race --top 10 \
+"$viewgain" score "$out/maps/03.vdb" --poses sphere:2000,0.6 --race --top 10 \
   --out "$out/scores.csv" --picture "$out/best_view.png"
 echo "left in $out: run.json, config.toml, views.txt, map.vdb, surface.ply, points.ply, views/, maps/, scores.csv, best_view.png"
 [ "$report" = off ] || echo "the run to click through, in a browser: $PWD/$out/report.html"

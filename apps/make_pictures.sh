@@ -35,7 +35,7 @@ for picture in "${wanted[@]}"; do
       cp "$work/python/gains.png" $gallery/gains.png ;;
     idea)
       demo
-      viewgain score "$work/demo/maps/02.vdb" --sphere 2000,0.6 --gain paper --top 1 --picture "$work/idea.png"
+      viewgain score "$work/demo/maps/02.vdb" --poses sphere:2000,0.6 --gain paper --top 1 --picture "$work/idea.png"
       "$python" $gallery/draw.py idea "$work/idea.png" $gallery/idea.png ;;
     speed)
       viewgain-bench trace --threads 2 --json >"$work/trace.json"

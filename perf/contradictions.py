@@ -200,11 +200,11 @@ def main():
                   Scene("bin", own[bin_of_boxes], over_a_bin, "-.4,-.3,-.2,.4,.3,.2", .005, "sr4000", ())]
         for n, mesh in enumerate(options.meshes):
             scenes.append(Scene(mesh.stem, mesh.resolve(), round_an_object, "-.25,-.25,-.25,.25,.25,.25", .005,
-                                ["sr4000", "d435"][n % 2], ("--size", .35, "--recenter", "on")))
+                                ["sr4000", "d435"][n % 2], ("--size", .35, "--place", "center")))
         for scene in scenes:
             folder = Folder(options.program, scene, root)
-            for flags, line in (((), ""), (("--flying-pixels", "off"), ""), (("--scale-error", .01), "scale_sigma = 0.01"),
-                                (("--pose-noise", ".005,.5"), "pose_sigma_rad = [0.005, 0.0087]")):
+            for flags, line in (((), ""), (("--noise", "plain"), ""), (("--noise", "on,scale=0.01"), "scale_sigma = 0.01"),
+                                (("--noise", "on,pose=.005/.5"), "pose_sigma_rad = [0.005, 0.0087]")):
                 for seed in range(3):
                     path = folder.simulate(options.seed + seed, *flags)
                     folder.declare(line)

@@ -45,8 +45,8 @@ def simulate(program, mesh, number, folder):
     sensor.write_text(SENSOR.format(**s))
     distance = [0.45, 0.55, 0.7, 0.9][number // 4 % 4]
     views = [6, 9, 14][number % 3]
-    run(program, "simulate", mesh, "--orbit", f"{views},{distance},{[20, 35, 50][number // 3 % 3]}", "--sensor", sensor,
-        "--size", 0.3 + 0.05 * (number % 3), "--recenter", "on", "--noise", "on", "--seed", number, *(["--background", 0] if number % 5 == 4 else []), "--out", folder)
+    run(program, "simulate", mesh, "--poses", f"orbit:{views},{distance},{[20, 35, 50][number // 3 % 3]}", "--sensor", sensor,
+        "--size", 0.3 + 0.05 * (number % 3), "--place", "center", "--noise", "on", "--seed", number, *(["--background", 0] if number % 5 == 4 else []), "--out", folder)
     return s
 
 

@@ -33,7 +33,7 @@ def meshes(work):
 
 def read(program, mesh, frames):
     """What the program says of a mesh: its JSON, or its error."""
-    call = [program, "simulate", mesh, "--size", "0.35", "--recenter", "on", "--up", "y", "--orbit", "1,0.6,27",
+    call = [program, "simulate", mesh, "--size", "0.35", "--place", "center", "--up", "y", "--poses", "orbit:1,0.6,27",
             "--sensor", "sr4000", "--threads", "1", "--json", "--quiet", "--out", frames]
     done = subprocess.run(call, capture_output=True, text=True, timeout=300, check=False)
     shutil.rmtree(frames, ignore_errors=True)

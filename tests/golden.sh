@@ -3,8 +3,8 @@
 # - `viewgain reconstruct` and `viewgain score` for three objects and three policies, with one and with two threads
 #   and with every instruction set of this machine: the map's hash, run.json without its times, the scores;
 # - of six of these maps the next views and their JSON without times (`viewgain next`);
-# - two recordings, round the demo's camel and in a room: the map and JSON of `integrate`, `next FRAMES`,
-#   `reconstruct FRAMES` and `follow`.
+# - two recordings, round the demo's camel and in a room: the map and JSON of `integrate`, `model` and
+#   `model --watch`.
 #   tests/golden.sh [PROGRAM]            default: build/release/bin/viewgain; ends with 1 where anything differs
 #   tests/golden.sh --record [PROGRAM]   writes tests/golden.txt anew; the commit says what changed and why
 set -euo pipefail
@@ -39,6 +39,8 @@ print(json.dumps(kept(json.load(open(sys.argv[1])))))
 PYTHON
 }
 
+hash_of() { "$viewgain" info "$1" | sed -n 's/^hash *\(.\{16\}\).*/\1/p'; }
+
 # One run: hash of the map, of run.json and of the scores.
 figures() {
   local object=$1 policy=$2 isa=$3 threads=$4
@@ -46,9 +48,9 @@ figures() {
   VIEWGAIN_ISA=$isa "$viewgain" reconstruct "$work/$object.off" --size 0.35 --sensor sr4000 --voxel 0.005 \
     --policy "$policy" --max-views 4 --seed 3 --threads "$threads" --pictures off --out "$out" >"$work/log" 2>&1 ||
     { cat "$work/log" >&2; return 1; }
-  VIEWGAIN_ISA=$isa "$viewgain" score "$out/map.vdb" --sphere 100,0.6 --sensor sr4000 --gain paper --threads "$threads" \
+  VIEWGAIN_ISA=$isa "$viewgain" score "$out/map.vdb" --poses sphere:100,0.6 --sensor sr4000 --gain paper --threads "$threads" \
     --out "$out/scores.csv" >"$work/log" 2>&1 || { cat "$work/log" >&2; return 1; }
-  printf '%s %s %s' "$("$viewgain" info "$out/map.vdb" --hash | cut -c1-16)" \
+  printf '%s %s %s' "$(hash_of "$out/map.vdb")" \
     "$(without_times "$out/run.json" | sha256sum | cut -c1-16)" "$(sha256sum <"$out/scores.csv" | cut -c1-16)"
 }
 
@@ -57,25 +59,24 @@ short() { sha256sum | cut -c1-16; }
 # Runs the program in the folder of work, where files have the same names in each call.
 call() { (cd "$work" && VIEWGAIN_ISA=sse4 "$viewgain" "$@" 2>"$work/log") || { cat "$work/log" >&2; return 1; }; }
 
-# The next views of a map or of frames, and their JSON.
+# The next views of a map, and their JSON.
 next_views() {
   call next "$@" --top 5 --json --out next.txt --quiet >"$work/next.json"
   printf '%s %s' "$(short <"$work/next.txt")" "$(without_times "$work/next.json" | short)"
 }
 
-# A recording by the four ways from frames.
+# A recording by the three ways from frames.
 recording() {
   local name=$1 layout=(--voxel "$2" --workspace "$3")
   call integrate "$name" "${layout[@]}" --out "$name.vdb" --json --quiet >"$work/integrate.json"
-  printf '%s integrate %s %s\n' "$name" "$("$viewgain" info "$work/$name.vdb" --hash | cut -c1-16)" \
+  printf '%s integrate %s %s\n' "$name" "$(hash_of "$work/$name.vdb")" \
     "$(without_times "$work/integrate.json" | short)"
-  printf '%s next %s\n' "$name" "$(next_views "$name" "${layout[@]}")"
-  call reconstruct "$name" "${layout[@]}" --out "$name-run" --quiet >/dev/null
-  printf '%s reconstruct %s %s\n' "$name" "$("$viewgain" info "$work/$name-run/map.vdb" --hash | cut -c1-16)" \
+  call model "$name" "${layout[@]}" --out "$name-run" --quiet >/dev/null
+  printf '%s model %s %s\n' "$name" "$(hash_of "$work/$name-run/map.vdb")" \
     "$(without_times "$work/$name-run/run.json" | short)"
-  touch "$work/$name/done" # ends `follow`
-  call follow "$name" "${layout[@]}" --top 5 --out "$name-plan" --quiet >/dev/null
-  printf '%s follow %s %s\n' "$name" "$(short <"$work/$name-plan/next.txt")" \
+  touch "$work/$name/done" # ends the watch
+  call model "$name" --watch "${layout[@]}" --top 5 --out "$name-plan" --quiet >/dev/null
+  printf '%s watch %s %s\n' "$name" "$(short <"$work/$name-plan/next.txt")" \
     "$(without_times "$work/$name-plan/next.json" | short)"
 }
 
@@ -98,7 +99,7 @@ for object in camel lion-head mannequin-devil; do
 done
 
 # The demo's camel, with noise; and a room of 3 m with a table and a cupboard, seen from its middle.
-"$viewgain" simulate "$work/camel.off" --size 0.35 --recenter on --up y --orbit 8,0.6,27 --sensor sr4000 --noise on \
+"$viewgain" simulate "$work/camel.off" --size 0.35 --place center --up y --poses orbit:8,0.6,27 --sensor sr4000 --noise on \
   --out "$work/demo" --quiet >/dev/null
 python3 - "$work" <<'PYTHON'
 import math, sys

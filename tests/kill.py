@@ -7,7 +7,7 @@ what a call leaves that nobody ended.
     tests/kill.py PROGRAM MESH [--kills 100] [--seed 1] [--work FOLDER]
 
 Half of the kills hit `reconstruct --resume` (of a mesh into no folder, over an earlier run, with a report; of
-recorded frames), a quarter `follow`, a quarter `study`. Bytes are compared, but for times: values and
+recorded frames), a quarter `model --watch`, a quarter `study`. Bytes are compared, but for times: values and
 columns named seconds and deciding_seconds, and a table's columns in s. Ends with 1 where anything differs.
 """
 import argparse
@@ -130,11 +130,11 @@ class Kills:
                 self.failures.append(f"{name}: leaves a hidden folder")
         print(f"{name}: {count} kills", flush=True)
 
-    def of_follow(self, frames, count):
+    def of_watch(self, frames, count):
         """Frames come one by one, as a robot takes them: each when the one before is counted."""
         names = sorted(path.name for path in frames.glob("*.depth.png"))
         poses = (frames / "poses.txt").read_text().splitlines(keepends=True)
-        arguments = ["follow", "live", "--voxel", "0.0125", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+        arguments = ["model", "live", "--watch", "--voxel", "0.0125", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
                      "--out", "out"]
 
         def feed(kill_times):
@@ -161,11 +161,11 @@ class Kills:
                         self.kill(process, 0)
                         process = self.start(arguments)
                     elif process.poll() is not None:
-                        raise RuntimeError(f"follow ended: {process.stderr.read().decode()}")
+                        raise RuntimeError(f"the watch ended: {process.stderr.read().decode()}")
                     time.sleep(0.005)
             (live / "done").touch()
             if process.wait() != 0:
-                raise RuntimeError(f"follow ended: {process.stderr.read().decode()}")
+                raise RuntimeError(f"the watch ended: {process.stderr.read().decode()}")
             return time.monotonic() - begin
 
         def is_counted(least):
@@ -180,7 +180,7 @@ class Kills:
         while self.kills < end:
             few = min(self.random.choice((1, 2, 3)), end - self.kills)
             feed(sorted(self.random.uniform(0, seconds) for _ in range(few)))
-            self.compare("follow", "out", expected)
+            self.compare("watch", "out", expected)
 
 
 def main():
@@ -190,7 +190,7 @@ def main():
     parser.add_argument("--kills", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--work", required=True)
-    parser.add_argument("--only", choices=("reconstruct", "follow", "study"))
+    parser.add_argument("--only", choices=("reconstruct", "watch", "study"))
     options = parser.parse_args()
     work = pathlib.Path(options.work).resolve()
     shutil.rmtree(work, ignore_errors=True)
@@ -201,9 +201,9 @@ def main():
 
     camel = ["reconstruct", mesh, "--size", "0.35", "--sensor", "sr4000", "--voxel", "0.0125", "--up", "y",
              "--max-views", "5", "--resume"]
-    kills.run(["simulate", mesh, "--size", "0.35", "--recenter", "on", "--sensor", "sr4000", "--orbit",
-               "5,0.6,27", "--noise", "on", "--out", "frames"])
-    of_frames = ["reconstruct", "frames", "--voxel", "0.0125", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+    kills.run(["simulate", mesh, "--size", "0.35", "--place", "center", "--sensor", "sr4000", "--poses",
+               "orbit:5,0.6,27", "--noise", "on", "--out", "frames"])
+    of_frames = ["model", "frames", "--voxel", "0.0125", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
                  "--resume"]
     earlier = ["reconstruct", mesh, "--size", "0.35", "--sensor", "sr4000", "--voxel", "0.025", "--max-views", "1",
                "--pictures", "off"]
@@ -212,8 +212,8 @@ def main():
         kills.of_calls("camel over another", camel, eighth, before=earlier)
         kills.of_calls("camel with a report", [*camel, "--report", "on"], eighth)
         kills.of_calls("camel's frames", of_frames, eighth)
-    if options.only in (None, "follow"):
-        kills.of_follow(work / "frames", quarter)
+    if options.only in (None, "watch"):
+        kills.of_watch(work / "frames", quarter)
     (work / "spec.toml").write_text(f'''objects = ["{mesh}"]
 policies = ["gain:combined", "random"]
 seeds = [1, 2]

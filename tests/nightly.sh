@@ -11,7 +11,7 @@
 #     perf        every benchmark at its smallest size
 #     debian13    the release build, the site and their tests in a clean Debian 13 (root)
 #     arm64       the library and the oracles' tests by cross compiler, run by qemu-user (root)
-#     kill        100 kills of runs, of follow and of studies: all end as if nothing had been
+#     kill        100 kills of runs, of watches and of studies: all end as if nothing had been
 #     vdb         .vdb files: damaged ones, with little memory, read by OpenVDB's own tools
 #     mutate      60 faults put into the code, one at a time: do the tests catch them?
 #     fuzz [N]    libFuzzer for each reader and the calls of C, N minutes each (1)
@@ -94,7 +94,7 @@ run_part() {
     long)
       build release
       PYTHONPATH=build/release/python /usr/bin/python3 tests/long_run.py --csv build/long.csv --plot tests/long.png | tee build/long.log
-      ./tests/long_follow.py build/release/bin/viewgain build/release/meshes/camel.off --work build/long | tee -a build/long.log
+      ./tests/long_watch.py build/release/bin/viewgain build/release/meshes/camel.off --work build/long | tee -a build/long.log
       ;;
   esac
 }

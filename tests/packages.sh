@@ -85,9 +85,9 @@ OFF
 4 1 2 6 5
 4 0 4 7 3
 MESH
-viewgain simulate /box.off --orbit 1,0.6,20 --sensor sr4000 --size 0.2 --out /frames >/dev/null
+viewgain simulate /box.off --poses orbit:1,0.6,20 --sensor sr4000 --size 0.2 --out /frames >/dev/null
 viewgain integrate /frames --voxel 0.01 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out /map.vdb >/dev/null
-viewgain score /map.vdb --sphere 50,0.6 --sensor sr4000 --top 3 --threads 1 | tee /score.txt
+viewgain score /map.vdb --poses sphere:50,0.6 --sensor sr4000 --top 3 --threads 1 | tee /score.txt
 INSIDE
 cat >"$root/client.sh" <<'INSIDE'
 set -euo pipefail

@@ -15,7 +15,7 @@ for file, seed, sensor, voxel, size in itertools.product(*settings):
     poses, more = np.empty((0, 4, 4)), keys.get("flags", []) + [f"--size={size}"] * (size is not None)
     for views in range(1, keys["max_views"] + 1):  # the study's start, camera, noise and truth, views of our choice
         subprocess.run(["viewgain", "reconstruct", spec.parent / file, f"--seed={seed}", f"--sensor={sensor}", f"--voxel={voxel}",
-                        f"--tolerance={tolerance}", f"--max-views={views}", "--policy=sequence", "--stop-idle=0", "--stop-promises=0",
+                        f"--tolerance={tolerance}", f"--max-views={views}", "--policy=sequence", "--stop=idle=0", "--stop=promises=0",
                         "--pictures=off", "--quiet", f"--out={work}/run", *more], check=True, stdout=subprocess.DEVNULL)
         run = json.loads((work / "run/run.json").read_text())
         scorer = viewgain.ViewScorer.load(work / "run/map.vdb", viewgain.Sensor.load(sensor))

@@ -8,22 +8,23 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "program/cli/app.hpp"
 #include "program/cli/call_files.hpp"
+#include "program/cli/command_line.hpp"
 #include "program/cli/config_file.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
-#include "viewgain/version.hpp"
 
 namespace viewgain::app {
 namespace {
@@ -51,71 +52,34 @@ int end_of_output() {
   return 0;
 }
 
-// The command of the subcommand that the first word names; null where it is a flag or there is
-// none.
-const Command* called(const std::vector<Command>& commands, const std::vector<std::string>& words) {
-  if (words.empty() || words[0].starts_with("-")) return nullptr;
-  std::vector<std::string> names;
-  for (const Command& command : commands) {
-    if (command.app->get_name() == words[0]) return &command;
-    names.push_back(command.app->get_name());
-  }
-  refuse(fault_of_name(words[0], names, "subcommand"));
-}
-
-// Parses the command line, with what a --config stands for. The command of the form that was meant;
-// null where that printed a help.
-const Command* parsed(App& program, const std::vector<Command>& commands,
-                      const std::vector<std::string>& words) {
-  const Command* command = called(commands, words);
-  if (command == nullptr) {
-    if (!words.empty()) (void)sort_words(program, {}, all_options(program), {words[0]});
-    (void)parse(program, words);  // a help, or an error
-    return nullptr;
-  }
-  Forms forms{command->app};
-  if (command->of_frames) forms.push_back(command->of_frames->app);
-  const std::vector<std::string> after(words.begin() + 1, words.end());
-  App& form = form_of(forms, after);
-  std::vector<std::string> all = with_config(form, forms, after);
-  if (&form != command->app) return parse(form, all) ? command->of_frames.get() : nullptr;
-  all.insert(all.begin(), words[0]);
-  if (parse(program, all)) return command;
-  if (command->of_frames) std::cout << "\n" << command->of_frames->app->help();
-  return nullptr;
-}
-
 int run(int argc, char** argv) {
-  App program(
-      "viewgain scores camera poses by expected information gain: simulate or read depth frames, "
-      "integrate them into a voxel map, score candidate views against it. Units: m, rad, s, nat, "
-      "unless said otherwise.",
-      "viewgain");
-  program.set_version_flag("--version", std::string("viewgain ") + VIEWGAIN_VERSION);
-  program.require_subcommand(1);
-  program.option_defaults()->always_capture_default();
+  CommonOptions common;
+  const std::unique_ptr<App> program = make_program(common);
   std::vector<Command> commands;
-  for (const auto add : {add_reconstruct, add_simulate, add_import, add_calibrate, add_integrate,
-                         add_score, add_candidates, add_next, add_info, add_surface, add_convert,
-                         add_render, add_sensors, add_study, add_follow}) {
-    commands.push_back(add(program));
+  for (const auto add : {add_model, add_reconstruct, add_study, add_simulate, add_import,
+                         add_calibrate, add_integrate, add_score, add_next, add_info, add_surface,
+                         add_convert, add_render, add_sensors}) {
+    commands.push_back(add(*program));
   }
-  program.footer(
+  program->footer(
       "Examples:\n"
       "  viewgain reconstruct mesh.off --size 0.35 --sensor sr4000 --voxel 0.005 --max-views 3 "
       "--out run\n"
-      "  viewgain score run/map.vdb --sphere 2000,0.6 --race --top 3");
-  const Command* command = nullptr;
+      "  viewgain score run/map.vdb --poses sphere:2000,0.6 --race --top 3");
+  const App* called = nullptr;
   try {
-    command = parsed(program, commands, {argv + 1, argv + argc});
+    called = parse(*program, {argv + 1, argv + argc});
   } catch (const UsageError& error) {
-    return report(std::string(error.what()) + " (see --help)", kBadInput);
+    return report(error.what(), kBadInput);
   }
-  if (command == nullptr) return end_of_output();
-  check_call(*command->app);
-  command->run();
-  const Option* save = command->app->get_option("--save-config");
-  if (!save->empty()) write_file_atomically(save->results().back(), config_text(*command->app));
+  if (called == nullptr) return end_of_output();
+  check_call(*called);
+  for (const Command& command : commands) {
+    if (command.app == called) command.run(common);
+  }
+  if (!common.save_config.empty()) {
+    write_file_atomically(common.save_config, config_text(*called));
+  }
   wait_if_ended();
   return end_of_output();
 }
@@ -155,6 +119,7 @@ int guarded_run(int argc, char** argv) {
   try {
     clean_up_when_ended();
     keep_bytes_of_pipes();  // --poses <(...)
+    register_gains(literature_gains());
     return run(argc, argv);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::backend) leave(report(error.what(), kInternalError));

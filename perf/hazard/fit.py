@@ -159,9 +159,9 @@ def main():
     for mesh in args.mesh:
         maps, truth = args.work / mesh.stem, args.work / (mesh.stem + ".frames")
         run(args.program, "reconstruct", mesh, "--size", args.size, "--sensor", "sr4000", "--voxel", args.voxel,
-            "--max-views", max(VIEWS), "--stop-area", 0, "--seed", args.seed, "--pictures", "off", "--save-maps", "on",
+            "--max-views", max(VIEWS), "--stop", "area=0", "--seed", args.seed, "--pictures", "off", "--save-maps", "on",
             "--out", maps)
-        run(args.program, "simulate", mesh, "--sphere", f"80,{1.7 * args.size}", "--size", args.size, "--recenter", "on",
+        run(args.program, "simulate", mesh, "--poses", f"sphere:80,{1.7 * args.size}", "--size", args.size, "--place", "center",
             "--sensor", "sr4000", "--noise", "off", "--background", 0, "--out", truth)
         frames = [(f.T_world_camera, f.depth) for f in viewgain.read_frames(truth)]
         grids = [maps / "maps" / f"{view:02}.vdb" for view in VIEWS]

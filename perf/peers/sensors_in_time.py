@@ -75,7 +75,7 @@ def ways(arguments, budget):
 
 def run(arguments, name, flags, seed):
     command = [arguments.viewgain, "reconstruct", arguments.mesh, "--size", "0.35", "--voxel", "0.003125",
-               "--seed", str(seed), "--threads", "1", "--stop-area", "0", "--stop-idle", "0", "--stop-promises", "0", "--pictures", "off",
+               "--seed", str(seed), "--threads", "1", "--stop", "area=0", "--stop", "idle=0", "--stop", "promises=0", "--pictures", "off",
                "--report", "off", "--quiet", "--json", "--out", os.path.join(arguments.out, f"{name}-{seed}")]
     command += flags + arguments.extra
     done = subprocess.run(command, capture_output=True, text=True, check=False)

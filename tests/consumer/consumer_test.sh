@@ -48,7 +48,7 @@ check_project() { # PREFIX [cmake arguments]
   answers=$("$folder/boundary" "$folder/map.vdb")
   [ "$answers" = 11111111 ] || fail "boundary.cpp says $answers"
   answers=$("$folder/files" "$folder/sensor.toml")
-  [ "$answers" = 111 ] || fail "files.cpp says $answers"
+  [ "$answers" = 11 ] || fail "files.cpp says $answers"
   answers=$("$folder/planner" "$folder/planner.vdb")
   [ "$answers" = 1111 ] || fail "planner.cpp says $answers"
   answers=$("$folder/planner_mesh" "$folder/planner.vdb")
@@ -86,7 +86,7 @@ case $kind in
     by_pkg_config viewgain gain.cpp by_pkg_config
     check_gain "$work/$kind/by_pkg_config"
     by_pkg_config viewgain-formats files.cpp files_by_pkg_config
-    [ "$("$work/$kind/files_by_pkg_config" "$work/$kind/sensor.toml")" = 111 ] || fail "files.cpp"
+    [ "$("$work/$kind/files_by_pkg_config" "$work/$kind/sensor.toml")" = 11 ] || fail "files.cpp"
     by_pkg_config viewgain-planner planner.cpp planner_by_pkg_config
     [ "$("$work/$kind/planner_by_pkg_config" "$work/$kind/state.vdb")" = 1111 ] || fail "planner.cpp"
     ;;
@@ -104,11 +104,8 @@ case $kind in
     check_gain "$work/$kind/gain_c" c
     by_pkg_config viewgain-mesh boundary.cpp boundary "$rpath"
     [ "$("$work/$kind/boundary" "$work/$kind/map.vdb")" = 11111111 ] || fail "boundary.cpp"
-    # shellcheck disable=SC2046
-    cc -std=c99 -pedantic -Wall -Wextra -Werror -fsyntax-only -include viewgain/formats.h "$here/gain.c" \
-      $(PKG_CONFIG_PATH=$pc pkg-config --cflags viewgain-formats)
     by_pkg_config viewgain-formats files.cpp files "$rpath"
-    [ "$("$work/$kind/files" "$work/$kind/sensor.toml")" = 111 ] || fail "files.cpp"
+    [ "$("$work/$kind/files" "$work/$kind/sensor.toml")" = 11 ] || fail "files.cpp"
     by_pkg_config viewgain-planner planner.cpp planner "$rpath"
     [ "$("$work/$kind/planner" "$work/$kind/state.vdb")" = 1111 ] || fail "planner.cpp"
     by_pkg_config viewgain-planner_mesh planner.cpp planner_mesh -DWITH_SURFACES "$rpath"

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "mesh/files/mesh_dialects.hpp"
-#include "program/cli/json.hpp"
 #include "readers/readers.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/mesh/mesh_io.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace test {

@@ -3,6 +3,7 @@
 #include "viewgain/formats/map_file.hpp"
 
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "viewgain/core/error.hpp"
@@ -16,8 +17,16 @@ bool is_octomap(const std::filesystem::path& path) {
   return small_ending(path) == ".ot" || small_ending(path) == ".bt";
 }
 
-BeliefGrid load_map(const std::filesystem::path& path, const Sensor* sensor, OctomapConfig config,
-                    const ExecConfig& exec) {
+std::filesystem::path map_in(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path, ignored)) return path;
+  const bool is_done = std::filesystem::exists(path / "map.vdb", ignored);
+  return path / (is_done ? "map.vdb" : "state.vdb");
+}
+
+BeliefGrid load_map(const std::filesystem::path& file_or_run, const Sensor* sensor,
+                    OctomapConfig config, const ExecConfig& exec) {
+  const std::filesystem::path path = map_in(file_or_run);
   if (!is_octomap(path)) {
     BeliefGrid grid = load_vdb(path, exec);
     MapNotes notes = grid.notes();

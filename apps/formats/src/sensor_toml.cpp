@@ -108,7 +108,7 @@ Sensor sensor_of(const toml::table& root, const std::string& file) {
     const std::vector<double> size = reader.numbers("body", *node, 3);
     sensor.body_size = {size[0], size[1], size[2]};
   }
-  // The unit is in the name since the flag --pose-sigma is in degrees; 0.1.0 left it out.
+  // The unit is in the name since the flag --register is in degrees; 0.1.0 left it out.
   for (const char* key : {"pose_sigma", "pose_sigma_rad"}) {
     const toml::node* node = reader.find(key);
     if (node == nullptr) continue;

@@ -97,8 +97,8 @@ bool is_record(const fs::path& file) {
          file == "imported.txt";
 }
 
-constexpr std::array kFiles{"run.json", kCheckpoint,   "config.toml", "views.txt",  "next.txt",
-                            "map.vdb",  "surface.ply", "points.ply",  "report.html"};
+constexpr std::array kFiles{"run.json",  kCheckpoint, "config.toml", "views.txt",  "next.txt",
+                            "next.json", "map.vdb",   "surface.ply", "points.ply", "report.html"};
 
 std::string numbered(std::size_t index, const char* ending) {
   std::array<char, 32> number{};

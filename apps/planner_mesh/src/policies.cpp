@@ -96,29 +96,21 @@ std::optional<std::size_t> BoundaryOrder::next(std::span<const Candidate> candid
   return first;
 }
 
-ClassicChoice::ClassicChoice(const SurfaceModel& model, const Sensor& sensor, ClassicGain gain,
-                             const ExecConfig& exec)
-    : model_(model), sensor_(sensor), gain_(gain), exec_(exec) {}
+RegisteredChoice::RegisteredChoice(const SurfaceModel& model, const Sensor& sensor,
+                                   std::string gain, const ExecConfig& exec)
+    : model_(model), sensor_(sensor), gain_(std::move(gain)), exec_(exec) {}
 
-std::vector<double> ClassicChoice::gains(std::span<const Pose> T_world_camera, bool all) {
-  const auto acquisition =
-      needs_occlusion(gain_) ? std::optional(Acquisition{sensor_}) : std::nullopt;
-  const auto map = ClassicMap::build(model_.scene(), model_.grid(), acquisition, exec_);
-  const auto follow = [&](std::optional<ClassicGainEvaluator>& evaluator, int stride) {
-    if (evaluator) {
-      evaluator = evaluator->with_map(map);
-      return;
-    }
-    ClassicConfig config;
-    config.gains = {gain_};
-    config.pixel_stride = stride;
-    evaluator.emplace(map, sensor_, config, exec_);
+std::vector<double> RegisteredChoice::gains(std::span<const Pose> T_world_camera, bool all) const {
+  const auto evaluator = registered_gains().evaluator(model_.scene(), model_.grid(), sensor_,
+                                                      std::span(&gain_, 1), exec_);
+  const auto gains_of = [&](std::span<const Pose> poses, int stride) {
+    std::vector<double> gains(poses.size());
+    evaluator->evaluate(poses, stride, gains, {}, {});
+    return gains;
   };
-  follow(full_, 1);
-  if (all || T_world_camera.size() <= kInFull) return full_->evaluate(T_world_camera);
+  if (all || T_world_camera.size() <= kInFull) return gains_of(T_world_camera, 1);
 
-  follow(coarse_, coarse_stride(sensor_.camera));
-  std::vector<double> few = coarse_->evaluate(T_world_camera);
+  std::vector<double> few = gains_of(T_world_camera, coarse_stride(sensor_.camera));
   for (double& gain : few) {
     if (std::isnan(gain)) gain = -std::numeric_limits<double>::infinity();
   }
@@ -129,7 +121,7 @@ std::vector<double> ClassicChoice::gains(std::span<const Pose> T_world_camera, b
   order.resize(kInFull);
   std::vector<Pose> best;
   for (const std::size_t i : order) best.push_back(T_world_camera[i]);
-  const std::vector<double> exact = full_->evaluate(best);
+  const std::vector<double> exact = gains_of(best, 1);
   std::vector<double> gains(few.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t k = 0; k < order.size(); ++k) gains[order[k]] = exact[k];
   return gains;
@@ -201,7 +193,7 @@ Policy parse_policy(std::string_view name) {
 
 void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                     std::optional<double> stop_gain, std::optional<double> stop_area) {
-  const bool by_gain = policy.policy == Policy::gain && !policy.classic;
+  const bool by_gain = policy.policy == Policy::gain && policy.registered.empty();
   if (!by_gain && stop_area.value_or(0) > 0) {
     refuse("stop_area goes with policy gain by the gains surface and combined");
   }
@@ -227,8 +219,8 @@ PolicyDecision::PolicyDecision(const SurfaceModel& model, CandidateGeneration& g
     refuse("views are planned ahead by policy gain by the gains paper, surface and combined");
   }
   if (config.policy == Policy::oracle) oracle_.emplace(model, sensor, config.object, exec);
-  if (config.policy == Policy::gain && config.classic) {
-    classic_.emplace(model, sensor, *config.classic, exec);
+  if (config.policy == Policy::gain && !config.registered.empty()) {
+    registered_.emplace(model, sensor, config.registered, exec);
   }
 }
 
@@ -268,10 +260,10 @@ std::optional<DecisionMaking::Decision> PolicyDecision::decide(
   if (candidates.empty()) return std::nullopt;
   if (is_by_gain()) return decide_by_gain(T_world_camera, candidates);
   const GainEvaluator& evaluator = this->evaluator();
-  const bool scored = classic_ || config_.policy == Policy::frontier;
-  const std::vector<ViewGain> gains = classic_ ? score_classic(candidates)
-                                      : scored ? evaluator.evaluate(poses_of(candidates))
-                                               : std::vector<ViewGain>(candidates.size());
+  const bool scored = registered_ || config_.policy == Policy::frontier;
+  const std::vector<ViewGain> gains = registered_ ? score_registered(candidates)
+                                      : scored    ? evaluator.evaluate(poses_of(candidates))
+                                                  : std::vector<ViewGain>(candidates.size());
   const std::optional<std::size_t> chosen = choose(T_world_camera, candidates, gains);
   if (!chosen) return std::nullopt;
   const ViewGain gain =
@@ -298,9 +290,9 @@ const GainEvaluator& PolicyDecision::evaluator() {
   return *evaluator_;
 }
 
-std::vector<ViewGain> PolicyDecision::score_classic(std::span<const Candidate> candidates) {
+std::vector<ViewGain> PolicyDecision::score_registered(std::span<const Candidate> candidates) {
   const bool way_counts = config_.cost_per_metre > 0;
-  const std::vector<double> values = classic_->gains(poses_of(candidates), way_counts);
+  const std::vector<double> values = registered_->gains(poses_of(candidates), way_counts);
   std::vector<ViewGain> gains(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) gains[i].gain = values[i];
   return gains;

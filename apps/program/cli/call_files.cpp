@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "program/cli/flags/frame_folder.hpp"
+#include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/formats/frames.hpp"
@@ -35,30 +37,40 @@ enum class Kind {
   reach,
   folder,
   frames,  // a folder of them, or a file in their place
-  run,
+  map,     // or the folder of a run
   output,
   frames_output,
   run_output,
-  plan_output
+  model_output
 };
 struct FileOption {
   std::string_view name;
   Kind kind;
 };
-constexpr auto kFileOptions =
-    std::to_array<FileOption>({{"--config", Kind::input},   {"MESH", Kind::input},
-                               {"MAP", Kind::input},        {"IN", Kind::input},
-                               {"--map", Kind::input},      {"--cloud", Kind::input},
-                               {"--poses", Kind::input},    {"--sensor", Kind::input},
-                               {"--reach", Kind::reach},    {"--hazard", Kind::input},
-                               {"--obstacle", Kind::input}, {"FRAMES_DIR", Kind::frames},
-                               {"OUT", Kind::output},       {"--picture", Kind::output},
-                               {"--out", Kind::output},     {"--save-config", Kind::output},
-                               {"INPUT", Kind::run},        {"--report", Kind::output},
-                               {"SPEC", Kind::input},       {"--truth", Kind::input},
-                               {"--points", Kind::output},  {"SOURCE", Kind::folder},
-                               {"--mask", Kind::folder},    {"--confidence", Kind::folder},
-                               {"--costs", Kind::input}});
+constexpr auto kFileOptions = std::to_array<FileOption>({{"--config", Kind::input},
+                                                         {"MESH", Kind::input},
+                                                         {"MAP", Kind::map},
+                                                         {"IN", Kind::map},
+                                                         {"--map", Kind::map},
+                                                         {"--cloud", Kind::input},
+                                                         {"--poses", Kind::input},
+                                                         {"--sensor", Kind::input},
+                                                         {"--reach", Kind::reach},
+                                                         {"--hazard", Kind::input},
+                                                         {"--obstacle", Kind::input},
+                                                         {"FRAMES_DIR", Kind::frames},
+                                                         {"OUT", Kind::output},
+                                                         {"--picture", Kind::output},
+                                                         {"--out", Kind::output},
+                                                         {"--save-config", Kind::output},
+                                                         {"--report", Kind::output},
+                                                         {"SPEC", Kind::input},
+                                                         {"--truth", Kind::input},
+                                                         {"--points", Kind::output},
+                                                         {"SOURCE", Kind::folder},
+                                                         {"--mask", Kind::folder},
+                                                         {"--confidence", Kind::folder},
+                                                         {"--costs", Kind::input}});
 
 bool is_output(Kind kind) { return kind >= Kind::output; }
 
@@ -71,31 +83,46 @@ struct NamedFile {
 Kind kind_of(const FileOption& option, const std::string& subcommand) {
   if (option.name != "--out") return option.kind;
   if (subcommand == "simulate" || subcommand == "import") return Kind::frames_output;
-  if (subcommand == "follow") return Kind::plan_output;
+  if (subcommand == "model") return Kind::model_output;
   return subcommand == "reconstruct" || subcommand == "study" ? Kind::run_output : option.kind;
 }
 
+bool is_run(const App& subcommand) {
+  return subcommand.get_name() == "reconstruct" || subcommand.get_name() == "model";
+}
+
 void check_values(const App& subcommand) {
-  for (const Option* option : all_options(subcommand)) {
+  for (const Option* option : options_of_call(subcommand)) {
     for (const std::string& value : option->results()) {
       if (value.empty()) refuse(option->get_name() + ": the value is empty");
     }
   }
 }
 
+// Null where the call has none of this name.
+const Option* option_of_call(const App& subcommand, std::string_view name) {
+  const std::vector<const Option*> options = options_of_call(subcommand);
+  const auto found = std::find_if(options.begin(), options.end(),
+                                  [&](const Option* option) { return option->get_name() == name; });
+  return found == options.end() ? nullptr : *found;
+}
+
 std::vector<NamedFile> named_files(const App& subcommand) {
   std::vector<NamedFile> files;
   for (const FileOption& file_option : kFileOptions) {
-    const Option* option = subcommand.get_option_no_throw(std::string(file_option.name));
+    const Option* option = option_of_call(subcommand, file_option.name);
     if (option == nullptr) continue;
     for (const std::string& value : option->results()) {
       if (file_option.name == "--sensor" && !is_sensor_file(value)) continue;
+      if (file_option.name == "--poses" && is_set_of_poses(value)) continue;
       if (file_option.name == "--hazard" && !is_hazard_file(value)) continue;
       if (file_option.name == "--obstacle" && !is_obstacle_file(value)) continue;
-      // There it is a switch, and the page a file of --out.
-      if (file_option.name == "--report" && name_of(subcommand) == "reconstruct") continue;
-      files.push_back(
-          {std::string(file_option.name), value, kind_of(file_option, name_of(subcommand))});
+      // Of a run it is a switch, and the page a file of --out.
+      if (file_option.name == "--report" && is_run(subcommand)) continue;
+      const bool has_number = file_option.name == "--confidence";
+      files.push_back({std::string(file_option.name),
+                       has_number ? parse_confidence(value).folder : value,
+                       kind_of(file_option, subcommand.get_name())});
     }
   }
   return files;
@@ -123,8 +150,13 @@ std::vector<Identity> identities(const NamedFile& file) {
   std::vector<fs::path> inside;
   if (file.kind == Kind::frames || file.kind == Kind::frames_output)
     inside = frame_files(file.path);
-  if (file.kind == Kind::run || file.kind == Kind::run_output) inside = run_files(file.path);
-  if (file.kind == Kind::plan_output) inside = {"state.vdb", "next.txt", "next.json"};
+  if (file.kind == Kind::map || file.kind == Kind::run_output || file.kind == Kind::model_output) {
+    inside = run_files(file.path);
+  }
+  if (file.kind == Kind::map) inside.emplace_back("state.vdb");
+  if (file.kind == Kind::model_output) {
+    inside.insert(inside.end(), {"state.vdb", "next.txt", "next.json"});
+  }
   for (const fs::path& name : inside) found.emplace_back(file.path / name);
   if (file.kind == Kind::reach) {
     if (const auto poses = reach_poses_file(file.path)) found.emplace_back(*poses);
@@ -172,7 +204,7 @@ std::string fault_of_output(const NamedFile& file, const std::string& subcommand
   if (subcommand == "surface") return fault_of_ending(path, "a surface", {".ply"});
   if (subcommand == "score") return fault_of_ending(path, "a table", {".csv", ".npy"});
   if (subcommand == "calibrate") return fault_of_ending(path, "a sensor file", {".toml"});
-  if (subcommand == "candidates" || subcommand == "next") return fault_of_poses_name(path);
+  if (subcommand == "next") return fault_of_poses_name(path);
   return "";
 }
 
@@ -187,7 +219,7 @@ void check_call(const App& subcommand) {
       refuse(file.option, "-", "is no file's name; /dev/stdout writes to the standard output");
     }
     check_not_read(file, files);
-    const std::string fault = fault_of_output(file, name_of(subcommand));
+    const std::string fault = fault_of_output(file, subcommand.get_name());
     if (!fault.empty()) refuse(file.option, file.path.string(), fault);
   }
   for (const NamedFile& file : files) {

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
+#include <utility>
 
 #include "program/cli/values.hpp"
 #include "viewgain/support/file_bytes.hpp"
@@ -32,20 +34,26 @@ Kind kind_of(const Option& option) {
 bool is_repeated(const Option& option) { return option.get_expected_max() > 1; }
 
 std::string key_of(const Option& option) {
-  if (option.nonpositional()) return option.get_name().substr(2);
   std::string key = option.get_name();
+  if (option.nonpositional()) return key.substr(key.find_first_not_of('-'));
   for (char& c : key) {
     c = c == '_' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
   return key;
 }
 
+bool is_of(const App& app, const Option& option) {
+  const Options options = app.get_options();
+  return std::find(options.begin(), options.end(), &option) != options.end();
+}
+
 // Those that a file can hold.
 Options settable_options(const App& subcommand) {
-  Options options = all_options(subcommand);
+  Options options = options_of_call(subcommand);
   std::erase_if(options, [](const Option* option) {
     const std::string key = key_of(*option);
-    return key == "help" || key == "config" || key == "save-config";
+    return key == "help" || key == "h" || key == "version" || key == "config" ||
+           key == "save-config";
   });
   return options;
 }
@@ -78,53 +86,29 @@ std::string word_of(const TableReader& reader, const std::string& key, const tom
   return words;
 }
 
-// The words that a key stands for.
-Words words_of(const TableReader& reader, const std::string& key, const toml::node& node,
-               const Option& option) {
-  const std::string name = option.get_name(), head = option.nonpositional() ? name + "=" : "";
+// The values that a key stands for; none of a flag that is not set.
+Words values_of(const TableReader& reader, const std::string& key, const toml::node& node,
+                const Option& option) {
   const toml::array* list = node.as_array();
   if (is_bare(option)) {
-    return word_of(reader, key, node, Kind::boolean) == "on" ? Words{name} : Words{};
+    return word_of(reader, key, node, Kind::boolean) == "on" ? Words{"true"} : Words{};
   }
   if (!is_repeated(option) || (list == nullptr && !option.nonpositional())) {
-    return {head + word_of(reader, key, node, kind_of(option))};
+    return {word_of(reader, key, node, kind_of(option))};
   }
-  if (list == nullptr) reader.fail(key, "must be a list, with an element for each " + name);
-  Words words;
+  if (list == nullptr) {
+    reader.fail(key, "must be a list, with an element for each " + option.get_name());
+  }
+  Words values;
   for (const toml::node& part : *list) {
-    words.push_back(head + word_of(reader, key, part, kind_of(option)));
+    values.push_back(word_of(reader, key, part, kind_of(option)));
   }
-  return words;
-}
-
-// Whether the command line has said this, or another one of a group of which one may be given.
-bool is_given(const App& subcommand, const Option& option, const GivenWords& given) {
-  if (given.options.contains(&option)) return true;
-  for (const App* group : subcommand.get_subcommands(nullptr)) {
-    const Options members = group->get_options();
-    if (group->get_require_option_max() == 1 &&
-        std::find(members.begin(), members.end(), &option) != members.end() &&
-        std::any_of(members.begin(), members.end(),
-                    [&](const Option* member) { return given.options.contains(member); })) {
-      return true;
-    }
-  }
-  return false;
-}
-
-// The last value of --config among the words; empty: not given.
-std::string config_of(const Words& words) {
-  std::string path;
-  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
-    if (words[i] == "--config" && i + 1 < words.size()) path = words[++i];
-    if (words[i].starts_with("--config=")) path = words[i].substr(9);
-  }
-  return path;
+  return values;
 }
 
 // What it was given, as TOML has it.
 std::string value_of(const Option& option) {
-  const std::string& text = option.results().back();
+  const std::string text = option.reduced_results().back();
   switch (kind_of(option)) {
     case Kind::boolean:
       return text == "on" || (is_bare(option) && option.as<bool>()) ? "true" : "false";
@@ -157,7 +141,7 @@ Json json_of(const std::string& value, const Option& option) {
     return json.is_null() ? Json(value) : json;
   }
   if (option.empty()) return option.get_default_str();
-  return is_repeated(option) ? Json(option.results()) : Json(option.results().back());
+  return is_repeated(option) ? Json(option.results()) : Json(option.reduced_results().back());
 }
 
 bool is_utf8(const std::string& text) {
@@ -171,59 +155,54 @@ bool is_utf8(const std::string& text) {
 
 }  // namespace
 
-App& form_of(const Forms& forms, const Words& words) {
-  if (forms.size() == 1) return *forms[0];
-  Options options = all_options(*forms[0]);
-  for (const Option* option : all_options(*forms[1])) options.push_back(option);
-  const GivenWords given = sort_words(*forms[0], forms, options, words);
-  if (!given.positionals.empty()) {
-    const std::string& source = given.positionals[0];
-    std::error_code ignored;
-    if (!std::filesystem::exists(source, ignored)) refuse(source + ": no such file or folder");
-    return *forms[std::filesystem::is_directory(source, ignored) ? 1 : 0];
+namespace {
+
+// Whether the command line has said another one of a group of which one may be given.
+bool is_excluded(const App& subcommand, const Option& option) {
+  for (const App* group : subcommand.get_subcommands(nullptr)) {
+    const Options members = group->get_options();
+    if (group->get_require_option_max() == 1 && is_of(*group, option) &&
+        std::any_of(members.begin(), members.end(),
+                    [](const Option* member) { return member->count() > 0; })) {
+      return true;
+    }
   }
-  const std::string path = config_of(words);
-  if (path.empty()) return *forms[0];
-  const toml::table file = read_toml(path);
-  for (const Option* option : forms[1]->get_options()) {
-    if (!option->nonpositional() && file.contains(key_of(*option))) return *forms[1];
-  }
-  return *forms[0];
+  return false;
 }
 
-Words with_config(const App& subcommand, const Forms& forms, const Words& words) {
-  const GivenWords given = sort_words(subcommand, forms, all_options(subcommand), words);
-  const std::string path = config_of(words);
-  if (path.empty()) return words;
-  const toml::table file = read_toml(path);
-  TableReader reader(file, path, "");
+}  // namespace
 
-  Words all, positionals;
-  std::size_t position = 0;
-  for (const Option* option : settable_options(subcommand)) {
-    const bool is_flag = option->nonpositional();
-    const bool is_on_the_line =
-        is_flag ? is_given(subcommand, *option, given) : position++ < given.positionals.size();
+std::vector<CLI::ConfigItem> FlagFile::from_config(std::istream& in) const {
+  const std::string path = program_.get_option("--config")->results().back();
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::vector<CLI::ConfigItem> given;
+  const std::vector<App*> called = program_.get_subcommands();
+  if (called.empty()) return given;
+  const toml::table file = parse_toml(text, path);
+  TableReader reader(file, path, "");
+  for (const Option* option : settable_options(*called.front())) {
     const std::string key = key_of(*option);
     const toml::node* node = reader.find(key);
     if (node == nullptr) continue;
-    // Looked at in any case: what is wrong in a file is an error.
-    const Words more = words_of(reader, key, *node, *option);
-    Words& to = is_flag ? all : positionals;
-    if (!is_on_the_line) to.insert(to.end(), more.begin(), more.end());
+    CLI::ConfigItem item;
+    item.inputs = values_of(reader, key, *node, *option);
+    item.name = option->nonpositional() ? key : option->get_name();
+    if (!is_of(program_, *option)) item.parents = {called.front()->get_name()};
+    if (!item.inputs.empty() && !is_excluded(*called.front(), *option)) {
+      given.push_back(std::move(item));
+    }
   }
   reader.refuse_unknown_keys();
-  all.insert(all.end(), words.begin(), words.end());
-  const bool needs_mark = std::any_of(positionals.begin(), positionals.end(),
-                                      [](const std::string& p) { return p.starts_with("-"); });
-  if (needs_mark && !given.has_mark) all.emplace_back("--");
-  all.insert(all.end(), positionals.begin(), positionals.end());
-  return all;
+  return given;
+}
+
+std::string FlagFile::to_config(const App* app, bool, bool, std::string) const {
+  return config_text(*app);
 }
 
 std::string config_text(const App& subcommand, const Words& left_out) {
   std::string text =
-      "# viewgain " + name_of(subcommand) + " --config FILE; what is behind a # is the default\n";
+      "# viewgain " + subcommand.get_name() + " --config FILE; what is behind a # is the default\n";
   for (const Option* option : settable_options(subcommand)) {
     const std::string key = key_of(*option);
     if (std::find(left_out.begin(), left_out.end(), key) != left_out.end()) continue;

@@ -114,7 +114,7 @@ std::string fault_of_name(const std::string& value, const std::vector<std::strin
 
 std::vector<std::string> names_in(std::string_view text) {
   std::vector<std::string> names;
-  for (std::size_t begin = 0; begin <= text.size();) {
+  for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     names.emplace_back(trimmed(text.substr(begin, end - begin)));
     begin = end + 1;

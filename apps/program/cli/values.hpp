@@ -48,7 +48,7 @@ using viewgain::refuse;
 [[nodiscard]] std::string fault_of_name(const std::string& value,
                                         const std::vector<std::string>& names, const char* what);
 
-/// The names in a list with commas.
+/// The names in a list with commas; none in an empty one.
 [[nodiscard]] std::vector<std::string> names_in(std::string_view text);
 
 /// x0, y0, z0 .. x1, y1, z1 for people.

@@ -10,13 +10,13 @@
 #include "calibration/noise_calibration.hpp"
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/frame_folder.hpp"
-#include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/json.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -113,10 +113,9 @@ Command add_calibrate(App& program) {
                   "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
                   "poses.txt, 1e-3 with pose files)");
   app->add_option("--out", options->out, "sensor file to write (.toml)")->required();
-  add_common_options(*app, options->common);
   add_help(*app, kMapGroup,
            "calibrate --noise static --sensor sr4000 --depth-scale 1e-4 --out calibrated.toml");
-  return {app, [options] { calibrate(*options); }};
+  return command_of(app, options, calibrate);
 }
 
 }  // namespace viewgain::app

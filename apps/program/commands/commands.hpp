@@ -4,11 +4,12 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 #include <string>
 
 #include "program/cli/app.hpp"
 #include "program/cli/flags/common_options.hpp"
-#include "program/cli/json.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 
@@ -16,19 +17,16 @@ namespace viewgain::app {
 /// for bad input; nothing half-written stays behind.
 struct Command {
   App* app = nullptr;
-  std::function<void()> run;
-  /// Another form of it, with flags of its own, for a folder of frames in the place of the first
-  /// positional; its app is parsed by itself.
-  std::shared_ptr<Command> of_frames{};
-  std::shared_ptr<App> own{};  ///< such an app
+  std::function<void(const CommonOptions&)> run;
 };
 
-/// The other form of a subcommand.
-[[nodiscard]] inline std::shared_ptr<App> app_of_frames(const std::string& subcommand,
-                                                        const std::string& description) {
-  auto app = std::make_shared<App>(description, "viewgain " + subcommand);
-  app->option_defaults()->always_capture_default();
-  return app;
+/// One that runs by its `options`, whose `common` are the program's.
+template <typename Options, typename Run>
+[[nodiscard]] Command command_of(App* app, std::shared_ptr<Options> options, Run run) {
+  return {app, [=](const CommonOptions& common) {
+            options->common = common;
+            run(*options);
+          }};
 }
 
 /// Thrown by a command that a signal stopped before it was done: one line, exit code 130.
@@ -42,15 +40,13 @@ struct Stopped {
 [[nodiscard]] Command add_integrate(App& program);
 [[nodiscard]] Command add_score(App& program);
 [[nodiscard]] Command add_reconstruct(App& program);
-[[nodiscard]] Command add_reconstruct_frames();  // its other form
-[[nodiscard]] Command add_candidates(App& program);
+[[nodiscard]] Command add_model(App& program);
 [[nodiscard]] Command add_next(App& program);
 [[nodiscard]] Command add_info(App& program);
 [[nodiscard]] Command add_convert(App& program);
 [[nodiscard]] Command add_surface(App& program);
 [[nodiscard]] Command add_render(App& program);
 [[nodiscard]] Command add_sensors(App& program);
-[[nodiscard]] Command add_follow(App& program);
 [[nodiscard]] Command add_study(App& program);
 
 }  // namespace viewgain::app

@@ -22,7 +22,6 @@ struct Options {
   std::string out;
   std::string workspace, sensor;
   std::optional<double> prior_sigma;
-  std::string with_covariance = "off";
 };
 
 void check(const Options& options) {
@@ -36,9 +35,6 @@ void check(const Options& options) {
     if (!options.sensor.empty()) refuse("--sensor", options.in, kWhy);
   }
   check_map_name(options.out);
-  if (options.with_covariance == "on" && is_octomap(options.out)) {
-    refuse("--with-covariance", options.out, "a tree has no place for covariances");
-  }
 }
 
 void convert(const Options& options) {
@@ -51,7 +47,7 @@ void convert(const Options& options) {
   if (!options.sensor.empty()) sensor = load_sensor(options.sensor);
   const BeliefGrid grid =
       load_map(options.in, sensor ? &*sensor : nullptr, config, exec_of(options.common));
-  const LostInTree lost = save_map(grid, options.out, {options.with_covariance == "on"});
+  const LostInTree lost = save_map(grid, options.out, {true});
   warn_of_lost_frame(lost, options.out);
   const BeliefGrid::Statistics statistics = grid.statistics();
   if (options.common.json) {
@@ -83,7 +79,9 @@ Command add_convert(App& program) {
       "convert",
       "A map from one format into another: .vdb, OctoMap's .ot and (read only) .bt. OctoMap trees "
       "keep states and log-odds, a .bt only states; they have no beliefs, prior or views, and a "
-      "frame only where it is a shift by whole voxels, which moves the tree.");
+      "frame only where it is a shift by whole voxels, which moves the tree. A .vdb gets "
+      "covariances "
+      "and positions for viewers, too.");
   app->add_option("IN", options->in, kMapHelp)->required();
   app->add_option("OUT", options->out, "map to write (.vdb or .ot)")->required();
   app->add_option("--workspace", options->workspace,
@@ -94,11 +92,8 @@ Command add_convert(App& program) {
   app->add_option("--sensor", options->sensor,
                   std::string("whose readings will be scored, for the prior of a tree's voxels: ") +
                       kSensorHelp);
-  add_switch(*app, "--with-covariance", options->with_covariance,
-             "add covariances and positions to the .vdb, for viewers");
-  add_common_options(*app, options->common);
   add_help(*app, kLookGroup, "convert map.vdb tree.ot");
-  return {app, [options] { convert(*options); }};
+  return command_of(app, options, convert);
 }
 
 }  // namespace viewgain::app

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "program/cli/json.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

@@ -26,7 +26,6 @@ struct Options {
   std::string intrinsics;
   double max_time_gap = ImportConfig{}.max_time_gap;
   std::string mask, confidence;
-  int least_confidence = 1;
   std::string out;
 };
 
@@ -79,8 +78,9 @@ void import_frames(const Options& options) {
   ImportConfig config;
   if (!options.sensor.empty()) config.sensor = load_sensor(options.sensor);
   config.masks = options.mask;
-  config.confidences = options.confidence;
-  config.least_confidence = static_cast<std::uint8_t>(options.least_confidence);
+  const Confidence confidence = parse_confidence(options.confidence);
+  config.confidences = confidence.folder;
+  config.least_confidence = confidence.least;
   config.camera = camera_of(options, config.sensor);
   config.max_time_gap = options.max_time_gap;
   Progress progress("frame", options.common.quiet);
@@ -109,14 +109,13 @@ Command add_import(App& program) {
   app->add_option("--intrinsics", options->intrinsics, "fx,fy,cx,cy [px]; default: the sensor's");
   app->add_option("--max-time-gap", options->max_time_gap,
                   "between an image and its pose [s]; nothing is interpolated");
-  add_mask_options(*app, options->mask, options->confidence, options->least_confidence);
+  add_mask_options(*app, options->mask, options->confidence);
   app->add_option(
          "--out", options->out,
          "folder to write; files that import has left in it are replaced, others are refused")
       ->required();
-  add_common_options(*app, options->common);
   add_help(*app, kMapGroup, "import scene --sensor kinect_v1 --out imported");
-  return {app, [options] { import_frames(*options); }};
+  return command_of(app, options, import_frames);
 }
 
 }  // namespace viewgain::app

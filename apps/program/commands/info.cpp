@@ -16,7 +16,6 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string map;
-  bool hash = false;
   std::string criterion = "log_diagonal";
   std::string region;
 };
@@ -30,10 +29,10 @@ struct Region {
 std::optional<Region> region_of(const Options& options, const BeliefGrid& grid,
                                 Criterion criterion) {
   if (options.region.empty()) return std::nullopt;
-  const Box box = parse_box("--region", options.region);
+  const Box box = parse_box("--workspace", options.region);
   const BeliefGrid::Statistics s = grid.statistics(box, criterion);
   if (s.unknown + s.free + s.occupied == 0) {
-    refuse("--region " + options.region + ": holds no voxel of the map");
+    refuse("--workspace " + options.region + ": holds no voxel of the map");
   }
   return Region{box, s, grid.mean_sigma(box)};
 }
@@ -72,14 +71,6 @@ Json hazard_factors(const BeliefGrid& grid) {
 void info(const Options& options) {
   const Criterion criterion = parse_criterion(options.criterion);
   const BeliefGrid grid = load_map(options.map, nullptr, {}, exec_of(options.common));
-  if (options.hash) {
-    if (options.common.json) {
-      print_json({{"hash", grid.content_hash()}});
-    } else {
-      std::printf("%s\n", grid.content_hash().c_str());
-    }
-    return;
-  }
   const std::optional<Sensor> sensor = map_sensor(grid);
   const std::optional<Region> region = region_of(options, grid, criterion);
   const BeliefGrid::Statistics statistics = grid.statistics(criterion);
@@ -142,16 +133,14 @@ Command add_info(App& program) {
   App* app = program.add_subcommand(
       "info", "What a map holds: dimensions, voxel states, memory, entropy removed, views.");
   app->add_option("MAP", options->map, kMapHelp)->required();
-  app->add_flag("--hash", options->hash,
-                "print only the hash of grids and metadata: equal maps have equal ones");
   app->add_option("--criterion", options->criterion,
                   "of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
       ->check(one_of(criterion_names(), "criterion"));
-  app->add_option("--region", options->region,
-                  "x0,y0,z0,x1,y1,z1: also how well this part is known, grid frame [m]");
-  add_common_options(*app, options->common);
+  app->add_option("--workspace", options->region,
+                  "x0,y0,z0,x1,y1,z1: the part of a map of which it is also said how well it is "
+                  "known, grid frame [m]");
   add_help(*app, kLookGroup, "info map.vdb --criterion trace");
-  return {app, [options] { info(*options); }};
+  return command_of(app, options, info);
 }
 
 }  // namespace viewgain::app

@@ -11,6 +11,7 @@
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/flags/set_up_warnings.hpp"
+#include "program/cli/help.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
@@ -165,7 +166,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
     if (totals.consistency) {
       json["contradiction"] = to_json(*totals.consistency, totals.tally.numbers());
     }
-    if (options.registration.is_on == "on") {
+    if (options.registration.is_on()) {
       json["registration"] = registration_counts(totals.registrations);
     }
     json.update(map_json(grid, statistics));
@@ -189,7 +190,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   if (const std::string text = frames_text(totals.tally.counts()); !text.empty()) {
     std::printf("%s\n", text.c_str());
   }
-  if (options.registration.is_on == "on") {
+  if (options.registration.is_on()) {
     std::printf("%s\n", registration_text(registration_counts(totals.registrations)).c_str());
   }
   if (totals.skipped > 0) {
@@ -226,9 +227,8 @@ void check_flags(const Options& options, const App& app) {
   if (options.clouds.empty()) {
     refuse({"--origin", "--poses"}, "is for clouds (--cloud)");
   } else {
-    refuse({"--depth-scale", "--mask", "--confidence", "--least-confidence", "--out-of-range",
-            "--carve", "--jump-edge-filter", "--calibrate-hazard", "--obstacle", "--register",
-            "--pose-sigma"},
+    refuse({"--depth-scale", "--mask", "--confidence", "--out-of-range", "--jump-edge-filter",
+            "--obstacle", "--register"},
            "is for depth frames; clouds carve along lines");
     if (!options.poses.empty()) refuse({"--origin"}, "and --poses exclude each other");
   }
@@ -275,14 +275,8 @@ void warn_of_set_up(const Options& options, const ReadingSource& source) {
 void integrate(const Options& options, const App& app) {
   const Stopwatch watch;
   check_flags(options, app);
-  check_contradiction(options.frames, options.registration.is_on == "on");
+  check_contradiction(options.frames, options.registration.is_on());
   check_map_name(options.out);
-  if (options.with_covariance == "on" && is_octomap(options.out)) {
-    refuse("--with-covariance with " + options.out + ": a tree has no place for covariances");
-  }
-  if (is_octomap(options.out) && app.count("--calibrate-hazard") > 0) {
-    refuse("--calibrate-hazard with " + options.out + ": a tree has no place for hazard counters");
-  }
   const std::unique_ptr<ReadingSource> source = open_reading_source(options);
   source->start(options.map.empty() ? new_map(*source, options)
                                     : continued_map(source->sensor(), options));
@@ -290,7 +284,7 @@ void integrate(const Options& options, const App& app) {
   warn_of_set_up(options, *source);
   const Totals totals = integrate_all(*source, options);
   refuse_empty(options, *source, totals);
-  const LostInTree lost = save_map(grid, options.out, {options.with_covariance == "on"});
+  const LostInTree lost = save_map(grid, options.out);
   warn_of_lost_frame(lost, options.out);
   print_summary(options, *source, grid, totals, lost, watch.seconds());
 }
@@ -309,6 +303,7 @@ Command add_integrate(App& program) {
       "are .pcd or .ply files with x, y, z [m]; "
       "each carves the lines from its sensor's origin to its points.");
   app->add_option("FRAMES_DIR", options->frames.folder, "folder of frames");
+  begin_group(*app, "Point clouds");
   app->add_option("--cloud", options->clouds, "a point cloud instead; may be repeated")
       ->allow_extra_args(false);
   app->add_option("--origin", options->origin,
@@ -317,6 +312,7 @@ Command add_integrate(App& program) {
   app->add_option("--poses", options->poses,
                   "TUM file, line i for the i-th cloud, sensor to world; the clouds' points are "
                   "then in the sensor's frame, a VIEWPOINT does not count");
+  begin_group(*app, "Map");
   app->add_option("--voxel", options->voxel, "voxel size [m]; needed unless --map is given");
   app->add_option(
       "--workspace", options->workspace,
@@ -326,33 +322,27 @@ Command add_integrate(App& program) {
                       "; default: FRAMES_DIR/sensor.toml; needed for clouds, of which noise and "
                       "ranges hold");
   add_frame_folder_options(*app, options->frames);
-  app->add_option("--carve", options->carve,
-                  "voxels that a pixel crosses: those in its pyramid, or on its ray")
-      ->check(one_of({"cones", "lines"}, "way of carving"));
-  app->add_option("--occupancy", options->occupancy, "log-odds, or the paper's literal rule")
-      ->check(one_of({"probabilistic", "literal"}, "rule"));
+  begin_group(*app, "Map");
   app->add_option("--jump-edge-filter", options->jump_edge_filter, kJumpEdgeHelp);
   add_scale_options(*app, options->scales);
+  begin_group(*app, "Map");
   app->add_option("--support-plane", options->support_plane,
                   "height z of the table [m]: its readings carve but do not hit; default: none");
   app->add_option("--prior-sigma", options->prior_sigma,
                   "sigma of an unknown voxel [m]; default: max(voxel/2, twice the sensor's axial "
                   "sigma at its working distance)");
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
-  add_switch(*app, "--calibrate-hazard", options->calibrate_hazard,
-             "count how often frames met the surface in unknown space, for the "
-             "surface and combined gain of the map");
-  add_registration_options(*app, options->registration);
-  add_switch(*app, "--with-covariance", options->with_covariance,
-             "add covariances and positions to the file, for viewers");
+  add_registration_option(*app, options->registration);
+  begin_group(*app, "Map");
   app->add_option("--out", options->out, "map to write (.vdb, or OctoMap's .ot)")->required();
   app->add_option("--map", options->map,
                   "map to continue (.vdb, .ot, .bt); its voxel size, workspace and prior hold, and "
                   "frames that a .vdb has already, by name and content, are skipped");
-  add_common_options(*app, options->common);
+  most_need(*app, {"--voxel", "--workspace", "--out", "--map", "--sensor", "--cloud",
+                   "--support-plane", "--mask", "--register", "--on-contradiction"});
   add_help(*app, kMapGroup,
            "integrate frames --voxel 0.005 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out map.vdb");
-  return {app, [options, app] { integrate(*options, *app); }};
+  return command_of(app, options, [app](const auto& given) { integrate(given, *app); });
 }
 
 }  // namespace viewgain::app

@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <string>
 
-#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

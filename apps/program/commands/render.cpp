@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <array>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -22,29 +21,21 @@
 namespace viewgain::app {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct Options {
   CommonOptions common;
-  std::string input;
+  std::string map;
   std::string what;
   std::string out;
-  int width = 1280;
-  double azimuth = 30, elevation = 24;  // [deg]
+  std::string viewer = "30,24";
 };
 
 Viewer viewer_of(const Options& options) {
   constexpr double kDegree = std::numbers::pi / 180;
-  return {kDegree * options.azimuth, kDegree * options.elevation, options.width / 4 * 4};
-}
-
-// A map, or that of a run's folder.
-std::string map_file(const std::string& input) {
-  std::error_code ignored;
-  return fs::is_directory(input, ignored) ? (fs::path(input) / "map.vdb").string() : input;
-}
-BeliefGrid map_of(const std::string& input, const ExecConfig& exec) {
-  return load_map(map_file(input), nullptr, {}, exec);
+  const std::vector<double> n = parse_numbers("--viewer", options.viewer, 2, 3);
+  const std::size_t width = n.size() > 2 ? parse_count("--viewer", n[2]) : 1280;
+  if (width < 64 || width > 8192)
+    refuse("--viewer " + options.viewer + ": WIDTH is not in 64..8192");
+  return {kDegree * n[0], kDegree * n[1], static_cast<int>(width) / 4 * 4};
 }
 
 // The surface in a map and the points that it goes through.
@@ -68,7 +59,7 @@ struct Picture {
 };
 
 Picture picture_of(const Options& options, const ExecConfig& exec) {
-  const BeliefGrid map = map_of(options.input, exec);
+  const BeliefGrid map = load_map(options.map, nullptr, {}, exec);
   const Viewer viewer = viewer_of(options);
   if (options.what == "map") return {map_picture(map.snapshot(), viewer, exec)};
   MapSurface made(map, exec);
@@ -80,8 +71,6 @@ Picture picture_of(const Options& options, const ExecConfig& exec) {
 }
 
 void render(const Options& options) {
-  check_finite("--azimuth", options.azimuth);
-  check_finite("--elevation", options.elevation);
   const auto& [image, sigmas] = picture_of(options, exec_of(options.common));
   write_png(options.out, image);
   if (options.common.json) {
@@ -112,18 +101,17 @@ Command add_render(App& program) {
   App* app = program.add_subcommand(
       "render", "A picture of a map or of a run's folder, for papers and talks (PNG).");
   Options& o = *options;
-  app->add_option("INPUT", o.input, "map (.vdb, .ot, .bt) or folder of reconstruct")->required();
+  app->add_option("MAP", o.map, kMapHelp)->required();
   auto* what =
-      app->add_option("--what", o.what, "map (its voxels), surface or sigma (how well it is known)")
+      app->add_option("KIND", o.what, "map (its voxels), surface or sigma (how well it is known)")
           ->required();
   what->check(one_of({"map", "surface", "sigma"}, "kind of picture"));
-  app->add_option("--width", o.width, "of the picture [px]")->check(CLI::Range(64, 8192, "width"));
-  app->add_option("--azimuth", o.azimuth, "of the viewer, from +x to +y [deg]");
-  app->add_option("--elevation", o.elevation, "of the viewer [deg]");
+  app->add_option("--viewer", o.viewer,
+                  "AZIMUTH,ELEVATION[,WIDTH] from which it is seen, azimuth from +x to +y [deg]; "
+                  "of the picture [px], 64..8192, 1280");
   app->add_option("--out", o.out, "PNG file to write")->required();
-  add_common_options(*app, o.common);
-  add_help(*app, kLookGroup, "render run --what sigma --out sigma.png");
-  return {app, [options] { render(*options); }};
+  add_help(*app, kLookGroup, "render run sigma --out sigma.png");
+  return command_of(app, options, [](const Options& given) { render(given); });
 }
 
 }  // namespace viewgain::app

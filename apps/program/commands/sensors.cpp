@@ -89,9 +89,8 @@ Command add_sensors(App& program) {
                                     "The presets of --sensor with their figures; with NAME "
                                     "that one's file, to begin an own from.");
   app->add_option("NAME", options->name, "preset or .toml file to print");
-  add_common_options(*app, options->common);
   add_help(*app, kLookGroup, "sensors d435");
-  return {app, [options] { sensors(*options); }};
+  return command_of(app, options, sensors);
 }
 
 }  // namespace viewgain::app

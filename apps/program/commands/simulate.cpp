@@ -16,6 +16,7 @@
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/sensing.hpp"
 #include "program/cli/flags/set_up_warnings.hpp"
+#include "program/cli/help.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
@@ -37,18 +38,11 @@ struct Options {
   PoseOptions poses;
   std::string sensor;
   std::optional<double> size;
-  std::string recenter = "off";
   std::string up = "z";
   std::string place;
   SensingOptions sensing;
   std::size_t frames_per_view = 1;
-  std::string amplitude;
   std::string out;
-
-  [[nodiscard]] bool writes_amplitude(const Sensor& sensor_in_use) const {
-    return amplitude.empty() ? std::holds_alternative<ShotNoise>(sensor_in_use.noise)
-                             : amplitude == "on";
-  }
 };
 
 struct PixelCounts {
@@ -67,13 +61,15 @@ struct PixelCounts {
   }
 };
 
-// Where the mesh's frame is in the world.
-Pose parse_place(const std::string& text) {
+// Where the mesh's frame is in the world; nothing: where it is, or its centre at the origin.
+std::optional<Pose> parse_place(std::string text) {
+  if (text.starts_with("center")) text.erase(0, std::min<std::size_t>(text.size(), 7));
+  if (text.empty()) return std::nullopt;
   const std::vector<double> n = parse_numbers("--place", text, 3, 7);
   if (n.size() > 4) return parse_pose("--place", text);
   const double yaw = n.size() > 3 ? n[3] * std::numbers::pi / 180 : 0;
-  return {Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
-          Eigen::Vector3d(n[0], n[1], n[2])};
+  return Pose(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
+              Eigen::Vector3d(n[0], n[1], n[2]));
 }
 
 void place(const Pose& T_world_mesh, TriangleMesh& mesh) {
@@ -100,7 +96,7 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   if (std::none_of(poses.begin(), poses.end(),
                    [&](const Pose& pose) { return sees_mesh(scene, sensor, rays, pose); })) {
     refuse(options.mesh + ": no pose has the mesh in view and in range, which lies in " +
-           describe(bounds_of(scene.mesh())) + " m (--size, --recenter, --place)");
+           describe(bounds_of(scene.mesh())) + " m (--size, --place)");
   }
 }
 
@@ -130,37 +126,38 @@ void simulate(const Options& options) {
   sensor.range_calibration = {};  // the frames have no such error
   if (options.size) check_positive("--size", *options.size);
   const PoseSource source = make_poses(options.poses, options.sensing.seed);
-  std::optional<Pose> T_world_mesh;
-  if (!options.place.empty()) T_world_mesh = parse_place(options.place);
+  const std::optional<Pose> T_world_mesh = parse_place(options.place);
   MeshRepairs repairs;
   TriangleMesh mesh =
-      read_mesh(options.mesh, placement_of(options.size, options.recenter, options.up), &repairs);
+      read_mesh(options.mesh, placement_of(options.size, options.place, options.up), &repairs);
   warn_of_repairs(options.mesh, repairs);
   if (T_world_mesh) place(*T_world_mesh, mesh);
   const std::size_t triangles = mesh.triangles.size();
   const auto scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
   check_view(options, *scene, sensor, source.poses);
   warn_of_place(options, bounds_of(scene->mesh()), sensor);
-  const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, sensor), exec);
-  const PoseSigma pose_noise = parse_pose_sigma("--pose-noise", options.sensing.pose_noise);
-  warn(suspect_pose_sigma(pose_noise, sensor.working_distance), "--pose-noise");
+  const SimulatedNoise noise = parse_noise(options.sensing.noise, false);
+  const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, noise, sensor),
+                               exec);
+  warn(suspect_pose_sigma(noise.pose, sensor.working_distance), "--noise pose");
   std::vector<Pose> poses, reported;  // one a frame
   for (std::size_t view = 0; view < source.poses.size(); ++view) {
     const Pose& pose = source.poses[view];
     poses.insert(poses.end(), options.frames_per_view, pose);
     reported.insert(reported.end(), options.frames_per_view,
-                    reported_pose(pose, view, pose_noise, options.sensing.seed));
+                    reported_pose(pose, view, noise.pose, options.sensing.seed));
   }
 
   const Stopwatch watch;
   FramesWriter writer(options.out, depth_scale_for(sensor));
   PixelCounts counts;
+  const bool writes_amplitude = std::holds_alternative<ShotNoise>(sensor.noise);
   {
     Progress progress("frame", options.common.quiet);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       DepthFrame frame = camera.acquire(poses[i], i);
       counts.add(frame);
-      if (!options.writes_amplitude(sensor)) frame.amplitude.clear();
+      if (!writes_amplitude) frame.amplitude.clear();
       writer.write_frame(i, frame);
       progress.update(i + 1, poses.size());
     }
@@ -182,12 +179,12 @@ void simulate(const Options& options) {
                 {"readings", counts.readings},
                 {"out_of_range", counts.out_of_range},
                 {"invalid", counts.invalid},
-                {"noise", sensing.noise == "on"},
-                {"flying_pixels", sensing.has_flying_pixels(sensor)},
-                {"scale_error", sensing.scale_error},
+                {"noise", noise.readings},
+                {"flying_pixels", noise.has_flying_pixels(sensor)},
+                {"scale_error", noise.scale_error},
                 {"support_plane", sensing.support_plane},
-                {"pose_noise", pose_sigma_json(pose_noise)},
-                {"amplitude", options.writes_amplitude(sensor)},
+                {"pose_noise", pose_sigma_json(noise.pose)},
+                {"amplitude", writes_amplitude},
                 {"seed", sensing.seed},
                 {"orthonormalized_poses", source.orthonormalized},
                 {"out", options.out},
@@ -216,33 +213,33 @@ Command add_simulate(App& program) {
   app->add_option("MESH", options->mesh, "OFF, OBJ, STL or PLY file")->required();
   add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kSensorHelp)->required();
+  begin_group(*app, "Mesh");
   app->add_option("--size", options->size,
                   "scale the mesh so that its bounding box's longest side is this [m]; default: "
                   "the file's own size, in metres");
-  add_switch(*app, "--recenter", options->recenter, "move the bounding box's centre to the origin");
   app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
       ->check(one_of({"x", "y", "z"}, "axis"));
   app->add_option(
       "--place", options->place,
-      "x,y,z[,YAW_DEG] or tx,ty,tz,qx,qy,qz,qw: mesh to world, after --size, --recenter "
-      "and --up [m, degrees round +z]; default: where it is. A room round it stays where it "
+      "center: the bounding box's centre comes to the origin; or x,y,z[,YAW_DEG] or "
+      "tx,ty,tz,qx,qy,qz,qw: mesh to world, after --size and --up [m, degrees round +z]; or both, "
+      "as center,x,y,z; default: where it is. A room round it stays where it "
       "was (--background)");
   add_sensing_options(*app, options->sensing);
+  begin_group(*app, "Output");
   app->add_option("--frames-per-view", options->frames_per_view,
                   "frames from each pose, numbered on; poses.txt repeats the pose")
       ->check(counted(1, 1000));
-  app->add_option("--amplitude", options->amplitude,
-                  "write amplitude images; default: on for sensors with shot noise")
-      ->check(on_or_off());
   app->add_option(
          "--out", options->out,
          "folder to write; frames that simulate has left in it are replaced, others are refused")
       ->required();
-  add_common_options(*app, options->common);
-  add_help(
-      *app, kMapGroup,
-      "simulate mesh.off --size 0.35 --recenter on --orbit 3,0.6,27 --sensor sr4000 --out frames");
-  return {app, [options] { simulate(*options); }};
+  most_need(*app, {"--sensor", "--out", "--size", "--place", "--up", "--noise", "--support-plane",
+                   "--background"});
+  add_help(*app, kMapGroup,
+           "simulate mesh.off --size 0.35 --place center --poses orbit:3,0.6,27 --sensor sr4000 "
+           "--out frames");
+  return command_of(app, options, simulate);
 }
 
 }  // namespace viewgain::app

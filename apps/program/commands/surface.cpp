@@ -36,12 +36,12 @@ struct Options {
   std::string out, points;
   std::string truth;
   std::optional<double> size;
-  std::string recenter = "off", up = "z";
+  std::string place, up = "z";
 };
 
 void check(const Options& options, const App& app) {
   if (options.out.empty() && options.points.empty()) refuse("needs --out or --points");
-  for (const char* flag : {"--size", "--recenter", "--up"}) {
+  for (const char* flag : {"--size", "--place", "--up"}) {
     if (app.count(flag) > 0 && options.truth.empty()) {
       refuse(std::string(flag) + " goes with --truth");
     }
@@ -51,7 +51,7 @@ void check(const Options& options, const App& app) {
 
 std::shared_ptr<const SurfaceScene> truth_of(const Options& options, const ExecConfig& exec) {
   if (options.truth.empty()) return nullptr;
-  const MeshPlacement placement = placement_of(options.size, options.recenter, options.up);
+  const MeshPlacement placement = placement_of(options.size, options.place, options.up);
   MeshRepairs repairs;
   TriangleMesh mesh = read_mesh(options.truth, placement, &repairs);
   warn_of_repairs(options.truth, repairs);
@@ -119,7 +119,7 @@ void warn_of_place(const Options& options, const TriangleMesh& truth, const Beli
   std::fprintf(
       stderr,
       "viewgain: warning: %s lies in %s m, the map in %s m: is it where the object was, in "
-      "metres? (--size, --recenter, --up)\n",
+      "metres? (--size, --place, --up)\n",
       options.truth.c_str(), describe(box).c_str(), describe(map).c_str());
 }
 
@@ -185,13 +185,14 @@ Command add_surface(App& program) {
       "mesh (off, obj, stl, ply) that the surface is held against, in the world's frame");
   app->add_option("--size", options->size,
                   "longest side that the truth is scaled to [m]; default: as it is");
-  add_switch(*app, "--recenter", options->recenter,
-             "the middle of the truth's bounding box becomes the origin");
+  app->add_option("--place", options->place,
+                  "center: the middle of the truth's bounding box becomes the origin; default: as "
+                  "it is")
+      ->check(one_of({"center"}, "place"));
   app->add_option("--up", options->up, "axis of the truth that is turned to +z")
       ->check(one_of({"x", "y", "z"}, "axis"));
-  add_common_options(*app, options->common);
   add_help(*app, kLookGroup, "surface map.vdb --out surface.ply --points points.ply");
-  return {app, [options, app] { surface(*options, *app); }};
+  return command_of(app, options, [app](const auto& given) { surface(given, *app); });
 }
 
 }  // namespace viewgain::app

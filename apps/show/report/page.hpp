@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "program/cli/json.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "program/cli/json.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -16,6 +15,7 @@
 #include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

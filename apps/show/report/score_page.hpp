@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "program/cli/json.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

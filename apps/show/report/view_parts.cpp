@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 
-#include "program/cli/flags/gain_names.hpp"
 #include "show/pictures/picture_parts.hpp"
 #include "show/report/page.hpp"
 #include "viewgain/version.hpp"
@@ -96,8 +95,8 @@ Json page_head(const std::string& kind, const std::string& title, const GainEval
           {"title", title},
           {"version", VIEWGAIN_VERSION},
           {"gain_model", gain_model_name(evaluator.model())},
-          {"gain_unit", gain_unit(evaluator.model(), criterion)},
-          {"entropy_unit", gain_unit(GainModel::paper, criterion)},
+          {"gain_unit", gain_unit(evaluator.model(), parse_criterion(criterion))},
+          {"entropy_unit", gain_unit(GainModel::paper, parse_criterion(criterion))},
           {"workspace",
            {bound(low.x), bound(low.y), bound(low.z), bound(low.x + size.x), bound(low.y + size.y),
             bound(low.z + size.z)}},

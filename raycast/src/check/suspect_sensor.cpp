@@ -211,7 +211,7 @@ Suspicion suspect_pose_sigma(const PoseSigma& sigma, double working_distance,
     return {"pose_sigma_unit",
             "poses are turned by a standard deviation of " + figure(sigma.rotation) + " rad, " +
                 figure(sigma.rotation * 180 / std::numbers::pi) +
-                " degrees: pose_sigma is in metres and radians, --pose-sigma in metres and "
+                " degrees: pose_sigma is in metres and radians, --register in metres and "
                 "degrees"};
   }
   return {};

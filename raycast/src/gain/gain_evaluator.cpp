@@ -57,6 +57,12 @@ std::string_view gain_model_name(GainModel model) {
   return gain_model_names().at(static_cast<std::size_t>(model));
 }
 
+std::string_view gain_unit(GainModel model, Criterion criterion) noexcept {
+  const bool is_area =
+      model == GainModel::surface || (model == GainModel::paper && criterion == Criterion::trace);
+  return is_area ? "m^2" : "nat";
+}
+
 GainModel parse_gain_model(std::string_view name) {
   return static_cast<GainModel>(place_of_name(name, gain_model_names(), "gain"));
 }

@@ -13,23 +13,23 @@ import sys
 import tempfile
 
 CALLS = {
-    "simulate": "simulate meshes/camel.off --size 0.35 --sphere 2,0.6 --sensor sr4000 --out frames",
+    "simulate": "simulate meshes/camel.off --size 0.35 --poses sphere:2,0.6 --sensor sr4000 --out frames",
     "integrate": "integrate frames --voxel 0.01 --out map.vdb",
     "convert": "convert map.vdb map.ot",
-    "info": "info map.vdb --region=-0.1,-0.1,-0.1,0.1,0.1,0.1",
-    "score": "score map.vdb --sphere 20,0.6 --top 2",
-    "score --set": "score map.vdb --sphere 20,0.6 --set 2",
-    "score --approximate": "score map.vdb --sphere 20,0.6 --approximate 0.2",
-    "score --gain": "score map.vdb --sphere 20,0.6 --gain unknown_count",
+    "info": "info map.vdb --workspace=-0.1,-0.1,-0.1,0.1,0.1,0.1",
+    "score": "score map.vdb --poses sphere:20,0.6 --top 2",
+    "score --set": "score map.vdb --poses sphere:20,0.6 --set 2",
+    "score --approximate": "score map.vdb --poses sphere:20,0.6 --approximate 0.2",
+    "score --gain": "score map.vdb --poses sphere:20,0.6 --gain unknown_count",
     "reconstruct": "reconstruct meshes/camel.off --size 0.35 --sensor sr4000 --voxel 0.01 --max-views 2 --out run",
-    "reconstruct FRAMES_DIR": "reconstruct frames --voxel 0.01 --pictures off --out model",
+    "model": "model frames --voxel 0.01 --pictures off --out model",
     "next": "next run/map.vdb --top 2",
     "next --plan": "next run/map.vdb --plan 2",
-    "follow": "follow frames --voxel 0.01 --workspace=-0.2,-0.2,-0.2,0.2,0.2,0.2 --out followed",
+    "next --top": "next run/map.vdb --top all --generator sphere,boundary",
+    "model --watch": "model frames --watch --voxel 0.01 --workspace=-0.2,-0.2,-0.2,0.2,0.2,0.2 --out watched",
     "calibrate": "calibrate --noise static --out measured.toml",
-    "candidates": "candidates run/map.vdb --out candidates.txt --generator boundary --gain combined",
-    "surface": "surface run/map.vdb --out surface.ply --truth meshes/camel.off --size 0.35 --recenter on",
-    "render": "render run --what sigma --out sigma.png",
+    "surface": "surface run/map.vdb --out surface.ply --truth meshes/camel.off --size 0.35 --place center",
+    "render": "render run sigma --out sigma.png",
     "sensors": "sensors",
     "study": "study spec.toml --out study --plots off",
 }
@@ -95,7 +95,7 @@ def main():
                      "simulate static.off --poses pose.txt --sensor sr4000 --noise on --frames-per-view 30 --out static"]:
             subprocess.run([program, *call.split()], cwd=folder, capture_output=True, check=True)
         for name, call in CALLS.items():
-            if name == "follow":
+            if name == "model --watch":
                 pathlib.Path(folder, "frames/done").touch()
             result = subprocess.run([program, *call.split(), "--json", "--quiet"], cwd=folder, capture_output=True, text=True)
             assert result.returncode == 0, f"{call}: {result.stderr}"

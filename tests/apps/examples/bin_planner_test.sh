@@ -28,7 +28,7 @@ hash_of() { "$bin/viewgain" info "$1" --json | grep -oE '"hash": "[0-9a-f]{16}"'
 "$bin/bin_planner_frames" "$sensor" "$work/frames"
 check cpp "$bin/bin_planner"
 # The block stands 14 cm from this wall, whose readings are known: what is left is noise beyond 3 sigma.
-"$bin/viewgain" info "$work/cpp.vdb" --region -0.2,-0.15,0,-0.09,0.15,0.2 --json >"$work/region.json"
+"$bin/viewgain" info "$work/cpp.vdb" --workspace -0.2,-0.15,0,-0.09,0.15,0.2 --json >"$work/region.json"
 grep -qE '"occupied": [0-9]{1,2},?$' "$work/region.json" || fail "a wall is in the map: $(cat "$work/region.json")"
 "$bin/viewgain" info "$work/cpp.vdb" --json | grep -E '"occupied": [1-9][0-9]{3,}' >/dev/null || fail "no block in the map"
 if [ $# -gt 2 ]; then

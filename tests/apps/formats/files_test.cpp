@@ -94,7 +94,7 @@ TEST_F(Files, SensorsReadBackEqual) {
   EXPECT_EQ(cases, 205);
 }
 
-// The flag --pose-sigma is in degrees; files of 0.1.0 have the key without its unit.
+// The flag --register is in degrees; files of 0.1.0 have the key without its unit.
 TEST_F(Files, TheSigmaOfPosesHasItsUnitInItsName) {
   Sensor sensor = sensor_preset("d435");
   sensor.pose_sigma = {0.004, 0.01};

@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/json.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
@@ -304,7 +304,7 @@ TEST_F(Recordings, MasksTakePixelsAway) {
   EXPECT_EQ(load_frame(open_frames(dir / "frames"), 1).depth[101], 0.0F);
   const int zeros = result["masked_pixels"];
   EXPECT_GT(zeros, kWidth * kHeight / 2);
-  result = import_json({"--confidence", "masks", "--least-confidence", "2"});
+  result = import_json({"--confidence", "masks,2"});
   EXPECT_EQ(result["masked_pixels"], zeros + 1);
   result = import_json({"--confidence", "masks", "--mask", "masks"});
   EXPECT_EQ(result["masks"], 1);
@@ -334,8 +334,9 @@ TEST_F(Recordings, OnlyAnEarlierImportIsReplaced) {
                      "frames.toml", "imported.txt", "mine.txt", "sensor.toml"}));
   write("foreign/frame-000009.depth.png", "mine");
   write_cube();
-  const Strings simulate{"simulate", "cube.off", "--size",   "0.3",        "--recenter", "on",
-                         "--orbit",  "1,0.6,27", "--sensor", "small.toml", "--out"};
+  const Strings simulate{"simulate", "cube.off",   "--size",  "0.3",
+                         "--place",  "center",     "--poses", "orbit:1,0.6,27",
+                         "--sensor", "small.toml", "--out"};
   run_well(test::joined(simulate, {"simulated"}));
   const Strings import{"import", "rec", "--sensor", "small.toml", "--out"};
   expect_refused({{test::joined(import, {"foreign"}), "frame-000009"},

@@ -16,6 +16,7 @@
 #include "apps/planner/planner_scene.hpp"
 #include "core/expect_error.hpp"
 #include "viewgain/core/generators.hpp"
+#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/planner/pose_sets.hpp"
 
 namespace viewgain {
@@ -104,12 +105,13 @@ struct SeenBox {
   }
 };
 
-TEST(Classic, ChoosesTheFirstOfTheBestByItsGain) {
+TEST(RegisteredGain, ChoosesTheFirstOfTheBestByItsGain) {
   const SeenBox box;
   const auto model = box.model_after({box.start});
+  register_gains(literature_gains());
   PolicyConfig config;
   for (const ClassicGain gain : {ClassicGain::unknown_count, ClassicGain::proximity_count}) {
-    config.classic = gain;
+    config.registered = classic_gain_name(gain);
     const auto map = ClassicMap::build(model->scene(), model->grid(), Acquisition{box.sensor});
     const std::vector<Pose> poses = poses_of(box.candidates);
     const std::vector<double> values =
@@ -125,11 +127,12 @@ TEST(Classic, ChoosesTheFirstOfTheBestByItsGain) {
   }
 }
 
-TEST(Classic, OfManyThirtyTwoAreScoredInFull) {
+TEST(RegisteredGain, OfManyThirtyTwoAreScoredInFull) {
   const SeenBox box;
   const auto model = box.model_after({box.start});
   const std::vector<Pose> poses = sphere_poses(100, 0.4);
-  ClassicChoice choice(*model, box.sensor, ClassicGain::occlusion_aware, box.exec);
+  register_gains(literature_gains());
+  const RegisteredChoice choice(*model, box.sensor, "occlusion_aware", box.exec);
   const std::vector<double> all = choice.gains(poses, true), some = choice.gains(poses, false);
   std::size_t scored = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -138,14 +141,33 @@ TEST(Classic, OfManyThirtyTwoAreScoredInFull) {
     EXPECT_EQ(some[i], all[i]);
     ++scored;
   }
-  EXPECT_EQ(scored, ClassicChoice::kInFull);
+  EXPECT_EQ(scored, RegisteredChoice::kInFull);
   const double best = *std::max_element(all.begin(), all.end());
   EXPECT_GT(std::count(some.begin(), some.end(), best), 0);
 }
 
-TEST(Classic, NeitherGainNorAreaEndsARun) {
+TEST(RegisteredGain, IsKnownByItsNameOnceItIsRegistered) {
+  const SeenBox box;
+  const auto model = box.model_after({box.start});
+  register_gains(nullptr);
+  EXPECT_TRUE(registered_gains().names().empty());
+  EXPECT_FALSE(is_registered_gain("unknown_count"));
+  PolicyConfig config;
+  config.registered = "unknown_count";
+  test::expect_error(ErrorCode::invalid_argument, "no gains are registered",
+                     [&] { (void)box.choice(*model, config); });
+  register_gains(literature_gains());
+  EXPECT_TRUE(is_registered_gain("unknown_count"));
+  EXPECT_FALSE(is_registered_gain("combined"));
+  EXPECT_EQ(registered_gains().unit("unknown_volume"), "m^3");
+  config.registered = "unknwn_count";
+  test::expect_error(ErrorCode::invalid_argument, "unknown_count",
+                     [&] { (void)box.choice(*model, config); });
+}
+
+TEST(RegisteredGain, NeitherGainNorAreaEndsARun) {
   PolicyConfig policy;
-  policy.classic = ClassicGain::occlusion_aware;
+  policy.registered = "occlusion_aware";
   PlanningConfig planning;
   set_stop_rules(planning, policy, {}, {});
   EXPECT_EQ(planning.stop_area, 0);

@@ -102,22 +102,22 @@ goes_on reconstruct $mesh --voxel 0.0125 --max-views 3 --resume --quiet --thread
 cp -r whole/run .
 cp run/map.vdb .
 # shellcheck disable=SC2086
-sweep simulate $mesh --sphere 4,0.6 --quiet --threads 2 --out out/frames
+sweep simulate $mesh --poses sphere:4,0.6 --quiet --threads 2 --out out/frames
 cp -r whole/frames .
 touch frames/done
-goes_on follow frames --voxel 0.0125 $workspace --quiet --threads 2 --out out/run
-sweep reconstruct frames --voxel 0.0125 $workspace --quiet --threads 2 --out out/run
+goes_on model frames --watch --voxel 0.0125 $workspace --quiet --threads 2 --out out/run
+sweep model frames --voxel 0.0125 $workspace --quiet --threads 2 --out out/run
 sweep integrate frames --voxel 0.0125 $workspace --quiet --threads 2 --out out/map.vdb
 sweep convert map.vdb out/map.ot
 sweep surface map.vdb --threads 2 --out out/surface.ply
-sweep candidates map.vdb --generator boundary --threads 2 --out out/poses.txt
-sweep render map.vdb --what map --threads 2 --out out/map.png
-sweep render run --what sigma --threads 2 --out out/run.png
+sweep next map.vdb --top all --generator boundary --threads 2 --out out/poses.txt
+sweep render map.vdb map --threads 2 --out out/map.png
+sweep render run sigma --threads 2 --out out/run.png
 sweep info map.vdb
 sweep next map.vdb --top 3 --threads 2
-sweep score map.vdb --sphere 200,0.6 --top 3 --threads 2
-sweep score map.vdb --sphere 200,0.6 --top 3 --threads 2 --trace embree
-sweep score map.vdb --sphere 200,0.6 --top 3 --threads 2 --race --obstacle cube.off
+sweep score map.vdb --poses sphere:200,0.6 --top 3 --threads 2
+sweep score map.vdb --poses sphere:200,0.6 --top 3 --threads 2 --trace embree
+sweep score map.vdb --poses sphere:200,0.6 --top 3 --threads 2 --race --obstacle cube.off
 cat >study.toml <<'END'
 objects = ["cube.off"]
 policies = ["gain:combined", "frontier"]

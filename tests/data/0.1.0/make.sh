@@ -72,11 +72,11 @@ END
 
 space=0,0,0,0.3,0.3,0.3  # a corner of the cube, one leaf of the map
 "$program" sensors small.toml >sensor.toml
-"$program" simulate cube.off --orbit 2,0.6,27 --sensor sensor.toml --size 0.2 --recenter on --out frames >log
+"$program" simulate cube.off --poses orbit:2,0.6,27 --sensor sensor.toml --size 0.2 --place center --out frames >log
 touch frames/done
-"$program" follow frames --voxel 0.0375 --workspace "$space" --top 2 --out plan --quiet >log
-"$program" candidates plan/state.vdb --generator sphere --count 4 --sensor sensor.toml --out reach.poses.txt >log
-flags=(reconstruct cube.off --sensor sensor.toml --size 0.2 --voxel 0.02 --max-views 3 --stop-idle 0 --pictures off --resume)
+"$program" model frames --watch --voxel 0.0375 --workspace "$space" --top 2 --out plan --quiet >log
+"$program" next plan/state.vdb --top all --generator sphere --count 4 --sensor sensor.toml --out reach.poses.txt >log
+flags=(reconstruct cube.off --sensor sensor.toml --size 0.2 --voxel 0.02 --max-views 3 --stop idle=0 --pictures off --resume)
 "$program" "${flags[@]}" --out run >log 2>&1
 "$program" "${flags[@]}" --out ended >log 2>&1 &
 until grep -qs candidate .ended.tmp-*/checkpoint.json; do :; done
@@ -87,5 +87,5 @@ cp plan/state.vdb "$here"
 cp run/run.json .ended.tmp-*/checkpoint.json "$here"
 {
   "$program" --version
-  "$program" info "$here/state.vdb" --hash
+  "$program" info "$here/state.vdb" | sed -n 's/^hash *//p'
 } >"$here/made.txt"

@@ -6,37 +6,32 @@
 #include <string>
 
 #include "program/cli/app.hpp"
+#include "program/cli/help.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::app {
 
-/// What every subcommand has.
+/// What the program itself has, before or after the subcommand's name.
 struct CommonOptions {
   bool json = false;
   bool quiet = false;
   int threads = 0;
-  std::string trace = "automatic";  ///< of subcommands that score
-  std::string config, save_config;  ///< main() reads and writes them
+  std::string trace = "automatic";
+  std::string save_config;
 };
-inline void add_common_options(App& app, CommonOptions& options) {
-  app.add_flag("--json", options.json, "print one JSON object instead of text");
-  app.add_flag("--quiet", options.quiet, "say nothing of how far the call is");
-  app.add_option("--threads", options.threads, "threads; 0: as many as the machine has");
-  app.add_option("--config", options.config,
-                 "TOML file: flags without -- and positionals (mesh, map) as keys; what the "
-                 "command line says holds");
-  app.add_option("--save-config", options.save_config,
-                 "TOML file to write what was given to, for --config");
-}
-
-/// Of subcommands that score.
-inline void add_trace_option(App& app, CommonOptions& options) {
-  app.add_option("--trace", options.trace,
-                 "how rays meet voxels: by Embree's BVH or by sweeping cells from near to "
-                 "far, as unless told otherwise; never changes a result")
+inline void add_common_options(App& program, CommonOptions& options) {
+  program.add_flag("--json", options.json, "print one JSON object instead of text");
+  program.add_flag("--quiet", options.quiet, "say nothing of how far the call is");
+  program.add_option("--threads", options.threads, "threads; 0: as many as the machine has");
+  program
+      .add_option("--trace", options.trace,
+                  "how rays meet voxels: by Embree's BVH or by sweeping cells from near to "
+                  "far, as unless told otherwise; never changes a result")
       ->check(one_of(tracer_names(), "tracer"));
+  program.add_option("--save-config", options.save_config,
+                     "TOML file to write what was given to, for --config");
 }
 
 [[nodiscard]] inline ExecConfig exec_of(const CommonOptions& options) {
@@ -59,7 +54,7 @@ inline void add_help(App& app, const char* group, const char* example) {
   app.group(group)->footer(std::string("Example:\n  viewgain ") + example);
 }
 
-inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt)";
+inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt), or a run's folder";
 
 inline const std::string kSensorHelp =
     "preset (" + listed(sensor_preset_names()) + ") or a .toml file";
@@ -70,16 +65,6 @@ inline const std::string kMapSensorHelp =
 inline constexpr const char* kBodyHelp =
     "x,y,z: width, height, depth of the sensor's housing [m]; default: the sensor's own, else the "
     "SR4000's";
-
-inline constexpr const char* kOverlapHelp =
-    "share of a boundary candidate's view that is to show known surface, 0..1";
-
-inline constexpr const char* kRegionDepthHelp =
-    "how far inward from a boundary the surface is fitted that candidates go on from [m]";
-
-inline constexpr const char* kStopPromisesHelp =
-    "of --gain paper, surface and combined: stop after so many views in a row that bring less than "
-    "a fifth of what they promised, new surface, by the paper's gain entropy; 0: never";
 
 /// --seed, the same bounds in every subcommand.
 inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "program/cli/help.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
 
@@ -27,7 +28,8 @@ std::vector<MaskFolder> mask_folders(const FrameFolderOptions& options,
   std::vector<MaskFolder> folders;
   if (!options.mask.empty()) folders.emplace_back(options.mask);
   if (!options.confidence.empty()) {
-    folders.emplace_back(options.confidence, static_cast<std::uint8_t>(options.least_confidence));
+    const Confidence confidence = parse_confidence(options.confidence);
+    folders.emplace_back(confidence.folder, confidence.least);
   }
   for (const MaskFolder& folder : folders) folder.require_mask_of_any(images);
   return folders;
@@ -63,6 +65,7 @@ void check_contradiction(const FrameFolderOptions& options, bool registers) {
 }
 
 void add_frame_folder_options(App& app, FrameFolderOptions& options) {
+  begin_group(app, "Frames");
   app.add_option("--depth-scale", options.depth_scale,
                  "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
                  "poses.txt, 1e-3 with pose files)");
@@ -72,7 +75,7 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options) {
          "from frames.toml or the sensor file, else carve with poses.txt, invalid with pose "
          "files)")
       ->check(one_of({"carve", "invalid"}, "meaning"));
-  add_mask_options(app, options.mask, options.confidence, options.least_confidence);
+  add_mask_options(app, options.mask, options.confidence);
   app.add_option("--on-contradiction", options.on_contradiction,
                  "what to do with frames that contradict the others: skip those that --register "
                  "refuses and warn about the rest, keep all (requires --register on), or end with "
@@ -80,16 +83,25 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options) {
       ->check(one_of({"skip", "keep", "error"}, "answer"));
 }
 
-void add_mask_options(App& app, std::string& mask, std::string& confidence, int& least_confidence) {
+void add_mask_options(App& app, std::string& mask, std::string& confidence) {
   app.add_option("--mask", mask,
                  "folder of grayscale PNGs with the depth images' names; nonzero pixels are "
                  "ignored");
   app.add_option("--confidence", confidence,
-                 "folder of grayscale PNGs with the depth images' names; pixels under "
-                 "--least-confidence are ignored");
-  app.add_option("--least-confidence", least_confidence,
-                 "least value of --confidence that counts, 1..255")
-      ->check(CLI::Range(1, 255, "confidence"));
+                 "DIR[,LEAST]: folder of grayscale PNGs with the depth images' names; pixels under "
+                 "LEAST (1..255, 1) are ignored");
+}
+
+Confidence parse_confidence(const std::string& text) {
+  const std::size_t comma = text.rfind(',');
+  const std::string number = comma == std::string::npos ? "" : text.substr(comma + 1);
+  if (number.empty() || number.find_first_not_of("0123456789") != std::string::npos) {
+    return {text};
+  }
+  const std::size_t least =
+      parse_count("--confidence", parse_numbers("--confidence", number, 1, 1)[0]);
+  if (least < 1 || least > 255) refuse("--confidence " + text + ": LEAST must be in 1..255");
+  return {text.substr(0, comma), static_cast<std::uint8_t>(least)};
 }
 
 FrameFolder::FrameFolder(const FrameFolderOptions& options)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -23,8 +24,7 @@ struct FrameFolderOptions {
   std::string sensor;                     ///< --sensor; empty: the folder's own
   std::optional<double> depth_scale{};    ///< --depth-scale [m per unit]; nothing: the folder's
   std::string mask;                       ///< --mask; empty: none
-  std::string confidence;                 ///< --confidence; empty: none
-  int least_confidence = 1;               ///< --least-confidence
+  std::string confidence;                 ///< --confidence DIR[,LEAST]; empty: none
   std::string out_of_range;               ///< --out-of-range; empty: the folder's
   std::string on_contradiction = "skip";  ///< --on-contradiction skip|keep|error
 };
@@ -39,8 +39,16 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options);
 /// Throws Error(invalid_argument) for --on-contradiction keep without --register on.
 void check_contradiction(const FrameFolderOptions& options, bool registers);
 
-/// --mask, --confidence and --least-confidence.
-void add_mask_options(App& app, std::string& mask, std::string& confidence, int& least_confidence);
+/// --mask and --confidence.
+void add_mask_options(App& app, std::string& mask, std::string& confidence);
+
+/// What --confidence DIR[,LEAST] says.
+struct Confidence {
+  std::string folder;
+  std::uint8_t least = 1;  ///< value that counts
+};
+/// Throws Error(invalid_argument) for a LEAST that is not in 1..255.
+[[nodiscard]] Confidence parse_confidence(const std::string& text);
 
 /// open_frames() or open_depth_images(); their errors name --sensor where that would help.
 using OpenFrames = FrameSequence (*)(const std::filesystem::path&, const std::string&,

@@ -11,9 +11,6 @@
 namespace viewgain::app {
 namespace {
 
-// The gains of NextViews are of the default criterion.
-constexpr std::string_view kCriterion = "log_diagonal";
-
 std::string why(const NextView& view) {
   std::string text = view.generator;
   if (view.boundary_class) text.append(" ").append(boundary_class_name(*view.boundary_class));
@@ -69,22 +66,23 @@ double total_gain(const NextViews& next) {
 
 }  // namespace
 
-void add_plan_options(App& app, PlanOptions& options) {
-  app.add_option("--plan", options.plan,
-                 "K views are planned together, at most, as a set, and taken in an order that is "
-                 "short to drive by straight ways; 1: one at a time")
-      ->check(counted(1, 1000));
-  app.add_option("--take", options.take,
-                 "of the views of --plan so many are taken before it is planned anew, if they are "
-                 "possible and promise enough by then; default: all")
-      ->check(counted(1, 1000));
+void add_plan_option(App& app, std::string& text) {
+  app.add_option("--plan", text,
+                 "K[,M]: K views are planned together, at most, as a set, and taken in an order "
+                 "that is short to drive by straight ways; M of them, all unless given, are taken "
+                 "before it is planned anew, if they are possible and promise enough by then; 1: "
+                 "one at a time");
 }
 
-void check(const PlanOptions& options) {
-  if (options.take.value_or(1) > options.plan) {
-    refuse("--take " + std::to_string(*options.take) + " goes with --plan of as many, not " +
-           std::to_string(options.plan));
+PlanAhead parse_plan(const std::string& text) {
+  const std::vector<double> n = parse_numbers("--plan", text, 1, 2);
+  PlanAhead ahead;
+  ahead.plan = parse_count("--plan", n[0]);
+  ahead.take = n.size() > 1 ? parse_count("--plan", n[1]) : ahead.plan;
+  if (ahead.plan < 1 || ahead.plan > 1000 || ahead.take < 1 || ahead.take > ahead.plan) {
+    refuse("--plan " + text + ": needs 1 <= M <= K <= 1000");
   }
+  return ahead;
 }
 
 NextViews next_views(const Ranking& ranking, const Proposal& proposal, GainModel model) {
@@ -111,7 +109,7 @@ void explain(NextViews& next, const Proposal& proposal, const GainEvaluator& eva
 
 Json to_json(const NextViews& next) {
   Json json{{"gain_model", gain_model_name(next.model)},
-            {"gain_unit", gain_unit(next.model, kCriterion)},
+            {"gain_unit", gain_unit(next.model)},
             {"candidates", next.candidates},
             {"dropped", next.dropped},
             {"next", Json::array()}};
@@ -122,7 +120,7 @@ Json to_json(const NextViews& next) {
     const auto& of = view.boundary_class;
     json["next"].push_back({{"gain", view.gain.gain},  // a NaN becomes null
                             {"worth", view.worth},
-                            {"share", view.gain.gain / total},
+                            {"share", next.together ? Json(view.gain.gain / total) : Json()},
                             {"area", view.gain.area},
                             {"generator", view.generator},
                             {"number", view.number},
@@ -153,7 +151,7 @@ std::string text_of(const NextViews& next) {
   if (next.no_gain) return "none of the candidates gains: " + text_of(*next.no_gain) + "\n";
   if (next.views.empty()) return unworthy;
   const bool has_area = next.model != GainModel::paper;
-  const std::string gain = "gain [" + std::string(gain_unit(next.model, kCriterion)) + "]";
+  const std::string gain = "gain [" + std::string(gain_unit(next.model)) + "]";
   const bool has_cost = std::any_of(next.views.begin(), next.views.end(), [](const NextView& view) {
     return view.worth != view.gain.gain;
   });
@@ -172,7 +170,7 @@ std::string text_of(const NextViews& next) {
                       axis.x(), axis.y(), axis.z(), why(view).c_str());
     if (view.rays) text.append("     ").append(text_of(*view.rays)).append("\n");
   }
-  if (next.views.size() > 1) {
+  if (next.views.size() > 1 && next.together) {
     text += has_area ? "gain and area are" : "gain is";
     text += " what each view adds to the others\n";
   }

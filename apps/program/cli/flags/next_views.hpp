@@ -9,25 +9,19 @@
 #include <vector>
 
 #include "program/cli/app.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/boundary_class.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/planner/rank_views.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 
-/// --plan and --take.
-struct PlanOptions {
-  std::size_t plan = 1;
-  std::optional<std::size_t> take{};  ///< none: all of them
-
-  [[nodiscard]] PlanAhead ahead() const { return {.plan = plan, .take = take.value_or(plan)}; }
-};
-void add_plan_options(App& app, PlanOptions& options);
+/// --plan K[,M].
+void add_plan_option(App& app, std::string& text);
 /// Throws Error(invalid_argument), naming the flag.
-void check(const PlanOptions& options);
+[[nodiscard]] PlanAhead parse_plan(const std::string& text);
 
 /// The generator's name of --poses.
 inline constexpr const char* kGivenPoses = "poses";
@@ -36,7 +30,7 @@ inline constexpr const char* kGivenPoses = "poses";
 struct NextView {
   Pose T_world_camera;
   std::size_t index = 0;  ///< of the candidate in its proposal
-  ViewGain gain;          ///< what it adds to the views before it
+  ViewGain gain;          ///< NextViews::together says of what
   double worth = 0;       ///< that less its cost
   std::string generator;
   std::size_t number = 0;                            ///< among what this generator proposed, from 0
@@ -54,6 +48,7 @@ struct NextViews {
       no_gain{};                        ///< by explain(): candidates' rays, if none gains
   std::optional<double> plan_metres{};  ///< of a new plan: its way, from where the camera is [m]
   bool all_worth = true;                ///< false: other views gain less than they cost
+  bool together = true;  ///< gains are what each adds to those before; false: its own
 };
 
 /// Of a ranking of a proposal's candidates.

@@ -3,8 +3,11 @@
 #include "program/cli/flags/pose_source.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <numbers>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "program/cli/values.hpp"
@@ -19,78 +22,55 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Generators know nothing of flags; a user does not know which value is meant without one.
-template <typename Make>
-std::vector<Pose> naming_the_flag(const std::string& flag, const std::string& text, Make&& make) {
-  try {
-    return make();
-  } catch (const Error& error) {
-    throw Error(error.code(), flag + " " + text + ": " + error.what());
+// Of "sphere:2000,0.6" the generator and its numbers.
+struct SetOfPoses {
+  std::string_view kind, numbers;
+};
+
+constexpr std::array<std::string_view, 5> kKinds{"sphere", "dome", "rings", "shell", "orbit"};
+
+// Nothing for the name of a file.
+std::optional<SetOfPoses> set_in(std::string_view value) {
+  const std::size_t colon = value.find(':');
+  const std::string_view kind = value.substr(0, colon);
+  if (colon == std::string_view::npos || std::ranges::find(kKinds, kind) == kKinds.end()) {
+    return std::nullopt;
   }
+  return SetOfPoses{kind, value.substr(colon + 1)};
 }
 
-using CenteredGenerator = std::vector<Pose> (*)(std::size_t, double, const Eigen::Vector3d&);
-
-std::vector<Pose> round_center(const std::string& flag, const std::string& text,
-                               const Eigen::Vector3d& center, CenteredGenerator generator) {
-  const std::vector<double> n = parse_numbers(flag, text, 2, 2);
-  const std::size_t count = parse_count(flag, n[0]);
-  return naming_the_flag(flag, text, [&] { return generator(count, n[1], center); });
-}
-
-std::vector<Pose> orbit(const std::string& text, const Eigen::Vector3d& center) {
-  const std::vector<double> n = parse_numbers("--orbit", text, 3, 5);
-  const std::size_t count = parse_count("--orbit", n[0]);
+std::vector<Pose> orbit(const std::vector<double>& n, const Eigen::Vector3d& center) {
   const double start = n.size() > 3 ? n[3] * kDegree : 0.0;
   const std::optional<double> step =
       n.size() > 4 ? std::optional<double>(n[4] * kDegree) : std::nullopt;
-  return naming_the_flag("--orbit", text, [&] {
-    return orbit_poses(count, n[1], n[2] * kDegree, start, step, center);
-  });
+  return orbit_poses(parse_count("--poses", n[0]), n[1], n[2] * kDegree, start, step, center);
 }
 
-std::vector<Pose> shell(const std::string& text, const Eigen::Vector3d& center,
-                        std::uint64_t seed) {
-  const std::vector<double> n = parse_numbers("--shell", text, 3, 3);
-  const std::size_t count = parse_count("--shell", n[0]);
-  return naming_the_flag("--shell", text,
-                         [&] { return shell_poses(count, n[1], n[2], seed, center); });
-}
-
-std::vector<Pose> set_of_poses(const PoseOptions& options, std::uint64_t seed) {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  if (!options.center.empty()) center = parse_point("--center", options.center);
-  if (!options.orbit.empty()) return orbit(options.orbit, center);
-  if (!options.sphere.empty())
-    return round_center("--sphere", options.sphere, center, sphere_poses);
-  if (!options.rings.empty()) {
-    return round_center("--rings", options.rings, center, literature_ring_poses);
-  }
-  if (!options.shell.empty()) return shell(options.shell, center, seed);
-  return round_center("--dome", options.dome, center, dome_poses);
+std::vector<Pose> poses_of(const SetOfPoses& set, const Eigen::Vector3d& center,
+                           std::uint64_t seed) {
+  const bool is_orbit = set.kind == "orbit", is_shell = set.kind == "shell";
+  const std::size_t least = is_orbit || is_shell ? 3 : 2;
+  const auto n = parse_numbers("--poses", set.numbers, least, is_orbit ? 5 : least);
+  if (is_orbit) return orbit(n, center);
+  const std::size_t count = parse_count("--poses", n[0]);
+  if (is_shell) return shell_poses(count, n[1], n[2], seed, center);
+  if (set.kind == "rings") return literature_ring_poses(count, n[1], center);
+  return set.kind == "dome" ? dome_poses(count, n[1], center) : sphere_poses(count, n[1], center);
 }
 
 }  // namespace
 
+bool is_set_of_poses(const std::string& value) { return set_in(value).has_value(); }
+
 void add_pose_options(App& app, PoseOptions& options) {
-  auto* poses = app.add_option_group("poses", "exactly one of");
-  poses->add_option(
-      "--poses", options.file,
-      "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]; or .npy: rows with "
-      "tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4) matrices, float64 or float32");
-  poses->add_option("--sphere", options.sphere,
-                    "N,RADIUS: Fibonacci lattice on a sphere round --center, looking at it [m]");
-  poses->add_option("--dome", options.dome,
-                    "N,RADIUS: the lattice's upper half, with N points [m]");
-  poses->add_option("--rings", options.rings,
-                    "N,RADIUS: cylinder and dome rings of the literature, N is 48, 80, 288 or 864 "
-                    "[m]");
-  poses->add_option("--shell", options.shell,
-                    "N,RMIN,RMAX: at random (--seed) between two spheres [m]");
-  poses->add_option("--orbit", options.orbit,
-                    "N,RADIUS,ELEVATION_DEG[,START_DEG,STEP_DEG]: N views on a circle of latitude "
-                    "[m, degrees]; START 0, STEP 360/N");
-  poses->require_option(1, 1);
+  app.add_option("--poses", options.poses,
+                 "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]; or .npy: "
+                 "rows with tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4) matrices, float64 or float32; "
+                 "or a set that looks at --center [m, degrees]: sphere:N,RADIUS (Fibonacci "
+                 "lattice), dome:N,RADIUS (its upper half), rings:N,RADIUS (cylinder and dome "
+                 "rings of the literature, N is 48, 80, 288 or 864), shell:N,RMIN,RMAX (at random "
+                 "by --seed), orbit:N,RADIUS,ELEVATION[,START,STEP] (a circle of latitude)")
+      ->required();
   app.add_option("--center", options.center,
                  "x,y,z that the sets of poses look at, world [m]; default: the origin");
 }
@@ -132,11 +112,20 @@ std::vector<double> read_costs(const std::string& file, std::size_t poses) {
 }
 
 PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {
-  if (options.file.empty()) return {set_of_poses(options, seed)};
-  if (!options.center.empty()) {
-    refuse("--center", options.center, "goes with sets of poses, not with --poses");
+  if (const auto set = set_in(options.poses)) {
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+    if (!options.center.empty()) center = parse_point("--center", options.center);
+    try {
+      return {poses_of(*set, center, seed)};
+    } catch (const Error& error) {  // generators know nothing of flags
+      if (std::string_view(error.what()).starts_with("--poses")) throw;
+      throw Error(error.code(), "--poses " + options.poses + ": " + error.what());
+    }
   }
-  PoseList list = load_poses(options.file);
+  if (!options.center.empty()) {
+    refuse("--center", options.center, "goes with sets of poses, not with a file of them");
+  }
+  PoseList list = load_poses(options.poses);
   return {std::move(list.poses), list.orthonormalized};
 }
 
@@ -161,7 +150,7 @@ std::optional<Pose> begin_of_ways(const CostOptions& options,
 
 std::vector<Pose> poses_in(const std::string& file) {
   PoseOptions options;
-  options.file = file;
+  options.poses = file;
   return make_poses(options, 0).poses;
 }
 

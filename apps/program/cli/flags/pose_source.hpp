@@ -27,16 +27,14 @@ struct PoseSource {
   }
 };
 
-/// The options of which one must be given, and what the sets among them look at; empty: not given.
+/// --poses and --center.
 struct PoseOptions {
-  std::string file;    ///< --poses FILE, TUM or .npy
-  std::string sphere;  ///< --sphere N,RADIUS
-  std::string dome;    ///< --dome N,RADIUS
-  std::string rings;   ///< --rings N,RADIUS
-  std::string shell;   ///< --shell N,RMIN,RMAX
-  std::string orbit;   ///< --orbit N,RADIUS,ELEVATION_DEG[,START_DEG,STEP_DEG]
-  std::string center;  ///< --center x,y,z
+  std::string poses;   ///< a file, TUM or .npy, or a set as sphere:N,RADIUS
+  std::string center;  ///< x,y,z that a set looks at; empty: the origin
 };
+
+/// Does a value of --poses name a set, and not a file?
+[[nodiscard]] bool is_set_of_poses(const std::string& value);
 
 /// The flags of PoseOptions, the same in every subcommand that is given one set of poses.
 void add_pose_options(App& app, PoseOptions& options);

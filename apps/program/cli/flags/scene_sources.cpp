@@ -38,11 +38,30 @@ std::string difference(const Sensor& there, const Sensor& here) {
 
 }  // namespace
 
-bool is_hazard_file(const std::string& value) { return small_ending(value) == ".vdb"; }
+namespace {
 
-HazardConfig hazard_source(const std::string& hazard, std::optional<double> object_size,
-                           const BeliefGrid& grid) {
-  if (object_size) check_positive("--object-size", *object_size);
+// Without what it says of the object's size.
+std::string rates_of(const std::string& hazard) {
+  if (!hazard.starts_with("size=")) return hazard;
+  const std::size_t comma = hazard.find(',');
+  return comma == std::string::npos ? "" : hazard.substr(comma + 1);
+}
+
+}  // namespace
+
+bool is_hazard_file(const std::string& value) { return small_ending(rates_of(value)) == ".vdb"; }
+
+std::optional<double> object_size_of(const std::string& hazard) {
+  if (!hazard.starts_with("size=")) return std::nullopt;
+  const double size =
+      parse_numbers("--hazard size", hazard.substr(5, hazard.find(',') - 5), 1, 1)[0];
+  check_positive("--hazard size", size);
+  return size;
+}
+
+HazardConfig hazard_source(const std::string& text, const BeliefGrid& grid) {
+  const std::optional<double> object_size = object_size_of(text);
+  const std::string hazard = rates_of(text);
   HazardConfig config;
   config.object_size = object_size;
   if (hazard.empty()) return config;
@@ -59,11 +78,11 @@ HazardConfig hazard_source(const std::string& hazard, std::optional<double> obje
   return constant_hazard(rate, grid, object_size);
 }
 
-MeshPlacement placement_of(std::optional<double> size, const std::string& recenter,
+MeshPlacement placement_of(std::optional<double> size, const std::string& place,
                            const std::string& up) {
   MeshPlacement placement;
   placement.up = up == "x" ? UpAxis::x : up == "y" ? UpAxis::y : UpAxis::z;
-  placement.center = recenter == "on";
+  placement.center = place.starts_with("center");
   if (size) placement.longest_side = *size;
   return placement;
 }

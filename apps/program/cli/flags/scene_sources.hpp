@@ -20,23 +20,24 @@ namespace viewgain::app {
 /// Is the value of --hazard a file of rates? By its ending, .vdb.
 [[nodiscard]] bool is_hazard_file(const std::string& value);
 
-/// What --hazard and --object-size [m] say of a map's unknown space: nothing (empty: the
+/// Of "size=0.3,5" the longest side of the object [m]; nothing where there is none. Throws
+/// Error(invalid_argument).
+[[nodiscard]] std::optional<double> object_size_of(const std::string& hazard);
+
+/// What --hazard says of a map's unknown space: nothing (empty: the
 /// default by distance and elevation), a rate [1/m] that is the same everywhere, or a .vdb file of
 /// rates (load_hazard_vdb). Throws Error(invalid_argument) for a text that is neither, and as
 /// load_hazard_vdb().
-[[nodiscard]] HazardConfig hazard_source(const std::string& hazard,
-                                         std::optional<double> object_size, const BeliefGrid& grid);
+[[nodiscard]] HazardConfig hazard_source(const std::string& text, const BeliefGrid& grid);
 
 inline constexpr const char* kHazardHelp =
     "of the surface and combined gain: rate at which rays meet the surface in unknown voxels "
     "[1/m], the same everywhere, or a .vdb file of such rates; default: by distance from and "
-    "elevation over what is seen";
-inline constexpr const char* kObjectSizeHelp =
-    "of the surface and combined gain: longest side of the object [m]; default: that of what is "
-    "seen of it";
+    "elevation over what is seen; size=L, also before the others with a comma: the longest side of "
+    "the object [m]; default: that of what is seen of it";
 
-/// What --size [m], --recenter and --up say of a mesh.
-[[nodiscard]] MeshPlacement placement_of(std::optional<double> size, const std::string& recenter,
+/// What --size [m], --place center and --up say of a mesh.
+[[nodiscard]] MeshPlacement placement_of(std::optional<double> size, const std::string& place,
                                          const std::string& up);
 
 /// Is a value of --obstacle a mesh file, and not the numbers of a box?

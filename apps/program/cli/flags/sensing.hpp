@@ -10,34 +10,41 @@
 #include <vector>
 
 #include "program/cli/app.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/sensor.hpp"
-#include "viewgain/raycast/view_scorer.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
+#include "viewgain/raycast/view_scorer.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 
 /// How a camera is simulated, as the command line says it.
 struct SensingOptions {
   double background = 1.5;                ///< --background [m]
-  std::string noise = "off";              ///< --noise on|off: axial and lateral
-  std::string flying_pixels;              ///< --flying-pixels on|off; empty: as --noise
+  std::string noise = "off";              ///< --noise
   std::uint64_t seed = 1;                 ///< --seed
   std::optional<double> support_plane{};  ///< --support-plane, world z [m]
-  double scale_error = 0;                 ///< --scale-error [1]
-  std::string pose_noise;                 ///< --pose-noise SIGMA_M,SIGMA_DEG; empty: none
+};
+
+/// What --noise comes to.
+struct SimulatedNoise {
+  bool readings = false;         ///< along and across the ray
+  std::optional<bool> flying{};  ///< pixels that mix several returns; nothing: as `readings`
+  double scale_error = 0;        ///< ranges read 1 + this times what they are [1]
+  PoseSigma pose{};              ///< of what the camera reports
 
   /// Sub-rays mix only in sensors with a modulation frequency.
   [[nodiscard]] bool has_flying_pixels(const Sensor& sensor) const;
 };
+/// `readings`: where the text says nothing of them. Throws Error(invalid_argument).
+[[nodiscard]] SimulatedNoise parse_noise(const std::string& text, bool readings);
 
 /// Its flags, the same in every subcommand that simulates a camera.
 void add_sensing_options(App& app, SensingOptions& options);
 
 [[nodiscard]] SimulationConfig simulation_config(const SensingOptions& options,
-                                                 const Sensor& sensor);
+                                                 const SimulatedNoise& noise, const Sensor& sensor);
 
 /// SIGMA_M,SIGMA_DEG of a flag; empty: both 0. Throws Error(invalid_argument) for other text.
 [[nodiscard]] PoseSigma parse_pose_sigma(std::string_view flag, const std::string& text);
@@ -53,8 +60,9 @@ inline constexpr const char* kJumpEdgeHelp =
 
 /// Whether frames are registered, as the command line says it.
 struct RegistrationOptions {
-  std::string is_on = "off";  ///< --register on|off
-  std::string pose_sigma;     ///< --pose-sigma SIGMA_M,SIGMA_DEG; empty: the default
+  std::string text = "off";  ///< --register on|off|SIGMA_M,SIGMA_DEG
+
+  [[nodiscard]] bool is_on() const { return text != "off"; }
 };
 
 /// Is a frame that registration refused left out, by what --on-contradiction says?
@@ -63,27 +71,23 @@ struct RegistrationOptions {
   return registration.status == RegistrationStatus::refused && on_contradiction != "keep";
 }
 
-/// --register and --pose-sigma, for frames that go into a map one after the other.
-void add_registration_options(App& app, RegistrationOptions& options);
+/// --register, for frames that go into a map one after the other.
+void add_registration_option(App& app, RegistrationOptions& options);
 
-/// By how much reported poses may be off: what --pose-sigma says, else `noise` (--pose-noise) where
-/// it is not 0; nothing without --register on. Throws Error(invalid_argument), naming the flag,
-/// also for --pose-sigma without --register on.
+/// What --register says of the reported poses' errors; nothing where it has no numbers.
+[[nodiscard]] std::optional<PoseSigma> stated_sigma(const RegistrationOptions& options);
+
+/// By how much reported poses may be off: stated_sigma(), else `noise` (of --noise pose=) where it
+/// is not 0; nothing unless frames are registered. Throws Error(invalid_argument), naming the flag.
 [[nodiscard]] std::optional<PoseSigma> registration_sigma(const RegistrationOptions& options,
                                                           const PoseSigma& noise = {});
 
-/// What --pose-sigma says; nothing without it.
-[[nodiscard]] inline std::optional<PoseSigma> stated_sigma(const RegistrationOptions& options) {
-  if (options.pose_sigma.empty()) return std::nullopt;
-  return parse_pose_sigma("--pose-sigma", options.pose_sigma);
-}
-
-/// --coarsest, --fine and --finest: which scales the leaves of a map that is made get.
+/// --scales and --fine: which scales the leaves of a map that is made get.
 struct ScaleOptions {
-  std::size_t coarsest = 0, finest = 0;
+  std::string scales = "0";  ///< COARSEST[,FINEST]
   std::vector<std::string> fine;
 
-  /// Throws Error(invalid_argument) naming --fine or --finest.
+  /// Throws Error(invalid_argument) naming the flag.
   void set(ScorerConfig& config) const;
   /// For a run's settings, empty where they are the defaults.
   [[nodiscard]] Json settings() const;

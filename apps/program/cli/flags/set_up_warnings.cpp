@@ -56,7 +56,7 @@ void warn_of_set_up(const SetUp& set_up) {
   if (set_up.reach != nullptr && !set_up.reach_file.empty()) {
     warn(suspect_reach(*set_up.reach, map, sensor), "--reach " + set_up.reach_file);
   }
-  if (set_up.object_size) warn(suspect_object_size(*set_up.object_size, map), "--object-size");
+  if (set_up.object_size) warn(suspect_object_size(*set_up.object_size, map), "--hazard size");
   if (set_up.pose_sigma) {
     warn(suspect_pose_sigma(*set_up.pose_sigma, sensor.working_distance, map.voxel_size()));
   }

@@ -32,8 +32,8 @@ struct SetUp {
   std::optional<double> support_plane{};                      ///< --support-plane [m]
   std::string reach_file{};                                   ///< --reach
   const ReachRegion* reach = nullptr;                         ///< in it
-  std::optional<double> object_size{};                        ///< --object-size [m]
-  std::optional<PoseSigma> pose_sigma{};                      ///< --pose-sigma or --pose-noise
+  std::optional<double> object_size{};                        ///< of --hazard size=L [m]
+  std::optional<PoseSigma> pose_sigma{};                      ///< of --register or --noise
 };
 void warn_of_set_up(const SetUp& set_up);
 

@@ -7,6 +7,7 @@
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/set_up_warnings.hpp"
+#include "program/cli/help.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
@@ -18,26 +19,30 @@ namespace {
 
 ScorerConfig config_of(const FrameFolder& folder, const FrameMapOptions& options,
                        const ProposalOptions& proposal, bool quiet) {
-  check_positive("--voxel", options.voxel);
-  ScorerConfig config;
-  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
-  config.obstacles = obstacles_of(proposal.obstacles);
-  config.support_plane = proposal.support_plane;
-  options.scales.set(config);
-  config.refine = options.refine;
-  config.voxel_size = options.voxel;
+  ScorerConfig config = scorer_config(options, proposal);
   config.workspace = options.workspace.empty()
                          ? seen_workspace(folder, config, options.voxel, quiet)
                          : parse_box("--workspace", options.workspace);
   const BeliefGrid empty(config.grid());
   warn_of_few_voxels(empty);
-  config.hazard = hazard_source(proposal.hazard, proposal.object_size, empty);
-  config.learn_hazard = true;
+  config.hazard = hazard_source(proposal.hazard, empty);
   config.gain.model = GainModel::paper;  // no view is scored before all frames are in
   return config;
 }
 
 }  // namespace
+
+ScorerConfig scorer_config(const FrameMapOptions& options, const ProposalOptions& proposal) {
+  check_positive("--voxel", options.voxel);
+  ScorerConfig config;
+  config.voxel_size = options.voxel;
+  config.jump_edges = parse_jump_edge_filter(options.jump_edge_filter);
+  config.obstacles = obstacles_of(proposal.obstacles);
+  config.support_plane = proposal.support_plane;
+  options.scales.set(config);
+  config.learn_hazard = true;
+  return config;
+}
 
 Box seen_workspace(const FrameFolder& folder, const ScorerConfig& config, double voxel,
                    bool quiet) {
@@ -75,6 +80,7 @@ void add_frame_map_options(App& app, FrameMapOptions& options) {
   app.add_option("--voxel", options.voxel, "voxel size [m]")->required();
   app.add_option("--workspace", options.workspace,
                  "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what the frames see");
+  begin_group(app, "Frames");
   app.add_option("--jump-edge-filter", options.jump_edge_filter, kJumpEdgeHelp);
   add_scale_options(app, options.scales);
   add_frame_folder_options(app, options.folder);

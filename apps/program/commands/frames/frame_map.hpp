@@ -25,12 +25,15 @@ struct FrameMapOptions {
   std::string workspace;
   std::string jump_edge_filter = "5";
   ScaleOptions scales;
-  bool refine = true;
 };
 
-/// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter, --coarsest, --fine, --finest and
-/// those of a folder.
+/// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter, --scales, --fine and those of a
+/// folder.
 void add_frame_map_options(App& app, FrameMapOptions& options);
+
+/// Settings of the map but for workspace, hazard and gain. Throws Error, naming the flag.
+[[nodiscard]] ScorerConfig scorer_config(const FrameMapOptions& options,
+                                         const ProposalOptions& proposal);
 
 /// The workspace for what the frames see, but for the pixels that --jump-edge-filter takes; reads
 /// all of them. Throws Error(invalid_argument) if none has a reading.

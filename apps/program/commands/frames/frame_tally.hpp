@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "program/cli/flags/frame_folder.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/frame_verdict.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/raycast/frame_check.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

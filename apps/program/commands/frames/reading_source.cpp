@@ -21,9 +21,6 @@ namespace {
 // How readings change a map. No view is scored.
 ScorerConfig rules_of(const IntegrateOptions& options) {
   ScorerConfig config;
-  config.carve =
-      options.carve == "cones" ? IntegrationConfig::Carve::cones : IntegrationConfig::Carve::lines;
-  config.occupancy = options.occupancy_rule();
   options.scales.set(config);
   config.support_plane = options.support_plane;
   config.learn_hazard = options.calibrates_hazard();

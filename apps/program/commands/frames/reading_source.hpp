@@ -31,27 +31,17 @@ struct IntegrateOptions {
   std::string poses;
   std::optional<double> voxel;
   std::string workspace;
-  std::string carve = "cones";
-  std::string occupancy = "probabilistic";
   std::string jump_edge_filter = "5";
   ScaleOptions scales;
   std::optional<double> support_plane;
   std::vector<std::string> obstacles;
-  std::string calibrate_hazard = "on";
   std::optional<double> prior_sigma;
-  std::string with_covariance = "off";
   RegistrationOptions registration;
   std::string out;
   std::string map;
 
   /// A tree has no place for what is counted.
-  [[nodiscard]] bool calibrates_hazard() const {
-    return calibrate_hazard == "on" && !is_octomap(out);
-  }
-  [[nodiscard]] IntegrationConfig::Occupancy occupancy_rule() const {
-    return occupancy == "probabilistic" ? IntegrationConfig::Occupancy::probabilistic
-                                        : IntegrationConfig::Occupancy::literal;
-  }
+  [[nodiscard]] bool calibrates_hazard() const { return !is_octomap(out); }
 };
 
 /// What `integrate` puts into a map, one part after the other: depth frames or clouds. The order of

@@ -9,6 +9,7 @@
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/set_up_warnings.hpp"
+#include "program/cli/help.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/formats/reach_toml.hpp"
@@ -19,9 +20,28 @@
 namespace viewgain::app {
 namespace {
 
+bool has_generator(const ProposalOptions& options, const char* name) {
+  const std::vector<std::string> names = names_in(options.generator);
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 bool is_at_boundaries(const ProposalOptions& options) {
   if (options.generator.empty()) return options.poses.empty();
-  return options.generator == "boundary";
+  return has_generator(options, "boundary");
+}
+
+// What ranking goes by. The costs that it names must outlive it.
+RankConfig rank_config(const ProposalOptions& options, const std::vector<double>& costs,
+                       const std::optional<Pose>& last_pose) {
+  return {.costs = costs,
+          .cost_per_metre = options.costs.per_metre,
+          .current_pose = begin_of_ways(options.costs, last_pose)};
+}
+
+BatchControl shown_on(Progress& progress) {
+  BatchControl control;
+  control.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+  return control;
 }
 
 // What each candidate costs; empty without --costs.
@@ -51,8 +71,19 @@ PoseSetRequest request_of(const ProposalOptions& options, const Sensor& sensor,
 
 }  // namespace
 
-void add_proposal_options(App& app, ProposalOptions& o) {
-  const EstimatorConfig usual = default_estimator(1.0);
+void add_next_view_options(App& app, ProposalOptions& o) {
+  begin_group(app, "Candidates");
+  app.add_option("--generator", o.generator,
+                 "where views come from: boundary (open boundaries of the surface in the "
+                 "map, and where more of it is expected), sphere, dome, rings, shell, sequence, or "
+                 "several with commas; default: boundary, and a "
+                 "sphere round the workspace of a map without a surface or views")
+      ->check(several_of(generator_names(), "generator"));
+  app.add_option(
+      "--poses", o.poses,
+      "TUM or .npy file of camera-to-world poses to choose among; with --generator beside "
+      "what that proposes, else alone");
+  add_cost_options(app, o.costs, "--poses");
   app.add_option("--count", o.count,
                  "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
                  "(default 48)")
@@ -67,68 +98,41 @@ void add_proposal_options(App& app, ProposalOptions& o) {
       "--reach", o.reach,
       "TOML file: boxes, shells, half-spaces, poses in reach; default: all, or, for views at "
       "boundaries, the workspace if all views so far are inside of it");
+  begin_group(app, "What is in the way");
   app.add_option("--body", o.body, kBodyHelp);
   app.add_option("--support-plane", o.support_plane, "height z of a table [m]");
   app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
-  app.add_option("--overlap", o.overlap,
-                 std::string(kOverlapHelp) + "; default: " + short_text(usual.overlap));
-  app.add_option("--region-depth", o.region_depth,
-                 std::string(kRegionDepthHelp) + "; default: " + short_text(usual.region_depth));
-  app.add_option("--object-size", o.object_size, kObjectSizeHelp);
+  begin_group(app, "Gain and order");
   app.add_option("--hazard", o.hazard, kHazardHelp);
   add_seed_option(app, o.seed, "of the shell");
-}
-
-void add_next_view_options(App& app, ProposalOptions& o, std::size_t& top) {
-  o.gain = default_gain();
-  app.add_option("--generator", o.generator,
-                 "where views come from: boundary (open boundaries of the surface in the "
-                 "map, and where more of it is expected), sphere, dome, rings, shell or sequence; "
-                 "default: boundary, and a "
-                 "sphere round the workspace of a map without a surface or views")
-      ->check(one_of(generator_names(), "generator"));
-  app.add_option(
-      "--poses", o.poses,
-      "TUM or .npy file of camera-to-world poses to choose among; with --generator beside "
-      "what that proposes, else alone");
-  add_cost_options(app, o.costs, "--poses");
-  add_proposal_options(app, o);
   app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
       ->check(one_of_gain_models());
-  add_plan_options(app, o.plan);
-  app.add_option("--top", top,
-                 "views to name at most, each by what it adds to those before it, so that no two "
-                 "show the same; with --plan that has the numbers")
-      ->check(counted(1, 1'000'000));
+  add_plan_option(app, o.plan);
 }
 
 void check(const ProposalOptions& options) {
-  const bool boundary = is_at_boundaries(options), sequence = options.generator == "sequence";
-  if (options.count && (boundary || sequence)) {
+  const bool boundary = is_at_boundaries(options);
+  const std::vector<std::string> names = names_in(options.generator);
+  const auto sets = std::count_if(names.begin(), names.end(), [](const std::string& name) {
+    return name != "boundary" && name != "sequence";
+  });
+  if (options.count && sets == 0 && (options.poses.empty() || !names.empty())) {
     refuse("--count goes with sets of poses, not with --generator " +
-           (boundary ? "boundary" : options.generator));
+           (names.empty() ? "boundary" : options.generator));
   }
-  if (boundary && !options.center.empty()) {
+  if (!options.center.empty() && sets == 0 && boundary && !has_generator(options, "sequence")) {
     refuse("--center goes with sets of poses, not with --generator boundary");
   }
-  if (!boundary && (options.overlap || options.region_depth)) {
-    refuse("--overlap and --region-depth go with --generator boundary");
-  }
-  if (options.overlap) check_inside_0_1("--overlap", *options.overlap);
-  if (options.region_depth) check_positive("--region-depth", *options.region_depth);
   if (options.distance) check_positive("--distance", *options.distance);
-  check(options.plan);
-  check(options.costs, options.plan.ahead().is_on());
+  check(options.costs, parse_plan(options.plan).is_on());
   if (!options.poses.empty() && options.generator.empty() &&
       (options.count || options.distance || !options.center.empty())) {
     refuse("--count, --distance and --center go with --generator, not with --poses alone");
   }
   if (!options.costs.file.empty() && options.poses.empty()) refuse("--costs goes with --poses");
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
-  const bool by_hazard =
-      !options.gain.empty() && parse_gain_model(options.gain) != GainModel::paper;
-  if (!by_hazard && (options.object_size || !options.hazard.empty())) {
-    refuse("--object-size and --hazard go with --gain surface or combined");
+  if (parse_gain_model(options.gain) == GainModel::paper && !options.hazard.empty()) {
+    refuse("--hazard goes with --gain surface or combined");
   }
 }
 
@@ -140,7 +144,7 @@ Sensor with_body(Sensor sensor, const ProposalOptions& options) {
 SurfaceModel model_of(BeliefGrid grid, const Sensor& sensor, const ProposalOptions& options,
                       Obstacles obstacles, const ExecConfig& exec) {
   SurfaceModelConfig config;
-  config.map.hazard = hazard_source(options.hazard, options.object_size, grid);
+  config.map.hazard = hazard_source(options.hazard, grid);
   config.map.obstacles = std::move(obstacles);
   config.map.support_plane = options.support_plane;
   return {std::move(grid), sensor, config, exec};
@@ -153,16 +157,14 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
   config.tried = tried;
   config.at_boundaries = is_at_boundaries(options);
   if (options.distance) config.boundary.working_distance = *options.distance;
-  if (options.overlap) config.boundary.estimator.overlap = *options.overlap;
-  if (options.region_depth) config.boundary.estimator.region_depth = *options.region_depth;
   if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
-  if (options.generator == "boundary" && grid.views().empty()) {
+  if (has_generator(options, "boundary") && grid.views().empty()) {
     refuse(map + ": has no views, which boundary candidates need; try --generator sphere");
   }
   if (!options.poses.empty()) config.sets.push_back({kGivenPoses, poses_in(options.poses)});
-  if (!config.at_boundaries && !options.generator.empty()) {
-    config.sets.push_back(make_pose_set(
-        options.generator, request_of(options, sensor, grid, config.feasibility.reach)));
+  const PoseSetRequest request = request_of(options, sensor, grid, config.feasibility.reach);
+  for (const std::string& name : names_in(options.generator)) {
+    if (name != "boundary") config.sets.push_back(make_pose_set(name, request));
   }
   return config;
 }
@@ -186,7 +188,7 @@ void warn_of_set_up(const ProposalOptions& options, const Obstacles& obstacles,
                   .support_plane = options.support_plane,
                   .reach_file = options.reach,
                   .reach = reach ? &*reach : nullptr,
-                  .object_size = options.object_size});
+                  .object_size = object_size_of(options.hazard)});
 }
 
 void warn_of_views(const ProposalOptions& options, const Obstacles& obstacles,
@@ -200,15 +202,12 @@ NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
                      const ProposalOptions& options, const std::optional<Pose>& last_pose,
                      std::size_t top, bool quiet) {
   Progress progress("pose", quiet);
-  BatchControl control;
-  control.progress = [&](std::size_t done, std::size_t total) { progress.update(done, total); };
+  const BatchControl control = shown_on(progress);
   const std::vector<double> costs = costs_of(options, proposal);
-  const RankConfig config{.costs = costs,
-                          .cost_per_metre = options.costs.per_metre,
-                          .current_pose = begin_of_ways(options.costs, last_pose),
-                          .together = true};
+  RankConfig config = rank_config(options, costs, last_pose);
+  config.together = true;
   const std::vector<Pose> poses = poses_of(proposal.candidates);
-  PlanAhead ahead = options.plan.ahead();
+  PlanAhead ahead = parse_plan(options.plan);
   ahead.least_share = 0;  // what adds little is named, too
   Ranking ranking = ahead.is_on() ? plan_views(evaluator, poses, ahead, 0.0, config, control)
                                   : rank_views(evaluator, poses, top, config, control);
@@ -222,6 +221,24 @@ NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
   const bool has_costs = !costs.empty() || options.costs.per_metre > 0;
   next.all_worth = !has_costs || found >= std::min(most, poses.size());
   return next;
+}
+
+NextViews all_views(const GainEvaluator& evaluator, const Proposal& proposal,
+                    const ProposalOptions& options, const std::optional<Pose>& last_pose,
+                    bool quiet) {
+  Progress progress("pose", quiet);
+  const std::vector<double> costs = costs_of(options, proposal);
+  RankConfig config = rank_config(options, costs, last_pose);
+  config.exact = true;
+  const std::vector<Pose> poses = poses_of(proposal.candidates);
+  Ranking ranking;
+  if (!poses.empty()) {
+    ranking = rank_views(evaluator, poses, poses.size(), config, shown_on(progress));
+  }
+  progress.wipe();
+  NextViews all = next_views(ranking, proposal, evaluator.model());
+  all.together = false;
+  return all;
 }
 
 }  // namespace viewgain::app

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "program/cli/app.hpp"
+#include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/pose_source.hpp"
 #include "viewgain/core/exec_config.hpp"
@@ -22,7 +23,8 @@ namespace viewgain::app {
 
 /// How views for a map are proposed and ranked.
 struct ProposalOptions {
-  std::string generator;  ///< empty: boundary, or a sphere where the map has no surface or views
+  /// Several with commas; empty: boundary, or a sphere where the map has no surface or views.
+  std::string generator;
   std::optional<std::size_t> count{};
   std::optional<double> distance{};
   std::string center;
@@ -30,24 +32,17 @@ struct ProposalOptions {
   std::string body;
   std::optional<double> support_plane{};
   std::vector<std::string> obstacles;
-  std::optional<double> overlap{};
-  std::optional<double> region_depth{};
   std::string
       poses;  ///< file of candidates of the user's own; they alone unless `generator` is set
   CostOptions costs;  ///< of these, and of the way
-  PlanOptions plan;
-  std::string gain;  ///< empty: they are not ranked
-  std::optional<double> object_size{};
+  std::string plan = "1";
+  std::string gain = default_gain();
   std::string hazard;
   std::uint64_t seed = 1;
 };
 
-/// The flags, but for --generator and --gain: what these do by default is not the same everywhere.
-void add_proposal_options(App& app, ProposalOptions& options);
-
-/// With --generator, --poses, costs and --gain of the best views, which --top limits, and of a
-/// plan.
-void add_next_view_options(App& app, ProposalOptions& options, std::size_t& top);
+/// The flags.
+void add_next_view_options(App& app, ProposalOptions& options);
 
 /// Throws Error(invalid_argument), naming the flag: also for what a generator or a gain has no use
 /// for, which would be ignored in silence.
@@ -56,7 +51,7 @@ void check(const ProposalOptions& options);
 /// The sensor with --body.
 [[nodiscard]] Sensor with_body(Sensor sensor, const ProposalOptions& options);
 
-/// The model of a map with --obstacle (obstacles_of()), --hazard and --object-size.
+/// The model of a map with --obstacle (obstacles_of()) and --hazard.
 [[nodiscard]] SurfaceModel model_of(BeliefGrid grid, const Sensor& sensor,
                                     const ProposalOptions& options, Obstacles obstacles,
                                     const ExecConfig& exec);
@@ -70,7 +65,7 @@ void check(const ProposalOptions& options);
                                                  const std::string& map,
                                                  const std::vector<Pose>& tried = {});
 
-/// Scores views on the model's scene by --gain, which must be given.
+/// Scores views on the model's scene by --gain.
 [[nodiscard]] GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& model,
                                          const Sensor& sensor, const ExecConfig& exec);
 
@@ -90,5 +85,11 @@ void warn_of_views(const ProposalOptions& options, const Obstacles& obstacles,
                                    const ProposalOptions& options,
                                    const std::optional<Pose>& last_pose, std::size_t top,
                                    bool quiet);
+
+/// All candidates, each by itself and scored in full, best first by its gain less its cost. Throws
+/// as best_views().
+[[nodiscard]] NextViews all_views(const GainEvaluator& evaluator, const Proposal& proposal,
+                                  const ProposalOptions& options,
+                                  const std::optional<Pose>& last_pose, bool quiet);
 
 }  // namespace viewgain::app

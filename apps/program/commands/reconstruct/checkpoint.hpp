@@ -7,9 +7,9 @@
 #include <span>
 #include <string>
 
-#include "program/cli/json.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/formats/staged_folder.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

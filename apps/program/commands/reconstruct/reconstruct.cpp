@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/set_up_warnings.hpp"
 #include "program/cli/interrupt.hpp"
-#include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
@@ -26,6 +26,7 @@
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/support/atomic_file.hpp"
+#include "viewgain/support/json.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -36,7 +37,7 @@ GainEvaluator step_evaluator(const SurfaceModel& model, const RunSetup& setup,
                              const ExecConfig& exec) {
   GainConfig gain;
   gain.criterion = setup.policy.criterion;
-  const bool by_model = setup.policy.policy == Policy::gain && !setup.policy.classic;
+  const bool by_model = setup.policy.policy == Policy::gain && setup.policy.registered.empty();
   gain.model = by_model ? setup.policy.model : GainModel::paper;
   return {model.scene(), setup.sensor, gain, exec};
 }
@@ -80,7 +81,7 @@ void warn_of_workspace(const Stage& stage) {
 }
 
 void warn_of_set_up(const ReconstructOptions& options, const RunSetup& setup) {
-  const bool has_noise = setup.pose_noise != PoseSigma{};
+  const bool has_noise = setup.noise.pose != PoseSigma{};
   app::warn_of_set_up(
       {.sensor = setup.sensor,
        .map = BeliefGrid(setup.model.map.grid(), setup.sensor),
@@ -89,11 +90,15 @@ void warn_of_set_up(const ReconstructOptions& options, const RunSetup& setup) {
        .support_plane = options.sensing.support_plane,
        .reach_file = options.reach,
        .reach = &setup.reach,
-       .object_size = options.object_size,
-       .pose_sigma = has_noise ? setup.pose_noise : stated_sigma(options.registration)});
+       .object_size = object_size_of(options.hazard),
+       .pose_sigma = has_noise ? setup.noise.pose : stated_sigma(options.registration)});
 }
 
 void reconstruct(const ReconstructOptions& options, const App& app) {
+  if (std::error_code ignored; std::filesystem::is_directory(options.mesh, ignored)) {
+    refuse(options.mesh + ": is a folder; frames become a model by viewgain model " + options.mesh +
+           " --out RUN");
+  }
   const RunOutputs& outputs = options.outputs;
   if (outputs.with_report()) check_report_page("--report");
   const Json beside = beside_json(outputs);
@@ -179,10 +184,9 @@ Command add_reconstruct(App& program) {
   App* app = program.add_subcommand(
       "reconstruct",
       "The whole loop on a mesh: acquire with a simulated camera, update map and surface, propose "
-      "views, rank them, move, until little is left to gain. Or of a folder of recorded frames.");
+      "views, rank them, move, until little is left to gain.");
   add_options(*app, *options);
-  return {app, [options, app] { reconstruct(*options, *app); },
-          std::make_shared<Command>(add_reconstruct_frames())};
+  return command_of(app, options, [app](const auto& given) { reconstruct(given, *app); });
 }
 
 }  // namespace viewgain::app

@@ -9,6 +9,7 @@
 
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
+#include "program/cli/flags/stop_rules.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
@@ -22,17 +23,17 @@ double outside(double size) { return 1.1 * 0.5 * std::sqrt(3.0) * size; }
 
 Pose start_pose(const ReconstructOptions& options, const Stage& stage, double distance,
                 const ReachRegion& reach) {
-  if (options.start.empty()) {
+  if (options.from.empty()) {
     return default_start(stage, distance, options.sensing.seed, reach,
                          options.sensing.support_plane);
   }
-  const Pose pose = parse_pose("--start", options.start);
+  const Pose pose = parse_pose("--from", options.from);
   const std::optional<double>& plane = options.sensing.support_plane;
   if (plane && pose.translation().z() <= *plane) {
-    refuse("--start " + options.start + ": is not above the support plane");
+    refuse("--from " + options.from + ": is not above the support plane");
   }
   if (!reach.contains(pose)) {
-    refuse("--start " + options.start + ": lies outside the reachable region of " + options.reach);
+    refuse("--from " + options.from + ": lies outside the reachable region of " + options.reach);
   }
   return pose;
 }
@@ -60,8 +61,8 @@ void check_start(const ReconstructOptions& options, const RunSetup& setup, const
   const FeasibilityChecker checker(VoxelScene::build(grid, {setup.model.map.obstacles}, exec),
                                    feasibility_of(setup.sensor));
   if (checker.check(setup.start) != Infeasibility::obstacle) return;
-  const std::string which = options.start.empty() ? "the start pose, which --start would give"
-                                                  : "--start " + options.start;
+  const std::string which =
+      options.from.empty() ? "the start pose, which --from would give" : "--from " + options.from;
   refuse(which + ": the sensor's body would overlap an --obstacle there");
 }
 
@@ -74,11 +75,10 @@ SurfaceModelConfig model_config(const ReconstructOptions& options, const Stage& 
   config.obstacles = obstacles_of(options.obstacles);
   config.support_plane = options.sensing.support_plane;
   config.gain.criterion = parse_criterion(options.criterion);
-  config.refine = options.refine == "on";
   options.scales.set(config);
   const BeliefGrid empty(config.grid());
   warn_of_few_voxels(empty);
-  config.hazard = hazard_source(options.hazard, options.object_size, empty);
+  config.hazard = hazard_source(options.hazard, empty);
   return model;
 }
 
@@ -106,8 +106,6 @@ std::vector<std::string> generators(const ReconstructOptions& options, Policy po
 
 GenerationConfig generation_config(const ReconstructOptions& options, const RunSetup& setup) {
   GenerationConfig config = default_generation(setup.sensor, options.voxel);
-  config.boundary.estimator.overlap = options.overlap;
-  config.boundary.estimator.region_depth = options.region_depth;
   config.at_boundaries = false;
   // His choice is by class alone.
   config.boundary.classes_by_sight = setup.policy.policy == Policy::kriegel;
@@ -132,10 +130,11 @@ GenerationConfig generation_config(const ReconstructOptions& options, const RunS
 PlanningConfig planning_config(const ReconstructOptions& options, const PolicyConfig& policy) {
   PlanningConfig config;
   config.max_views = options.max_views;
-  config.idle_views = options.stop_idle;
-  config.broken_promises = options.stop_promises;
-  config.stop_coverage = options.stop_coverage;
-  set_stop_rules(config, policy, options.stop_gain, options.stop_area);
+  const StopLimits stop = stop_limits(options.stop);
+  config.idle_views = stop.idle;
+  config.broken_promises = stop.promises;
+  config.stop_coverage = stop.coverage;
+  set_stop_rules(config, policy, stop.gain, stop.area);
   return config;
 }
 
@@ -165,34 +164,30 @@ Json settings_json(const ReconstructOptions& o, const RunSetup& setup) {
             {"policy", o.policy},
             {"generators", generators},
             {"sphere_poses", o.count},
-            {"gain", setup.policy.classic ? classic_gain_name(*setup.policy.classic)
-                                          : gain_model_name(setup.policy.model)},
-            {"overlap", o.overlap},
-            {"region_depth", o.region_depth},
-            {"object_size", o.object_size},
+            {"gain", setup.policy.registered.empty() ? gain_model_name(setup.policy.model)
+                                                     : std::string_view(setup.policy.registered)},
             {"hazard", or_null(o.hazard)},
             {"criterion", o.criterion},
             {"max_views", o.max_views},
             {"stop_gain", setup.planning.stop_gain},
             {"stop_gain_is_relative", setup.planning.stop_gain_is_relative},
             {"stop_area", setup.planning.stop_area},
-            {"stop_idle", o.stop_idle},
-            {"stop_promises", o.stop_promises},
-            {"stop_coverage", o.stop_coverage},
+            {"stop_idle", setup.planning.idle_views},
+            {"stop_promises", setup.planning.broken_promises},
+            {"stop_coverage", setup.planning.stop_coverage},
             {"tolerance", o.coverage_tolerance()},
             {"cost_per_metre", o.cost_per_metre},
             {"reach", or_null(o.reach)},
             {"support_plane", o.sensing.support_plane},
-            {"noise", o.sensing.noise},
-            {"flying_pixels", o.sensing.has_flying_pixels(setup.sensor)},
+            {"noise", setup.noise.readings ? "on" : "off"},
+            {"flying_pixels", setup.noise.has_flying_pixels(setup.sensor)},
             {"background", o.sensing.background},
-            {"scale_error", o.sensing.scale_error},
-            {"pose_noise", pose_sigma_json(setup.pose_noise)},
+            {"scale_error", setup.noise.scale_error},
+            {"pose_noise", pose_sigma_json(setup.noise.pose)},
             {"register", setup.registration.has_value()},
             {"pose_sigma", setup.registration ? pose_sigma_json(*setup.registration) : Json()},
             {"frames_per_view", o.frames_per_view},
-            {"jump_edge_filter", o.jump_edge_filter},
-            {"refine", o.refine == "on"}};
+            {"jump_edge_filter", o.jump_edge_filter}};
   if (!o.obstacles.empty()) json["obstacles"] = o.obstacles;
   if (!o.poses.empty()) json["poses"] = o.poses;
   json.update(o.scales.settings());
@@ -215,15 +210,16 @@ PolicyConfig policy_config(const ReconstructOptions& options) {
   policy.policy = parse_policy(options.policy);
   policy.criterion = parse_criterion(options.criterion);
   policy.cost_per_metre = options.cost_per_metre;
-  policy.ahead = options.plan.ahead();
-  if (options.stop_area.value_or(0) > 0) policy.ahead.least_share = *options.stop_area;
+  policy.ahead = parse_plan(options.plan);
+  if (const auto area = stop_limits(options.stop).area; area.value_or(0) > 0) {
+    policy.ahead.least_share = *area;
+  }
   policy.seed = options.sensing.seed;
   if (options.gain.empty()) return policy;
-  const std::vector<std::string>& classic = classic_gain_names();
-  if (std::find(classic.begin(), classic.end(), options.gain) == classic.end()) {
-    policy.model = parse_gain_model(options.gain);
+  if (is_registered_gain(options.gain)) {
+    policy.registered = options.gain;
   } else {
-    policy.classic = parse_classic_gain(options.gain);
+    policy.model = parse_gain_model(options.gain);
   }
   return policy;
 }
@@ -250,9 +246,9 @@ RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec) {
                       options.sensing.support_plane,
                       nullptr,
                       options.coverage_tolerance()};
-  setup.simulation = simulation_config(options.sensing, setup.sensor);
-  setup.pose_noise = parse_pose_sigma("--pose-noise", options.sensing.pose_noise);
-  setup.registration = registration_sigma(options.registration, setup.pose_noise);
+  setup.noise = parse_noise(options.sensing.noise, true);
+  setup.simulation = simulation_config(options.sensing, setup.noise, setup.sensor);
+  setup.registration = registration_sigma(options.registration, setup.noise.pose);
   setup.model = model_config(options, setup.stage);
   check_start(options, setup, exec);
   setup.visibility.surroundings = setup.simulation.surroundings =
@@ -268,7 +264,7 @@ RunParts::RunParts(RunSetup from, std::size_t frames_per_view, const ExecConfig&
       truth(std::make_shared<const Truth>(setup.stage.scene, setup.sensor, setup.visibility, exec)),
       camera(SimulatedSensor(setup.stage.scene, setup.sensor, setup.simulation, exec),
              frames_per_view, setup.planning.stop),
-      acquisition(camera, setup.pose_noise, setup.simulation.seed),
+      acquisition(camera, setup.noise.pose, setup.simulation.seed),
       model(setup.sensor, setup.model, truth, exec),
       generation(model, setup.generation, exec),
       decision(model, generation, setup.sensor, with_object(setup.policy, setup, truth), exec) {

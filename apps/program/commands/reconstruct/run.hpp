@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "program/cli/json.hpp"
 #include "program/commands/reconstruct/run_options.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/reach.hpp"
@@ -19,6 +18,7 @@
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 
@@ -31,7 +31,7 @@ struct RunSetup {
   Pose start;
   VisibilityConfig visibility{};
   SimulationConfig simulation{};
-  PoseSigma pose_noise{};  ///< of what the camera reports
+  SimulatedNoise noise{};
   /// Of reported poses, by which frames are registered; its pose says nothing. None: they are not.
   std::optional<PoseSigma> registration{};
   SurfaceModelConfig model{};

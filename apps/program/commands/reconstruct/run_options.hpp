@@ -20,14 +20,16 @@ namespace viewgain::app {
 struct RunOutputs {
   std::string save_maps = "off";
   std::string pictures = "on";
-  std::string report = "off";
-  std::string beside;
+  std::string report = "off";  ///< on, or another run to show beside it
   bool resume = false;
   std::string out;
 
   [[nodiscard]] bool saves_maps() const { return save_maps == "on"; }
   [[nodiscard]] bool with_pictures() const { return pictures == "on"; }
-  [[nodiscard]] bool with_report() const { return report == "on" || !beside.empty(); }
+  [[nodiscard]] bool with_report() const { return report != "off"; }
+  [[nodiscard]] std::string beside() const {
+    return report == "on" || report == "off" ? "" : report;
+  }
   [[nodiscard]] bool draws() const { return with_pictures() || with_report(); }
 };
 void add_output_options(App& app, RunOutputs& outputs);
@@ -40,27 +42,20 @@ struct ReconstructOptions {
   double voxel = 0;
   std::optional<double> size;
   std::string workspace;
-  std::string start;
+  std::string from;
   std::optional<double> distance;
   std::string policy = "gain";
   std::string generator;
   std::string poses;
   std::optional<std::size_t> count;
   std::string gain;
-  double overlap = default_estimator(1.0).overlap;
-  double region_depth = default_estimator(1.0).region_depth;
-  std::optional<double> object_size;
   std::string hazard;
   std::string criterion = "log_diagonal";
   std::size_t max_views = PlanningConfig{}.max_views;
-  std::optional<double> stop_gain;
-  std::optional<double> stop_area;
-  std::size_t stop_idle = PlanningConfig{}.idle_views;
-  std::size_t stop_promises = PlanningConfig{}.broken_promises;
-  std::optional<double> stop_coverage;
+  std::string stop;
   std::optional<double> tolerance;
   double cost_per_metre = 0;
-  PlanOptions plan;
+  std::string plan = "1";
   std::string reach;
   std::vector<std::string> obstacles;
   std::string body;
@@ -70,7 +65,6 @@ struct ReconstructOptions {
   std::size_t frames_per_view = 1;
   std::string jump_edge_filter = "5";
   ScaleOptions scales;
-  std::string refine = "on";
   RunOutputs outputs;
 
   [[nodiscard]] double coverage_tolerance() const {

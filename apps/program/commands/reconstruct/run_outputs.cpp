@@ -91,8 +91,9 @@ Json checkpoint_head(const Json& settings, const App& app) {
 }
 
 Json beside_json(const RunOutputs& outputs) {
-  if (outputs.beside.empty()) return nullptr;
-  const std::filesystem::path file = std::filesystem::path(outputs.beside) / "run.json";
+  const std::string beside = outputs.beside();
+  if (beside.empty()) return nullptr;
+  const std::filesystem::path file = std::filesystem::path(beside) / "run.json";
   const Json run = Json::parse(folder_file_bytes(file), nullptr, false);
   const bool has_views = run.is_object() && run.contains("settings") && run.contains("per_view") &&
                          run["per_view"].is_array() && !run["per_view"].empty();
@@ -100,7 +101,7 @@ Json beside_json(const RunOutputs& outputs) {
     throw Error(ErrorCode::format, file.string() + ": is not a run's");
   }
   check_format(file.string(), run);
-  return {{"name", outputs.beside}, {"settings", run["settings"]}, {"per_view", run["per_view"]}};
+  return {{"name", beside}, {"settings", run["settings"]}, {"per_view", run["per_view"]}};
 }
 
 std::string beside_text(const Json& beside, const Json& own) {
@@ -154,16 +155,15 @@ Json quality_json(const QualityFigures& quality, const char* visible) {
 }
 
 RunReport::RunReport(const PolicyConfig& policy, double tolerance)
-    : entropy_unit_(gain_unit(GainModel::paper, criterion_name(policy.criterion))),
-      tolerance_(tolerance) {
+    : entropy_unit_(gain_unit(GainModel::paper, policy.criterion)), tolerance_(tolerance) {
   gain_unit_ = entropy_unit_;  // what a policy without a gain foretells is the paper's
   if (policy.policy != Policy::gain) return;
-  if (policy.classic) {
-    ranked_by_ = classic_gain_name(*policy.classic);
-    gain_unit_ = classic_gain_unit(*policy.classic);
+  if (!policy.registered.empty()) {
+    ranked_by_ = policy.registered;
+    gain_unit_ = registered_gains().unit(policy.registered);
   } else {
     ranked_by_ = gain_model_name(policy.model);
-    gain_unit_ = gain_unit(policy.model, criterion_name(policy.criterion));
+    gain_unit_ = gain_unit(policy.model, policy.criterion);
   }
 }
 

@@ -6,7 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "program/cli/json.hpp"
 #include "program/commands/reconstruct/run_options.hpp"
 #include "show/report/run_page.hpp"
 #include "viewgain/core/exec_config.hpp"
@@ -18,6 +17,7 @@
 #include "viewgain/planner_mesh/policies.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 
@@ -47,10 +47,10 @@ StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPa
 /// Keys of flags that may differ: where the run is written, how fast, what is shown of it, and what
 /// is made at its end alone.
 inline const std::vector<std::string> kSameBytes{"out",   "resume", "threads", "trace",
-                                                 "quiet", "json",   "report",  "beside"};
+                                                 "quiet", "json",   "report"};
 
-/// What the page shows of the run of --beside: its name, settings and views; null without one.
-/// Throws Error(io) and Error(format), naming the file.
+/// What the page shows of the run that --report names: its name, settings and views; null without
+/// one. Throws Error(io) and Error(format), naming the file.
 [[nodiscard]] Json beside_json(const RunOutputs& outputs);
 
 /// What the run of beside_json() came to, and which of its settings are others than `own`, for
@@ -101,7 +101,7 @@ class RunReport {
   };
   [[nodiscard]] Json entry_json(std::size_t index) const;
 
-  std::string_view ranked_by_;  ///< the gain; empty: the policy ranks by another thing
+  std::string ranked_by_;  ///< the gain; empty: the policy ranks by another thing
   std::string_view gain_unit_, entropy_unit_;
   double tolerance_;  ///< of coverage [m]
   std::vector<Entry> views_;

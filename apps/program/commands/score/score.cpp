@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -15,11 +14,12 @@
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
+#include "program/cli/help.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/score/score_classic.hpp"
 #include "program/commands/score/score_options.hpp"
+#include "program/commands/score/score_registered.hpp"
 #include "program/commands/score/score_report.hpp"
 #include "program/commands/score/score_set_up.hpp"
 #include "show/pictures/map_picture.hpp"
@@ -49,27 +49,18 @@ void check_feasibility(const Options& options) {
 GainConfig gain_config(const Options& options) {
   GainConfig config;
   config.model = parse_gain_model(options.gain);
-  if (config.model == GainModel::paper && (options.object_size || !options.hazard.empty())) {
-    refuse("--object-size and --hazard go with --gain surface or combined");
+  if (config.model == GainModel::paper && !options.hazard.empty()) {
+    refuse("--hazard goes with --gain surface or combined");
   }
   if (config.model == GainModel::paper && options.support_plane && options.feasible == "off") {
     refuse("--support-plane goes with --feasible on, and with --gain surface or combined");
   }
-  if (config.model != GainModel::combined && options.refinement_weight) {
-    refuse("--refinement-weight goes with --gain combined");
-  }
-  if (options.refinement_weight)
-    check_at_least_0("--refinement-weight", *options.refinement_weight);
   if (config.model != GainModel::paper && options.criterion != "log_diagonal") {
     refuse("--criterion " + options.criterion + " goes with --gain paper, not " + options.gain);
   }
-  config.refinement_weight = options.refinement_weight.value_or(config.refinement_weight);
   config.criterion = parse_criterion(options.criterion);
-  config.pixel_stride = options.stride;
   config.posterior_entropy = true;  // a column of what is written
   config.prior_sigma = options.prior_sigma;
-  config.min_range = options.min_range;
-  config.max_range = options.max_range;
   for (const std::string& text : options.weights) {
     const std::vector<double> numbers = parse_numbers("--weight", text, 7, 7);
     config.weights.push_back({box_of("--weight", numbers), numbers[6]});
@@ -89,7 +80,9 @@ std::shared_ptr<const VoxelScene> scene_of(const Options& options, const BeliefG
 FeasiblePoses candidates_of(const Options& options, const PoseSource& source, const Sensor& sensor,
                             const BeliefGrid& grid, const std::shared_ptr<const VoxelScene>& scene,
                             const ExecConfig& exec) {
-  if (!options.poses.file.empty()) warn_of_poses(options.poses.file, source.poses, scene, sensor);
+  if (!is_set_of_poses(options.poses.poses)) {
+    warn_of_poses(options.poses.poses, source.poses, scene, sensor);
+  }
   ReachRegion reach;
   if (!options.reach.empty()) reach = read_reach_toml(options.reach);
   if (options.feasible == "off") return reachable_poses(reach, source.poses);
@@ -224,25 +217,29 @@ void warn_of_prior(const GainEvaluator& evaluator, const Sensor& sensor) {
       evaluator.prior_sigma(), axial, sensor.working_distance);
 }
 
-void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gains) {
-  const ClassicConfig config = classic_config(options, std::move(gains));
+void score_by_registered_gains(const Options& options, const std::vector<std::string>& names) {
   const ExecConfig exec = exec_of(options.common);
   const PoseSource source = make_poses(options.poses, options.seed);
   const SensedMap map = load_sensed_map(options.map, options.sensor, exec);
   const auto& [grid, sensor] = map;
   const auto scene = scene_of(options, grid, sensor, exec);
-  const bool hides = std::any_of(config.gains.begin(), config.gains.end(), needs_occlusion);
-  const auto acquisition = hides ? std::optional(Acquisition{sensor}) : std::nullopt;
-  const ClassicGainEvaluator evaluator(ClassicMap::build(scene, grid, acquisition, exec), sensor,
-                                       config, exec);
+  const auto evaluator = registered_gains().evaluator(scene, grid, sensor, names, exec);
   FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
   check_left(candidates);
 
-  ClassicScores scores{grid, sensor, source, evaluator, candidates.numbers, candidates.dropped};
-  scores.gains.resize(candidates.poses.size() * evaluator.config().gains.size());
+  RegisteredScores scores{.grid = grid,
+                          .sensor = sensor,
+                          .source = source,
+                          .scene = *scene,
+                          .names = names,
+                          .rays_per_pose = evaluator->rays_per_pose(),
+                          .threads = thread_count(exec.num_threads),
+                          .numbers = candidates.numbers,
+                          .dropped = candidates.dropped};
+  scores.gains.resize(candidates.poses.size() * names.size());
   scores.statuses.resize(candidates.poses.size());
   scores.seconds = timed(options, [&](const BatchControl& control) {
-    evaluator.evaluate(candidates.poses, scores.gains, scores.statuses, control);
+    evaluator->evaluate(candidates.poses, 1, scores.gains, scores.statuses, control);
   });
   if (!options.out.empty()) write_table(options.out, with_poses(scores.table(), source));
   if (options.common.json) {
@@ -254,8 +251,8 @@ void score_by_classic_gains(const Options& options, std::vector<ClassicGain> gai
 
 void score(const Options& options) {
   check_feasibility(options);
-  if (auto gains = classic_gains_of(options.gain)) {
-    return score_by_classic_gains(options, std::move(*gains));
+  if (const auto names = registered_gains_of(options)) {
+    return score_by_registered_gains(options, *names);
   }
   if (!options.report.empty()) check_report_page("--report");
   const ExecConfig exec = exec_of(options.common);
@@ -265,7 +262,7 @@ void score(const Options& options) {
   const BeliefGrid& grid = map.grid;
   const Sensor& sensor = map.sensor;
   source.costs = costs_of(options, source, grid);
-  const HazardConfig hazard = hazard_source(options.hazard, options.object_size, grid);
+  const HazardConfig hazard = hazard_source(options.hazard, grid);
   const auto scene = scene_of(options, grid, sensor, exec, hazard);
   const GainEvaluator evaluator(scene, sensor, config, exec);
   FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
@@ -313,15 +310,14 @@ Command add_score(App& program) {
   app->add_option("MAP", options->map, kMapHelp)->required();
   add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kMapSensorHelp);
+  begin_group(*app, "Gain");
   app->add_option("--gain", options->gain,
                   "paper (entropy removed) [nat], surface (new surface to be expected) "
                   "[m^2] or combined (both) [nat]; or gains of the literature, several "
                   "with commas, ranked by the first")
       ->check(several_of(all_gain_names(), "gain"));
-  app->add_option("--refinement-weight", options->refinement_weight,
-                  "combined: of refining known surface against finding new; default: 0.3");
-  app->add_option("--object-size", options->object_size, kObjectSizeHelp);
   app->add_option("--hazard", options->hazard, kHazardHelp);
+  begin_group(*app, "What is in the way");
   app->add_option("--support-plane", options->support_plane,
                   "height z of a table [m], at which rays of surface and combined end and which "
                   "--feasible on keeps the body above; default: none");
@@ -333,12 +329,11 @@ Command add_score(App& program) {
              "or the table, much would be too near to be measured, or a view of "
              "the map was taken");
   app->add_option("--body", options->body, kBodyHelp);
+  begin_group(*app, "Gain");
   app->add_option("--criterion", options->criterion,
                   "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] "
                   "or trace [m^2]")
       ->check(one_of(criterion_names(), "criterion"));
-  app->add_option("--stride", options->stride, "every s-th pixel of every s-th row")
-      ->check(CLI::Range(1, std::numeric_limits<int>::max(), "stride"));
   app->add_option(
          "--weight", options->weights,
          "x0,y0,z0,x1,y1,z1,W: task weight W >= 0 of a box in the grid's frame [m]; may be "
@@ -346,8 +341,7 @@ Command add_score(App& program) {
       ->allow_extra_args(false);
   app->add_option("--prior-sigma", options->prior_sigma,
                   "sigma of an unknown voxel [m]; default: the map's");
-  app->add_option("--min-range", options->min_range, "along the ray [m]; default: the sensor's");
-  app->add_option("--max-range", options->max_range, "along the ray [m]; default: the sensor's");
+  begin_group(*app, "Order");
   add_cost_options(*app, options->costs, "the poses");
   app->add_option("--top", options->top, "how many of the best to print")
       ->check(counted(0, 1'000'000'000));
@@ -368,7 +362,9 @@ Command add_score(App& program) {
   selection->require_option(0, 1);
   app->add_option("--deadline", options->deadline,
                   "SECONDS: --race ends with the best that it can say by then; default: none");
-  add_seed_option(*app, options->seed, "of --shell, --race (the paper's gain) and --approximate");
+  add_seed_option(*app, options->seed,
+                  "of a shell of poses, --race (the paper's gain) and --approximate");
+  begin_group(*app, "Output");
   app->add_option("--out", options->out,
                   "CSV file, or .npy with the same columns, of all poses that were not dropped, in "
                   "input order; with a selection, "
@@ -381,11 +377,11 @@ Command add_score(App& program) {
   app->add_option("--report", options->report,
                   "HTML file: map, candidates by gain, ranking and what the best ones see, to look "
                   "at in a browser");
-  add_trace_option(*app, options->common);
-  add_common_options(*app, options->common);
+  most_need(*app, {"--sensor", "--gain", "--top", "--out", "--reach", "--feasible", "--obstacle",
+                   "--report"});
   add_help(*app, kViewsGroup,
-           "score map.vdb --sphere 500,0.6 --sensor sr4000 --gain surface --top 5");
-  return {app, [options] { score(*options); }};
+           "score map.vdb --poses sphere:500,0.6 --sensor sr4000 --gain surface --top 5");
+  return command_of(app, options, score);
 }
 
 }  // namespace viewgain::app

@@ -21,14 +21,13 @@ struct ScoreOptions {
   PoseOptions poses;
   std::string sensor;
   std::string gain = default_gain();
-  std::optional<double> refinement_weight, object_size, support_plane;
+  std::optional<double> support_plane;
   std::string hazard, reach, body;
   std::vector<std::string> obstacles;
   std::string feasible = "off";
   std::string criterion = "log_diagonal";
-  int stride = 1;
   std::vector<std::string> weights;
-  std::optional<double> prior_sigma, min_range, max_range;
+  std::optional<double> prior_sigma;
   CostOptions costs;
   std::size_t top = 10;
   bool race = false;

@@ -191,7 +191,7 @@ Json ScoreReport::summary() const {
           {"voxels", grid.voxel_count()},
           {"sensor", sensor.name},
           {"gain_model", gain_model_name(model)},
-          {"gain_unit", gain_unit(model, criterion)},
+          {"gain_unit", gain_unit(model, parse_criterion(criterion))},
           {"criterion", criterion},
           {"prior_sigma", evaluator.prior_sigma()},
           {"orthonormalized_poses", source.orthonormalized},
@@ -215,7 +215,7 @@ void ScoreReport::print_table() const {
   std::printf("%s gain, %s, sensor %s, prior sigma %.4g m, gains in %s\n",
               std::string(gain_model_name(model)).c_str(), criterion.c_str(),
               printable(sensor.name).c_str(), evaluator.prior_sigma(),
-              std::string(gain_unit(model, criterion)).c_str());
+              std::string(gain_unit(model, parse_criterion(criterion))).c_str());
   print_mended(source.orthonormalized);
   if (!scores.dropped.empty()) {
     std::printf("%zu of %zu poses; dropped: %s\n", scores.candidates, source.poses.size(),

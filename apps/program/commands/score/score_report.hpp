@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "program/cli/flags/pose_source.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/columns/table.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

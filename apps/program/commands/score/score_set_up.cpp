@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/set_up_warnings.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
@@ -16,8 +17,6 @@ void warn_of_set_up(const ScoreOptions& options, const Obstacles& obstacles, con
   std::optional<ReachRegion> reach;
   if (!options.reach.empty()) reach = read_reach_toml(options.reach);
   if (!options.body.empty()) sensor.body_size = parse_size("--body", options.body);
-  if (options.min_range) sensor.min_range = *options.min_range;
-  if (options.max_range) sensor.max_range = *options.max_range;
   try {
     sensor.validate();
   } catch (const Error&) {  // whoever scores refuses it by name
@@ -30,7 +29,7 @@ void warn_of_set_up(const ScoreOptions& options, const Obstacles& obstacles, con
                        .support_plane = options.support_plane,
                        .reach_file = options.reach,
                        .reach = reach ? &*reach : nullptr,
-                       .object_size = options.object_size});
+                       .object_size = object_size_of(options.hazard)});
   if (options.feasible == "on") warn_of_views_in_obstacles(obstacles, grid);
 }
 

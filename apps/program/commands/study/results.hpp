@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "program/cli/json.hpp"
 #include "program/commands/study/spec.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

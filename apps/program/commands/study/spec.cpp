@@ -12,7 +12,6 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
-#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/hash64.hpp"
@@ -149,9 +148,9 @@ std::vector<StudyObject> objects_of(TableReader& reader, const fs::path& folder)
 // What a run is asked by the study itself.
 const std::set<std::string>& own_flags() {
   static const std::set<std::string> flags{
-      "--sensor",    "--voxel",    "--size",   "--seed",        "--policy",   "--gain", "--out",
-      "--max-views", "--pictures", "--report", "--save-maps",   "--plan",     "--take", "--threads",
-      "--json",      "--quiet",    "--config", "--save-config", "--tolerance"};
+      "--sensor",  "--voxel",     "--size",     "--seed",   "--policy",      "--gain",
+      "--out",     "--max-views", "--pictures", "--report", "--save-maps",   "--plan",
+      "--threads", "--json",      "--quiet",    "--config", "--save-config", "--tolerance"};
   return flags;
 }
 
@@ -294,19 +293,18 @@ std::vector<std::string> reconstruct_words(const StudySpec& spec, const StudyRun
                                  "--policy=" + (policy.plan.empty() ? policy.policy : "gain"),
                                  "--out=unused"};
   if (!policy.gain.empty()) words.push_back("--gain=" + policy.gain);
-  if (!policy.plan.empty()) {
-    words.push_back("--plan=" + policy.plan);
-    words.push_back("--take=" + policy.take);
-  }
+  if (!policy.plan.empty()) words.push_back("--plan=" + policy.plan + "," + policy.take);
   if (run.size) words.push_back("--size=" + short_text(*run.size));
   // Every policy has the whole budget, unless the spec says otherwise.
-  for (const char* rule : {"--stop-gain", "--stop-area", "--stop-idle", "--stop-promises"}) {
-    const bool is_given = std::any_of(
-        spec.flags.begin(), spec.flags.end(),
-        [&](const std::string& flag) { return flag.substr(0, flag.find('=')) == rule; });
-    if (!is_given) words.push_back(std::string(rule).append("=0"));
+  std::string stop = "--stop=gain=0,area=0,idle=0,promises=0";
+  for (const std::string& flag : spec.flags) {
+    if (flag.starts_with("--stop=")) {
+      stop += "," + flag.substr(7);
+    } else {
+      words.push_back(flag);
+    }
   }
-  words.insert(words.end(), spec.flags.begin(), spec.flags.end());
+  words.push_back(stop);
   words.insert(words.end(), {"--", spec.objects[run.object].mesh.string()});
   return words;
 }

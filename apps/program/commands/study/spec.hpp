@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "program/cli/json.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "program/cli/interrupt.hpp"
-#include "program/cli/json.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/study/claims.hpp"
@@ -32,6 +31,7 @@
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
+#include "viewgain/support/json.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -377,9 +377,8 @@ Command add_study(App& program) {
   app->add_option("--jobs", options->jobs, "runs at once; default: as many as threads")
       ->check(counted(1, 1000));
   add_switch(*app, "--plots", options->plots, "draw plots, where python3 has matplotlib");
-  add_common_options(*app, options->common);
   add_help(*app, kLoopGroup, "study spec.toml --out study");
-  return {app, [options] { study(*options); }};
+  return command_of(app, options, study);
 }
 
 }  // namespace viewgain::app

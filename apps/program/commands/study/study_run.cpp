@@ -27,7 +27,7 @@ ReconstructOptions options_of(const StudySpec& spec, const StudyRun& run) {
   App app("", "reconstruct");
   ReconstructOptions options;
   add_options(app, options);
-  (void)parse(app, reconstruct_words(spec, run));
+  parse_words(app, reconstruct_words(spec, run));
   return options;
 }
 
@@ -44,7 +44,7 @@ auto named(const StudySpec& spec, const StudyRun& run, Work&& work) {
 std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& study_run, int threads,
                                      const std::stop_token& stop) {
   const ReconstructOptions options = options_of(spec, study_run);
-  const ExecConfig exec{threads, parse_tracer(options.common.trace)};
+  const ExecConfig exec{threads};
   RunSetup setup = set_up(options, exec);
   setup.planning.stop = stop;
   RunParts run(std::move(setup), options.frames_per_view, exec);

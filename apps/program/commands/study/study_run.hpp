@@ -6,9 +6,9 @@
 #include <stop_token>
 #include <vector>
 
-#include "program/cli/json.hpp"
 #include "program/commands/study/spec.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

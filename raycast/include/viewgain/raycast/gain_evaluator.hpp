@@ -43,6 +43,9 @@ inline constexpr GainModel kDefaultGain = GainModel::combined;
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& gain_model_names();
 /// The model's name, as parse_gain_model() reads it. It must be one of them: unchecked.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view gain_model_name(GainModel model);
+/// Unit of ViewGain::gain: "nat", or "m^2" of the surface gain and of the paper's by the trace.
+[[nodiscard]] VIEWGAIN_EXPORT std::string_view gain_unit(
+    GainModel model, Criterion criterion = Criterion::log_diagonal) noexcept;
 /// Throws Error(invalid_argument) that lists the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT GainModel parse_gain_model(std::string_view name);
 

@@ -81,7 +81,7 @@ TEST_F(Columns, PosesInColumnsAreThoseOfText) {
   EXPECT_GT(text.size(), 40U * 50U);
   EXPECT_EQ(rows({"--poses", "columns.npy"}), text);
   EXPECT_EQ(rows({"--poses", "shaped.npy"}), text);
-  EXPECT_EQ(rows({"--poses", "matrices.npy"}), rows({"--sphere", "40,0.45"}));
+  EXPECT_EQ(rows({"--poses", "matrices.npy"}), rows({"--poses", "sphere:40,0.45"}));
 }
 
 // As numpy writes arrays that it holds as float32, by columns (order="F"), or both.
@@ -173,24 +173,22 @@ TEST_F(Columns, EndingsThatNoWriterWritesAreRefused) {
   };
   refuses({"surface", "map.vdb", "--out", "model.stl"}, "model.stl", ".ply");
   refuses({"surface", "map.vdb", "--points", "model.pcd"}, "model.pcd", ".ply");
-  refuses({"candidates", "map.vdb", "--generator", "sphere", "--sensor", "small.toml", "--out",
-           "p.json"},
-          "p.json", ".txt, .tum or .npy");
   refuses({"next", "map.vdb", "--generator", "sphere", "--sensor", "small.toml", "--out", "n.csv"},
           "n.csv", ".txt, .tum or .npy");
-  refuses(arguments({"--sphere", "4,0.45", "--out", "s.parquet"}), "s.parquet", ".csv or .npy");
-  refuses(arguments({"--sphere", "4,0.45", "--picture", "s.jpg"}), "s.jpg", ".png");
-  refuses(arguments({"--sphere", "4,0.45", "--report", "s.pdf"}), "s.pdf", ".html");
-  refuses(arguments({"--sphere", "4,0.45", "--save-config", "s.json"}), "s.json", ".toml");
+  refuses(arguments({"--poses", "sphere:4,0.45", "--out", "s.parquet"}), "s.parquet",
+          ".csv or .npy");
+  refuses(arguments({"--poses", "sphere:4,0.45", "--picture", "s.jpg"}), "s.jpg", ".png");
+  refuses(arguments({"--poses", "sphere:4,0.45", "--report", "s.pdf"}), "s.pdf", ".html");
+  refuses(arguments({"--poses", "sphere:4,0.45", "--save-config", "s.json"}), "s.json", ".toml");
   refuses({"convert", "map.vdb", "map.ply"}, "map.ply", ".vdb or .ot");
-  refuses({"render", "map.vdb", "--what", "map", "--out", "map.svg"}, "map.svg", ".png");
+  refuses({"render", "map.vdb", "map", "--out", "map.svg"}, "map.svg", ".png");
 }
 
 // What the other file says in text stands behind the header, a value after the other.
 TEST_F(Columns, ScoresInColumnsAreThoseOfText) {
   for (const std::string name : {"scores.csv", "scores.npy"}) {
-    (void)run_well(
-        arguments({"--sphere", "40,0.45", "--gain", "paper", "--threads", "2", "--out", name}));
+    (void)run_well(arguments(
+        {"--poses", "sphere:40,0.45", "--gain", "paper", "--threads", "2", "--out", name}));
   }
   const std::string npy = read("scores.npy");
   const std::string head =

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -27,12 +27,13 @@ class ConfigFile : public test::ProgramTest {
     write_cube();
     write_half_sensor();
   }
-  const Strings frames_call{
-      "simulate",   "cube.off", "--orbit", "3,0.6,27", "--sensor", "tof.toml", "--size", "0.3",
-      "--recenter", "on",       "--seed",  "7",        "--noise",  "on",       "--out",  "frames"};
-  const Strings map_call{
-      "integrate", "frames", "--voxel", "0.02",   "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-      "--carve",   "lines",  "--out",   "map.vdb"};
+  const Strings frames_call{"simulate", "cube.off", "--poses", "orbit:3,0.6,27",
+                            "--sensor", "tof.toml", "--size",  "0.3",
+                            "--place",  "center",   "--seed",  "7",
+                            "--noise",  "on",       "--out",   "frames"};
+  const Strings map_call{"integrate", "frames",      "--voxel",
+                         "0.02",      "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+                         "--out",     "map.vdb"};
   void make_map() const {
     run_well(frames_call);
     run_well(map_call);
@@ -79,14 +80,14 @@ TEST_F(ConfigFile, EverySubcommandIsRepeated) {
       {{"integrate", "--cloud", "cloud.ply", "--cloud", "cloud.ply", "--origin", "0,0,0", "--voxel",
         "0.001", "--sensor", "tof.toml", "--out", "clouds.vdb"},
        "clouds.vdb"},
-      {{"score", "map.vdb", "--shell", "20,0.5,0.7", "--center", "0,0,0.05", "--seed", "5",
+      {{"score", "map.vdb", "--poses", "shell:20,0.5,0.7", "--center", "0,0,0.05", "--seed", "5",
         "--sensor", "tof.toml", "--weight", "0,0,0,1,1,1,2", "--weight", "0,0,0,0.1,1,1,0",
         "--race", "--top", "4", "--out", "s.csv"},
        "s.csv"},
-      {{"candidates", "map.vdb", "--generator", "dome", "--count", "30", "--sensor", "tof.toml",
-        "--out", "poses.txt"},
+      {{"next", "map.vdb", "--generator", "dome", "--count", "30", "--sensor", "tof.toml", "--out",
+        "poses.txt"},
        "poses.txt"},
-      {{"info", "map.vdb", "--hash"}, ""},
+      {{"info", "map.vdb", "--criterion", "trace"}, ""},
       {{"convert", "map.vdb", "tree.ot"}, "tree.ot"},
       {{"sensors", "d435"}, ""},
       {{"reconstruct", "cube.off", "--sensor", "tof.toml", "--size", "0.2", "--voxel", "0.00625",
@@ -105,10 +106,11 @@ TEST_F(ConfigFile, EverySubcommandIsRepeated) {
 
 TEST_F(ConfigFile, TheCommandLineHolds) {
   make_map();
-  write("score.toml",
-        "map = \"none.vdb\"\nsphere = [20, 0.6]\nsensor = \"tof.toml\"\ntop = 3\nrace = true\n"
-        "json = true\nfeasible = false\nweight = [\n  [-1, -1, -1, 1, 1, 1, 0],  # nothing counts\n"
-        "  \"-1,-1,-1,1,1,1,0\",\n]\n");
+  write(
+      "score.toml",
+      "map = \"none.vdb\"\nposes = \"sphere:20,0.6\"\nsensor = \"tof.toml\"\ntop = 3\nrace = true\n"
+      "json = true\nfeasible = false\nweight = [\n  [-1, -1, -1, 1, 1, 1, 0],  # nothing counts\n"
+      "  \"-1,-1,-1,1,1,1,0\",\n]\n");
   const auto scored = [this](const Strings& more) {
     return json::parse(
         run_well(test::joined({"score", "map.vdb", "--config", "score.toml"}, more)));
@@ -118,10 +120,10 @@ TEST_F(ConfigFile, TheCommandLineHolds) {
   EXPECT_EQ(as_written["best"].size(), 3U);
   EXPECT_EQ(as_written["best"][0]["gain"], 0.0);
   EXPECT_EQ(scored({"--top", "5"})["best"].size(), 5U);
-  EXPECT_EQ(scored({"--sphere=30,0.6"})["poses"], 30);
+  EXPECT_EQ(scored({"--poses=sphere:30,0.6"})["poses"], 30);
   // All repetitions of an option, and what may be given once of a group.
   EXPECT_GT(scored({"--weight", "0,0,0,1,1,1,2"})["best"][0]["gain"], 0.0);
-  EXPECT_EQ(scored({"--dome", "40,0.6"})["poses"], 40);
+  EXPECT_EQ(scored({"--poses", "dome:40,0.6"})["poses"], 40);
   EXPECT_TRUE(scored({"--set", "2", "--gain", "paper"}).contains("set_gain"));
   // A positional: IN from here, OUT from there.
   write("convert.toml", "in = \"none.vdb\"\nout = \"tree.ot\"\n");
@@ -133,9 +135,9 @@ TEST_F(ConfigFile, NamesOfAnyKind) {
   for (const std::string name : {"a \"b\" \\c\\ 'd'.off", "-x.off", "two\nlines\x01.off",
                                  "gr\xc3\xbc\xc3\x9f.off", "#=[1].off"}) {
     std::filesystem::copy_file(dir / "cube.off", dir / name);
-    const Strings call{"simulate", "--orbit",      "1,6,27", "--sensor",      "tof.toml",   "--out",
-                       "frames",   "--background", "0",      "--save-config", "saved.toml", "--",
-                       name};
+    const Strings call{
+        "simulate",     "--poses", "orbit:1,6,27",  "--sensor",   "tof.toml", "--out", "frames",
+        "--background", "0",       "--save-config", "saved.toml", "--",       name};
     run_well(call);
     std::filesystem::remove_all(dir / "frames");
     run_well({"simulate", "--config", "saved.toml"});
@@ -144,7 +146,7 @@ TEST_F(ConfigFile, NamesOfAnyKind) {
   }
   // TOML cannot hold this one: what is left is TOML, and says so.
   std::filesystem::copy_file(dir / "cube.off", dir / "lat\xe9.off");
-  run_well({"simulate", "lat\xe9.off", "--orbit", "1,6,27", "--sensor", "tof.toml", "--out",
+  run_well({"simulate", "lat\xe9.off", "--poses", "orbit:1,6,27", "--sensor", "tof.toml", "--out",
             "frames", "--save-config", "saved.toml"});
   EXPECT_NE(read("saved.toml").find("# not UTF-8, to be given on the command line: mesh"),
             std::string::npos);
@@ -153,14 +155,14 @@ TEST_F(ConfigFile, NamesOfAnyKind) {
 
 TEST_F(ConfigFile, WhatIsWrongIsNamedWithFileAndLine) {
   make_map();
-  const std::string head = "map = \"map.vdb\"\nsensor = \"tof.toml\"\nsphere = \"20,0.6\"\n";
+  const std::string head = "map = \"map.vdb\"\nsensor = \"tof.toml\"\nposes = \"sphere:20,0.6\"\n";
   const std::vector<std::pair<std::string, std::string>> files{
       {"voxle = 3\n", "c.toml: line 4: key \"voxle\" is unknown"},
       {"wieght = []\n", "key \"wieght\" is unknown; did you mean weight?"},
       {"config = \"c.toml\"\n", "line 4: key \"config\" is unknown"},
       {"\n\ntop = \"three\"\n", "c.toml: line 6: key \"top\" must be a whole number"},
       {"top = 2.5\n", "line 4: key \"top\" must be a whole number"},
-      {"max-range = \"far\"\n", "line 4: key \"max-range\" must be a number"},
+      {"deadline = \"far\"\n", "line 4: key \"deadline\" must be a number"},
       {"gain = true\n", "line 4: key \"gain\" must be a text"},
       {"feasible = 1\n", "line 4: key \"feasible\" must be true or false"},
       {"weight = \"0,0,0,1,1,1,2\"\n", "line 4: key \"weight\" must be a list"},
@@ -170,7 +172,7 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithFileAndLine) {
       {"reach = \"r.toml\\u0000x\"\n", "line 4: key \"reach\" must not hold a zero byte"},
       {"[gain]\nmodel = 1\n", "line 4: key \"gain\" must be"},
       {"top = 1\ntop = 2\n", "c.toml: line 5"},
-      {"dome = \"20,0.6\"\n", "--dome"}};
+      {"dome = \"20,0.6\"\n", "key \"dome\" is unknown"}};
   for (const auto& [text, word] : files) {
     write("c.toml", head + text);
     expect_refused({"score", "--config", "c.toml", "--out", "s.csv"}, word);

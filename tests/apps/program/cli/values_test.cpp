@@ -71,26 +71,22 @@ TEST(Values, CountsAreAList) {
   EXPECT_EQ(counts_text({{"unreachable", 3}, {"collision", 12}}), "12 collision, 3 unreachable");
 }
 
-std::vector<Pose> poses(std::string PoseOptions::*set, const std::string& text,
-                        const std::string& center = "", std::uint64_t seed = 1) {
-  PoseOptions options;
-  options.*set = text;
-  options.center = center;
-  return make_poses(options, seed).poses;
+std::vector<Pose> poses(const std::string& text, const std::string& center = "",
+                        std::uint64_t seed = 1) {
+  return make_poses({text, center}, seed).poses;
 }
 
 TEST(PoseSource, EverySetRoundItsCentre) {
-  EXPECT_EQ(poses(&PoseOptions::sphere, "50,0.6"), sphere_poses(50, 0.6));
-  EXPECT_EQ(poses(&PoseOptions::sphere, "50,0.6", "1,2,3"), sphere_poses(50, 0.6, {1, 2, 3}));
-  EXPECT_EQ(poses(&PoseOptions::dome, "50,0.6", "1,2,3"), dome_poses(50, 0.6, {1, 2, 3}));
-  EXPECT_EQ(poses(&PoseOptions::rings, "80,0.6"), literature_ring_poses(80, 0.6));
-  EXPECT_EQ(poses(&PoseOptions::rings, "288,0.5", "1,2,3"),
-            literature_ring_poses(288, 0.5, {1, 2, 3}));
-  EXPECT_EQ(poses(&PoseOptions::shell, "10,0.4,0.9", "", 7), shell_poses(10, 0.4, 0.9, 7));
+  EXPECT_EQ(poses("sphere:50,0.6"), sphere_poses(50, 0.6));
+  EXPECT_EQ(poses("sphere:50,0.6", "1,2,3"), sphere_poses(50, 0.6, {1, 2, 3}));
+  EXPECT_EQ(poses("dome:50,0.6", "1,2,3"), dome_poses(50, 0.6, {1, 2, 3}));
+  EXPECT_EQ(poses("rings:80,0.6"), literature_ring_poses(80, 0.6));
+  EXPECT_EQ(poses("rings:288,0.5", "1,2,3"), literature_ring_poses(288, 0.5, {1, 2, 3}));
+  EXPECT_EQ(poses("shell:10,0.4,0.9", "", 7), shell_poses(10, 0.4, 0.9, 7));
   constexpr std::uint64_t kLarge = 1ULL << 62U;
-  EXPECT_EQ(poses(&PoseOptions::shell, "10,0.4,0.9", "1,2,3", kLarge),
+  EXPECT_EQ(poses("shell:10,0.4,0.9", "1,2,3", kLarge),
             shell_poses(10, 0.4, 0.9, kLarge, {1, 2, 3}));
-  EXPECT_EQ(poses(&PoseOptions::orbit, "3,0.6,90,0,180", "1,2,3"),
+  EXPECT_EQ(poses("orbit:3,0.6,90,0,180", "1,2,3"),
             orbit_poses(3, 0.6, std::numbers::pi / 2, 0, std::numbers::pi, {1, 2, 3}));
 }
 
@@ -112,24 +108,26 @@ TEST(Printable, AStrangersTextCommandsNoTerminal) {
 
 TEST(PoseSource, ErrorsNameTheFlag) {
   struct Case {
-    std::string PoseOptions::*set;
-    std::string text, center, word;
+    std::string poses, center, word;
   };
-  const std::vector<Case> cases{
-      {&PoseOptions::rings, "64,0.5", "", "--rings"},
-      {&PoseOptions::rings, "48,0", "", "--rings"},
-      {&PoseOptions::rings, "48.5,1", "", "--rings"},
-      {&PoseOptions::shell, "10,0.9,0.4", "", "--shell"},
-      {&PoseOptions::shell, "10,0,1", "", "--shell"},
-      {&PoseOptions::shell, "10,0.4", "", "--shell"},
-      {&PoseOptions::orbit, "10,0.4", "", "--orbit"},
-      {&PoseOptions::sphere, "10,0.4", "0,0,x", "--center"},
-      {&PoseOptions::file, "poses.txt", "0,0,0", "--center"},
-      {&PoseOptions::shell, "10,0.4,0.9,7", "", "--shell 10,0.4,0.9,7: needs 3 numbers"},
-      {&PoseOptions::dome, "10,0.4,1", "", "--dome 10,0.4,1: needs 2 numbers"}};
+  const std::vector<Case> cases{{"rings:64,0.5", "", "--poses rings:64,0.5: "},
+                                {"rings:48,0", "", "--poses rings:48,0: "},
+                                {"rings:48.5,1", "", "--poses"},
+                                {"shell:10,0.9,0.4", "", "--poses shell"},
+                                {"shell:10,0,1", "", "--poses shell"},
+                                {"shell:10,0.4", "", "--poses"},
+                                {"orbit:10,0.4", "", "--poses"},
+                                {"sphere:10,0.4", "0,0,x", "--center"},
+                                {"poses.txt", "0,0,0", "--center"},
+                                {"shell:10,0.4,0.9,7", "", "needs 3 numbers"},
+                                {"dome:10,0.4,1", "", "needs 2 numbers"}};
   for (const Case& wrong : cases) {
     test::expect_error(ErrorCode::invalid_argument, wrong.word,
-                       [&] { (void)poses(wrong.set, wrong.text, wrong.center); });
+                       [&] { (void)poses(wrong.poses, wrong.center); });
+  }
+  EXPECT_TRUE(is_set_of_poses("orbit:1,2,3"));
+  for (const char* file : {"orbit", "sphere.txt", "a/sphere:2", "cone:3,1", ""}) {
+    EXPECT_FALSE(is_set_of_poses(file)) << file;
   }
 }
 

@@ -16,8 +16,8 @@ class BadInputTest : public test::ProgramTest {
 
   // A map of a few voxels and its frames.
   void make_map() const {
-    run_well({"simulate", "cube.off", "--orbit", "1,0.6,27", "--sensor", "small.toml", "--size",
-              "0.3", "--recenter", "on", "--out", "frames"});
+    run_well({"simulate", "cube.off", "--poses", "orbit:1,0.6,27", "--sensor", "small.toml",
+              "--size", "0.3", "--place", "center", "--out", "frames"});
     run_well({"integrate", "frames", "--voxel", "0.05", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
               "--out", "map.vdb"});
   }
@@ -25,7 +25,7 @@ class BadInputTest : public test::ProgramTest {
 
 Strings simulate(const Strings& more) {
   return test::joined({"simulate", "cube.off", "--sensor", "small.toml", "--out", "new_frames",
-                       "--orbit", "2,0.6,27"},
+                       "--poses", "orbit:2,0.6,27"},
                       more);
 }
 
@@ -45,7 +45,7 @@ TEST_F(BadInputTest, CommandLine) {
                   {{"info", "map.vdb", "--threads", "two"}, "--threads"},
                   {simulate({"--up", "w"}), "--up"},
                   {simulate({"--noise", "maybe"}), "--noise"},
-                  {simulate({"--flying-pixels", "3"}), "--flying-pixels"},
+                  {simulate({"--noise", "scale"}), "--noise scale"},
                   {simulate({"--frames-per-view", "0"}), "--frames-per-view"},
                   {simulate({"--support-plane", "nan"}), "support plane"},
                   {{"reconstruct", "cube.off", "--sensor", "small.toml", "--voxel", "1", "--size",
@@ -83,7 +83,6 @@ TEST_F(BadInputTest, Frames) {
        {integrate({"--voxel", "0.02", "--workspace", "0.2,0,0,0.1,1,1"}), "inside out"},
        {integrate({"--voxel", "0.02", "--prior-sigma", "-1"}), "prior"},
        {integrate({"--voxel", "0.02", "--depth-scale", "0"}), "--depth-scale"},
-       {integrate({"--voxel", "0.02", "--carve", "boxes"}), "--carve"},
        {integrate({"--voxel", "0.02", "--sensor", "sr4000"}), "48 x 36"},
        {integrate({"--voxel", "0.02"}, "nowhere"), "nowhere"},
        {integrate({"--voxel", "0.02", "--sensor", "small.toml"}, "empty_dir"), "empty_dir"},
@@ -94,7 +93,7 @@ TEST_F(BadInputTest, Frames) {
        {integrate({"--voxel", "0.02", "--sensor", "small.toml"}, "negative"),
         "negative/camera-intrinsics.txt: "},
        {integrate({"--voxel", "0.02", "--confidence", "masks"}), "masks"},
-       {integrate({"--voxel", "0.02", "--confidence", "masks", "--least-confidence", "0"}), "0"},
+       {integrate({"--voxel", "0.02", "--confidence", "masks,0"}), "1..255"},
        {{"integrate", "frames", "--voxel", "0.02", "--out", "no/such/dir/map.vdb"}, "no/such/dir"},
        {integrate({"--map", "none.vdb"}), "none.vdb"}});
 }
@@ -102,35 +101,31 @@ TEST_F(BadInputTest, Frames) {
 TEST_F(BadInputTest, Scores) {
   make_map();
   write("bad.txt", "0 0 0 1 0 0 0 1\n1 0 0 1 0 0 0\n");
-  const Strings sphere{"--sphere", "10,0.6"};
+  const Strings sphere{"--poses", "sphere:10,0.6"};
   const auto with = [&sphere](const Strings& more) { return score(test::joined(more, sphere)); };
-  expect_refused(
-      {{score({}), "--sphere"},
-       {with({"--dome", "10,0.6"}), "--dome"},
-       {score({"--sphere", "0,0.6"}), "--sphere"},
-       {score({"--poses", "bad.txt"}), "2"},
-       {with({"--gain", "best"}), "combined"},
-       {with({"--criterion", "trace"}), "--criterion trace goes with --gain paper"},
-       {with({"--gain", "surface", "--hazard", "-1"}), "--hazard -1"},
-       {with({"--gain", "surface", "--hazard", "rates"}), "--hazard"},
-       {with({"--gain", "surface", "--hazard", "none.VDB"}), "none.VDB"},
-       {with({"--gain", "surface", "--hazard", "map.vdb"}), "floats"},
-       {{"score", "map.vdb", "--sensor", "small.toml", "--sphere", "10,0.6", "--gain", "surface",
-         "--hazard", "p.vdb", "--out", "p.vdb"},
-        "is, or holds, a file of --hazard p.vdb"},
-       {with({"--gain", "surface", "--object-size", "0"}), "--object-size 0"},
-       {with({"--gain", "surface", "--refinement-weight", "1"}), "combined"},
-       {with({"--gain", "paper", "--hazard", "1"}), "--gain surface"},
-       {with({"--gain", "surface", "--hazard", "cube.off"}), ".vdb"},
-       {with({"--gain", "surface", "--support-plane", "nan"}), "--support-plane nan"},
-       {with({"--gain", "combined", "--refinement-weight", "-1"}), "--refinement-weight"},
-       {with({"--report", "report.txt"}), "report"},
-       {with({"--stride", "0"}), "stride"},
-       {with({"--weight", "0,0,0,1,1,1"}), "--weight"},
-       {with({"--max-range", "nan"}), "range"},
-       {{"score", "map.vdb", "--sensor", "small.toml", "--sphere", "10,0.6", "--out",
-         "no/such/scores.csv"},
-        "no/such/scores.csv"}});
+  expect_refused({{score({}), "--poses"},
+                  {score({"--sphere", "10,0.6"}), "--poses sphere:N,RADIUS"},
+                  {score({"--poses", "sphere:0,0.6"}), "--poses sphere:0,0.6"},
+                  {score({"--poses", "bad.txt"}), "2"},
+                  {with({"--gain", "best"}), "combined"},
+                  {with({"--criterion", "trace"}), "--criterion trace goes with --gain paper"},
+                  {with({"--gain", "surface", "--hazard", "-1"}), "--hazard -1"},
+                  {with({"--gain", "surface", "--hazard", "rates"}), "--hazard"},
+                  {with({"--gain", "surface", "--hazard", "none.VDB"}), "none.VDB"},
+                  {with({"--gain", "surface", "--hazard", "map.vdb"}), "floats"},
+                  {{"score", "map.vdb", "--sensor", "small.toml", "--poses", "sphere:10,0.6",
+                    "--gain", "surface", "--hazard", "p.vdb", "--out", "p.vdb"},
+                   "is, or holds, a file of --hazard p.vdb"},
+                  {with({"--gain", "surface", "--hazard", "size=0"}), "--hazard size 0"},
+                  {with({"--gain", "paper", "--hazard", "1"}), "--gain surface"},
+                  {with({"--gain", "surface", "--hazard", "cube.off"}), ".vdb"},
+                  {with({"--gain", "surface", "--support-plane", "nan"}), "--support-plane nan"},
+                  {with({"--report", "report.txt"}), "report"},
+                  {with({"--weight", "0,0,0,1,1,1"}), "--weight"},
+                  {with({"--max-range", "1"}), "max_range in a sensor's file"},
+                  {{"score", "map.vdb", "--sensor", "small.toml", "--poses", "sphere:10,0.6",
+                    "--out", "no/such/scores.csv"},
+                   "no/such/scores.csv"}});
 }
 
 // By name, path and link, and through the files that a file names.
@@ -142,7 +137,7 @@ TEST_F(BadInputTest, WhatIsReadIsNotWritten) {
   std::filesystem::create_symlink("map.vdb", dir / "to_map.png");
   std::filesystem::create_symlink("frames/frame-000000.depth.png", dir / "to_frame.vdb");
   std::filesystem::create_hard_link(dir / "poses.txt", dir / "also_poses.csv");
-  const Strings sphere{"score", "map.vdb", "--sensor", "small.toml", "--sphere", "10,0.6"};
+  const Strings sphere{"score", "map.vdb", "--sensor", "small.toml", "--poses", "sphere:10,0.6"};
   const Strings poses{"score", "map.vdb", "--sensor", "small.toml", "--poses", "poses.txt"};
   expect_refused(
       {{test::joined(sphere, {"--out", "frames/../map.vdb"}), "MAP map.vdb"},
@@ -153,7 +148,7 @@ TEST_F(BadInputTest, WhatIsReadIsNotWritten) {
        {test::joined(sphere, {"--out", ""}), "--out"},
        {test::joined(sphere, {"--out", "-"}), "--out -"},
        {test::joined(poses, {"--out", "also_poses.csv"}), "--poses poses.txt"},
-       {{"candidates", "map.vdb", "--generator", "sphere", "--sensor", "small.toml", "--reach",
+       {{"next", "map.vdb", "--generator", "sphere", "--sensor", "small.toml", "--reach",
          "reach.toml", "--out", "near.txt"},
         "--reach reach.toml"},
        {{"integrate", "frames", "--voxel", "0.05", "--out", "to_frame.vdb"}, "FRAMES_DIR frames"},

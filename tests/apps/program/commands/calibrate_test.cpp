@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/noise.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {

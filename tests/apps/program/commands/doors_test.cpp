@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The same frames give the same map and the same next views, whichever way they come in: integrate
-// and next, next of the folder, follow, reconstruct and C++. C says what C++ says (CPlanner),
+// and next, model, model --watch and C++. C says what C++ says (CPlanner),
 // Python what the program says of frames that cannot be used (test_planner.py).
 
 #include <gtest/gtest.h>
@@ -16,7 +16,6 @@
 
 #include "apps/planner/planner_set_up.hpp"
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
@@ -24,6 +23,7 @@
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -44,9 +44,9 @@ class Doors : public test::ProgramTest {
     write_small_sensor();
     // A cube of 0.2 m on a table, and a wall that is known but was not there: readings behind it
     // carve up to it.
-    run_well({"simulate", "cube.off", "--orbit", "8,0.5,30", "--sensor", "small.toml", "--size",
-              "0.2", "--recenter", "on", "--support-plane", "-0.1", "--noise", "on", "--out",
-              "frames"});
+    run_well({"simulate", "cube.off", "--poses", "orbit:8,0.5,30", "--sensor", "small.toml",
+              "--size", "0.2", "--place", "center", "--support-plane", "-0.1", "--noise", "on",
+              "--out", "frames"});
     write("frames/done", "");
     write("box.toml", "[[box]]\nmin = [-0.6, -0.6, 0]\nmax = [0.6, 0.6, 0.6]\n");
     write_tum(dir / "poses.txt", sphere_poses(40, 0.5, Eigen::Vector3d::Zero()));
@@ -95,20 +95,26 @@ class Doors : public test::ProgramTest {
     run_well(test::joined(test::joined({"integrate", "frames", "--out", "map.vdb"}, map_flags()),
                           view_flags("")));
     const json of_map = json::parse(run_well(call({"next", "map.vdb"}, top)));
-    const json of_folder =
-        json::parse(run_well(call(test::joined({"next", "frames"}, map_flags()), top)));
     run_well(
-        call(test::joined({"follow", "frames", "--out", "plan", "--quiet"}, map_flags()), top));
-    run_well(call(test::joined({"reconstruct", "frames", "--out", "run"}, map_flags()), top));
+        call(test::joined({"model", "frames", "--watch", "--out", "plan", "--quiet"}, map_flags()),
+             top));
+    run_well(call(test::joined({"model", "frames", "--out", "run"}, map_flags()), top));
+    // Of the folder of a run the map is taken.
+    const json of_run = json::parse(run_well(call({"next", "run"}, top)));
+    const json of_plan = json::parse(run_well(call({"next", "plan"}, top)));
 
     const std::string hash = hash_of("map.vdb");
     EXPECT_EQ(hash_of("plan/state.vdb"), hash);
     EXPECT_EQ(hash_of("run/map.vdb"), hash);
     const std::vector<Named> views = named(of_map);
     EXPECT_FALSE(views.empty());
-    const json followed = json::parse(read("plan/next.json"));
-    const json reconstructed = json::parse(read("run/run.json"));
-    for (const json* other : {&of_folder, &followed, &reconstructed}) {
+    for (const char* file : {"surface.ply", "points.ply", "next.txt"}) {
+      EXPECT_EQ(read(std::string("plan/") + file), read(std::string("run/") + file)) << file;
+    }
+    const json watched = json::parse(read("plan/next.json"));
+    const json made = json::parse(read("run/run.json"));
+    const json written = json::parse(read("run/next.json"));
+    for (const json* other : {&of_run, &of_plan, &watched, &made, &written}) {
       EXPECT_EQ(named(*other), views);
       EXPECT_EQ((*other)["candidates"], of_map["candidates"]);
       EXPECT_EQ((*other)["dropped"], of_map["dropped"]);
@@ -161,11 +167,10 @@ TEST_F(Doors, CountWaysFromAFrameThatCannotBeUsed) {
                   1e-6);
     }
   };
-  expect_from(call({"next", "frames"}), last.translation());
-  expect_from(call({"next", "frames", "--from", "0.1,0.2,0.6"}), {0.1, 0.2, 0.6});
-  expect_from(call({"reconstruct", "frames", "--pictures", "off", "--out", "run"}),
-              last.translation());
-  (void)call({"follow", "frames", "--out", "plan"});
+  const Strings model{"model", "frames", "--pictures", "off", "--out", "run"};
+  expect_from(call(model), last.translation());
+  expect_from(call(test::joined(model, {"--from", "0.1,0.2,0.6"})), {0.1, 0.2, 0.6});
+  (void)call({"model", "frames", "--watch", "--out", "plan"});
   expect_from(json::parse(read("plan/next.json")), last.translation());
   // A map's file knows its views alone.
   run_well(test::joined(
@@ -179,8 +184,8 @@ TEST_F(Doors, CountWaysFromAFrameThatCannotBeUsed) {
 // 30 frames, seven of which cannot be used, each for a reason of its own.
 TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
   fs::remove_all(dir / "frames");
-  run_well({"simulate", "cube.off", "--orbit", "30,0.5,30", "--sensor", "small.toml", "--size",
-            "0.2", "--recenter", "on", "--support-plane", "-0.1", "--out", "frames"});
+  run_well({"simulate", "cube.off", "--poses", "orbit:30,0.5,30", "--sensor", "small.toml",
+            "--size", "0.2", "--place", "center", "--support-plane", "-0.1", "--out", "frames"});
   write("frames/done", "");
   const auto image = [](const char* number) {
     return "frames/frame-0000" + std::string(number) + ".depth.png";
@@ -215,8 +220,9 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
         test::joined(test::joined(words, map_flags()), {"--support-plane", "-0.1", "--top", "3"}),
         quiet)));
   };
-  const json next = call({"next", "frames"});
-  const json explained = call({"next", "frames", "--explain"});
+  const json run = call({"model", "frames", "--pictures", "off", "--out", "run"});
+  const json explained = json::parse(run_well({"next", "run", "--explain", "--json"}));
+  ASSERT_FALSE(explained["next"].empty());
   for (const json& view : explained["next"]) {
     std::size_t sum = 0;
     for (const auto& [key, count] : view["rays"].items()) sum += count.get<std::size_t>();
@@ -224,17 +230,16 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
     EXPECT_GT(view["rays"]["unknown"], 0);  // else it would not gain
   }
   // The best ones are of different places: each shows what those before it do not.
-  double share = 0, before = next["next"][0]["gain"].get<double>();
-  for (const json& view : next["next"]) {
+  double share = 0, before = run["next"][0]["gain"].get<double>();
+  for (const json& view : run["next"]) {
     EXPECT_LE(view["gain"].get<double>(), before * (1 + 1e-6));
     before = view["gain"].get<double>();
     share += view["share"].get<double>();
   }
   EXPECT_NEAR(share, 1, 1e-9);
-  const json followed = call({"follow", "frames", "--out", "plan"});
-  const json run = call({"reconstruct", "frames", "--pictures", "off", "--out", "run"});
+  const json watched = call({"model", "frames", "--watch", "--out", "plan"});
   const std::string hash = hash_of("map.vdb");
-  for (const json* said : {&integrated, &next, &followed, &run}) {
+  for (const json* said : {&integrated, &watched, &run}) {
     EXPECT_EQ((*said)["bad"], bad);
     EXPECT_EQ((*said)["frames"], 23);
     EXPECT_EQ((*said)["carved"], 0);
@@ -242,9 +247,8 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
   EXPECT_EQ(hash_of("plan/state.vdb"), hash);
   EXPECT_EQ(hash_of("run/map.vdb"), hash);
   const json there = json::parse(read("plan/next.json"));
-  EXPECT_EQ(named(next), named(there));
-  EXPECT_EQ(named(next), named(run));
-  EXPECT_EQ(next["dropped"], there["dropped"]);
+  EXPECT_EQ(named(run), named(there));
+  EXPECT_EQ(run["dropped"], there["dropped"]);
 
   const FrameSequence frames = open_frames(dir / "frames");
   test::PlannerSetUp config = planner_config("");
@@ -262,7 +266,7 @@ TEST_F(Doors, SayTheSameOfFramesThatCannotBeUsed) {
 
   // One that is gone when a run begins is that frame's fault alone, too.
   fs::remove(dir / image("25"));
-  const json less = call({"reconstruct", "frames", "--pictures", "off", "--out", "less"});
+  const json less = call({"model", "frames", "--pictures", "off", "--out", "less"});
   EXPECT_EQ(less["bad"]["unreadable"], 3);
   EXPECT_EQ(less["frames"], 22);
 }

@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -28,15 +28,16 @@ class EndedCalls : public test::ProgramTest {
   }
 
   static Strings simulate(const std::string& out, const std::string& frames = "1") {
-    return {
-        "simulate", "cube.off",   "--orbit", "1,0.6,27", "--sensor", "tof.toml",          "--size",
-        "0.2",      "--recenter", "on",      "--out",    out,        "--frames-per-view", frames};
+    return {"simulate",          "cube.off", "--poses", "orbit:1,0.6,27",
+            "--sensor",          "tof.toml", "--size",  "0.2",
+            "--place",           "center",   "--out",   out,
+            "--frames-per-view", frames};
   }
   static Strings reconstruct(const std::string& out, const std::string& views) {
     return test::joined({"reconstruct", "cube.off", "--sensor", "tof.toml", "--voxel", "0.00625",
-                         "--size", "0.2", "--save-maps", "on", "--pictures", "off", "--stop-gain",
-                         "0", "--stop-idle", "0", "--json"},
-                        {"--stop-promises", "0", "--out", out, "--max-views", views});
+                         "--size", "0.2", "--save-maps", "on", "--pictures", "off", "--stop",
+                         "gain=0", "--stop", "idle=0", "--json"},
+                        {"--stop", "promises=0", "--out", out, "--max-views", views});
   }
 
   // On stderr, by the last call.
@@ -67,7 +68,7 @@ TEST_F(EndedCalls, ALimitOnTimeEndsACallWithAMessage) {
   const auto before = contents();
   const auto is_writing = [&] { return fs::exists(dir / "new") && !hidden("new").empty(); };
   Strings call = test::joined(simulate("new/frames", "1000"), {"--quiet"});
-  call[3] = "20,0.6,27";  // views enough for more than a second
+  call[3] = "orbit:20,0.6,27";  // views enough for more than a second
   const pid_t child = start(call);
   int status = 0;
   while (!is_writing()) {
@@ -106,8 +107,8 @@ TEST_F(EndedCalls, ALimitOnSizesIsAnErrorThatNamesTheFile) {
   run_well({"integrate", "frames", "--voxel", "0.02", "--out", "map.vdb", "--quiet"});
   // The poses of so many views are over the limit, whatever the images take.
   const auto simulate_many = [](const std::string& out) {
-    return Strings{"simulate", "cube.off", "--orbit", "40,0.6,27",  "--sensor",
-                   "tof.toml", "--size",   "0.2",     "--recenter", "on",
+    return Strings{"simulate", "cube.off", "--poses", "orbit:40,0.6,27", "--sensor",
+                   "tof.toml", "--size",   "0.2",     "--place",         "center",
                    "--quiet",  "--out",    out};
   };
   struct rlimit before {};
@@ -121,8 +122,8 @@ TEST_F(EndedCalls, ALimitOnSizesIsAnErrorThatNamesTheFile) {
        "map.vdb: cannot write: File too large; this process may write files of at most 2000 bytes"},
       {{"convert", "map.vdb", "map.ot"}, "map.ot: cannot write: File too large"},
       {{"surface", "map.vdb", "--out", "surface.ply"}, "surface.ply: cannot write: File too large"},
-      {{"render", "map.vdb", "--what", "map", "--out", "a.png"}, "a.png: cannot write: File too "},
-      {{"candidates", "map.vdb", "--generator", "sphere", "--out", "poses.txt"},
+      {{"render", "map.vdb", "map", "--out", "a.png"}, "a.png: cannot write: File too "},
+      {{"next", "map.vdb", "--top", "all", "--generator", "sphere", "--out", "poses.txt"},
        "poses.txt: cannot write: File too large"},
   });
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
@@ -145,9 +146,9 @@ TEST_F(EndedCalls, ASignalThatWasIgnoredStaysSo) {
 
 // Frames are aligned before any goes into the map, which takes most of such a call's time.
 TEST_F(EndedCalls, FramesThatWereAlignedByThenAreKept) {
-  run_well({"simulate", "cube.off", "--orbit", "24,0.6,27,0,9", "--sensor", "tof.toml", "--size",
-            "0.2", "--recenter", "on", "--noise", "on", "--out", "frames"});
-  const pid_t child = start({"reconstruct", "frames", "--voxel", "0.01", "--workspace",
+  run_well({"simulate", "cube.off", "--poses", "orbit:24,0.6,27,0,9", "--sensor", "tof.toml",
+            "--size", "0.2", "--place", "center", "--noise", "on", "--out", "frames"});
+  const pid_t child = start({"model", "frames", "--voxel", "0.01", "--workspace",
                              "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--register", "on", "--pictures", "off",
                              "--report", "off", "--threads", "1", "--out", "run", "--json"});
   // Some frames' time of the processor, however busy the machine is.
@@ -208,8 +209,8 @@ TEST_F(EndedCalls, NamesThatAreNoUtf8) {
        {std::pair{simulation, frames},
         std::pair{Strings{"integrate", frames, "--voxel", "0.02", "--out", map, "--json"}, map},
         std::pair{Strings{"convert", map, name + ".ot", "--json"}, name + ".ot"},
-        std::pair{Strings{"candidates", map, "--generator", "sphere", "--sensor", "tof.toml",
-                          "--out", poses, "--json"},
+        std::pair{Strings{"next", map, "--generator", "sphere", "--sensor", "tof.toml", "--out",
+                          poses, "--json"},
                   poses}}) {
     result = run(call);
     ASSERT_EQ(result.exit_code, 0) << call[0] << ": " << result.err;

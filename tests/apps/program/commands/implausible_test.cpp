@@ -27,8 +27,8 @@ class Implausible : public test::ProgramTest {
   Implausible() {
     write_cube();
     write_small_sensor();
-    run_well({"simulate", "cube.off", "--orbit", "6,0.6,27", "--sensor", "small.toml", "--size",
-              "0.2", "--recenter", "on", "--background", "1.5", "--out", "frames"});
+    run_well({"simulate", "cube.off", "--poses", "orbit:6,0.6,27", "--sensor", "small.toml",
+              "--size", "0.2", "--place", "center", "--background", "1.5", "--out", "frames"});
   }
 
   [[nodiscard]] static Strings integrate(const Strings& more = {},
@@ -40,14 +40,13 @@ class Implausible : public test::ProgramTest {
   // Every command that a sensor, an obstacle or a region goes into, on frames and on a map.
   [[nodiscard]] static std::vector<Strings> commands(bool with_views) {
     std::vector<Strings> calls{
-        {"next", "frames", "--voxel", "0.025", "--workspace", kSmall},
-        {"reconstruct", "frames", "--voxel", "0.025", "--workspace", kSmall, "--pictures", "off",
-         "--out", "run"},
-        {"follow", "frames", "--voxel", "0.025", "--workspace", kSmall, "--out", "plan"},
+        {"model", "frames", "--voxel", "0.025", "--workspace", kSmall, "--pictures", "off", "--out",
+         "run"},
+        {"model", "frames", "--watch", "--voxel", "0.025", "--workspace", kSmall, "--out", "plan"},
         {"next", "map.vdb"},
-        {"candidates", "map.vdb", "--generator", "sphere", "--count", "20", "--gain", "surface",
-         "--out", "new.txt"},
-        {"score", "map.vdb", "--sphere", "20,0.6"}};
+        {"next", "map.vdb", "--generator", "sphere", "--count", "20", "--gain", "surface", "--top",
+         "all", "--out", "new.txt"},
+        {"score", "map.vdb", "--poses", "sphere:20,0.6"}};
     if (!with_views) calls.push_back(integrate());
     return calls;
   }
@@ -117,8 +116,8 @@ TEST_F(Implausible, SensorsInOtherUnits) {
     expect_said(call, "focal lengths are in pixels, not in millimetres");
     EXPECT_EQ(warnings(call).find("times"), std::string::npos);
   }
-  expect_said({"simulate", "cube.off", "--orbit", "2,0.6,27", "--sensor", "frames/sensor.toml",
-               "--size", "0.2", "--out", "other"},
+  expect_said({"simulate", "cube.off", "--poses", "orbit:2,0.6,27", "--sensor",
+               "frames/sensor.toml", "--size", "0.2", "--out", "other"},
               "focal lengths are in pixels");
 }
 
@@ -128,7 +127,7 @@ TEST_F(Implausible, FlagsInOtherUnits) {
   write("reach.toml", "[[box]]\nmin = [200.0, -500.0, 0.0]\nmax = [900.0, 500.0, 800.0]\n");
   for (const Strings& call : commands(true)) {
     expect_said(test::joined(call, {"--reach", "reach.toml"}), "--reach reach.toml: ");
-    expect_said(test::joined(call, {"--object-size", "200"}), "--object-size: ");
+    expect_said(test::joined(call, {"--hazard", "size=200"}), "--hazard size: ");
   }
   for (const Strings& call : commands(false)) {
     expect_said(test::joined(call, {"--obstacle", "400,-500,-300,500,500,-250"}),
@@ -137,8 +136,7 @@ TEST_F(Implausible, FlagsInOtherUnits) {
   for (const Strings& call : commands(false)) {
     expect_said(test::joined(call, {"--support-plane", "-300"}), "--support-plane: ");
   }
-  expect_said(integrate({"--register", "on", "--pose-sigma", "5,0.5"}),
-              "standard deviation of 5 m");
+  expect_said(integrate({"--register", "5,0.5"}), "standard deviation of 5 m");
 }
 
 TEST(RefusedFrames, AreSaidWhereRegistrationLeavesOutMost) {
@@ -173,17 +171,15 @@ TEST_F(Implausible, MasksThatShowTheObjectInWhite) {
   write("frames/done", "");
   write_masks(true);
   for (const char* workspace : {kSmall, "-1.6,-1.6,-1.6,1.6,1.6,1.6"}) {
-    for (const char* command : {"integrate", "next", "reconstruct", "follow"}) {
-      const char* ending = std::string(command) == "next" ? ".txt" : ".vdb";
-      Strings call{command,   "frames", "--voxel", "0.05",  "--workspace",
-                   workspace, "--mask", "mask",    "--out", std::string("out_") + command + ending};
-      if (call[0] == "reconstruct") call.insert(call.end(), {"--pictures", "off"});
-      fs::remove_all(dir / call.back());
-      fs::remove_all(dir / ("out_" + call[0] + ending));
-      const std::string said = warnings(call);
-      EXPECT_NE(said.find("invert them"), std::string::npos) << command << said;
-      EXPECT_EQ(said.find("depth scale"), std::string::npos) << command << said;
-      EXPECT_EQ(said.find("camera to world"), std::string::npos) << command << said;
+    for (const Strings& way : {Strings{"integrate", "frames"}, Strings{"model", "frames"},
+                               Strings{"model", "frames", "--watch"}}) {
+      fs::remove_all(dir / "out.vdb");
+      const std::string said =
+          warnings(test::joined(way, {"--voxel", "0.05", "--workspace", workspace, "--mask", "mask",
+                                      "--out", "out.vdb"}));
+      EXPECT_NE(said.find("invert them"), std::string::npos) << way[0] << said;
+      EXPECT_EQ(said.find("depth scale"), std::string::npos) << way[0] << said;
+      EXPECT_EQ(said.find("camera to world"), std::string::npos) << way[0] << said;
     }
   }
   // Without a workspace none is left to make one round.

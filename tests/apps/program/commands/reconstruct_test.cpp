@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -43,8 +43,8 @@ class Reconstruct : public test::ProgramTest {
 };
 
 TEST_F(Reconstruct, TakesThePlansViewsBeforeItPlansAnew) {
-  const json result = reconstruct("cube.off", {"--max-views", "6", "--size", "0.2", "--plan", "3",
-                                               "--take", "2", "--cost-per-metre", "10"});
+  const json result = reconstruct(
+      "cube.off", {"--max-views", "6", "--size", "0.2", "--plan", "3,2", "--cost-per-metre", "10"});
   ASSERT_EQ(result["views"], 6);
   std::size_t planned = 0, decided = 0;
   const json& views = result["per_view"];
@@ -64,7 +64,7 @@ TEST_F(Reconstruct, TakesThePlansViewsBeforeItPlansAnew) {
   EXPECT_EQ(settings["plan"], 3);
   EXPECT_EQ(settings["take"], 2);
   for (const auto& [more, part] : std::vector<std::pair<Strings, std::string>>{
-           {{"--plan", "2", "--take", "3"}, "--take 3"},
+           {{"--plan", "2,3"}, "--plan 2,3"},
            {{"--plan", "3", "--policy", "random"}, "--policy gain"},
            {{"--plan", "3", "--gain", "unknown_count"}, "--policy gain"},
            {{"--policy", "random", "--gain", "unknown_count"}, "--policy gain"}}) {
@@ -92,8 +92,9 @@ TEST_F(Reconstruct, LeavesAConsistentFolder) {
   EXPECT_EQ(run_file["settings"]["policy"], "gain");
   EXPECT_FALSE(run_file["settings"].contains("threads"));
   // The map's hash, its views and views.txt are the run's.
-  EXPECT_EQ(run_well({"info", "run/map.vdb", "--hash"}),
-            run_file["map_hash"].get<std::string>() + "\n");
+  EXPECT_EQ(
+      json::parse(run_well({"info", "run/map.vdb", "--json"}))["hash"].get<std::string>() + "\n",
+      run_file["map_hash"].get<std::string>() + "\n");
   const PoseList views = read_tum(dir / "run/views.txt");
   ASSERT_EQ(views.poses.size(), 3U);
   double travelled = 0;
@@ -121,32 +122,36 @@ TEST_F(Reconstruct, LeavesAConsistentFolder) {
 TEST_F(Reconstruct, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
   // Plans and scales are settings where there are any.
   (void)reconstruct("cube.off", {"--max-views", "1", "--pictures", "off", "--size", "0.2", "--plan",
-                                 "2", "--coarsest", "1", "--fine", "0,0,0,1,1,1"});
+                                 "2", "--scales", "1", "--fine", "0,0,0,1,1,1"});
   const json run_file = json::parse(read("run/run.json"));
   const std::map<std::string, std::string> other_keys{{"generator", "generators"},
-                                                      {"count", "sphere_poses"}};
+                                                      {"count", "sphere_poses"},
+                                                      {"from", "start"},
+                                                      {"stop", "stop_area"},
+                                                      {"scales", "coarsest"}};
   // Where results go, how fast; the seed is beside the settings, the body in the sensor; obstacles
   // are there where there are any.
-  const std::set<std::string> elsewhere{
-      "help",   "json",  "threads",  "out",   "save_maps", "pictures",
-      "seed",   "body",  "obstacle", "quiet", "config",    "save_config",
-      "report", "trace", "resume",   "poses", "beside"};
-  const std::string both = run_well({"reconstruct", "--help"});
-  std::istringstream help(both.substr(0, both.rfind("Usage: ")));  // the other is of frames
+  const std::set<std::string> elsewhere{"out",      "save_maps", "pictures", "seed", "body",
+                                        "obstacle", "report",    "resume",   "poses"};
+  std::istringstream help(run_well({"reconstruct", "--help"}));
   std::size_t flags = 0;
   for (std::string line; std::getline(help, line);) {
-    const std::size_t begin = line.find_first_not_of(' ');
-    if (begin == std::string::npos || line[begin] != '-') continue;
-    const std::size_t dashes = line.find("--");
-    std::string name = line.substr(dashes + 2, line.find_first_of(" ,", dashes) - dashes - 2);
+    if (!line.starts_with("  --")) continue;
+    std::string name = line.substr(4, line.find(' ', 4) - 4);
     std::replace(name.begin(), name.end(), '-', '_');
     if (elsewhere.contains(name)) continue;
     if (other_keys.contains(name)) name = other_keys.at(name);
     EXPECT_TRUE(run_file["settings"].contains(name)) << line;
     ++flags;
   }
-  // The mesh has no flag; two settings follow from others.
-  EXPECT_EQ(flags + 3, run_file["settings"].size());
+  // The mesh has no flag, two settings follow from others; a flag may have several.
+  const std::set<std::string> more{"mesh",          "prior_sigma", "stop_gain_is_relative",
+                                   "stop_gain",     "stop_idle",   "stop_promises",
+                                   "stop_coverage", "take",        "finest",
+                                   "flying_pixels", "scale_error", "pose_noise",
+                                   "pose_sigma"};
+  for (const std::string& key : more) EXPECT_TRUE(run_file["settings"].contains(key)) << key;
+  EXPECT_EQ(flags + more.size(), run_file["settings"].size());
 }
 
 TEST_F(Reconstruct, KnownObstaclesHideTheObjectAndAreNoPartOfIt) {
@@ -170,7 +175,7 @@ TEST_F(Reconstruct, KnownObstaclesHideTheObjectAndAreNoPartOfIt) {
   for (const char* side :
        {"-0.085,-0.08,-0.08,-0.0785,0.08,0.08", "0.0785,-0.08,-0.08,0.085,0.08,0.08"}) {
     const json region =
-        json::parse(run_well({"info", "run/map.vdb", "--region", side, "--json"}))["region"];
+        json::parse(run_well({"info", "run/map.vdb", "--workspace", side, "--json"}))["region"];
     EXPECT_LE(region["occupied"].get<int>(), 30) << side;
   }
   for (const char* wrong : {"1,2,3", "-1,-1,-1,1,1,1"}) {  // the second holds the start pose
@@ -220,7 +225,7 @@ TEST_F(Reconstruct, ObjectLargerThanTheWorkspaceEnds) {
   const json result =
       reconstruct("cube.off", {"--max-views", "80", "--pictures", "off", "--size", "0.3",
                                "--workspace", "-0.1,-0.1,0,0.1,0.1,0.17", "--distance", "0.6",
-                               "--noise", "off", "--gain", "paper", "--stop-gain", "1.1"});
+                               "--noise", "off", "--gain", "paper", "--stop", "gain=1.1"});
   EXPECT_NE(result["stop_reason"], "max_views") << result["stop_reason"];
   EXPECT_GT(result["coverage"].get<double>(), 0.02);
   EXPECT_LT(result["coverage"].get<double>(), 0.6);
@@ -231,7 +236,7 @@ TEST_F(Reconstruct, TakesPosesOfAFileInTheirOrder) {
   const std::vector<Pose> poses{look_at({0.5, 0, 0.3}, {0, 0, 0}), look_at({0.01, 0, 0}, {0, 0, 1}),
                                 look_at({0, -0.5, 0.3}, {0, 0, 0})};
   write_tum(dir / "own.txt", poses);
-  const Strings flags{"--size", "0.2", "--pictures", "off", "--max-views", "9", "--stop-idle", "0"};
+  const Strings flags{"--size", "0.2", "--pictures", "off", "--max-views", "9", "--stop", "idle=0"};
   const json own =
       reconstruct("cube.off", test::joined(flags, {"--policy", "sequence", "--poses", "own.txt"}));
   const std::vector<Pose> views = read_tum(dir / "run/views.txt").poses;
@@ -283,7 +288,7 @@ TEST_F(Reconstruct, SupportPlaneWithTheUpperHalfInReach) {
   write("upper.toml", "[[half_space]]\nnormal = [0.0, 0.0, 1.0]\noffset = 0.05\n");
   const json result = reconstruct(
       "cube.off", {"--max-views", "80", "--pictures", "off", "--size", "0.15", "--support-plane",
-                   "0", "--reach", "upper.toml", "--gain", "paper", "--stop-gain", "1.2"});
+                   "0", "--reach", "upper.toml", "--gain", "paper", "--stop", "gain=1.2"});
   EXPECT_EQ(result["stop_reason"], "gain");
   EXPECT_GT(result["final_dropped"].value("unreachable", 0), 0);
   EXPECT_GT(result["coverage_visible"].get<double>(), 0.8);
@@ -301,36 +306,34 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--voxel", "-1"}), "voxel"},
       {arguments("cube.off", {"--size", "0"}), "size"},
       {arguments("cube.off", {"--gain", "entropy"}), "surface"},
-      {arguments("cube.off", {"--overlap", "1"}), "--overlap"},
-      {arguments("cube.off", {"--gain", "paper", "--stop-area", "0.01"}), "stop_area"},
-      {arguments("cube.off", {"--stop-gain", "1"}), "stop_gain"},
+      {arguments("cube.off", {"--gain", "paper", "--stop", "area=0.01"}), "stop_area"},
+      {arguments("cube.off", {"--stop", "gain=1"}), "stop_gain"},
       {arguments("cube.off", {"--criterion", "trace"}), "criterion trace"},
       {arguments("cube.off", {"--hazard", "-2"}), "--hazard -2"},
-      {arguments("cube.off", {"--gain", "surface", "--stop-area", "1"}), "stop_area"},
-      {arguments("cube.off", {"--policy", "random", "--stop-area", "0.01"}), "stop_area"},
+      {arguments("cube.off", {"--gain", "surface", "--stop", "area=1"}), "stop_area"},
+      {arguments("cube.off", {"--policy", "random", "--stop", "area=0.01"}), "stop_area"},
       {arguments("cube.off", {"--policy", "oracle", "--gain", "surface"}), "--policy gain"},
       {arguments("cube.off", {"--size", "0.001"}), "no larger"},
       {arguments("cube.off", {"--cost-per-metre", "-1"}), "--cost-per-metre -1"},
-      {arguments("cube.off", {"--region-depth", "0"}), "--region-depth"},
       {arguments("cube.off", {"--max-views", "0"}), "max-views"},
       {arguments("cube.off", {"--workspace", "0,0,0,-1,1,1"}), "--workspace"},
-      {arguments("cube.off", {"--start", "1,2,3,0,0,0,0"}), "--start"},
+      {arguments("cube.off", {"--from", "1,2,3,0,0,0,0"}), "--from"},
       // Looks away from the object.
-      {arguments("cube.off", {"--start", "0,0,1,0,0,0,1", "--background", "0"}), "start pose"},
+      {arguments("cube.off", {"--from", "0,0,1,0,0,0,1", "--background", "0"}), "start pose"},
       {arguments("cube.off", {"--reach", "missing.toml"}), "missing.toml"},
       {arguments("cube.off", {"--body", "0.1,-0.1,0.1"}), "--body"},
       {arguments("cube.off", {"--reach", "no_reach.toml"}), "reach"},
       {arguments("cube.off", {"--jump-edge-filter", "80"}), "angle"},
       {arguments("cube.off", {"--frames-per-view", "0"}), "frames-per-view"},
-      {arguments("cube.off", {"--stop-coverage", "2"}), "coverage"},
+      {arguments("cube.off", {"--stop", "coverage=2"}), "coverage"},
       {arguments("cube.off", {"--support-plane", "nan"}), "--support-plane nan"},
   };
   expect_refused(inputs);
 }
 
 TEST_F(Reconstruct, MisreportedViewsAreRegisteredWhereThatIsAskedFor) {
-  const Strings noisy{"--max-views", "3",   "--pictures",   "off",
-                      "--size",      "0.2", "--pose-noise", "0.005,0.5"};
+  const Strings noisy{"--max-views", "3",   "--pictures", "off",
+                      "--size",      "0.2", "--noise",    "pose=0.005/0.5"};
   EXPECT_FALSE(reconstruct("cube.off", noisy).contains("registration"));
   Strings with = noisy;
   with.insert(with.end(), {"--register", "on"});
@@ -345,7 +348,7 @@ TEST_F(Reconstruct, MisreportedViewsAreRegisteredWhereThatIsAskedFor) {
   EXPECT_EQ(settings["register"], true);
   EXPECT_EQ(settings["pose_sigma"], settings["pose_noise"]);
 
-  expect_refused(arguments("cube.off", {"--pose-sigma", "0.005,0.5"}), "--register on");
+  expect_refused(arguments("cube.off", {"--pose-sigma", "0.005,0.5"}), "--register SIGMA_M");
 }
 
 }  // namespace

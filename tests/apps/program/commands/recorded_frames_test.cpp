@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// `viewgain reconstruct` and `next` on a folder of frames, as a user would run them.
+// `viewgain model` on a folder of frames, and `next` on what it leaves, as a user would run them.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -25,13 +25,13 @@ class RecordedFrames : public test::ProgramTest {
   RecordedFrames() {
     write_cube();
     write_half_sensor();
-    run_well({"simulate", "cube.off", "--orbit", "3,0.6,27,0,46", "--sensor", "tof.toml", "--size",
-              "0.2", "--recenter", "on", "--noise", "on", "--out", "frames"});
+    run_well({"simulate", "cube.off", "--poses", "orbit:3,0.6,27,0,46", "--sensor", "tof.toml",
+              "--size", "0.2", "--place", "center", "--noise", "on", "--out", "frames"});
   }
 
-  json reconstruct(const std::string& out, const Strings& more = {}) const {
-    const Strings arguments = test::joined({"reconstruct", "frames", "--out", out, "--json"},
-                                           test::joined(kMapFlags, more));
+  json model(const std::string& out, const Strings& more = {}) const {
+    const Strings arguments =
+        test::joined({"model", "frames", "--out", out, "--json"}, test::joined(kMapFlags, more));
     return json::parse(run_well(arguments));
   }
 
@@ -42,42 +42,39 @@ class RecordedFrames : public test::ProgramTest {
 };
 
 TEST_F(RecordedFrames, SettingsHaveEveryFlagThatCanChangeTheAnswer) {
-  const json settings = reconstruct(
-      "run", {"--pictures", "off", "--coarsest", "1", "--fine", "0,0,0,1,1,1", "--obstacle",
-              "0.9,0.9,0.9,1,1,1", "--hazard", "5", "--object-size", "0.3"})["settings"];
+  const json settings =
+      model("run", {"--pictures", "off", "--scales", "1", "--fine", "0,0,0,1,1,1", "--obstacle",
+                    "0.9,0.9,0.9,1,1,1", "--hazard", "size=0.3,5"})["settings"];
   EXPECT_EQ(settings["out_of_range"], "carve");
-  EXPECT_EQ(settings["hazard"], "5");
-  EXPECT_EQ(settings["object_size"], 0.3);
+  EXPECT_EQ(settings["hazard"], "size=0.3,5");
   EXPECT_EQ(settings["seed"], 1);
   // Where results go, how fast, what is shown; the body is in the sensor.
-  const std::set<std::string> elsewhere{"help",   "json",   "threads",     "out",    "save_maps",
-                                        "trace",  "quiet",  "save_config", "config", "pictures",
-                                        "report", "resume", "beside",      "body"};
-  const std::string both = run_well({"reconstruct", "--help"});
-  std::istringstream help(both.substr(both.rfind("Usage: ")));  // of frames
+  const std::set<std::string> elsewhere{"out",  "save_maps", "pictures",  "report", "resume",
+                                        "body", "watch",     "max_views", "stop"};
+  std::istringstream help(run_well({"model", "--help"}));
   std::size_t flags = 0;
   for (std::string line; std::getline(help, line);) {
-    const std::size_t begin = line.find_first_not_of(' ');
-    if (begin == std::string::npos || line[begin] != '-') continue;
-    const std::size_t dashes = line.find("--");
-    std::string name = line.substr(dashes + 2, line.find_first_of(" ,", dashes) - dashes - 2);
+    if (!line.starts_with("  --")) continue;
+    std::string name = line.substr(4, line.find(' ', 4) - 4);
     std::replace(name.begin(), name.end(), '-', '_');
     if (elsewhere.contains(name)) continue;
-    EXPECT_TRUE(settings.contains(name == "obstacle" ? "obstacles" : name)) << line;
+    if (name == "obstacle") name = "obstacles";
+    EXPECT_TRUE(settings.contains(name == "scales" ? "coarsest" : name)) << line;
     ++flags;
   }
-  EXPECT_EQ(flags + 2, settings.size());  // the frames have no flag; the prior follows from others
+  // The frames have no flag, the prior follows from others, four flags have two numbers.
+  EXPECT_EQ(flags + 6, settings.size());
 }
 
 // Map, surface and next views are those that the other subcommands make of the same frames.
-TEST_F(RecordedFrames, ReconstructIsIntegrateSurfaceAndNextInOne) {
-  const json run = reconstruct("run", {"--pictures", "off"});
+TEST_F(RecordedFrames, ModelIsIntegrateSurfaceAndNextInOne) {
+  const json run = model("run", {"--pictures", "off"});
   EXPECT_EQ(run["views"], 3);
   EXPECT_EQ(run["stop_reason"], "no_frames");
-  EXPECT_EQ(list("run"), (Strings{"config.toml", "map.vdb", "next.txt", "points.ply", "run.json",
-                                  "surface.ply", "views.txt"}));
+  EXPECT_EQ(list("run"), (Strings{"config.toml", "map.vdb", "next.json", "next.txt", "points.ply",
+                                  "run.json", "surface.ply", "views.txt"}));
   EXPECT_EQ(json::parse(read("run/run.json")), run);
-  const json repeated = json::parse(run_well({"reconstruct", "--config", "run/config.toml", "--out",
+  const json repeated = json::parse(run_well({"model", "--config", "run/config.toml", "--out",
                                               "again", "--pictures", "off", "--json", "--quiet"}));
   EXPECT_EQ(repeated["next"], run["next"]);
   EXPECT_EQ(repeated["settings"], run["settings"]);
@@ -111,14 +108,14 @@ TEST_F(RecordedFrames, TheMapThatWasMadeIsTold) {
   const std::string told =
       first_lines(run_well(test::joined({"integrate", "--out", "map.vdb"}, map)));
   EXPECT_TRUE(told.starts_with("workspace ")) << told;
-  EXPECT_EQ(first_lines(run_well(test::joined({"next"}, map))), told);
-  EXPECT_EQ(first_lines(
-                run_well(test::joined({"reconstruct", "--pictures", "off", "--out", "run"}, map))),
-            told);
+  EXPECT_EQ(
+      first_lines(run_well(test::joined({"model", "--pictures", "off", "--out", "run"}, map))),
+      told);
+  // A run's folder stands for its map.
   const json of_map = json::parse(run_well({"info", "map.vdb", "--json"}));
-  const json next = json::parse(run_well(test::joined({"next", "--json"}, map)));
-  for (const char* key : {"workspace", "dims", "unknown", "free", "occupied"}) {
-    EXPECT_EQ(next[key], of_map[key]) << key;
+  const json of_run = json::parse(run_well({"info", "run", "--json"}));
+  for (const char* key : {"workspace", "dims", "unknown", "free", "occupied", "hash"}) {
+    EXPECT_EQ(of_run[key], of_map[key]) << key;
   }
 }
 
@@ -131,15 +128,16 @@ TEST_F(RecordedFrames, AMapWithoutASurfaceIsToldOf) {
       run(test::joined({"integrate", "frames", "--out", "map.vdb"}, beside));
   EXPECT_EQ(integrated.exit_code, 0) << integrated.err;
   EXPECT_NE(integrated.err.find(kWords), std::string::npos) << integrated.err;
-  const test::ProgramResult next = run(test::joined({"next", "frames"}, beside));
-  EXPECT_EQ(next.exit_code, 2);
-  EXPECT_EQ(next.err.find("warning"), std::string::npos) << next.err;
-  EXPECT_NE(next.err.find(kWords), std::string::npos) << next.err;
+  const Strings model{"model", "frames", "--pictures", "off", "--out", "run"};
+  const test::ProgramResult made = run(test::joined(model, beside));
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.err.find(kWords), std::string::npos) << made.err;
 
-  run_well({"simulate", "cube.off", "--orbit", "3,0.6,40,0,46", "--sensor", "tof.toml", "--size",
-            "0.2", "--recenter", "on", "--support-plane", "-0.1", "--out", "table"});
-  const test::ProgramResult table = run({"next", "table", "--voxel", "0.02", "--workspace",
-                                         "0.15,-0.1,-0.1,0.3,0.1,0.1", "--support-plane", "-0.1"});
+  run_well({"simulate", "cube.off", "--poses", "orbit:3,0.6,40,0,46", "--sensor", "tof.toml",
+            "--size", "0.2", "--place", "center", "--support-plane", "-0.1", "--out", "table"});
+  const test::ProgramResult table =
+      run({"model", "table", "--voxel", "0.02", "--workspace", "0.15,-0.1,-0.1,0.3,0.1,0.1",
+           "--support-plane", "-0.1", "--pictures", "off", "--out", "run"});
   EXPECT_EQ(table.exit_code, 0) << table.err;
   EXPECT_EQ(table.err.find(kWords), std::string::npos) << table.err;
   EXPECT_NE(table.out.find(" 0 occupied"), std::string::npos) << table.out;
@@ -147,8 +145,8 @@ TEST_F(RecordedFrames, AMapWithoutASurfaceIsToldOf) {
 
 // Units that were mistaken for metres are named, whatever they make of the map.
 TEST_F(RecordedFrames, MillimetresAreToldOf) {
-  run_well({"simulate", "cube.off", "--orbit", "6,0.6,10", "--sensor", "tof.toml", "--size", "0.2",
-            "--recenter", "on", "--background", "0", "--out", "units"});
+  run_well({"simulate", "cube.off", "--poses", "orbit:6,0.6,10", "--sensor", "tof.toml", "--size",
+            "0.2", "--place", "center", "--background", "0", "--out", "units"});
   const auto said = [this](const Strings& more) {
     return run(test::joined({"integrate", "units", "--out", "units.vdb"}, more)).err;
   };
@@ -171,14 +169,15 @@ TEST_F(RecordedFrames, MillimetresAreToldOf) {
 
 // Where the workspace holds the cameras, and where it does not.
 TEST_F(RecordedFrames, NextStaysInTheRoomThatFramesWereTakenIn) {
-  run_well({"simulate", "cube.off", "--orbit", "16,0.6,10,0,46", "--sensor", "tof.toml", "--size",
-            "0.2", "--recenter", "on", "--noise", "on", "--out", "round"});
+  run_well({"simulate", "cube.off", "--poses", "orbit:16,0.6,10,0,46", "--sensor", "tof.toml",
+            "--size", "0.2", "--place", "center", "--noise", "on", "--out", "round"});
   const auto views_within = [this](const std::string& half, const Strings& more) {
     const std::string corner = half + "," + half + "," + half;
     const std::string workspace = "-" + half + ",-" + half + ",-" + half + "," + corner;
-    const Strings arguments{"next",           "round",   "--distance", "0.56",  "--body",
+    const Strings arguments{"model",          "round",   "--distance", "0.56",  "--body",
                             "0.01,0.01,0.01", "--voxel", "0.02",       "--top", "1000",
-                            "--workspace",    workspace, "--json"};
+                            "--workspace",    workspace, "--pictures", "off",   "--out",
+                            "round_run",      "--json"};
     return json::parse(run_well(test::joined(arguments, more)));
   };
   const auto farthest = [](const json& next) {
@@ -206,7 +205,7 @@ TEST_F(RecordedFrames, NextStaysInTheRoomThatFramesWereTakenIn) {
 }
 
 TEST_F(RecordedFrames, NextSaysInWordsWhatItFound) {
-  reconstruct("run", {"--pictures", "off"});
+  model("run", {"--pictures", "off"});
   const std::string text = run_well({"next", "run/map.vdb", "--top", "2"});
   EXPECT_NE(text.find("3 views so far"), std::string::npos) << text;
   EXPECT_NE(text.find("gain [nat]"), std::string::npos) << text;
@@ -222,7 +221,7 @@ TEST_F(RecordedFrames, NextSaysInWordsWhatItFound) {
 
 TEST_F(RecordedFrames, ReportAndPicturesShowTheFrames) {
   if (!has_report_page()) GTEST_SKIP() << "built without npm";
-  const json run = reconstruct("run", {"--report", "on"});
+  const json run = model("run", {"--report", "on"});
   EXPECT_EQ(list("run/views"), (Strings{"00.png", "01.png", "02.png"}));
   const std::string page = read("run/report.html");
   EXPECT_NE(page.find("\"truth\":null"), std::string::npos);
@@ -231,32 +230,35 @@ TEST_F(RecordedFrames, ReportAndPicturesShowTheFrames) {
 }
 
 TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
-  reconstruct("run", {"--pictures", "off"});
+  model("run", {"--pictures", "off"});
   std::filesystem::create_directories(dir / "empty");
-  const Strings frames = test::joined({"reconstruct", "frames", "--out", "new"}, kMapFlags);
+  const Strings frames = test::joined({"model", "frames", "--out", "new"}, kMapFlags);
   expect_refused(
-      {{test::joined(frames, {"--size", "0.2"}), "--size: goes with MESH, not FRAMES_DIR (see"},
+      {{test::joined(frames, {"--size", "0.2"}), "--size: no such flag of model"},
        {test::joined(frames, {"--policy", "random"}), "--policy"},
        {test::joined(frames, {"--max-views", "2"}), "--max-views"},
        {test::joined(frames, {"--noise", "on"}), "--noise"},
-       {test::joined(frames, {"--pose-noise", "0.01,1"}), "--pose-noise"},
-       {test::joined(frames, {"--pose-sigma", "0.01,1"}), "--pose-sigma"},
-       {test::joined(frames, {"--pose-sigma", "0,1", "--register", "on"}), "--pose-sigma"},
+       {test::joined(frames, {"--pose-noise", "0.01,1"}), "--noise pose="},
+       {test::joined(frames, {"--register", "0,1"}), "--register 0"},
+       {test::joined(frames, {"--register", "maybe"}), "--register maybe"},
        {test::joined(frames, {"--on-contradiction", "keep"}), "requires --register on"},
        {test::joined(frames, {"--gain", "frontier_count"}), "--gain"},
        {test::joined(frames, {"--mask", "empty"}), "empty"},
-       {{"reconstruct", "empty", "--voxel", "0.01", "--out", "new"}, "empty"},
-       {{"reconstruct", "frames", "--voxel", "0.01", "--workspace", "5,5,5,6,6,6", "--out", "new"},
+       {{"model", "empty", "--voxel", "0.01", "--out", "new"}, "empty"},
+       {{"model", "frames", "--voxel", "0.01", "--workspace", "5,5,5,6,6,6", "--out", "new"},
         "none of"},
        {{"reconstruct", "cube.off", "--voxel", "0.01", "--out", "new"}, "--sensor"},
        {{"reconstruct", "cube.off", "--voxel", "0.01", "--sensor", "tof.toml", "--size", "0.2",
          "--mask", "empty", "--out", "new"},
-        "--mask: goes with FRAMES_DIR, not MESH"},
-       {{"reconstruct", "frames", "--vxel", "0.01"}, "did you mean --voxel?"},
+        "--mask: no such flag of reconstruct"},
+       {{"reconstruct", "frames", "--voxel", "0.01", "--sensor", "tof.toml", "--out", "new"},
+        "viewgain model frames"},
+       {{"model", "frames", "--vxel", "0.01"}, "did you mean --voxel?"},
+       {{"follow", "frames"}, "viewgain model FRAMES_DIR --watch"},
+       {{"candidates", "run"}, "viewgain next MAP --top all"},
        {{"next", "run/map.vdb", "--voxel", "0.01"}, "--voxel"},
-       {{"next", "frames"}, "--voxel"},
-       {{"next", "run/map.vdb", "--generator", "dome", "--overlap", "0.5"}, "--overlap"},
-       {{"next", "run/map.vdb", "--gain", "paper", "--object-size", "0.5"}, "--object-size"},
+       {{"next", "frames"}, "viewgain model frames"},
+       {{"next", "run/map.vdb", "--gain", "paper", "--hazard", "size=0.5"}, "--hazard"},
        {{"next", "run/map.vdb", "--out", "run/map.vdb"}, "map.vdb"},
        {{"next", "none.vdb"}, "none.vdb"}});
 }

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -56,14 +56,13 @@ class Render : public test::ProgramTest {
 
 TEST_F(Render, EachKindIsAPictureOfTheSizeThatWasAsked) {
   make_run("run");
-  const std::vector<std::vector<std::string>> kinds{
-      {"run", "--what", "map"},
-      {"run/map.vdb", "--what", "surface"},
-      {"run", "--what", "sigma"},
-      {"run", "--what", "surface", "--azimuth", "120", "--elevation", "-10"}};
+  const std::vector<std::vector<std::string>> kinds{{"run", "map"},
+                                                    {"run/map.vdb", "surface"},
+                                                    {"run", "sigma"},
+                                                    {"run", "surface", "--viewer", "120,-10,320"}};
   std::vector<RgbImage> pictures;
   for (std::vector<std::string> call : kinds) {
-    call.insert(call.end(), {"--width", "320"});
+    if (call.back() != "120,-10,320") call.insert(call.end(), {"--viewer", "30,24,320"});
     pictures.push_back(rendered(call));
     EXPECT_EQ(pictures.back().width, 320);
     EXPECT_EQ(pictures.back().height, 240);
@@ -77,12 +76,12 @@ TEST_F(Render, EachKindIsAPictureOfTheSizeThatWasAsked) {
 
 TEST_F(Render, SaysWhatItCannotDraw) {
   make_run("run", {"--pictures", "off"});
-  const test::Refusals cases{{{"run", "--what", "gain"}, "--what: gain is no kind of picture"},
-                             {{"no-such-run", "--what", "map"}, "no-such-run"},
-                             {{"cube.off", "--what", "map"}, "cube.off"}};
+  const test::Refusals cases{{{"run", "gain"}, "KIND: gain is no kind of picture"},
+                             {{"no-such-run", "map"}, "no-such-run"},
+                             {{"cube.off", "map"}, "cube.off"}};
   expect_refused_with({"render", "--out", "picture.png"}, cases);
-  expect_refused({"render", "run", "--what", "map", "--out", "map.jpg"}, ".png");
-  expect_refused({"render", "run", "--what", "map", "--out", "run/map.vdb"}, "run/map.vdb");
+  expect_refused({"render", "run", "map", "--out", "map.jpg"}, ".png");
+  expect_refused({"render", "run", "map", "--out", "run/map.vdb"}, "run/map.vdb");
 }
 
 TEST_F(Render, MapsRememberTheirSensor) {
@@ -91,8 +90,8 @@ TEST_F(Render, MapsRememberTheirSensor) {
   const std::string sensor = info.at("sensor");
   EXPECT_FALSE(sensor.empty());
   // A map of two does not say which.
-  run_well({"simulate", "cube.off", "--orbit", "1,0.6,20", "--size", "0.3", "--sensor", "d435",
-            "--out", "frames"});
+  run_well({"simulate", "cube.off", "--poses", "orbit:1,0.6,20", "--size", "0.3", "--sensor",
+            "d435", "--out", "frames"});
   const test::ProgramResult two =
       run({"integrate", "frames", "--map", "run/map.vdb", "--out", "two.vdb"});
   EXPECT_EQ(two.exit_code, 0);
@@ -114,7 +113,7 @@ TEST_F(Render, MapsRememberTheirSensor) {
 
   // It does not go into a tree.
   run_well({"convert", "run/map.vdb", "tree.ot"});
-  const test::ProgramResult none = run({"score", "tree.ot", "--sphere", "20,0.6"});
+  const test::ProgramResult none = run({"score", "tree.ot", "--poses", "sphere:20,0.6"});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_NE(none.err.find("--sensor"), std::string::npos) << none.err;
 }
@@ -129,7 +128,7 @@ class Surface : public test::ProgramTest {
 TEST_F(Surface, ATruthInMillimetresOrElsewhereIsNamed) {
   write("mm.off", "OFF\n3 1 0\n-100 -100 0\n100 -100 0\n0 100 50\n3 0 1 2\n");
   for (const auto& [more, is_named] : std::vector<std::pair<std::vector<std::string>, bool>>{
-           {{"mm.off"}, true}, {{"cube.off", "--size", "0.2", "--recenter", "on"}, false}}) {
+           {{"mm.off"}, true}, {{"cube.off", "--size", "0.2", "--place", "center"}, false}}) {
     const std::string said =
         run(test::joined({"surface", "run/map.vdb", "--out", "s.ply", "--truth"}, more)).err;
     EXPECT_EQ(said.find("in metres? (--size") != std::string::npos, is_named) << said;
@@ -138,9 +137,9 @@ TEST_F(Surface, ATruthInMillimetresOrElsewhereIsNamed) {
 
 // The loop's own surface, points and figures come from the same map.
 TEST_F(Surface, IsThatOfTheRunThatMadeTheMap) {
-  const json result =
-      json::parse(run_well({"surface", "run/map.vdb", "--out", "s.ply", "--points", "p.ply",
-                            "--truth", "cube.off", "--size", "0.2", "--recenter", "on", "--json"}));
+  const json result = json::parse(
+      run_well({"surface", "run/map.vdb", "--out", "s.ply", "--points", "p.ply", "--truth",
+                "cube.off", "--size", "0.2", "--place", "center", "--json"}));
   EXPECT_EQ(read("s.ply"), read("run/surface.ply"));
   EXPECT_EQ(read("p.ply"), read("run/points.ply"));
   const json last = json::parse(read("run/run.json"))["per_view"].back();
@@ -244,7 +243,7 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
   }
   EXPECT_EQ(chosen, 2U);
 
-  run_well({"score", "run/map.vdb", "--sphere", "30,0.6", "--gain", "combined", "--report",
+  run_well({"score", "run/map.vdb", "--poses", "sphere:30,0.6", "--gain", "combined", "--report",
             "score.html", "--out", "scores.csv"});
   const json score = data("score.html");
   EXPECT_EQ(score.at("kind"), "score");
@@ -260,11 +259,11 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
   // The run of another folder stands beside it.
   EXPECT_TRUE(page.at("beside").is_null());
   run_well({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel", "0.01",
-            "--out", "second", "--max-views", "2", "--policy", "random", "--beside", "run",
+            "--out", "second", "--max-views", "2", "--policy", "random", "--report", "run",
             "--quiet"});
   const std::string text =
       run_well({"reconstruct", "cube.off", "--size", "0.25", "--sensor", "tof.toml", "--voxel",
-                "0.01", "--out", "other", "--max-views", "1", "--beside", "run", "--quiet"});
+                "0.01", "--out", "other", "--max-views", "1", "--report", "run", "--quiet"});
   EXPECT_NE(text.find("run beside it: 3 views, "), std::string::npos) << text;
   EXPECT_NE(text.find("; other settings: size\n"), std::string::npos) << text;
   const json beside = data("second/report.html").at("beside");
@@ -273,13 +272,13 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
   EXPECT_EQ(beside.at("per_view"), run_json.at("per_view"));
   write("none/run.json", "{\"settings\": {}}");
   expect_refused({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
-                  "0.01", "--out", "third", "--beside", "none"},
+                  "0.01", "--out", "third", "--report", "none"},
                  "none/run.json: is not a run's");
   json newer = run_json;
   newer["format"] = 2;
   write("none/run.json", newer.dump());
   expect_refused({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
-                  "0.01", "--out", "third", "--beside", "none"},
+                  "0.01", "--out", "third", "--report", "none"},
                  "none/run.json: is of format 2; this program reads up to format 1");
 
   // A later run in the folder takes the report of the one before with it.

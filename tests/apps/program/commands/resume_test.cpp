@@ -14,9 +14,9 @@
 #include <string>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/formats/png.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -37,8 +37,8 @@ class Resume : public test::ProgramTest {
 
   static Strings run_of(const std::string& out, const Strings& more = {}) {
     return test::joined({"reconstruct", "cube.off", "--sensor", "tof.toml", "--voxel", "0.0125",
-                         "--size", "0.2", "--max-views", "4", "--stop-idle", "0", "--stop-area",
-                         "0", "--pictures", "off", "--resume", "--out", out},
+                         "--size", "0.2", "--max-views", "4", "--stop", "idle=0", "--stop",
+                         "area=0", "--pictures", "off", "--resume", "--out", out},
                         more);
   }
 
@@ -69,10 +69,9 @@ class Resume : public test::ProgramTest {
 
 TEST_F(Resume, AKilledRunEndsWithTheSameBytes) {
   std::size_t cases = 0;
-  for (const Strings& more :
-       {Strings{"--save-maps", "on"}, Strings{"--policy", "kriegel"},
-        Strings{"--policy", "frontier"}, Strings{"--plan", "3", "--take", "2"},
-        Strings{"--register", "on", "--noise", "on"}}) {
+  for (const Strings& more : {Strings{"--save-maps", "on"}, Strings{"--policy", "kriegel"},
+                              Strings{"--policy", "frontier"}, Strings{"--plan", "3,2"},
+                              Strings{"--register", "on", "--noise", "on"}}) {
     ASSERT_EQ(run(run_of("whole", more)).exit_code, 0) << more[1];
     const auto whole = result("whole");
     EXPECT_FALSE(whole.contains("checkpoint.json"));
@@ -132,12 +131,12 @@ TEST_F(Resume, AnInterruptedRunGoesOnFromItsFolder) {
 }
 
 TEST_F(Resume, OfFramesWhatWasDrawnIsKept) {
-  run_well({"simulate", "cube.off", "--orbit", "5,0.6,27", "--sensor", "tof.toml", "--size", "0.2",
-            "--recenter", "on", "--out", "frames"});
+  run_well({"simulate", "cube.off", "--poses", "orbit:5,0.6,27", "--sensor", "tof.toml", "--size",
+            "0.2", "--place", "center", "--out", "frames"});
   const auto of = [](const std::string& out) {
-    return Strings{"reconstruct", "frames",      "--voxel",
-                   "0.0125",      "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-                   "--resume",    "--out",       out};
+    return Strings{"model",    "frames",      "--voxel",
+                   "0.0125",   "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+                   "--resume", "--out",       out};
   };
   ASSERT_EQ(run(of("whole")).exit_code, 0);
   const auto drawn = [&] {
@@ -147,7 +146,7 @@ TEST_F(Resume, OfFramesWhatWasDrawnIsKept) {
   const int status = ended_by(of("out"), SIGKILL, drawn);
   ASSERT_TRUE(WIFSIGNALED(status)) << status;
   const auto time = fs::last_write_time(left() / "views/01.png");
-  const test::ProgramResult other = run(test::joined(of("out"), {"--coarsest", "1"}));
+  const test::ProgramResult other = run(test::joined(of("out"), {"--scales", "1"}));
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.err.find("is of a run with other settings"), std::string::npos) << other.err;
   ASSERT_EQ(run(of("out")).exit_code, 0);
@@ -158,24 +157,20 @@ TEST_F(Resume, OfFramesWhatWasDrawnIsKept) {
 
 // Every option of the command, from its help: one that nobody has thought of here fails.
 TEST_F(Resume, OfFramesEveryFlagThatChangesBytesIsCompared) {
-  run_well({"simulate", "cube.off", "--orbit", "2,0.6,27", "--sensor", "tof.toml", "--size", "0.2",
-            "--recenter", "on", "--out", "frames"});
+  run_well({"simulate", "cube.off", "--poses", "orbit:2,0.6,27", "--sensor", "tof.toml", "--size",
+            "0.2", "--place", "center", "--out", "frames"});
   const std::map<std::string, Strings> others{
       {"sensor", {"tof.toml"}},
       {"voxel", {"0.02"}},
       {"workspace", {"-0.3,-0.3,-0.3,0.3,0.3,0.3"}},
       {"jump-edge-filter", {"off"}},
-      {"coarsest", {"1"}},
-      {"fine", {"0,0,0,0.1,0.1,0.1", "--coarsest", "1"}},
-      {"finest", {"1", "--coarsest", "1"}},
+      {"scales", {"1"}},
+      {"fine", {"0,0,0,0.1,0.1,0.1", "--scales", "1"}},
       {"depth-scale", {"1.1e-4"}},
       {"out-of-range", {"invalid"}},
       {"mask", {"masks"}},
       {"confidence", {"masks"}},
-      {"least-confidence", {"2", "--confidence", "masks"}},
-      {"refine", {"off"}},
       {"register", {"on"}},
-      {"pose-sigma", {"0.01,1", "--register", "on"}},
       {"on-contradiction", {"keep", "--register", "on"}},
       {"generator", {"sphere"}},
       {"gain", {"surface"}},
@@ -186,9 +181,6 @@ TEST_F(Resume, OfFramesEveryFlagThatChangesBytesIsCompared) {
       {"body", {"0.01,0.01,0.02"}},
       {"support-plane", {"-0.15"}},
       {"obstacle", {"0.9,0.9,0.9,1,1,1"}},
-      {"overlap", {"0.4"}},
-      {"region-depth", {"0.02"}},
-      {"object-size", {"0.3"}},
       {"hazard", {"5"}},
       {"poses", {"frames/poses.txt"}},
       {"seed", {"7", "--generator", "sphere"}},
@@ -196,30 +188,28 @@ TEST_F(Resume, OfFramesEveryFlagThatChangesBytesIsCompared) {
       {"costs", {"costs.csv", "--poses", "frames/poses.txt"}},
       {"from", {"0,0,0.6", "--cost-per-metre", "0.1"}},
       {"plan", {"2"}},
-      {"take", {"1", "--plan", "2"}},
       {"top", {"3"}},
       {"pictures", {"on"}},
       {"save-maps", {"on"}}};
-  const std::set<std::string> same{"out",  "resume", "threads", "trace",  "quiet",      "json",
-                                   "help", "report", "beside",  "config", "save-config"};
+  const std::set<std::string> same{"out", "resume", "threads", "trace", "quiet", "json", "help",
+                                   "report", "config", "save-config",
+                                   // Of calls that are not resumed.
+                                   "watch", "max-views", "stop"};
   write("reach.toml", "[[box]]\nmin = [-2.0, -2.0, -2.0]\nmax = [2.0, 2.0, 2.0]\n");
   write("costs.csv", "0\n1\n");
   fs::create_directories(dir / "masks");
   fs::copy_file(dir / "frames/frame-000000.depth.png", dir / "masks/frame-000000.depth.png");
   const Strings call{
-      "reconstruct", "frames", "--voxel",  "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-      "--pictures",  "off",    "--resume", "--out", "out"};
+      "model",      "frames", "--voxel",  "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+      "--pictures", "off",    "--resume", "--out", "out"};
   const int status = ended_by(
       call, SIGKILL, [&] { return !left().empty() && fs::exists(left() / "checkpoint.json"); });
   ASSERT_TRUE(WIFSIGNALED(status)) << status;
-  const std::string both = run_well({"reconstruct", "--help"});
-  std::istringstream help(both.substr(both.rfind("Usage: ")));
+  std::istringstream help(run_well({"model", "--help"}));
   std::size_t flags = 0;
   for (std::string line; std::getline(help, line);) {
-    const std::size_t begin = line.find_first_not_of(' ');
-    if (begin == std::string::npos || line[begin] != '-') continue;
-    const std::size_t dashes = line.find("--");
-    const std::string name = line.substr(dashes + 2, line.find_first_of(" ,", dashes) - dashes - 2);
+    if (!line.starts_with("  --")) continue;
+    const std::string name = line.substr(4, line.find(' ', 4) - 4);
     if (same.contains(name)) continue;
     ASSERT_TRUE(others.contains(name)) << "a new flag: " << line;
     Strings changed = call;
@@ -245,16 +235,16 @@ TEST_F(Resume, OfFramesEveryFlagThatChangesBytesIsCompared) {
 }
 
 TEST_F(Resume, OfFramesFilesThatFlagsNameAreCompared) {
-  run_well({"simulate", "cube.off", "--orbit", "2,0.6,27", "--sensor", "tof.toml", "--size", "0.2",
-            "--recenter", "on", "--out", "frames"});
+  run_well({"simulate", "cube.off", "--poses", "orbit:2,0.6,27", "--sensor", "tof.toml", "--size",
+            "0.2", "--place", "center", "--out", "frames"});
   const std::string reach = "[[box]]\nmin = [-2.0, -2.0, -2.0]\nmax = [2.0, 2.0, 2.0]\n";
   write("reach.toml", reach);
   fs::create_directories(dir / "masks");
   const fs::path mask = dir / "masks/frame-000000.depth.png";
   const Strings call{
-      "reconstruct", "frames", "--voxel", "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-      "--pictures",  "off",    "--mask",  "masks", "--reach",     "reach.toml",
-      "--resume",    "--out",  "out"};
+      "model",      "frames", "--voxel", "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
+      "--pictures", "off",    "--mask",  "masks", "--reach",     "reach.toml",
+      "--resume",   "--out",  "out"};
   const auto write_mask = [&](std::size_t pixel) {  // one pixel is ignored
     const Sensor sensor = load_sensor((dir / "frames/sensor.toml").string());
     Gray8Image image{sensor.camera.width, sensor.camera.height, {}};

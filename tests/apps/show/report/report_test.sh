@@ -58,12 +58,12 @@ rm -rf run before
 status=0
 run() { viewgain reconstruct object.off --size 0.3 --sensor sr4000 --voxel 0.006 --pictures off "$@" >log.txt 2>&1; }
 run --max-views 3 --policy random --out before
-run --max-views 4 --beside before --out run || status=$?
+run --max-views 4 --report before --out run || status=$?
 if [ "$status" -ne 0 ]; then
   cat log.txt
   if grep -q "npm was missing" log.txt; then echo "skipped: built without npm"; exit 77; fi
   exit 1
 fi
-viewgain score run/map.vdb --sphere 200,0.6 --report score.html >>log.txt 2>&1
+viewgain score run/map.vdb --poses sphere:200,0.6 --report score.html >>log.txt 2>&1
 node report_test.mjs run/report.html reconstruct
 node report_test.mjs score.html score

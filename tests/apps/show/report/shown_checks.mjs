@@ -39,7 +39,7 @@ export async function checkTwoRuns(report, data) {
   const choose = (text) => page.locator("#compare").setInputFiles(
     { name: "run.json", mimeType: "application/json", buffer: Buffer.from(text) });
   const dots = page.locator('[data-plot="coverage"] circle[data-other]');
-  check((await dots.count()) === data.beside.per_view.length, "the run of --beside has its curve");
+  check((await dots.count()) === data.beside.per_view.length, "the other run has its curve");
   check((await page.locator("#other").textContent()).endsWith(", policy random"), "and its name");
   await choose("no run");
   await page.waitForFunction(() => document.getElementById("other").textContent.includes("not shown"));

@@ -21,10 +21,14 @@ namespace viewgain {
 /// Whether the name ends in .ot or .bt, in small or capital letters. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_octomap(const std::filesystem::path& path);
 
-/// Reads a .vdb map, or an OctoMap tree by `config`, whose prior is, unless given, the default for
-/// the sensor where there is one. Throws what load_vdb and load_octomap throw, and Error(format),
-/// naming the file and the key, if the map's note of its sensor is none.
-[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_map(const std::filesystem::path& path,
+/// The map in the folder of a run: map.vdb, else state.vdb, there or not. What is no folder stays.
+[[nodiscard]] VIEWGAIN_EXPORT std::filesystem::path map_in(const std::filesystem::path& path);
+
+/// Reads a .vdb map, that of a run's folder (map_in()), or an OctoMap tree by `config`, whose prior
+/// is, unless given, the default for the sensor where there is one. Throws what load_vdb and
+/// load_octomap throw, and Error(format), naming the file and the key, if the map's note of its
+/// sensor is none.
+[[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_map(const std::filesystem::path& file_or_run,
                                                   const Sensor* sensor = nullptr,
                                                   OctomapConfig config = {},
                                                   const ExecConfig& exec = {});

@@ -68,8 +68,8 @@ class VIEWGAIN_EXPORT StagedFolder {
 /// takes a lock. The writers fail afterwards.
 VIEWGAIN_EXPORT void remove_staged_folders() noexcept;
 
-/// The files of `dir` whose names `reconstruct` writes, relative to it, in any order; none if there
-/// is no such folder. Costs O(files).
+/// The files of `dir` whose names `reconstruct` and `model` write, relative to it, in any order;
+/// none if there is no such folder. Costs O(files).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::filesystem::path> run_files(
     const std::filesystem::path& dir);
 
@@ -77,7 +77,8 @@ VIEWGAIN_EXPORT void remove_staged_folders() noexcept;
 /// there.
 inline constexpr const char* kCheckpoint = "checkpoint.json";
 
-/// The folder that `reconstruct` leaves: run.json, config.toml, views.txt, next.txt, map.vdb,
+/// The folder that `reconstruct` and `model` leave: run.json, config.toml, views.txt, next.txt,
+/// next.json, map.vdb,
 /// surface.ply, points.ply, report.html, views/NN.png, views/NN.amplitude.png, maps/NN.vdb. Nothing
 /// is in it, and an earlier run is as it was, until commit(). Thread safety: one call at a time.
 /// Members that throw say so: names are not checked. Cost of the constructor: O(files); calls that

@@ -21,7 +21,8 @@ inline constexpr std::uint64_t kMostTomlBytes = std::uint64_t{1} << 24U;
 /// Throws Error(io) if the file cannot be read, Error(format) with the line if it is no TOML.
 [[nodiscard]] VIEWGAIN_EXPORT toml::table read_toml(const std::filesystem::path& path);
 /// The same of a text; `name` is what errors call it.
-[[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& name);
+[[nodiscard]] VIEWGAIN_EXPORT toml::table parse_toml(std::string_view text,
+                                                     const std::string& name);
 
 /// One table of a TOML file; remembers which keys were asked for, so that the others can be
 /// refused. Must not outlive the table. Whatever is not as it should be is an Error(format) that

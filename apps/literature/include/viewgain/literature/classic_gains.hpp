@@ -17,6 +17,7 @@
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/raycast/gain_family.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain {
@@ -55,6 +56,9 @@ enum class ClassicGain : std::uint8_t {
 /// Does it need to know how far unknown voxels are behind what earlier views measured? Never
 /// throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool needs_occlusion(ClassicGain gain);
+
+/// These as a family for register_gains(), by ClassicGainEvaluator.
+[[nodiscard]] VIEWGAIN_EXPORT std::shared_ptr<const GainFamily> literature_gains();
 
 /// What changes the answer.
 struct VIEWGAIN_EXPORT ClassicConfig {

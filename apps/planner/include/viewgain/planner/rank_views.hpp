@@ -15,7 +15,7 @@
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 /// @file
-/// Which views are best, by one rule for the planner, `next`, `follow`, `reconstruct` and studies
+/// Which views are best, by one rule for the planner, `next`, `model`, `reconstruct` and studies
 /// by a gain. `score` ranks what it is given. Poses are T_world_camera.
 
 namespace viewgain {

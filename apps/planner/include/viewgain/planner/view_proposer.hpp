@@ -21,8 +21,8 @@
 #include "viewgain/raycast/voxel_scene.hpp"
 
 /// @file
-/// Which views are possible, by one set of rules for all that propose: the program's candidates,
-/// next, follow, reconstruct and score --feasible, studies, ViewPlanner, C and Python. Poses are
+/// Which views are possible, by one set of rules for all that propose: the program's next,
+/// model, reconstruct and score --feasible, studies, ViewPlanner, C and Python. Poses are
 /// T_world_camera. Functions keep the order of the poses.
 
 namespace viewgain {

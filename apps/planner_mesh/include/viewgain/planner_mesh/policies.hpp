@@ -14,13 +14,13 @@
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/planning.hpp"
-#include "viewgain/literature/classic_gains.hpp"
 #include "viewgain/mesh/viewpoint_estimator.hpp"
 #include "viewgain/planner/rank_views.hpp"
 #include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/planner_mesh/truth.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/raycast/gain_family.hpp"
 #include "viewgain/raycast/simulated_sensor.hpp"
 #include "viewgain/raycast/surface_scene.hpp"
 
@@ -55,30 +55,29 @@ class VIEWGAIN_EXPORT BoundaryOrder {
   std::vector<Try> tried_;
 };
 
-/// Candidates by a gain of the literature, on the map as it is at each call.
+/// Candidates by a registered gain (register_gains()), on the map as it is at each call.
 ///
 /// Thread safety: one call at a time. Deterministic, for any number of threads. Cost:
-/// ClassicMap::build(), about 400 rays a pose, and all rays of 32 poses or of all.
-class VIEWGAIN_EXPORT ClassicChoice {
+/// GainFamily::evaluator(), about 400 rays a pose, and all rays of 32 poses or of all.
+class VIEWGAIN_EXPORT RegisteredChoice {
  public:
   /// Candidates that are scored with all rays.
   static constexpr std::size_t kInFull = 32;
 
   /// The model must outlive it.
-  ClassicChoice(const SurfaceModel& model, const Sensor& sensor, ClassicGain gain,
-                const ExecConfig& exec);
+  RegisteredChoice(const SurfaceModel& model, const Sensor& sensor, std::string gain,
+                   const ExecConfig& exec);
 
   /// The gain of each pose, in the gain's unit, in their order. Unless `all` are asked for, those
   /// that about 400 rays each do not rank among the first 32, ties to the lower index, have NaN.
-  /// Throws as ClassicMap::build() and ClassicGainEvaluator.
-  [[nodiscard]] std::vector<double> gains(std::span<const Pose> T_world_camera, bool all);
+  /// Throws as GainFamily::evaluator().
+  [[nodiscard]] std::vector<double> gains(std::span<const Pose> T_world_camera, bool all) const;
 
  private:
   const SurfaceModel& model_;
   Sensor sensor_;
-  ClassicGain gain_;
+  std::string gain_;
   ExecConfig exec_;
-  std::optional<ClassicGainEvaluator> full_, coarse_;  ///< of the last call's map
 };
 
 /// The object as nobody knows it who has yet to model it.
@@ -144,7 +143,7 @@ enum class Policy : std::uint8_t {
 struct VIEWGAIN_EXPORT PolicyConfig {
   Policy policy = Policy::gain;                   ///< which one
   GainModel model = kDefaultGain;                 ///< of Policy::gain
-  std::optional<ClassicGain> classic{};           ///< of Policy::gain, instead of `model`
+  std::string registered{};                       ///< gain of Policy::gain, instead of `model`
   Criterion criterion = Criterion::log_diagonal;  ///< of the paper's gain
   double cost_per_metre = 0;                      ///< gain - this * way [the gain's unit per m]
   PlanAhead ahead{};                              ///< of Policy::gain by `model`
@@ -153,8 +152,8 @@ struct VIEWGAIN_EXPORT PolicyConfig {
 };
 
 /// set_stop_rules() of the policy: that of its gain, and where it does not choose by a gain, or by
-/// a classic one, neither gain nor area ends a run. `stop_gain` [nat, m² for trace], `stop_area` a
-/// share of the surface. Throws Error(invalid_argument), too, for an area or a gain above 0 with
+/// a registered one, neither gain nor area ends a run. `stop_gain` [nat, m² for trace], `stop_area`
+/// a share of the surface. Throws Error(invalid_argument), too, for an area or a gain above 0 with
 /// such a policy.
 VIEWGAIN_EXPORT void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                                     std::optional<double> stop_gain,
@@ -162,8 +161,8 @@ VIEWGAIN_EXPORT void set_stop_rules(PlanningConfig& planning, const PolicyConfig
 
 /// DECISIONMAKER of Algorithm 1 for all policies, and its VIEWPOINTSGENERATION, which proposes what
 /// is left of a plan, or else what the generation does. Thread safety: one call at a time. Cost: by
-/// a gain or by counts that of scoring the candidates with GainEvaluator, a classic gain
-/// ClassicChoice, the oracle OracleChoice; by an order or at random O(candidates).
+/// a gain or by counts that of scoring the candidates with GainEvaluator, a registered gain
+/// RegisteredChoice, the oracle OracleChoice; by an order or at random O(candidates).
 class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGeneration {
  public:
   /// Model and generation must outlive it. Throws Error(invalid_argument) for an oracle without an
@@ -187,7 +186,7 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
   [[nodiscard]] std::optional<Decision> decide_by_gain(const Pose& T_world_camera,
                                                        std::span<const Candidate> candidates);
   [[nodiscard]] bool is_by_gain() const noexcept {
-    return config_.policy == Policy::gain && !config_.classic;
+    return config_.policy == Policy::gain && config_.registered.empty();
   }
   [[nodiscard]] std::optional<std::size_t> choose(const Pose& T_world_camera,
                                                   std::span<const Candidate> candidates,
@@ -195,8 +194,8 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
   [[nodiscard]] std::optional<std::size_t> choose_by_boundary(
       std::span<const Candidate> candidates);
 
-  /// By a classic gain. Where the way there counts, all have their gain.
-  [[nodiscard]] std::vector<ViewGain> score_classic(std::span<const Candidate> candidates);
+  /// By a registered gain. Where the way there counts, all have their gain.
+  [[nodiscard]] std::vector<ViewGain> score_registered(std::span<const Candidate> candidates);
   /// The new surface to be expected of a view [m²], where the policy's own gain does not say.
   [[nodiscard]] double expected_area(const Pose& T_world_camera);
 
@@ -209,7 +208,7 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
   std::optional<GainEvaluator> area_evaluator_;  ///< likewise, by the surface gain
   BoundaryOrder order_;
   std::optional<OracleChoice> oracle_;
-  std::optional<ClassicChoice> classic_;
+  std::optional<RegisteredChoice> registered_;
   std::vector<Pose> planned_;  ///< still to be taken, in the plan's order
   bool is_of_plan_ = false;    ///< the last proposal
 };

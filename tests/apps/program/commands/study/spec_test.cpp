@@ -14,9 +14,10 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "program/commands/study/results.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/literature/classic_gains.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -36,6 +37,7 @@ flags = ["--up=y"]
 class StudySpecTest : public test::ProgramTest {
  protected:
   StudySpecTest() {
+    register_gains(literature_gains());
     write_cube();
     write_half_sensor();
     write("more/ball.off", read("cube.off"));
@@ -71,11 +73,11 @@ TEST_F(StudySpecTest, ListsAreCrossed) {
   EXPECT_EQ(hashes.size(), spec.runs.size());
   EXPECT_EQ(app::name_of(spec, spec.runs[2]),
             "cube, gain:rear_side_voxel, seed 3, sr4000, voxel 0.01");
-  EXPECT_EQ(app::reconstruct_words(spec, spec.runs[2]),
-            (Strings{"--sensor=sr4000", "--voxel=0.01", "--seed=3", "--max-views=5",
-                     "--tolerance=0.01", "--policy=gain", "--out=unused", "--gain=rear_side_voxel",
-                     "--stop-gain=0", "--stop-area=0", "--stop-idle=0", "--stop-promises=0",
-                     "--up=y", "--", (dir / "cube.off").string()}));
+  EXPECT_EQ(
+      app::reconstruct_words(spec, spec.runs[2]),
+      (Strings{"--sensor=sr4000", "--voxel=0.01", "--seed=3", "--max-views=5", "--tolerance=0.01",
+               "--policy=gain", "--out=unused", "--gain=rear_side_voxel", "--up=y",
+               "--stop=gain=0,area=0,idle=0,promises=0", "--", (dir / "cube.off").string()}));
 }
 
 TEST_F(StudySpecTest, CoverageIsNotCountedFinerThanVoxels) {
@@ -194,7 +196,7 @@ TEST_F(StudySpecTest, ATourPlansByTheDefaultGain) {
   const app::StudyRun& run = spec.runs[2];
   EXPECT_EQ(spec.policies[run.policy].name, "tour:5:2");
   const Strings words = app::reconstruct_words(spec, run);
-  for (const char* word : {"--policy=gain", "--plan=5", "--take=2"}) {
+  for (const char* word : {"--policy=gain", "--plan=5,2"}) {
     EXPECT_EQ(std::count(words.begin(), words.end(), word), 1) << word;
   }
   const app::ResultRow row = app::row_of(run, run_json({0.5}), spec.max_views);

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/pose_io.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -74,11 +74,11 @@ TEST_F(Study, LeavesWhatItSays) {
   }
   // A run by itself is the same run.
   const json alone = json::parse(
-      run_well({"reconstruct", "cube.off", "--sensor",    "tof.toml", "--voxel",         "0.0125",
-                "--size",      "0.15",     "--max-views", "3",        "--seed",          "2",
-                "--tolerance", "0.0125",   "--policy",    "frontier", "--stop-gain",     "0",
-                "--stop-area", "0",        "--stop-idle", "0",        "--stop-promises", "0",
-                "--pictures",  "off",      "--quiet",     "--json",   "--out",           "alone"}));
+      run_well({"reconstruct", "cube.off", "--sensor",    "tof.toml", "--voxel", "0.0125",
+                "--size",      "0.15",     "--max-views", "3",        "--seed",  "2",
+                "--tolerance", "0.0125",   "--policy",    "frontier", "--stop",  "gain=0",
+                "--stop",      "area=0",   "--stop",      "idle=0",   "--stop",  "promises=0",
+                "--pictures",  "off",      "--quiet",     "--json",   "--out",   "alone"}));
   EXPECT_EQ(printed[4]["policy"], "frontier");
   EXPECT_EQ(printed[4]["seed"], 2);
   EXPECT_EQ(printed[4]["decisions"], 2);
@@ -155,7 +155,7 @@ TEST_F(Study, WrongNamesAreKnownBeforeTheFirstRun) {
   for (const auto& [from, to, word] : std::vector<std::array<std::string, 3>>{
            {"gain:combined", "gain:combine", "combined"},
            {"\"random\"", "\"randm\"", "random"},
-           {"max_views", "flags = [\"--overlap=2\"]\nmax_views", "--overlap"},
+           {"max_views", "flags = [\"--cost-per-metre=-2\"]\nmax_views", "--cost-per-metre"},
            {"max_views", "flags = [\"--no-such\"]\nmax_views", "--no-such"},
            {"[0.0125]", "[0.0125, 0.2]", "--voxel"}}) {
     std::string text = spec;

@@ -10,29 +10,29 @@
 
 #include "program/cli/flags/pose_source.hpp"
 #include "program/commands/score/score_options.hpp"
-#include "viewgain/literature/classic_gains.hpp"
+#include "viewgain/raycast/gain_family.hpp"
 #include "viewgain/support/columns/table.hpp"
 
 namespace viewgain::app {
 
-/// The classic gains of --gain NAME[,NAME...]; nothing where it names one of score's own. Throws
-/// Error(invalid_argument) for names of both kinds, or several of its own.
-[[nodiscard]] std::optional<std::vector<ClassicGain>> classic_gains_of(const std::string& names);
+/// The registered gains of --gain NAME[,NAME...]; nothing where it names one of score's own. Throws
+/// Error(invalid_argument) for names of both kinds, several of its own, or flags that do not go
+/// with them.
+[[nodiscard]] std::optional<std::vector<std::string>> registered_gains_of(
+    const ScoreOptions& options);
 
-/// What the flags say of these gains. Throws Error(invalid_argument) for flags that do not go with
-/// them.
-[[nodiscard]] ClassicConfig classic_config(const ScoreOptions& options,
-                                           std::vector<ClassicGain> gains);
-
-/// Candidates by classic gains, ranked by the first, and what was asked for.
-struct ClassicScores {
+/// Candidates by registered gains, ranked by the first, and what was asked for.
+struct RegisteredScores {
   const BeliefGrid& grid;
   const Sensor& sensor;
   const PoseSource& source;
-  const ClassicGainEvaluator& evaluator;
+  const VoxelScene& scene;
+  const std::vector<std::string>& names;
+  std::size_t rays_per_pose = 0;
+  int threads = 0;
   std::vector<std::size_t> numbers;            ///< of each candidate among the poses given
   std::map<std::string, std::size_t> dropped;  ///< the others: reason -> count
-  std::vector<double> gains{};                 ///< as ClassicGainEvaluator::evaluate
+  std::vector<double> gains{};                 ///< as FamilyEvaluator::evaluate
   std::vector<ViewGain::Status> statuses{};
   double seconds = 0;
 

@@ -1,37 +1,40 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// `viewgain candidates` as a user would run it, on the map of a short run.
+// `viewgain next` as a user would run it, on the map of a short run.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "viewgain/core/generators.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/pose_files.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
 
-class Candidates : public test::ProgramTest {
+class Next : public test::ProgramTest {
  protected:
-  Candidates() { make_small_run(); }
+  Next() { make_small_run(); }
 
   [[nodiscard]] json candidates(const std::string& generator, const Strings& more = {}) const {
-    return json::parse(
-        run_well(test::joined({"candidates", "run/map.vdb", "--generator", generator, "--sensor",
-                               "tof.toml", "--out", "poses.txt", "--json"},
+    json all = json::parse(
+        run_well(test::joined({"next", "run/map.vdb", "--top", "all", "--generator", generator,
+                               "--sensor", "tof.toml", "--out", "poses.txt", "--json"},
                               more)));
+    all.erase("seconds");
+    return all;
   }
 };
 
-TEST_F(Candidates, EveryGeneratorSaysWhatItMadeAndDropped) {
+TEST_F(Next, EveryGeneratorSaysWhatItMadeAndDropped) {
   const std::map<std::string, std::size_t> sizes{
       {"sphere", 500}, {"dome", 500}, {"rings", 48}, {"shell", 500}, {"sequence", 9}};
   for (const auto& [generator, size] : sizes) {
@@ -40,27 +43,27 @@ TEST_F(Candidates, EveryGeneratorSaysWhatItMadeAndDropped) {
     for (const auto& [reason, count] : result["dropped"].items())
       dropped += count.get<std::size_t>();
     EXPECT_EQ(result["candidates"].get<std::size_t>() + dropped, size) << generator;
-    EXPECT_EQ(result["per_candidate"].size(), result["candidates"].get<std::size_t>());
+    EXPECT_EQ(result["next"].size(), result["candidates"].get<std::size_t>());
     EXPECT_EQ(result["per_dropped"].size(), dropped);
     for (const json& one : result["per_dropped"]) {
       EXPECT_TRUE(result["dropped"].contains(one["reason"].get<std::string>())) << generator;
     }
-    EXPECT_EQ(read_tum(dir / "poses.txt").poses.size(), result["per_candidate"].size());
+    EXPECT_EQ(read_tum(dir / "poses.txt").poses.size(), result["next"].size());
   }
-  (void)run_well({"candidates", "run/map.vdb", "--generator", "rings", "--count", "80", "--sensor",
-                  "tof.toml", "--out", "poses.npy"});
+  (void)run_well({"next", "run/map.vdb", "--top", "all", "--generator", "rings", "--count", "80",
+                  "--sensor", "tof.toml", "--out", "poses.npy"});
   (void)candidates("rings", {"--count", "80"});
   EXPECT_EQ(load_poses(dir / "poses.npy").poses, read_tum(dir / "poses.txt").poses);
-  EXPECT_EQ(candidates("rings", {"--count", "80"})["per_candidate"].size() +
+  EXPECT_EQ(candidates("rings", {"--count", "80"})["next"].size() +
                 candidates("rings", {"--count", "80"})["per_dropped"].size(),
             80U);
 }
 
-TEST_F(Candidates, BoundaryOnesSayWhyTheyExistAndCanBeScored) {
+TEST_F(Next, BoundaryOnesSayWhyTheyExistAndCanBeScored) {
   const json result = candidates("boundary");
   ASSERT_GT(result["candidates"].get<int>(), 10);
   std::set<std::string> classes;
-  for (const json& one : result["per_candidate"]) {
+  for (const json& one : result["next"]) {
     classes.insert(one.at("class").get<std::string>());
     const auto run = one.at("run").get<std::size_t>();
     ASSERT_LT(run, result["runs"].size());
@@ -73,29 +76,28 @@ TEST_F(Candidates, BoundaryOnesSayWhyTheyExistAndCanBeScored) {
   EXPECT_EQ(scores["poses"], result["candidates"]);
 }
 
-TEST_F(Candidates, AreRankedByAGain) {
-  const json unranked = candidates("sphere");
-  EXPECT_TRUE(unranked["gain_model"].is_null());
-  EXPECT_TRUE(unranked["gain_unit"].is_null());
-  EXPECT_FALSE(unranked["per_candidate"][0].contains("gain"));
+TEST_F(Next, AreRankedByAGain) {
+  const json usual = candidates("sphere");
+  EXPECT_EQ(usual["gain_model"], "combined");
   const json ranked = candidates("sphere", {"--gain", "surface"});
   EXPECT_EQ(ranked["gain_model"], "surface");
   EXPECT_EQ(ranked["gain_unit"], "m^2");
-  EXPECT_EQ(ranked["candidates"], unranked["candidates"]);
+  EXPECT_EQ(ranked["candidates"], usual["candidates"]);
+  EXPECT_TRUE(ranked["next"][0]["share"].is_null());
   // As score has them: same gains, in falling order.
   const json best =
       json::parse(run_well({"score", "run/map.vdb", "--poses", "poses.txt", "--sensor", "tof.toml",
                             "--gain", "surface", "--top", "1000", "--json"}))["best"];
-  ASSERT_EQ(best.size(), ranked["per_candidate"].size());
+  ASSERT_EQ(best.size(), ranked["next"].size());
   ASSERT_GT(best.size(), 100U);
   for (std::size_t i = 0; i < best.size(); ++i) {  // the file's quaternions round
     const auto gain = best[i]["gain"].get<double>();
-    EXPECT_NEAR(ranked["per_candidate"][i]["gain"].get<double>(), gain, 1e-3 * gain);
+    EXPECT_NEAR(ranked["next"][i]["gain"].get<double>(), gain, 1e-3 * gain);
   }
 }
 
 // A robot beside the object: a shell is where it can put the camera, and looks at the object.
-TEST_F(Candidates, AShellIsRoundTheReach) {
+TEST_F(Next, AShellIsRoundTheReach) {
   write("arm.toml",
         "[[shell]]\ncenter = [0.9, 0, 0]\nmin_radius = 0.3\nmax_radius = 0.8\n"
         "[[half_space]]\nnormal = [0, 0, 1]\noffset = 0.1\n");
@@ -127,7 +129,7 @@ TEST_F(Candidates, AShellIsRoundTheReach) {
   for (const std::string generator : {"shell", "sequence", "boundary"}) {
     const json result = candidates(generator, {"--reach", "list.toml"});
     ASSERT_GT(result["candidates"].get<int>(), 5) << generator;
-    for (const json& one : result["per_candidate"]) EXPECT_EQ(one["generator"], "reach");
+    for (const json& one : result["next"]) EXPECT_EQ(one["generator"], "reach");
   }
   // A distance that is asked for holds.
   EXPECT_GT(
@@ -135,22 +137,33 @@ TEST_F(Candidates, AShellIsRoundTheReach) {
       300);
 }
 
-TEST_F(Candidates, OverlapAndRegionsMoveBoundaryCandidates) {
-  const json usual = candidates("boundary");
-  EXPECT_EQ(candidates("boundary", {"--overlap", "0.25", "--region-depth", "0.08"}), usual);
-  EXPECT_NE(candidates("boundary", {"--overlap", "0.5"})["per_candidate"], usual["per_candidate"]);
-  EXPECT_NE(candidates("boundary", {"--region-depth", "0.02"})["per_candidate"],
-            usual["per_candidate"]);
+TEST_F(Next, SeveralGeneratorsAreOneAfterTheOther) {
+  const json boundary = candidates("boundary"), sphere = candidates("sphere", {"--count", "60"});
+  const json both = candidates("sphere,boundary", {"--count", "60"});
+  EXPECT_EQ(both["candidates"].get<int>(),
+            boundary["candidates"].get<int>() + sphere["candidates"].get<int>());
+  EXPECT_EQ(both["runs"], boundary["runs"]);
+  std::map<std::string, int> counts;
+  double last = 1e300;
+  for (const json& one : both["next"]) {
+    ++counts[one["generator"].get<std::string>()];
+    EXPECT_LE(one["gain"].get<double>(), last);
+    last = one["gain"].get<double>();
+  }
+  EXPECT_EQ(counts["sphere"], sphere["candidates"].get<int>());
+  // The best ones are those of the two together.
+  const double best =
+      std::max(boundary["next"][0]["gain"].get<double>(), sphere["next"][0]["gain"].get<double>());
+  EXPECT_EQ(both["next"][0]["gain"].get<double>(), best);
 }
 
-TEST_F(Candidates, TheBodyIsTheSensorsOrTheUsers) {
+TEST_F(Next, TheBodyIsTheSensorsOrTheUsers) {
   const auto collisions = [&](const std::string& sensor, const Strings& more) {
-    // Where none is feasible the program ends with 2; its JSON says why all the same.
-    return json::parse(
-               run(test::joined({"candidates", "run/map.vdb", "--generator", "sphere", "--distance",
-                                 "0.15", "--sensor", sensor, "--out", "poses.txt", "--json"},
-                                more))
-                   .out)["dropped"]
+    // Where none is possible that is an answer.
+    return json::parse(run_well(
+        test::joined({"next", "run/map.vdb", "--top", "all", "--generator", "sphere", "--distance",
+                      "0.15", "--sensor", sensor, "--out", "poses.txt", "--json"},
+                     more)))["dropped"]
         .value("collision", 0);
   };
   write("wide.toml", "body = [0.4, 0.4, 0.2]\n" + read("tof.toml"));
@@ -162,7 +175,7 @@ TEST_F(Candidates, TheBodyIsTheSensorsOrTheUsers) {
 }
 
 // What ranking does with costs is ViewPlanner.CostsAreSubtracted's.
-TEST_F(Candidates, NextChoosesAmongGivenPosesByTheirWorth) {
+TEST_F(Next, NextChoosesAmongGivenPosesByTheirWorth) {
   write_tum(dir / "mine.txt", sphere_poses(30, 0.6));
   const auto next = [this](const Strings& more) {
     return json::parse(
@@ -204,26 +217,28 @@ TEST_F(Candidates, NextChoosesAmongGivenPosesByTheirWorth) {
                        {{"--poses", "mine.txt", "--costs", "word.txt"}, "word.txt:2"},
                        {{"--poses", "mine.txt", "--count", "7"}, "--generator"},
                        {{"--plan", "0"}, "--plan"},
-                       {{"--plan", "2", "--take", "3"}, "--take 3"},
-                       {{"--take", "2"}, "--take 2"},
+                       {{"--plan", "2,3"}, "--plan 2,3"},
+                       {{"--take", "2"}, "--plan K,M"},
                        {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"}});
 }
 
-TEST_F(Candidates, RefusesWhatCannotBe) {
+TEST_F(Next, RefusesWhatCannotBe) {
   const test::Refusals inputs{
       {{"--generator", "rings", "--count", "50"}, "50"},
       {{"--generator", "cone"}, "cone"},
+      {{"--generator", "dome,cone"}, "cone"},
+      {{"--top", "0"}, "--top"},
+      {{"--top", "some"}, "--top"},
+      {{"--plan", "3"}, "--plan"},
+      {{"--explain"}, "--explain"},
       {{"--generator", "sphere", "--body", "0.1,0,0.1"}, "--body"},
       {{"--generator", "boundary", "--count", "50"}, "--count"},
       {{"--generator", "boundary", "--center", "0,0,0"}, "--center"},
-      {{"--generator", "dome", "--overlap", "0.3"}, "--overlap"},
-      {{"--generator", "boundary", "--overlap", "1"}, "--overlap 1"},
-      {{"--generator", "boundary", "--region-depth", "-1"}, "--region-depth -1"},
       {{"--generator", "dome", "--distance", "0"}, "--distance 0"},
       {{"--generator", "sphere", "--reach", "missing.toml"}, "missing.toml"},
   };
-  expect_refused_with({"candidates", "run/map.vdb", "--sensor", "tof.toml", "--out", "none.txt"},
-                      inputs);
+  expect_refused_with(
+      {"next", "run/map.vdb", "--top", "all", "--sensor", "tof.toml", "--out", "none.txt"}, inputs);
 }
 
 }  // namespace

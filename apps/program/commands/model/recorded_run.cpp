@@ -14,17 +14,17 @@
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/set_up_warnings.hpp"
 #include "program/cli/interrupt.hpp"
-#include "program/cli/json.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
-#include "program/commands/commands.hpp"
+#include "program/commands/file_format.hpp"
 #include "program/commands/frames/frame_map.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "program/commands/frames/mask_use.hpp"
 #include "program/commands/map_json.hpp"
+#include "program/commands/model/model_options.hpp"
+#include "program/commands/model/recorded_views.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
 #include "program/commands/reconstruct/checkpoint.hpp"
-#include "program/commands/reconstruct/recorded_views.hpp"
 #include "program/commands/reconstruct/run_outputs.hpp"
 #include "show/report/page.hpp"
 #include "show/report/run_page.hpp"
@@ -38,6 +38,7 @@
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/hash64.hpp"
+#include "viewgain/support/json.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
 namespace viewgain::app {
@@ -46,15 +47,7 @@ namespace {
 // Of a recording so many moments are drawn, evenly, the last among them: each is a surface anew.
 constexpr std::size_t kMaxShown = 6;
 
-struct Options {
-  CommonOptions common;
-  FrameMapOptions frames;
-  ProposalOptions proposal;
-  std::size_t top = 10;
-  RegistrationOptions registration;
-  std::string refine = "on";
-  RunOutputs outputs;
-};
+using Options = ModelOptions;
 
 // At which frames the state of the map is drawn.
 std::set<std::size_t> shown_frames(std::size_t count) {
@@ -117,7 +110,7 @@ class Recording {
     check_contradiction(options.frames.folder, sigma_.has_value());
     if (const auto stated = stated_sigma(options.registration)) {
       warn(suspect_pose_sigma(*stated, sensor().working_distance, grid().voxel_size()),
-           "--pose-sigma");
+           "--register");
     }
     if (sigma_) {
       const Stopwatch watch;
@@ -179,6 +172,9 @@ class Recording {
     Json run = run_head(settings());
     run.update(views_->json(moment.model, next_));
     write_file_atomically(folder.file("run.json"), json_text(run));
+    Json next{{"format", kRunFormat}, {"frames", run["frames"]}};
+    next.update(app::to_json(next_));
+    write_file_atomically(folder.file("next.json"), json_text(next));
     if (options_.outputs.with_report()) {
       write_report(folder.file("report.html"), page_->json(run, nullptr, beside_));
     }
@@ -236,14 +232,14 @@ class Recording {
         {"depth_scale", frames.depth_scale},
         {"out_of_range", frames.out_of_range == Sensor::OutOfRange::carve ? "carve" : "invalid"},
         {"mask", or_null(folder.mask)},
-        {"confidence", or_null(folder.confidence)},
-        {"least_confidence", folder.confidence.empty() ? Json() : Json(folder.least_confidence)},
+        {"confidence", or_null(parse_confidence(folder.confidence).folder)},
+        {"least_confidence",
+         folder.confidence.empty() ? Json() : Json(parse_confidence(folder.confidence).least)},
         {"voxel", grid.voxel_size()},
         {"workspace", app::to_json(grid.workspace())},
         {"prior_sigma", grid.prior_sigma()},
         {"support_plane", proposal_.support_plane},
         {"jump_edge_filter", options_.frames.jump_edge_filter},
-        {"refine", options_.refine == "on"},
         {"register", sigma_.has_value()},
         {"on_contradiction", sigma_ ? Json(folder.on_contradiction) : Json()},
         {"pose_sigma", sigma_ ? pose_sigma_json(*sigma_) : Json()},
@@ -253,10 +249,7 @@ class Recording {
         {"distance", proposal_.distance},
         {"center", or_null(proposal_.center)},
         {"seed", proposal_.seed},
-        {"overlap", proposal_.overlap},
-        {"region_depth", proposal_.region_depth},
         {"gain", proposal_.gain},
-        {"object_size", proposal_.object_size},
         {"hazard", or_null(proposal_.hazard)},
         {"costs", or_null(proposal_.costs.file)},
         {"cost_per_metre", proposal_.costs.per_metre},
@@ -264,8 +257,8 @@ class Recording {
         {"reach", or_null(proposal_.reach)},
         {"obstacles", proposal_.obstacles},
         {"top", options_.top},
-        {"plan", proposal_.plan.plan},
-        {"take", proposal_.plan.ahead().take}};
+        {"plan", parse_plan(proposal_.plan).plan},
+        {"take", parse_plan(proposal_.plan).take}};
     json.update(options_.frames.scales.settings());
     return json;
   }
@@ -303,12 +296,14 @@ void print(const Options& options, const Json& run, const BeliefGrid& grid,
               with_commas(run["triangles"].get<std::size_t>()).c_str());
   std::printf("next: %s\n%s", summary_of(next).c_str(), text_of(next).c_str());
   std::printf("%.2f s\n", run["seconds"]["total"].get<double>());
-  print_left(options.outputs,
-             "run.json, config.toml, views.txt, next.txt, map.vdb, surface.ply, points.ply");
+  print_left(
+      options.outputs,
+      "run.json, config.toml, views.txt, next.txt, next.json, map.vdb, surface.ply, points.ply");
 }
 
-void reconstruct(Options& options, const App& app) {
-  options.frames.refine = options.refine == "on";
+}  // namespace
+
+void model_recorded_frames(const ModelOptions& options, const App& app) {
   if (options.outputs.with_report()) check_report_page("--report");
   const InterruptGuard interrupt;
   Recording recording(options, app, interrupt.token());
@@ -320,25 +315,6 @@ void reconstruct(Options& options, const App& app) {
   commit(folder, run, app);
   if (options.common.json) return print_json(run);
   print(options, run, recording.grid(), recording.counts(), recording.next());
-}
-
-}  // namespace
-
-Command add_reconstruct_frames() {
-  auto options = std::make_shared<Options>();
-  const auto own = app_of_frames(
-      "reconstruct", "Of a folder of recorded frames: map, surface and the views to take next.");
-  App* app = own.get();
-  Options& o = *options;
-  add_frame_map_options(*app, o.frames);
-  add_switch(*app, "--refine", o.refine, "readings of a voxel refine it; off: the first one wins");
-  add_registration_options(*app, o.registration);
-  add_next_view_options(*app, o.proposal, o.top);
-  add_output_options(*app, o.outputs);
-  add_trace_option(*app, o.common);
-  add_common_options(*app, o.common);
-  add_help(*app, kLoopGroup, "reconstruct frames --voxel 0.01 --pictures off --out run_of_frames");
-  return {app, [options, app] { reconstruct(*options, *app); }, nullptr, own};
 }
 
 }  // namespace viewgain::app

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "program/commands/reconstruct/recorded_views.hpp"
+#include "program/commands/model/recorded_views.hpp"
 
 #include <utility>
 

@@ -1,11 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,23 +15,22 @@
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/next_views.hpp"
-#include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
-#include "program/cli/flags/sensing.hpp"
 #include "program/cli/flags/set_up_warnings.hpp"
+#include "program/cli/flags/stop_rules.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/values.hpp"
-#include "program/commands/commands.hpp"
 #include "program/commands/file_format.hpp"
-#include "program/commands/follow/follow_options.hpp"
-#include "program/commands/follow/followed_map.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "program/commands/frames/mask_use.hpp"
+#include "program/commands/model/model_options.hpp"
+#include "program/commands/model/watched_map.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frame_watch.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/stopwatch.hpp"
 
@@ -41,7 +38,6 @@ namespace viewgain::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Options = FollowOptions;
 
 constexpr std::chrono::milliseconds kPause{100};  // between looks at the folder
 // While frames wait, views are proposed and all is written this often at most [s].
@@ -56,20 +52,55 @@ void check_folder(const fs::path& out) {
   }
 }
 
-// A folder that is followed: what comes goes into the map, what is next into the files.
-class Following {
+// Without the names of what is the default: boundaries need no views yet.
+ProposalOptions proposal_of(const ModelOptions& options) {
+  ProposalOptions proposal = options.proposal;
+  check(proposal);
+  if (proposal.generator == "boundary" && proposal.poses.empty()) proposal.generator.clear();
+  return proposal;
+}
+
+// Settings of the map, without those that depend on the sensor.
+ScorerConfig map_config(const ModelOptions& options) {
+  ScorerConfig config = scorer_config(options.frames, options.proposal);
+  if (options.frames.workspace.empty()) {
+    refuse("--watch requires --workspace x0,y0,z0,x1,y1,z1: nobody knows what frames will see");
+  }
+  config.workspace = parse_box("--workspace", options.frames.workspace);
+  config.gain.model = parse_gain_model(options.proposal.gain);
+  return config;
+}
+
+PlannerConfig planner_config(const ModelOptions& options) {
+  PlannerConfig config;
+  if (!options.proposal.reach.empty()) config.reach = read_reach_toml(options.proposal.reach);
+  config.max_views = options.max_views;
+  const StopLimits stop = stop_limits(options.stop);
+  if (stop.coverage) refuse("--stop coverage: nobody knows the object");
+  config.idle_views = stop.idle;
+  config.broken_promises = stop.promises;
+  config.stop_gain = stop.gain;
+  config.stop_area = stop.area;
+  config.ahead = parse_plan(options.proposal.plan);
+  return config;
+}
+
+// A folder into which frames come: they go into the map, what is next into the files.
+class Watching {
  public:
-  explicit Following(const Options& options)
+  explicit Watching(const ModelOptions& options)
       : options_(options),
-        map_config_(scorer_config(options)),
-        config_(planner_config(options)),
+        folder_(options.frames.folder),
+        proposal_(proposal_of(options)),
+        map_config_(map_config(options)),
+        planner_config_(planner_config(options)),
         sigma_(registration_sigma(options.registration)),
-        frames_(options.frames.folder),
-        out_(options.out),
+        frames_(folder_.folder),
+        out_(options.outputs.out),
         views_(frames_) {
-    check_contradiction(options.frames, sigma_.has_value());
-    if (!options.frames.sensor.empty()) (void)load_sensor(options.frames.sensor);
-    if (!options.body.empty()) body_ = parse_size("--body", options.body);
+    check_contradiction(folder_, sigma_.has_value());
+    if (!folder_.sensor.empty()) (void)load_sensor(folder_.sensor);
+    (void)with_body(Sensor{}, proposal_);
     std::error_code ignored;
     if (!fs::is_directory(frames_, ignored)) {
       throw Error(ErrorCode::io, frames_.string() + ": no such folder");
@@ -81,7 +112,7 @@ class Following {
     } else {
       check_folder(out_);
     }
-    watch_.emplace(watch_of(options_.frames, saved_));
+    watch_.emplace(watch_of(folder_, saved_));
   }
 
   // One frame at most; returns whether another look is due at once.
@@ -109,6 +140,7 @@ class Following {
     }
     if (map_ && has_news_) write();
     write_new_counts();
+    if (is_done && map_ && !map_->grid().views().empty()) write_model();
   }
 
   void print_summary(bool is_done, double seconds) const {
@@ -129,7 +161,7 @@ class Following {
         json["hash"] = map_->grid().content_hash();
         json["contradiction"] = map_->consistency_json();
       }
-      json["out"] = options_.out;
+      json["out"] = options_.outputs.out;
       json["seconds"] = seconds;
       return print_json(json);
     }
@@ -138,13 +170,14 @@ class Following {
     if (const std::string text = frames_text(carved(), watch_->bad()); !text.empty()) {
       std::printf("%s\n", text.c_str());
     }
-    std::printf("%s", masked_text(options_.frames, masked_pixels_).c_str());
+    std::printf("%s", masked_text(folder_, masked_pixels_).c_str());
     if (!map_) return;
     if (const auto reason = map_->should_stop()) {
       std::printf("enough: %s\n", stop_reason_name(*reason).data());
     }
-    std::printf("%s: state.vdb (hash %s), next.txt, next.json\n", options_.out.c_str(),
-                map_->grid().content_hash().c_str());
+    std::printf("%s: state.vdb (hash %s), next.txt, next.json%s\n", out_.c_str(),
+                map_->grid().content_hash().c_str(),
+                is_done ? ", surface.ply, points.ply, views.txt" : "");
   }
 
  private:
@@ -157,7 +190,7 @@ class Following {
   }
 
   [[nodiscard]] bool has_masks() const {
-    return !options_.frames.mask.empty() || !options_.frames.confidence.empty();
+    return !folder_.mask.empty() || !folder_.confidence.empty();
   }
   void warn_of_masks(bool is_last) {
     if (!has_masks()) return;
@@ -168,7 +201,7 @@ class Following {
   void warn_of_contradictions(bool is_last) {
     if (masks_.is_suspected()) return;
     const std::string what = map_->suspicion(is_last);
-    if (!what.empty() && options_.frames.on_contradiction == "error") {
+    if (!what.empty() && folder_.on_contradiction == "error") {
       refuse(frames_.string() + ": " + what);
     }
     warn(what);
@@ -195,29 +228,19 @@ class Following {
   [[nodiscard]] std::size_t count() const { return watch_->taken_count(); }
 
   void open_map() {
-    warn_of_assumptions(options_.frames.folder, *watch_->folder());
-    const Sensor& sensor = watch_->folder()->sensor;
-    map_config_.prior_sigma = default_prior_sigma(options_.voxel, sensor);
+    warn_of_assumptions(folder_.folder, *watch_->folder());
+    const Sensor sensor = with_body(watch_->folder()->sensor, proposal_);
+    map_config_.prior_sigma = default_prior_sigma(map_config_.voxel_size, sensor);
     const BeliefGrid empty(map_config_.grid());
     if (!saved_) warn_of_few_voxels(empty);
-    map_config_.hazard = hazard_source(options_.hazard, options_.object_size, empty);
-    map_.emplace(sensor, body_, map_config_, config_, out_ / "state.vdb", saved_, sigma_,
-                 exec_of(options_.common));
+    map_config_.hazard = hazard_source(proposal_.hazard, empty);
+    const ExecConfig exec = exec_of(options_.common);
+    map_.emplace(sensor, map_config_, planner_config_, out_ / "state.vdb", saved_, sigma_, exec);
+    map_->propose_by(generation_config(proposal_, sensor, map_->grid(), frames_.string()), exec);
     // What was next may be missing or older than the state, which has not heard of it: a frame that
     // waits is held against it.
     has_news_ = saved_.has_value();
-    Sensor with_body = sensor;
-    if (body_) with_body.body_size = body_;
-    warn_of_set_up({.sensor = with_body,
-                    .map = map_->grid(),
-                    .frames_follow = true,
-                    .obstacle_values = &options_.obstacles,
-                    .obstacles = &map_config_.obstacles,
-                    .support_plane = options_.support_plane,
-                    .reach_file = options_.reach,
-                    .reach = &config_.reach,
-                    .object_size = options_.object_size,
-                    .pose_sigma = stated_sigma(options_.registration)});
+    warn_of_set_up(proposal_, map_config_.obstacles, map_->grid(), sensor, true);
     if (saved_) propose(saved_->frames);
   }
 
@@ -229,7 +252,7 @@ class Following {
     FrameVerdict verdict = FrameVerdict::contradicts;
     std::string why = frame.image.string();
     AddedView added;
-    if (registration && leaves_out(*registration, options_.frames.on_contradiction)) {
+    if (registration && leaves_out(*registration, folder_.on_contradiction)) {
       why += ": " + registration->reason;
     } else {
       added = map_->add(frame, registration);
@@ -254,7 +277,7 @@ class Following {
   }
 
   void propose(const std::set<std::string>& frames) {
-    next_ = map_->next(options_.top, options_.cost_per_metre);
+    next_ = map_->next(options_.top, proposal_.costs.per_metre);
     views_.ask(poses_of(next_), frames);
     if (next_.candidates > 0 || !next_.dropped.contains("obstacle")) return;
     if (std::exchange(told_of_obstacles_, true)) return;
@@ -264,7 +287,7 @@ class Following {
   // First the state: what is next takes longest, and can be made of it again.
   void write() {
     // What is saved now a later call would go on with.
-    if (options_.frames.on_contradiction == "error") warn_of_contradictions(true);
+    if (folder_.on_contradiction == "error") warn_of_contradictions(true);
     const std::set<std::string> frames = watch_->taken();
     map_->save();
     propose(frames);
@@ -280,6 +303,14 @@ class Following {
     const auto reason = map_->should_stop();
     std::fprintf(stderr, "%s%s\n", reason ? "; enough: " : "",
                  reason ? stop_reason_name(*reason).data() : "");
+  }
+
+  // What is made of all frames.
+  void write_model() const {
+    const SurfaceModel model = model_of(map_->grid().clone(), map_->sensor(), proposal_,
+                                        map_config_.obstacles, exec_of(options_.common));
+    write_surfaces(model, out_ / "surface.ply", out_ / "points.ply");
+    write_tum(out_ / "views.txt", map_->grid().views());
   }
 
   [[nodiscard]] Json counts() const {
@@ -306,17 +337,18 @@ class Following {
     write_file_atomically(out_ / "next.json", json_text(json));
   }
 
-  const Options& options_;
+  const ModelOptions& options_;
+  const FrameFolderOptions& folder_;
+  ProposalOptions proposal_;
   ScorerConfig map_config_;
-  PlannerConfig config_;
+  PlannerConfig planner_config_;
   std::optional<PoseSigma> sigma_;  // of the poses, if frames are registered
-  std::optional<std::array<double, 3>> body_;
   fs::path frames_, out_;
   AskedViews views_;
   std::optional<FolderLock> lock_;
   std::optional<SavedFrames> saved_;
   std::optional<FrameWatch> watch_;
-  std::optional<FollowedMap> map_;  // once the sensor is known
+  std::optional<WatchedMap> map_;  // once the sensor is known
   MaskWatch masks_;
   std::size_t added_ = 0;            // frames, by this call
   std::uint64_t masked_pixels_ = 0;  // of these
@@ -327,36 +359,23 @@ class Following {
   Json said_;  // counts(), as next.json has them
 };
 
-void follow(const Options& options) {
+}  // namespace
+
+void model_arriving_frames(const ModelOptions& options) {
   const Stopwatch watch;
-  Following following(options);
+  Watching watching(options);
   const InterruptGuard interrupt;
   bool is_done = false;
   while (!is_done && !interrupt.token().stop_requested()) {
     // Asked before the look: what came before the file is seen.
     std::error_code ignored;
-    const bool is_last = fs::exists(fs::path(options.frames.folder) / "done", ignored);
-    if (following.step()) continue;
-    is_done = is_last && following.is_settled();
+    const bool is_last = fs::exists(fs::path(options.frames.folder.folder) / "done", ignored);
+    if (watching.step()) continue;
+    is_done = is_last && watching.is_settled();
     if (!is_done) std::this_thread::sleep_for(kPause);
   }
-  following.finish(is_done);
-  following.print_summary(is_done, watch.seconds());
-}
-
-}  // namespace
-
-Command add_follow(App& program) {
-  auto options = std::make_shared<Options>();
-  App* app = program.add_subcommand(
-      "follow",
-      "Watches a folder into which a robot's program writes depth frames, puts each into a map as "
-      "soon as it is complete, and says where to look next: OUT/next.txt (poses, best first) and "
-      "OUT/next.json. With --mask or --confidence a frame waits for its mask as for its pose. Ends "
-      "by a signal or when a file FRAMES_DIR/done is there; called again with "
-      "the same OUT it goes on, also after a kill.");
-  add_follow_options(*app, *options);
-  return {app, [options] { follow(*options); }};
+  watching.finish(is_done);
+  watching.print_summary(is_done, watch.seconds());
 }
 
 }  // namespace viewgain::app

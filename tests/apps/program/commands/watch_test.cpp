@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// `follow` beside a program that writes frames, quickly, slowly and wrongly.
+// `model --watch` beside a program that writes frames, quickly, slowly and wrongly.
 
 #include <sys/wait.h>
 
@@ -24,12 +24,12 @@
 #include "apps/planner/planner_set_up.hpp"
 #include "apps/program_runner.hpp"
 #include "core/temporary_folder.hpp"
-#include "program/cli/json.hpp"
 #include "support/pose_file_text.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/png.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -80,14 +80,14 @@ class Reader {
   std::thread thread_;
 };
 
-class Follow : public test::ProgramTest {
+class Watch : public test::ProgramTest {
  protected:
-  Follow() {
+  Watch() {
     write_cube();
     write_small_sensor();
     // 30 views of a cube of 0.2 m; they come into "live" as a recorder writes them.
-    run_well({"simulate", "cube.off", "--orbit", "30,0.6,27", "--sensor", "small.toml", "--size",
-              "0.2", "--recenter", "on", "--out", "whole"});
+    run_well({"simulate", "cube.off", "--poses", "orbit:30,0.6,27", "--sensor", "small.toml",
+              "--size", "0.2", "--place", "center", "--out", "whole"});
     const FrameSequence frames = open_frames(dir / "whole");
     for (std::size_t i = 0; i < kGood; ++i) {
       images.push_back(test::read_all(frames.images[i]));
@@ -126,10 +126,10 @@ class Follow : public test::ProgramTest {
     return best;
   }
 
-  static Strings follow(const Strings& more = {}) {
+  static Strings watch(const Strings& more = {}) {
     return test::joined(
-        {"follow", "live", "--voxel", "0.025", "--workspace", "-0.2,-0.2,-0.2,0.2,0.2,0.2",
-         "--jump-edge-filter", "off", "--out", "plan", "--quiet"},
+        {"model", "live", "--watch", "--voxel", "0.025", "--workspace",
+         "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--jump-edge-filter", "off", "--out", "plan", "--quiet"},
         more);
   }
 
@@ -239,7 +239,7 @@ class Recorder {
 };
 
 // 30 good frames and three bad ones, the program killed 0 or 20 times meanwhile.
-TEST_F(Follow, TakesEachGoodFrameOnceThroughKills) {
+TEST_F(Watch, TakesEachGoodFrameOnceThroughKills) {
   std::string nan = poses[0];
   nan.replace(0, nan.find(' '), "nan");
   images.push_back(images[3].substr(0, images[3].size() - 20));
@@ -261,7 +261,7 @@ TEST_F(Follow, TakesEachGoodFrameOnceThroughKills) {
       const Recorder recorder(dir / "live", images, poses, 5);
       while (killed < kills) {
         const auto before = state_time();
-        const pid_t child = start(follow());
+        const pid_t child = start(watch());
         // At any moment, and every other time soon after something was written.
         for (int i = 0; i < 200 && killed % 2 == 1 && state_time() == before; ++i) {
           std::this_thread::sleep_for(5ms);
@@ -273,7 +273,7 @@ TEST_F(Follow, TakesEachGoodFrameOnceThroughKills) {
         ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << status;
         ++killed;
       }
-      const pid_t child = start(follow());
+      const pid_t child = start(watch());
       while (!recorder.is_done) std::this_thread::sleep_for(10ms);
       write("live/done", "");
       const int status = end_of(child);
@@ -287,13 +287,14 @@ TEST_F(Follow, TakesEachGoodFrameOnceThroughKills) {
     EXPECT_EQ(next["waiting"], 0);
     EXPECT_EQ(next["bad"], (json{{"lost_pose", 1}, {"unreadable", 1}, {"wrong_size", 1}}));
     EXPECT_EQ(next["stop_reason"], "max_views");
-    EXPECT_EQ(list("plan"), (Strings{"next.json", "next.txt", "state.vdb"}));
+    EXPECT_EQ(list("plan"), (Strings{"next.json", "next.txt", "points.ply", "state.vdb",
+                                     "surface.ply", "views.txt"}));
     expect_each_once(kGood);
   }
 }
 
-TEST_F(Follow, SaysWhereToLookNext) {
-  const pid_t child = start(follow({"--top", "5"}));
+TEST_F(Watch, SaysWhereToLookNext) {
+  const pid_t child = start(watch({"--top", "5"}));
   put(0);
   EXPECT_TRUE(wait_for(1));
   const json first = json::parse(read("plan/next.json"));
@@ -326,7 +327,7 @@ TEST_F(Follow, SaysWhereToLookNext) {
   const std::string before = read("plan/next.json");
   fs::remove(dir / "plan/next.json");
   write("live/done", "");
-  const json end = json::parse(run_well(follow({"--json", "--top", "5"})));
+  const json end = json::parse(run_well(watch({"--json", "--top", "5"})));
   EXPECT_EQ(end["frames"], 2);
   EXPECT_EQ(end["added"], 0);
   EXPECT_EQ(end["ended_by"], "done");
@@ -337,20 +338,20 @@ TEST_F(Follow, SaysWhereToLookNext) {
   json newer = json::parse(before);
   newer["format"] = 2;
   write("plan/next.json", newer.dump());
-  expect_refused(follow({}), "next.json: is of format 2; this program reads up to format 1");
+  expect_refused(watch({}), "next.json: is of format 2; this program reads up to format 1");
   for (const char* damaged : {"", "{", "{}", "{\"format\": -1}"}) {
     write("plan/next.json", damaged);
-    (void)run_well(follow({"--top", "5"}));
+    (void)run_well(watch({"--top", "5"}));
     EXPECT_EQ(read("plan/next.json"), before) << damaged;
   }
 }
 
-TEST_F(Follow, AnEmptyViewBreaksItsPromise) {
+TEST_F(Watch, AnEmptyViewBreaksItsPromise) {
   write_png(dir / "dark.png", GrayImage{48, 36, std::vector<std::uint16_t>(48 * 36)});
   for (const char* rule : {"0", "1", "2"}) {
     begin_with_one_frame();
     fs::remove(dir / "live/done");
-    const pid_t child = start(follow({"--stop-promises", rule}));
+    const pid_t child = start(watch({"--stop", std::string("promises=") + rule}));
     ASSERT_TRUE(wait_for(1)) << rule;
     const json first = json::parse(read("plan/next.json"));
     EXPECT_EQ(first["stop_reason"], nullptr) << rule;
@@ -364,16 +365,16 @@ TEST_F(Follow, AnEmptyViewBreaksItsPromise) {
 }
 
 // What is wrong with all frames is said, once, though it goes on.
-TEST_F(Follow, SaysWhatIsSuspectedOfTheFrames) {
-  run_well({"simulate", "cube.off", "--orbit", "13,0.6,40", "--sensor", "sr4000", "--size", "0.2",
-            "--recenter", "on", "--support-plane", "-0.1", "--out", "right"});
+TEST_F(Watch, SaysWhatIsSuspectedOfTheFrames) {
+  run_well({"simulate", "cube.off", "--poses", "orbit:13,0.6,40", "--sensor", "sr4000", "--size",
+            "0.2", "--place", "center", "--support-plane", "-0.1", "--out", "right"});
   fs::copy(dir / "right", dir / "wrong", fs::copy_options::recursive);
   PoseList given = read_tum(dir / "wrong/poses.txt");
   for (Pose& pose : given.poses) pose = pose.inverse();
   viewgain::write_tum(dir / "wrong/poses.txt", given.poses);
   for (const std::string folder : {"right", "wrong"}) {
     write(folder + "/done", "");
-    const std::string said = run({"follow", folder, "--voxel", "0.01", "--workspace",
+    const std::string said = run({"model", folder, "--watch", "--voxel", "0.01", "--workspace",
                                   "-2,-2,-2,2,2,2", "--out", folder + "_plan", "--quiet"})
                                  .err;
     const std::size_t first = said.find("the poses are world to camera");
@@ -385,9 +386,9 @@ TEST_F(Follow, SaysWhatIsSuspectedOfTheFrames) {
 }
 
 // A pose that contradicts the map: the map is what it is without that frame.
-TEST_F(Follow, WhatContradictsTheMapIsLeftOut) {
-  run_well({"simulate", "cube.off", "--orbit", "10,0.6,27", "--sensor", "sr4000", "--size", "0.2",
-            "--recenter", "on", "--out", "moved"});
+TEST_F(Watch, WhatContradictsTheMapIsLeftOut) {
+  run_well({"simulate", "cube.off", "--poses", "orbit:10,0.6,27", "--sensor", "sr4000", "--size",
+            "0.2", "--place", "center", "--out", "moved"});
   FrameSequence frames = open_frames(dir / "moved");
   FramesWriter without(dir / "without");
   std::vector<Pose> others;
@@ -411,7 +412,7 @@ TEST_F(Follow, WhatContradictsTheMapIsLeftOut) {
   };
   const Strings map{"--out", "map.vdb"};
   const std::string hash = ran({"integrate", "without"}, test::joined(made, map))["hash"];
-  const json result = ran({"follow", "moved", "--out", "plan"}, made);
+  const json result = ran({"model", "moved", "--watch", "--out", "plan"}, made);
   EXPECT_EQ(result["bad"].size(), 1U);
   EXPECT_EQ(result["bad"]["contradicts"], 1);
   EXPECT_EQ(result["frames"], 9);
@@ -427,12 +428,11 @@ TEST_F(Follow, WhatContradictsTheMapIsLeftOut) {
   EXPECT_EQ(again["hash"], hash);
 
   std::size_t cases = 0;
-  for (const Strings& call : {Strings{"follow", "moved"}, Strings{"integrate", "moved"},
-                              Strings{"reconstruct", "moved", "--pictures", "off"}}) {
-    const json kept =
-        ran(test::joined(call, {"--out", "kept-" + call[0] + (call[0] == "integrate" ? ".vdb" : ""),
-                                "--on-contradiction", "keep"}),
-            made);
+  for (const Strings& call : {Strings{"model", "moved", "--watch"}, Strings{"integrate", "moved"},
+                              Strings{"model", "moved", "--pictures", "off"}}) {
+    const json kept = ran(test::joined(call, {"--out", "kept-" + std::to_string(cases) + ".vdb",
+                                              "--on-contradiction", "keep"}),
+                          made);
     EXPECT_EQ(kept["bad"].size(), 0U) << call[0];
     EXPECT_EQ(kept["frames"], 10) << call[0];
     ++cases;
@@ -441,10 +441,10 @@ TEST_F(Follow, WhatContradictsTheMapIsLeftOut) {
 }
 
 // What disks, clocks and other programs do to a folder.
-TEST_F(Follow, FaultsOfFilesAndClocks) {
+TEST_F(Watch, FaultsOfFilesAndClocks) {
   write_half_sensor();
-  run_well({"simulate", "cube.off", "--orbit", "5,0.6,27", "--sensor", "tof.toml", "--size", "0.2",
-            "--recenter", "on", "--out", "taken"});
+  run_well({"simulate", "cube.off", "--poses", "orbit:5,0.6,27", "--sensor", "tof.toml", "--size",
+            "0.2", "--place", "center", "--out", "taken"});
   const PoseList poses_of_frames = read_tum(dir / "taken/poses.txt");
   fs::create_directories(dir / "odd\nname");
   const fs::path folder = dir / "odd\nname";
@@ -474,7 +474,7 @@ TEST_F(Follow, FaultsOfFilesAndClocks) {
   write("odd\nname/frame-000009.depth.png\n", image);
   write("odd\nname/done", "");
   const auto followed = [&] {
-    return json::parse(run({"follow", "odd\nname", "--voxel", "0.0125", "--workspace",
+    return json::parse(run({"model", "odd\nname", "--watch", "--voxel", "0.0125", "--workspace",
                             "-0.2,-0.2,-0.2,0.2,0.2,0.2", "--out", "plan", "--json"})
                            .out);
   };
@@ -491,38 +491,43 @@ TEST_F(Follow, FaultsOfFilesAndClocks) {
   EXPECT_EQ(load_vdb(dir / "plan/state.vdb").views().size(), 5U);
 }
 
-TEST_F(Follow, RefusesWhatItCannotGoOnWith) {
+TEST_F(Watch, RefusesWhatItCannotGoOnWith) {
   put(0);
   write("live/done", "");
   write("mine/next.txt", "notes");
-  Strings call = follow();
+  Strings call = watch();
   *std::find(call.begin(), call.end(), "plan") = "mine";
   expect_refused(call, "mine/next.txt");
   *std::find(call.begin(), call.end(), "mine") = "live";
   expect_refused(call, "FRAMES_DIR");
-  call = follow();
+  call = watch();
   call[1] = "nowhere";
   expect_refused(call, "nowhere");
   write("reach.toml", "poses = \"plan/next.txt\"\n");
-  expect_refused(follow({"--reach", "reach.toml"}), "--reach");
-  expect_refused(follow({"--gain", "paper", "--object-size", "0.2"}), "--object-size");
-  run_well(follow());
-  call = follow();
+  expect_refused(watch({"--reach", "reach.toml"}), "--reach");
+  expect_refused(watch({"--resume"}), "--resume");
+  expect_refused(watch({"--costs", "mine/next.txt"}), "--costs");
+  expect_refused({"model", "live", "--watch", "--voxel", "0.02", "--out", "plan"}, "--workspace");
+  expect_refused({"model", "live", "--max-views", "3", "--voxel", "0.02", "--out", "plan"},
+                 "--watch");
+  expect_refused(watch({"--gain", "paper", "--hazard", "size=0.2"}), "--hazard");
+  run_well(watch());
+  call = watch();
   *std::find(call.begin(), call.end(), "0.025") = "0.02";
   expect_refused(call, "0.025");
   write("other.toml", read("small.toml") + "\n");
   std::string other = read("small.toml");
   other.replace(other.find("60.0"), 4, "61.0");
   write("other.toml", other);
-  expect_refused(follow({"--sensor", "other.toml"}), "plan/state.vdb: its frames are of small");
+  expect_refused(watch({"--sensor", "other.toml"}), "plan/state.vdb: its frames are of small");
   run_well({"integrate", "whole", "--voxel", "0.025", "--out", "map.vdb"});
   fs::copy_file(dir / "map.vdb", dir / "plan/state.vdb", fs::copy_options::overwrite_existing);
-  expect_refused(follow(), "plan/state.vdb");
+  expect_refused(watch(), "plan/state.vdb");
   fs::remove_all(dir / "plan");
   fs::remove(dir / "live/done");
-  const pid_t child = start(follow());
+  const pid_t child = start(watch());
   EXPECT_TRUE(wait_for(1));
-  expect_refused(follow(), "plan: another process");
+  expect_refused(watch(), "plan: another process");
   EXPECT_EQ(::kill(child, SIGINT), 0);
   const int status = end_of(child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "program/commands/follow/followed_map.hpp"
+#include "program/commands/model/watched_map.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -20,7 +20,6 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
-#include "viewgain/planner_mesh/candidate_generation.hpp"
 #include "viewgain/raycast/suspect_frames.hpp"
 #include "viewgain/support/file_bytes.hpp"
 
@@ -29,14 +28,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ViewPlanner planner_of(Sensor sensor, std::optional<std::array<double, 3>> body,
-                       const ScorerConfig& map, const PlannerConfig& config, const fs::path& state,
-                       const std::optional<SavedFrames>& saved, const ExecConfig& exec) {
+ViewPlanner planner_of(const Sensor& sensor, const ScorerConfig& map, const PlannerConfig& config,
+                       const fs::path& state, const std::optional<SavedFrames>& saved,
+                       const ExecConfig& exec) {
   if (saved && saved->sensor && !is_same_sensor(*saved->sensor, sensor)) {
     refuse(state.string() + ": its frames are of " + saved->sensor->name + ", not of this " +
            sensor.name + "; name a new folder");
   }
-  if (body) sensor.body_size = body;
   return saved ? ViewPlanner::load(state, sensor, map, config, exec)
                : ViewPlanner(ViewScorer(sensor, map, exec), config);
 }
@@ -74,8 +72,9 @@ FrameWatch watch_of(const FrameFolderOptions& options, const std::optional<Saved
     config.masks.push_back(mask_folder("--mask", options.mask, options.folder));
   }
   if (!options.confidence.empty()) {
-    config.masks.push_back(mask_folder("--confidence", options.confidence, options.folder,
-                                       static_cast<std::uint8_t>(options.least_confidence)));
+    const Confidence confidence = parse_confidence(options.confidence);
+    config.masks.push_back(
+        mask_folder("--confidence", confidence.folder, options.folder, confidence.least));
   }
   if (saved) config.taken = saved->frames;
   return {options.folder, std::move(config)};
@@ -161,20 +160,22 @@ std::vector<Pose> AskedViews::answered_by(const std::string& name) {
   return std::exchange(asked_, {});
 }
 
-FollowedMap::FollowedMap(const Sensor& sensor, std::optional<std::array<double, 3>> body,
-                         const ScorerConfig& map, const PlannerConfig& config, fs::path state,
-                         const std::optional<SavedFrames>& saved,
-                         const std::optional<PoseSigma>& sigma, const ExecConfig& exec)
-    : sensor_(sensor),
-      model_(map.gain.model),
+WatchedMap::WatchedMap(const Sensor& sensor, const ScorerConfig& map, const PlannerConfig& config,
+                       fs::path state, const std::optional<SavedFrames>& saved,
+                       const std::optional<PoseSigma>& sigma, const ExecConfig& exec)
+    : model_(map.gain.model),
       state_(std::move(state)),
-      planner_(planner_of(sensor, body, map, config, state_, saved, exec)),
-      sigma_(sigma) {
-  const BoundaryViewsConfig boundary = default_boundary(sensor, grid().voxel_size());
-  planner_.add_generation(std::make_shared<BoundaryGeneration>(planner_.scorer(), boundary, exec));
+      planner_(planner_of(sensor, map, config, state_, saved, exec)),
+      sigma_(sigma) {}
+
+void WatchedMap::propose_by(const GenerationConfig& config, const ExecConfig& exec) {
+  for (const PoseSet& set : config.sets) planner_.add_poses(set);
+  if (!config.at_boundaries) return;
+  planner_.add_generation(
+      std::make_shared<BoundaryGeneration>(planner_.scorer(), config.boundary, exec));
 }
 
-std::string FollowedMap::suspicion(bool is_last) {
+std::string WatchedMap::suspicion(bool is_last) {
   if (is_suspected_ || (!is_last && count_ < due_)) return {};
   while (due_ <= count_) due_ *= 2;
   std::string what = text_of(planner_.scorer().consistency(), numbers_);
@@ -183,13 +184,13 @@ std::string FollowedMap::suspicion(bool is_last) {
   return what;
 }
 
-std::optional<FrameRegistration> FollowedMap::register_in(const WatchedFrame& frame) const {
+std::optional<FrameRegistration> WatchedMap::register_in(const WatchedFrame& frame) const {
   if (!sigma_) return std::nullopt;
   return planner_.register_frame(frame.frame, frame.T_world_camera, *sigma_);
 }
 
-AddedView FollowedMap::add(const WatchedFrame& frame,
-                           const std::optional<FrameRegistration>& registration) {
+AddedView WatchedMap::add(const WatchedFrame& frame,
+                          const std::optional<FrameRegistration>& registration) {
   const AddedView added = registration ? planner_.add(frame.frame, registration->T_world_camera,
                                                       registration->pose_sigma())
                                        : planner_.add(frame.frame, frame.T_world_camera);
@@ -198,17 +199,17 @@ AddedView FollowedMap::add(const WatchedFrame& frame,
   return added;
 }
 
-void FollowedMap::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera) {
+void WatchedMap::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera) {
   (void)planner_.drop(verdict, T_world_camera);
 }
 
-void FollowedMap::answer(std::span<const Pose> asked, const std::optional<Pose>& T_world_camera) {
+void WatchedMap::answer(std::span<const Pose> asked, const std::optional<Pose>& T_world_camera) {
   if (asked.empty()) return;
   if (T_world_camera && is_among(*T_world_camera, asked, ReachRegion::Tolerance{})) return;
   planner_.tried(asked.front(), false);
 }
 
-NextViews FollowedMap::next(std::size_t top, double cost_per_metre) {
+NextViews WatchedMap::next(std::size_t top, double cost_per_metre) {
   const FrameCounts& frames = planner_.frames();
   if (frames.empty() || !is_in_map(frames.begin()->first)) {
     NextViews none;
@@ -220,6 +221,6 @@ NextViews FollowedMap::next(std::size_t top, double cost_per_metre) {
                     proposal, model_);
 }
 
-void FollowedMap::save() const { planner_.save(state_); }
+void WatchedMap::save() const { planner_.save(state_); }
 
 }  // namespace viewgain::app

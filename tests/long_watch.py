@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Feeds `follow` frames of an object from poses that jump about, as quickly as it takes them, and looks for what
+"""Feeds `model --watch` frames of an object from poses that jump about, as quickly as it takes them, and looks for what
 grows, what is lost and what differs from the same frames put into a map at once.
 
-    tests/long_follow.py PROGRAM MESH --work FOLDER [--frames 10000]
+    tests/long_watch.py PROGRAM MESH --work FOLDER [--frames 10000]
 
 Ends with 1 where a frame is not counted, where the map is not the one of `integrate`, or where from the second quarter
 to the last memory grows by more than 4 kB a frame or a frame takes half as much CPU time again.
@@ -77,13 +77,13 @@ def main():
     def call(*arguments):
         return subprocess.run([program, *map(str, arguments)], check=True, stdout=subprocess.PIPE, text=True).stdout
 
-    call("simulate", options.mesh, "--size", "0.35", "--recenter", "on", "--sphere", f"{POSES},0.6", "--sensor",
+    call("simulate", options.mesh, "--size", "0.35", "--place", "center", "--poses", f"sphere:{POSES},0.6", "--sensor",
          work / "small.toml", "--noise", "on", "--out", some)
     for name in ("sensor.toml", "frames.toml"):
         shutil.copy(some / name, live)
     poses = [line.split() for line in (some / "poses.txt").read_text().splitlines() if not line.startswith("#")]
     order = random.Random(1).choices(range(POSES), k=options.frames)
-    process = subprocess.Popen([program, "follow", str(live), *MAP, "--out", str(out), "--quiet"],
+    process = subprocess.Popen([program, "model", str(live), "--watch", *MAP, "--out", str(out), "--quiet"],
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     rows = []
     with open(live / "poses.txt", "w", encoding="utf-8") as file:
@@ -97,18 +97,18 @@ def main():
                 given += 1
             file.flush()
             if process.poll() is not None:
-                print(f"follow ended with {process.returncode}: {process.stderr.read()}", file=sys.stderr)
+                print(f"the watch ended with {process.returncode}: {process.stderr.read()}", file=sys.stderr)
                 return 1
             done = counted(out)
             rows.append((done, resident(process), cpu_seconds(process)))
             time.sleep(0.005)
     (live / "done").touch()
     if process.wait() != 0:
-        print(f"follow ended with {process.returncode}: {process.stderr.read()}", file=sys.stderr)
+        print(f"the watch ended with {process.returncode}: {process.stderr.read()}", file=sys.stderr)
         return 1
     frames = counted(out)
     call("integrate", live, *MAP, "--out", work / "whole.vdb")
-    same = call("info", out / "state.vdb", "--hash") == call("info", work / "whole.vdb", "--hash")
+    same = call("info", out / "state.vdb", "--json") == call("info", work / "whole.vdb", "--json")
 
     def quarter(k):
         rows_of = [row for row in rows if options.frames * k <= 4 * row[0] <= options.frames * (k + 1)]

@@ -8,10 +8,10 @@
 #include <string>
 
 #include "apps/program_runner.hpp"
-#include "program/cli/json.hpp"
 #include "support/pose_file_text.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/png.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain {
 namespace {
@@ -22,13 +22,13 @@ constexpr std::size_t kFrames = 6;
 constexpr int kWidth = 48, kHeight = 36;  // [px]
 
 // Views of a cube: in "clean" as they are; those that come into "live" show an arm, too.
-class FollowMasks : public test::ProgramTest {
+class WatchMasks : public test::ProgramTest {
  protected:
-  FollowMasks() {
+  WatchMasks() {
     write_cube();
     write_small_sensor();
-    run_well({"simulate", "cube.off", "--orbit", std::to_string(kFrames) + ",0.6,27", "--sensor",
-              "small.toml", "--size", "0.2", "--recenter", "on", "--out", "clean"});
+    run_well({"simulate", "cube.off", "--poses", "orbit:" + std::to_string(kFrames) + ",0.6,27",
+              "--sensor", "small.toml", "--size", "0.2", "--place", "center", "--out", "clean"});
     const FrameSequence frames = open_frames(dir / "clean");
     for (std::size_t i = 0; i < kFrames; ++i) {
       GrayImage depth = read_gray_png(frames.images[i], kWidth, kHeight);
@@ -75,26 +75,25 @@ class FollowMasks : public test::ProgramTest {
                         more);
   }
 
-  static Strings follow(const Strings& more = {"--mask", "live/masks"}) {
-    return call("follow", "live", "plan", more);
+  static Strings watch(const Strings& more = {"--mask", "live/masks"}) {
+    return test::joined(call("model", "live", "plan", more), {"--watch"});
   }
 
-  // What `follow` with these flags says in the end.
-  json follow_well(const Strings& more) const {
-    return json::parse(run_well(test::joined(follow(more), {"--json", "--quiet"})));
+  // What `model --watch` with these flags says in the end.
+  json watch_well(const Strings& more) const {
+    return json::parse(run_well(test::joined(watch(more), {"--json", "--quiet"})));
   }
 
-  // By `integrate`, which counts what `follow` counts for its gain.
+  // By `integrate`, which counts what `model` counts for its gain.
   json integrate(const std::string& frames, const Strings& more) const {
-    return json::parse(run_well(
-        test::joined(call("integrate", frames, "map.vdb", more),
-                     {"--calibrate-hazard", "on", "--depth-scale", "1e-4", "--json", "--quiet"})));
+    return json::parse(run_well(test::joined(call("integrate", frames, "map.vdb", more),
+                                             {"--depth-scale", "1e-4", "--json", "--quiet"})));
   }
 
   Strings images, poses, masks, confidences;  // the files' bytes
 };
 
-TEST_F(FollowMasks, AMaskedArmIsNoPartOfTheMap) {
+TEST_F(WatchMasks, AMaskedArmIsNoPartOfTheMap) {
   for (std::size_t i = 0; i < kFrames; ++i) {
     put(i);
     put_mask(i);
@@ -102,10 +101,9 @@ TEST_F(FollowMasks, AMaskedArmIsNoPartOfTheMap) {
   }
   write("live/done", "");
   const json expected = integrate("clean", {"--mask", "live/masks"});
-  for (const Strings& flags :
-       {Strings{"--mask", "live/masks"}, Strings{"--confidence", "sure", "--least-confidence", "2"},
-        Strings{"--mask", "live/masks", "--confidence", "sure", "--least-confidence", "2"}}) {
-    const json said = follow_well(flags);
+  for (const Strings& flags : {Strings{"--mask", "live/masks"}, Strings{"--confidence", "sure,2"},
+                               Strings{"--mask", "live/masks", "--confidence", "sure,2"}}) {
+    const json said = watch_well(flags);
     EXPECT_EQ(said["frames"], kFrames);
     EXPECT_EQ(said["hash"], expected["hash"]) << flags[0];
     EXPECT_GT(said["masked_pixels"], 0);
@@ -114,27 +112,27 @@ TEST_F(FollowMasks, AMaskedArmIsNoPartOfTheMap) {
   }
   for (const Strings& flags : {Strings{}, Strings{"--confidence", "sure"}}) {
     // An arm that moves with the camera is no part of the scene.
-    const test::ProgramResult result = run(test::joined(follow(flags), {"--json", "--quiet"}));
+    const test::ProgramResult result = run(test::joined(watch(flags), {"--json", "--quiet"}));
     EXPECT_NE(result.err.find("lie in space that other frames saw as free"), std::string::npos);
     const json said = json::parse(result.out);
     EXPECT_NE(said["hash"], expected["hash"]);
     EXPECT_EQ(said["masked_pixels"], 0);
     fs::remove_all(dir / "plan");
   }
-  const std::string text = run_well(test::joined(follow(), {"--quiet"}));
+  const std::string text = run_well(test::joined(watch(), {"--quiet"}));
   EXPECT_NE(text.find("pixels taken away by masks: "), std::string::npos) << text;
 }
 
-TEST_F(FollowMasks, RefusesFoldersThatCannotHoldMasks) {
+TEST_F(WatchMasks, RefusesFoldersThatCannotHoldMasks) {
   put(0);
   write("live/done", "");
-  expect_refused_with(follow({}), {{{"--mask", "live"}, "live"},
-                                   {{"--confidence", "live/masks/.."}, "--confidence"},
-                                   {{"--mask", "nowhere"}, "nowhere"},
-                                   {{"--mask", ""}, "--mask"},
-                                   {{"--mask", "plan"}, "--out plan"},
-                                   {{"--confidence", "sure", "--least-confidence", "0"}, "0"},
-                                   {{"--confidence", "sure", "--least-confidence", "256"}, "256"}});
+  expect_refused_with(watch({}), {{{"--mask", "live"}, "live"},
+                                  {{"--confidence", "live/masks/.."}, "--confidence"},
+                                  {{"--mask", "nowhere"}, "nowhere"},
+                                  {{"--mask", ""}, "--mask"},
+                                  {{"--mask", "plan"}, "--out plan"},
+                                  {{"--confidence", "sure,0"}, "0"},
+                                  {{"--confidence", "sure,256"}, "256"}});
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/next_views.hpp"
-#include "program/cli/json.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/pose.hpp"
@@ -20,6 +19,8 @@
 #include "viewgain/formats/frame_watch.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner/view_planner.hpp"
+#include "viewgain/planner_mesh/candidate_generation.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 
@@ -47,7 +48,7 @@ struct SavedFrames {
   std::optional<Sensor> sensor{};
 };
 
-/// Of FollowedMap::save(); nothing where there is no file. Throws Error(format), naming the file,
+/// Of WatchedMap::save(); nothing where there is no file. Throws Error(format), naming the file,
 /// for a map that does not say which frames all its views are of, and as load_map().
 [[nodiscard]] std::optional<SavedFrames> saved_frames(const std::filesystem::path& state,
                                                       const ExecConfig& exec);
@@ -100,16 +101,17 @@ class AskedViews {
 
 /// A map that frames are put into as they come, the next best views on it, and the file that keeps
 /// both.
-class FollowedMap {
+class WatchedMap {
  public:
-  /// An empty one or, with `saved`, the one of the file `state`. `sensor` is the frames'; `body`
-  /// takes the place of its own. Throws Error as ViewPlanner's constructor and load(), and
-  /// Error(invalid_argument) if the saved frames are another sensor's.
-  /// With `sigmas` of the poses frames are registered.
-  FollowedMap(const Sensor& sensor, std::optional<std::array<double, 3>> body,
-              const ScorerConfig& map, const PlannerConfig& config, std::filesystem::path state,
-              const std::optional<SavedFrames>& saved, const std::optional<PoseSigma>& sigma,
-              const ExecConfig& exec);
+  /// An empty one or, with `saved`, the one of the file `state`. With a `sigma` of the poses frames
+  /// are registered. Throws Error as ViewPlanner's constructor and load(), and
+  /// Error(invalid_argument) if the saved frames are another sensor's than `sensor`.
+  WatchedMap(const Sensor& sensor, const ScorerConfig& map, const PlannerConfig& config,
+             std::filesystem::path state, const std::optional<SavedFrames>& saved,
+             const std::optional<PoseSigma>& sigma, const ExecConfig& exec);
+
+  /// Where candidates come from; to be said once.
+  void propose_by(const GenerationConfig& config, const ExecConfig& exec);
 
   /// What is probably wrong with the frames that came, said once: after six, twelve, 24, ... of
   /// them, or when there will be no more.
@@ -132,9 +134,8 @@ class FollowedMap {
   /// best was not reached: it is not proposed again.
   void answer(std::span<const Pose> asked, const std::optional<Pose>& T_world_camera);
 
-  /// Nothing while no frame could be used; else the best of the views at the surface's open
-  /// boundaries and of the reach region's poses, each by what it adds to those before it; or a
-  /// plan's. `cost_per_metre` in the gain's unit.
+  /// Nothing while no frame could be used; else the best candidates, each by what it adds to those
+  /// before it; or a plan's. `cost_per_metre` in the gain's unit.
   [[nodiscard]] NextViews next(std::size_t top, double cost_per_metre);
 
   /// Why to end, as ViewPlanner::should_stop().
@@ -145,9 +146,9 @@ class FollowedMap {
 
   [[nodiscard]] const FrameCounts& frames() const { return planner_.frames(); }
   [[nodiscard]] const BeliefGrid& grid() const { return planner_.scorer().grid(); }
+  [[nodiscard]] const Sensor& sensor() const { return planner_.scorer().sensor(); }
 
  private:
-  Sensor sensor_;  // with its own body
   GainModel model_;
   std::filesystem::path state_;
   ViewPlanner planner_;

@@ -11,11 +11,11 @@
 
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/sensing.hpp"
-#include "program/cli/json.hpp"
 #include "program/commands/frames/frame_map.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/planner/register_frame.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
+#include "viewgain/support/json.hpp"
 
 namespace viewgain::app {
 

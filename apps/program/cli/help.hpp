@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "program/cli/app.hpp"
+
+namespace viewgain::app {
+
+/// The options that are added from now on stand in help under this head.
+void begin_group(App& app, const char* head);
+
+/// Puts these options into the group that -h shows alone: what most calls need, ten at most.
+void most_need(App& app, const std::vector<const char*>& names);
+
+/// -h shows the positionals and most_need(), --help all options in their groups, both in lines of
+/// at most 80 columns.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_help(const App* app, std::string name, CLI::AppFormatMode mode) const override;
+};
+
+}  // namespace viewgain::app

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+#include "viewgain/grid/belief_grid.hpp"
+#include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/raycast/voxel_scene.hpp"
+
+/// @file
+/// Gains beside viewgain's own that policies and the program rank by, as those of
+/// viewgain::literature: registered by whoever has them, known by name to the rest.
+
+namespace viewgain {
+
+/// Scores poses on one map by the gains of a GainFamily that were asked for.
+class VIEWGAIN_EXPORT FamilyEvaluator {
+ public:
+  virtual ~FamilyEvaluator() = default;
+  /// results[i * gains + g] for pose i and gain g, by every s-th pixel of every s-th row; NaN for a
+  /// bad pose. `statuses` is empty or has one place a pose. Throws Error(invalid_argument) if sizes
+  /// do not fit.
+  virtual void evaluate(std::span<const Pose> T_world_camera, int pixel_stride,
+                        std::span<double> results, std::span<ViewGain::Status> statuses,
+                        const BatchControl& control) = 0;
+  /// Of all pixels.
+  [[nodiscard]] virtual std::size_t rays_per_pose() const = 0;
+};
+
+/// Gains of one kind, by name. Thread safety: const members may run from many threads at once.
+class VIEWGAIN_EXPORT GainFamily {
+ public:
+  virtual ~GainFamily() = default;
+  /// In their order.
+  [[nodiscard]] virtual const std::vector<std::string>& names() const = 0;
+  /// Of one of the names, as "nat" or "voxels".
+  [[nodiscard]] virtual std::string_view unit(std::string_view name) const = 0;
+  /// For views of `sensor` on the map as it is, whose readings are of `sensor`, too. Throws
+  /// Error(invalid_argument) for a name that is none, and as the gains' own evaluator.
+  [[nodiscard]] virtual std::unique_ptr<FamilyEvaluator> evaluator(
+      std::shared_ptr<const VoxelScene> scene, const BeliefGrid& grid, const Sensor& sensor,
+      std::span<const std::string> names, const ExecConfig& exec) const = 0;
+};
+
+/// Makes the names known in this process, instead of those registered before; null: none. To be
+/// called before other threads ask for them.
+VIEWGAIN_EXPORT void register_gains(std::shared_ptr<const GainFamily> family);
+/// What was registered; a family without names where nothing was.
+[[nodiscard]] VIEWGAIN_EXPORT const GainFamily& registered_gains() noexcept;
+/// Is it the name of a registered gain?
+[[nodiscard]] VIEWGAIN_EXPORT bool is_registered_gain(std::string_view name);
+
+}  // namespace viewgain
