@@ -27,6 +27,10 @@ std::filesystem::path map_in(const std::filesystem::path& path) {
 BeliefGrid load_map(const std::filesystem::path& file_or_run, const Sensor* sensor,
                     OctomapConfig config, const ExecConfig& exec) {
   const std::filesystem::path path = map_in(file_or_run);
+  std::error_code ignored;
+  if (path != file_or_run && !std::filesystem::exists(path, ignored)) {
+    throw Error(ErrorCode::io, file_or_run.string() + ": has no map.vdb or state.vdb");
+  }
   if (!is_octomap(path)) {
     BeliefGrid grid = load_vdb(path, exec);
     MapNotes notes = grid.notes();

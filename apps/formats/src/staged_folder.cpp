@@ -121,6 +121,9 @@ bool has_mark(const fs::path& file, const char* mark) {
 // moved has no run.json.
 std::vector<fs::path> files_of_earlier_run(const fs::path& dir) {
   std::vector<fs::path> files = run_files(dir);
+  if (is_there(dir / "state.vdb")) {
+    refuse(dir.string() + ": is the folder of a model that watches frames; name a new folder");
+  }
   if (files.empty()) return files;
   if (!has_mark(dir / "run.json", "\"map_hash\"") &&
       !has_mark(dir / kCheckpoint, "\"decisions\"")) {

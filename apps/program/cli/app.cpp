@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/cli/app.hpp"
 
+#include "program/cli/successors.hpp"
 #include "program/cli/values.hpp"
 
 namespace viewgain::app {
@@ -43,6 +44,10 @@ void parse_words(App& app, const std::vector<std::string>& words) {
   try {
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as CLI11 wants them
   } catch (const CLI::ParseError& error) {
+    for (const std::string& word : words) {
+      const std::string gone = successor_of(word.substr(0, word.find('=')));
+      if (!gone.empty()) throw UsageError(ErrorCode::invalid_argument, gone);
+    }
     throw UsageError(ErrorCode::invalid_argument, error.what());
   }
 }

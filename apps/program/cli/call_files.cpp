@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "program/cli/command_line.hpp"
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/pose_source.hpp"
 #include "program/cli/flags/scene_sources.hpp"
@@ -107,6 +108,12 @@ const Option* option_of_call(const App& subcommand, std::string_view name) {
   return found == options.end() ? nullptr : *found;
 }
 
+// Without what stands beside a path in some values.
+std::string path_in(std::string_view option, const std::string& value) {
+  if (option == "--confidence") return parse_confidence(value).folder;
+  return option == "--hazard" ? hazard_file_of(value) : value;
+}
+
 std::vector<NamedFile> named_files(const App& subcommand) {
   std::vector<NamedFile> files;
   for (const FileOption& file_option : kFileOptions) {
@@ -115,13 +122,11 @@ std::vector<NamedFile> named_files(const App& subcommand) {
     for (const std::string& value : option->results()) {
       if (file_option.name == "--sensor" && !is_sensor_file(value)) continue;
       if (file_option.name == "--poses" && is_set_of_poses(value)) continue;
-      if (file_option.name == "--hazard" && !is_hazard_file(value)) continue;
+      if (file_option.name == "--hazard" && hazard_file_of(value).empty()) continue;
       if (file_option.name == "--obstacle" && !is_obstacle_file(value)) continue;
       // Of a run it is a switch, and the page a file of --out.
       if (file_option.name == "--report" && is_run(subcommand)) continue;
-      const bool has_number = file_option.name == "--confidence";
-      files.push_back({std::string(file_option.name),
-                       has_number ? parse_confidence(value).folder : value,
+      files.push_back({std::string(file_option.name), path_in(file_option.name, value),
                        kind_of(file_option, subcommand.get_name())});
     }
   }
@@ -212,6 +217,7 @@ std::string fault_of_output(const NamedFile& file, const std::string& subcommand
 
 void check_call(const App& subcommand) {
   check_values(subcommand);
+  if (const std::string fault = fault_of_folder(subcommand); !fault.empty()) refuse(fault);
   const std::vector<NamedFile> files = named_files(subcommand);
   for (const NamedFile& file : files) {
     if (!is_output(file.kind)) continue;

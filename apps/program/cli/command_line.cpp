@@ -3,72 +3,27 @@
 #include "program/cli/command_line.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <string_view>
+#include <filesystem>
+#include <system_error>
 
 #include "program/cli/config_file.hpp"
 #include "program/cli/help.hpp"
+#include "program/cli/successors.hpp"
 #include "program/cli/values.hpp"
+#include "viewgain/formats/map_file.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/version.hpp"
 
 namespace viewgain::app {
 namespace {
 
-// What does the work of a subcommand or flag that there was once.
-struct Successor {
-  std::string_view name, now;
-};
-constexpr std::array kSuccessors{
-    Successor{"candidates", "viewgain next MAP --top all --out FILE"},
-    Successor{"follow", "viewgain model FRAMES_DIR --watch --out OUT"},
-    Successor{"--sphere", "--poses sphere:N,RADIUS"},
-    Successor{"--dome", "--poses dome:N,RADIUS"},
-    Successor{"--rings", "--poses rings:N,RADIUS"},
-    Successor{"--shell", "--poses shell:N,RMIN,RMAX"},
-    Successor{"--orbit", "--poses orbit:N,RADIUS,ELEVATION[,START,STEP]"},
-    Successor{"--take", "--plan K,M"},
-    Successor{"--stop-gain", "--stop gain=LIMIT"},
-    Successor{"--stop-area", "--stop area=LIMIT"},
-    Successor{"--stop-idle", "--stop idle=LIMIT"},
-    Successor{"--stop-promises", "--stop promises=LIMIT"},
-    Successor{"--stop-coverage", "--stop coverage=LIMIT"},
-    Successor{"--pose-sigma", "--register SIGMA_M,SIGMA_DEG"},
-    Successor{"--beside", "--report RUN"},
-    Successor{"--flying-pixels", "--noise plain or --noise flying"},
-    Successor{"--scale-error", "--noise scale=E"},
-    Successor{"--pose-noise", "--noise pose=SIGMA_M/SIGMA_DEG"},
-    Successor{"--least-confidence", "--confidence DIR,LEAST"},
-    Successor{"--coarsest", "--scales COARSEST[,FINEST]"},
-    Successor{"--finest", "--scales COARSEST,FINEST"},
-    Successor{"--start", "--from tx,ty,tz,qx,qy,qz,qw"},
-    Successor{"--width", "--viewer AZIMUTH,ELEVATION,WIDTH"},
-    Successor{"--azimuth", "--viewer AZIMUTH,ELEVATION"},
-    Successor{"--elevation", "--viewer AZIMUTH,ELEVATION"},
-    Successor{"--min-range", "min_range in a sensor's file"},
-    Successor{"--max-range", "max_range in a sensor's file"},
-    Successor{"--overlap", "EstimatorConfig::overlap of the library"},
-    Successor{"--region-depth", "EstimatorConfig::region_depth of the library"},
-    Successor{"--refine", "ScorerConfig::refine of the library"},
-    Successor{"--carve", "ScorerConfig::carve of the library"},
-    Successor{"--occupancy", "ScorerConfig::occupancy of the library"},
-    Successor{"--calibrate-hazard", "ScorerConfig::learn_hazard of the library"},
-    Successor{"--what", "viewgain render MAP KIND"},
-    Successor{"--hash", "viewgain info MAP --json"},
-    Successor{"--region", "--workspace BOX"},
-    Successor{"--recenter", "--place center"},
-    Successor{"--object-size", "--hazard size=L"},
-    Successor{"--with-covariance", "viewgain convert MAP OUT.vdb"},
-    Successor{"--stride", "GainConfig::pixel_stride of the library"},
-    Successor{"--refinement-weight", "GainConfig::refinement_weight of the library"}};
-
-std::string successor_of(std::string_view name) {
-  for (const Successor& successor : kSuccessors) {
-    if (successor.name != name) continue;
-    return std::string(name) + ": is gone; " + std::string(successor.now) + " does it";
+// Null for another word.
+const App* subcommand_of(const App& program, const std::string& word) {
+  for (const App* subcommand : program.get_subcommands(nullptr)) {
+    if (subcommand->get_name() == word) return subcommand;
   }
-  return {};
+  return nullptr;
 }
 
 std::string fault_of_subcommand(const App& program, const std::string& word) {
@@ -83,9 +38,10 @@ std::string fault_of_flag(const App& called, const std::string& flag) {
   std::vector<std::string> flags;
   for (const Option* option : options_of_call(called)) {
     const std::string name = option->get_name();
+    if (flag == name) return flag + ": stands after the subcommand, " + called.get_name();
     if (option->nonpositional()) flags.push_back(name);
     if (flag == "--" + CLI::detail::to_lower(name)) {  // a positional's
-      return flag + ": " + name + " is given without a flag";
+      return flag + ": " + name + " is positional; give it without a flag";
     }
   }
   return flag + ": no such flag of " + called.get_name() + did_you_mean(flag, flags);
@@ -101,18 +57,69 @@ std::string fault_of_extras(const App& program, const CLI::ParseError& error) {
   const std::vector<std::string> extras = program.remaining(true);
   const std::vector<App*> called = program.get_subcommands();
   const auto flag = std::find_if(extras.begin(), extras.end(), is_flag);
-  const bool is_of_words = error.get_name() == "ExtrasError" || error.get_name() == "RequiredError";
-  if (flag == extras.end() && (extras.empty() || !is_of_words)) return {};
-  const std::string word = flag == extras.end() ? extras.front() : flag->substr(0, flag->find('='));
-  if (const std::string gone = successor_of(word); !gone.empty()) return gone;
   if (called.empty()) {
-    return flag == extras.end() ? fault_of_subcommand(program, word) : fault_of_flag(program, word);
+    const auto word = std::find_if_not(extras.begin(), extras.end(), is_flag);
+    if (word != extras.end()) {
+      const std::string gone = successor_of(*word);
+      return gone.empty() ? fault_of_subcommand(program, *word) : gone;
+    }
+    return flag == extras.end() ? "" : fault_of_flag(program, flag->substr(0, flag->find('=')));
   }
-  if (flag != extras.end()) return fault_of_flag(*called.front(), word);
-  return word + ": is one word more than " + called.front()->get_name() + " takes";
+  if (const std::string fault = fault_of_folder(*called.front()); !fault.empty()) return fault;
+  if (flag != extras.end()) {
+    const std::string name = flag->substr(0, flag->find('='));
+    const std::string gone = successor_of(name);
+    return gone.empty() ? fault_of_flag(*called.front(), name) : gone;
+  }
+  const bool is_of_words = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+  if (extras.empty() || !is_of_words) return {};
+  return extras.front() + ": " + called.front()->get_name() + " takes no more words";
+}
+
+// A flag in the place of a flag's value: a value that begins so is given as --flag=--value.
+void check_have_values(const App& program, const std::vector<std::string>& words) {
+  const App* called = &program;
+  for (const std::string& word : words) {
+    const App* subcommand = subcommand_of(program, word);
+    if (called == &program && subcommand != nullptr) called = subcommand;
+  }
+  const std::vector<const Option*> options = options_of_call(*called);
+  const auto is_long = [](const std::string& word) {
+    return word.size() > 2 && word.starts_with("--");
+  };
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    const auto option = std::find_if(options.begin(), options.end(), [&](const Option* one) {
+      return one->nonpositional() && one->get_name() == words[i];
+    });
+    if (option == options.end() || is_bare(**option)) continue;
+    if (i + 1 < words.size() && words[i + 1] != "--" && !is_long(words[i + 1])) {
+      ++i;
+      continue;
+    }
+    const std::vector<std::string> choices = choices_of(**option);
+    throw UsageError(
+        ErrorCode::invalid_argument,
+        words[i] + ": needs a value" + (choices.empty() ? "" : "; there are " + listed(choices)));
+  }
 }
 
 }  // namespace
+
+std::string fault_of_folder(const App& called) {
+  for (const char* name : {"MAP", "MESH"}) {
+    const Option* option = called.get_option_no_throw(name);
+    if (option == nullptr || option->count() == 0) continue;
+    const std::filesystem::path path = option->results().front();
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(path, ignored) ||
+        std::filesystem::exists(map_in(path), ignored)) {
+      continue;
+    }
+    return path.string() + ": is a folder without a map; frames become a map by viewgain model " +
+           path.string() + " --voxel V --out RUN";
+  }
+  return {};
+}
 
 std::unique_ptr<App> make_program(CommonOptions& common) {
   auto program = std::make_unique<App>(
@@ -128,17 +135,18 @@ std::unique_ptr<App> make_program(CommonOptions& common) {
   program->option_defaults()->always_capture_default();
   add_common_options(*program, common);
   program->set_version_flag("--version", std::string("viewgain ") + VIEWGAIN_VERSION,
-                            "which version this is");
+                            "print the version");
   program
       ->set_config("--config", "",
-                   "TOML file: flags without -- and positionals (mesh, map) as keys; what the "
-                   "command line says holds")
+                   "TOML file of flags, with flag names without -- and positionals (mesh, map) as "
+                   "keys; the command line takes precedence")
       ->type_name("FILE");
   program->config_formatter(std::make_shared<FlagFile>(*program));
   return program;
 }
 
 const App* parse(App& program, const std::vector<std::string>& words) {
+  check_have_values(program, words);
   try {
     program.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as CLI11 wants them
     return program.get_subcommands().front();

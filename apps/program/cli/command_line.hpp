@@ -16,10 +16,13 @@ namespace viewgain::app {
 /// it.
 [[nodiscard]] std::unique_ptr<App> make_program(CommonOptions& common);
 
-/// Parses the words, the first one first; what --config names stands for flags that are not among
-/// them. The subcommand that was called; null where a help or the version was printed. Throws
-/// UsageError, which of an unknown name says the nearest one, and of one that there was once its
-/// successor.
+/// Parses the words, first word first; --config supplies flags that the words do not give. Returns
+/// the called subcommand, or null if help or the version was printed. Throws UsageError: for an
+/// unknown name with the nearest known one, for a removed name with its successor.
 [[nodiscard]] const App* parse(App& program, const std::vector<std::string>& words);
+
+/// What is wrong with a folder that a parsed call names as MAP or MESH, which holds no map: frames
+/// are for `model`; empty: nothing.
+[[nodiscard]] std::string fault_of_folder(const App& called);
 
 }  // namespace viewgain::app

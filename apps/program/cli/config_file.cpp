@@ -10,6 +10,8 @@
 #include <iterator>
 #include <utility>
 
+#include "program/cli/flags/scene_sources.hpp"
+#include "program/cli/successors.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/support/file_bytes.hpp"
 #include "viewgain/support/hash64.hpp"
@@ -60,7 +62,10 @@ Options settable_options(const App& subcommand) {
 
 // A value as the command line has it.
 std::string word_of(const TableReader& reader, const std::string& key, const toml::node& node,
-                    Kind kind) {
+                    Kind kind, bool may_be_switch = false) {
+  if (kind == Kind::text && node.is_boolean() && may_be_switch) {
+    return node.as_boolean()->get() ? "on" : "off";
+  }
   if (kind == Kind::boolean) {
     if (!node.is_boolean()) reader.fail(key, "must be true or false");
     return node.as_boolean()->get() ? "on" : "off";
@@ -94,7 +99,9 @@ Words values_of(const TableReader& reader, const std::string& key, const toml::n
     return word_of(reader, key, node, Kind::boolean) == "on" ? Words{"true"} : Words{};
   }
   if (!is_repeated(option) || (list == nullptr && !option.nonpositional())) {
-    return {word_of(reader, key, node, kind_of(option))};
+    // "on" and "off" of noise, register and report, which also take other texts.
+    const std::string usual = option.get_default_str();
+    return {word_of(reader, key, node, kind_of(option), usual == "on" || usual == "off")};
   }
   if (list == nullptr) {
     reader.fail(key, "must be a list, with an element for each " + option.get_name());
@@ -192,6 +199,11 @@ std::vector<CLI::ConfigItem> FlagFile::from_config(std::istream& in) const {
       given.push_back(std::move(item));
     }
   }
+  for (const auto& [key, node] : file) {
+    const std::string gone = successor_of("--" + std::string(key.str()));
+    const Option* known = called.front()->get_option_no_throw("--" + std::string(key.str()));
+    if (!gone.empty() && known == nullptr) reader.fail(key.str(), "is of a flag: " + gone);
+  }
   reader.refuse_unknown_keys();
   return given;
 }
@@ -230,7 +242,8 @@ CallSettings call_settings(const App& subcommand, const Words& left_out) {
     }
     flag = json_of(value_of(*option), *option);
     if (kind_of(*option) != Kind::text) continue;
-    for (const std::string& value : option->results()) {
+    for (std::string value : option->results()) {
+      if (key == "hazard") value = hazard_file_of(value);
       std::error_code ignored;
       if (!std::filesystem::is_regular_file(value, ignored)) continue;
       Hash64 hash;

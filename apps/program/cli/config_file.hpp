@@ -11,11 +11,12 @@
 
 namespace viewgain::app {
 
-/// A TOML file says of a subcommand what its command line would: keys are the flags without --, and
+/// Reads a subcommand's flags from a TOML file: keys are the flags without --, and
 /// the positionals in small letters with - for _ (MESH is `mesh`, FRAMES_DIR `frames-dir`). Numbers
 /// are numbers, switches and flags without a value true or false, options that may be repeated
 /// lists; numbers and names with commas may be lists, too. Paths are as on the command line,
-/// relative to where the program runs. What the command line says holds, all repetitions of it.
+/// relative to where the program runs. An option on the command
+/// line replaces all of the file's values for it.
 class FlagFile : public CLI::Config {
  public:
   explicit FlagFile(const App& program) : program_(program) {}

@@ -9,7 +9,7 @@
 
 namespace viewgain::app {
 
-/// The options that are added from now on stand in help under this head.
+/// Help lists options added after this call under this heading.
 void begin_group(App& app, const char* head);
 
 /// Puts these options into the group that -h shows alone: what most calls need, ten at most.

@@ -77,11 +77,10 @@ Command add_convert(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "convert",
-      "A map from one format into another: .vdb, OctoMap's .ot and (read only) .bt. OctoMap trees "
-      "keep states and log-odds, a .bt only states; they have no beliefs, prior or views, and a "
-      "frame only where it is a shift by whole voxels, which moves the tree. A .vdb gets "
-      "covariances "
-      "and positions for viewers, too.");
+      "Convert a map between .vdb, OctoMap's .ot and .bt (.bt read only). Trees hold states and "
+      "log-odds (.bt: states only), but no beliefs, prior or views. A map frame that is a shift by "
+      "whole voxels moves the tree; other frames are lost, which is said. A .vdb also gets "
+      "covariances and positions for viewers.");
   app->add_option("IN", options->in, kMapHelp)->required();
   app->add_option("OUT", options->out, "map to write (.vdb or .ot)")->required();
   app->add_option("--workspace", options->workspace,

@@ -136,9 +136,9 @@ Command add_info(App& program) {
   app->add_option("--criterion", options->criterion,
                   "of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
       ->check(one_of(criterion_names(), "criterion"));
-  app->add_option("--workspace", options->region,
-                  "x0,y0,z0,x1,y1,z1: the part of a map of which it is also said how well it is "
-                  "known, grid frame [m]");
+  app->add_option(
+      "--workspace", options->region,
+      "x0,y0,z0,x1,y1,z1: box for which to report also how well it is known, grid frame [m]");
   add_help(*app, kLookGroup, "info map.vdb --criterion trace");
   return command_of(app, options, info);
 }

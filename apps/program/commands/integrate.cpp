@@ -307,11 +307,11 @@ Command add_integrate(App& program) {
   app->add_option("--cloud", options->clouds, "a point cloud instead; may be repeated")
       ->allow_extra_args(false);
   app->add_option("--origin", options->origin,
-                  "x,y,z of the clouds' sensor [m], their points being in the world; or viewpoint: "
-                  "what each .pcd's VIEWPOINT says");
+                  "x,y,z of the sensor [m], for clouds in world coordinates; or viewpoint: from "
+                  "each .pcd's VIEWPOINT");
   app->add_option("--poses", options->poses,
-                  "TUM file, line i for the i-th cloud, sensor to world; the clouds' points are "
-                  "then in the sensor's frame, a VIEWPOINT does not count");
+                  "TUM file, line i for cloud i, sensor to world; the points are then in the "
+                  "sensor's frame and VIEWPOINT is ignored");
   begin_group(*app, "Map");
   app->add_option("--voxel", options->voxel, "voxel size [m]; needed unless --map is given");
   app->add_option(
@@ -319,8 +319,8 @@ Command add_integrate(App& program) {
       "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what frames or clouds see");
   app->add_option("--sensor", options->frames.sensor,
                   kSensorHelp +
-                      "; default: FRAMES_DIR/sensor.toml; needed for clouds, of which noise and "
-                      "ranges hold");
+                      "; default: FRAMES_DIR/sensor.toml; required for clouds, which use its noise "
+                      "and ranges");
   add_frame_folder_options(*app, options->frames);
   begin_group(*app, "Map");
   app->add_option("--jump-edge-filter", options->jump_edge_filter, kJumpEdgeHelp);

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,7 +13,6 @@
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/proposal/view_proposal.hpp"
-#include "viewgain/formats/map_file.hpp"
 #include "viewgain/formats/pose_files.hpp"
 #include "viewgain/support/json.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -59,6 +57,14 @@ void put_all(Json& json, const NextViews& views, const Proposal& proposal,
   }
 }
 
+// Nothing: all.
+std::optional<std::size_t> parse_top(const std::string& text) {
+  if (text == "all") return std::nullopt;
+  const std::size_t count = parse_count("--top", parse_numbers("--top", text, 1, 1)[0]);
+  if (count < 1) refuse("--top 0: needs a count or all");
+  return count;
+}
+
 struct Options {
   CommonOptions common;
   std::string map;
@@ -67,25 +73,19 @@ struct Options {
   std::string top = "10";
   std::string out;
   bool explain = false;
-
-  [[nodiscard]] bool all() const { return top == "all"; }
 };
 
 void check(const Options& options) {
   check(options.proposal);
-  if (!options.all()) return;
-  if (options.explain) refuse("--explain goes with --top N, not all");
-  if (parse_plan(options.proposal.plan).is_on()) refuse("--plan goes with --top N, not all");
+  if (parse_top(options.top)) return;
+  if (options.explain) refuse("--explain cannot be used with --top all");
+  if (parse_plan(options.proposal.plan).is_on()) refuse("--plan cannot be used with --top all");
 }
 
 void next(const Options& options) {
   const Stopwatch watch;
   check(options);
-  if (std::error_code ignored; std::filesystem::is_directory(options.map, ignored) &&
-                               !std::filesystem::exists(map_in(options.map), ignored)) {
-    refuse(options.map + ": has no map.vdb or state.vdb; frames become a map by viewgain model " +
-           options.map + " --out RUN");
-  }
+  const std::optional<std::size_t> top = parse_top(options.top);
   const ExecConfig exec = exec_of(options.common);
   SensedMap map = load_sensed_map(options.map, options.sensor, exec);
   require_known(map.grid, options.map);
@@ -102,16 +102,14 @@ void next(const Options& options) {
   const GainEvaluator evaluator = evaluator_of(options.proposal, model, sensor, exec);
   const std::optional<Pose> last = last_view(model.grid());
   NextViews views =
-      options.all()
-          ? all_views(evaluator, proposal, options.proposal, last, options.common.quiet)
-          : best_views(evaluator, proposal, options.proposal, last,
-                       static_cast<std::size_t>(std::stoul(options.top)), options.common.quiet);
+      top ? best_views(evaluator, proposal, options.proposal, last, *top, options.common.quiet)
+          : all_views(evaluator, proposal, options.proposal, last, options.common.quiet);
   if (options.explain) explain(views, proposal, evaluator);
   if (!options.out.empty()) save_poses(options.out, poses_of(views));
   if (options.common.json) {
     Json json{{"views", model.grid().views().size()}};
     json.update(to_json(views));
-    if (options.all()) put_all(json, views, proposal, generation);
+    if (!top) put_all(json, views, proposal, generation);
     json["out"] = nullptr;
     if (!options.out.empty()) json["out"] = options.out;
     json["seconds"] = watch.seconds();
@@ -121,14 +119,10 @@ void next(const Options& options) {
   std::printf("%zu views so far, %s; %s\n", model.grid().views().size(),
               printable(sensor.name).c_str(), summary_of(views).c_str());
   std::printf("%s", text_of(views).c_str());
+  if (options.proposal.reach.empty()) {
+    std::printf("%s", outside_text(views, model.grid()).c_str());
+  }
   if (!options.out.empty()) std::printf("poses in %s\n", options.out.c_str());
-}
-
-CLI::Validator count_or_all() {
-  return {[number = counted(1, 1'000'000)](std::string& value) {
-            return value == "all" ? std::string() : number(value);
-          },
-          "COUNT or all"};
 }
 
 }  // namespace
@@ -138,23 +132,23 @@ Command add_next(App& program) {
   App* app = program.add_subcommand(
       "next",
       "Where the camera should look next: the best views for a map, each with its gain and why it "
-      "was proposed. It names none where nothing that the camera can reach is left to gain.");
+      "was proposed. The list is empty if no reachable view has a gain.");
   Options& o = *options;
   app->add_option("MAP", o.map, kMapHelp)->required();
   app->add_option("--sensor", o.sensor, kMapSensorHelp);
   add_next_view_options(*app, o.proposal);
-  app->add_option("--top", o.top,
-                  "views to name at most, each by what it adds to those before it, so that no two "
-                  "show the same; all: every possible candidate by its own gain, best first, and "
-                  "with --json why the others were dropped")
-      ->check(count_or_all());
+  app->add_option(
+      "--top", o.top,
+      "maximum number of views to propose, each with its marginal gain; all: every possible "
+      "candidate with its own gain, best first, and with --json why the others were dropped");
   app->add_option(
       "--out", o.out,
       "file of camera-to-world poses to write (.txt or .tum: TUM text; .npy), best first, or in "
       "the plan's order");
-  app->add_flag("--explain", o.explain,
-                "say of each view what becomes of its rays: how many come to unknown space, end in "
-                "known surface, leave the map, ...; where no view gains, of all candidates'");
+  app->add_flag(
+      "--explain", o.explain,
+      "print where each view's rays go: unknown space, known surface, out of the map, ...; if no "
+      "view has a gain, the same for up to 32 candidates together (cannot be used with --top all)");
   most_need(*app, {"--top", "--out", "--sensor", "--generator", "--poses", "--gain", "--reach",
                    "--obstacle", "--plan", "--explain"});
   add_help(*app, kViewsGroup, "next map.vdb --sensor sr4000 --top 3 --out next.txt");

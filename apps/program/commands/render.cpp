@@ -107,8 +107,8 @@ Command add_render(App& program) {
           ->required();
   what->check(one_of({"map", "surface", "sigma"}, "kind of picture"));
   app->add_option("--viewer", o.viewer,
-                  "AZIMUTH,ELEVATION[,WIDTH] from which it is seen, azimuth from +x to +y [deg]; "
-                  "of the picture [px], 64..8192, 1280");
+                  "AZIMUTH,ELEVATION[,WIDTH]: viewing direction, azimuth from +x to +y [deg]; "
+                  "picture width [px], 64..8192 (default: 1280)");
   app->add_option("--out", o.out, "PNG file to write")->required();
   add_help(*app, kLookGroup, "render run sigma --out sigma.png");
   return command_of(app, options, [](const Options& given) { render(given); });

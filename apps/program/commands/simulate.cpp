@@ -63,8 +63,8 @@ struct PixelCounts {
 
 // Where the mesh's frame is in the world; nothing: where it is, or its centre at the origin.
 std::optional<Pose> parse_place(std::string text) {
-  if (text.starts_with("center")) text.erase(0, std::min<std::size_t>(text.size(), 7));
-  if (text.empty()) return std::nullopt;
+  if (text.empty() || text == "center") return std::nullopt;
+  if (text.starts_with("center,")) text.erase(0, 7);
   const std::vector<double> n = parse_numbers("--place", text, 3, 7);
   if (n.size() > 4) return parse_pose("--place", text);
   const double yaw = n.size() > 3 ? n[3] * std::numbers::pi / 180 : 0;
@@ -119,7 +119,7 @@ void warn_of_place(const Options& options, const Box& box, const Sensor& sensor)
 }
 
 void simulate(const Options& options) {
-  const ExecConfig exec{options.common.threads};
+  const ExecConfig exec = exec_of(options.common);
   Sensor sensor = load_sensor(options.sensor);
   sensor.validate();
   warn_of_sensor(sensor);

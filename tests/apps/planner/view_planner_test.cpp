@@ -17,6 +17,7 @@
 #include "apps/planner/bin_scene.hpp"
 #include "core/expect_error.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
+#include "viewgain/planner/planner_parts.hpp"
 #include "viewgain/planner/view_proposer.hpp"
 
 namespace viewgain {
@@ -464,6 +465,73 @@ TEST(ViewPlanner, WhyToEndDoesNotHangOnHowManyAreAskedFor) {
     seen.insert(reason_with(1, share) == StopReason::area);
   }
   EXPECT_EQ(seen.size(), 2U);
+}
+
+// Algorithm 1 over the planner's parts takes the views that its steps take, and ends for the same
+// reason.
+TEST(ViewPlanner, TheLoopOverItsPartsIsItsSteps) {
+  const BinScene scene;
+  class Camera : public DataAcquisition {
+   public:
+    explicit Camera(const BinScene& of) : scene_(of) {}
+    Measurements acquire(const Pose& T_world_camera, std::size_t view) override {
+      return {T_world_camera, {scene_.see(T_world_camera, view)}};
+    }
+
+   private:
+    const BinScene& scene_;
+  };
+  std::set<StopReason> reasons;
+  for (const GainModel model : {GainModel::paper, GainModel::surface, GainModel::combined}) {
+    for (const double cost : {0.0, 3.0}) {
+      PlannerSetUp config = scene.config(model);
+      config.planner.max_views = 6;
+      if (cost > 0 && model != GainModel::paper) config.planner.stop_area = 0.1;
+      if (cost > 0) config.planner.ahead = {.plan = 2, .take = 2};
+      const RankConfig rank{.cost_per_metre = cost};
+      ViewPlanner looped = config.make(scene.sensor, {2}), stepped = config.make(scene.sensor, {1});
+      for (ViewPlanner* planner : {&looped, &stepped}) planner->add_poses({"dome", scene.views});
+
+      Camera camera(scene);
+      PlannerParts parts(looped, rank);
+      const PlanningResult result =
+          active_view_planning(scene.views[3], camera, parts, parts, parts, looped.planning());
+      Pose next = scene.views[3];
+      for (std::size_t i = 0; i < result.views.size(); ++i) {
+        const ViewRecord& record = result.views[i];
+        ASSERT_TRUE(record.T_world_camera == next) << i;
+        const AddedView added = stepped.add(scene.see(next, i), next);
+        EXPECT_EQ(record.progress.entropy_removed, added.progress.entropy_removed);
+        if (model != GainModel::paper) {
+          EXPECT_EQ(record.progress.new_area, added.progress.new_area);
+        }
+        if (stepped.should_stop()) {
+          EXPECT_EQ(i + 1, result.views.size());
+          break;
+        }
+        const std::size_t count = stepped.propose().candidates.size();
+        EXPECT_EQ(record.proposal.candidates.size(), count);
+        const Ranking best = stepped.rank(1, rank);
+        if (best.views.empty()) break;
+        ASSERT_TRUE(record.decision);
+        EXPECT_EQ(record.decision->candidate, best.views[0].index);
+        if (cost == 0) {  // of a plan the decision has what the view promises by itself
+          EXPECT_EQ(record.decision->gain, best.views[0].gain.gain);
+        }
+        next = best.views[0].T_world_camera;
+      }
+      EXPECT_EQ(stepped.should_stop(), result.reason);
+      EXPECT_EQ(looped.should_stop(), result.reason);
+      EXPECT_EQ(test::seen_of(looped), test::seen_of(stepped));
+      reasons.insert(result.reason);
+    }
+  }
+  EXPECT_GE(reasons.size(), 2U);
+  ViewPlanner planner = scene.config().make(scene.sensor, {1});
+  PlannerParts parts(planner);
+  const std::vector<Candidate> others(3);
+  expect_error(ErrorCode::invalid_argument, "not those of the planner's last proposal",
+               [&] { (void)parts.decide(Pose(), others); });
 }
 
 TEST(ViewPlanner, AStoppedRankingIsNoDecision) {

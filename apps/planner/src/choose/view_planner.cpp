@@ -75,7 +75,8 @@ struct ViewPlanner::Impl {
   detail::PlannerState state;
   ViewProposer proposer;
   std::optional<Proposal> proposal;
-  bool is_of_plan = false;  // the proposal
+  bool is_of_plan = false;                           // the proposal
+  std::optional<DecisionMaking::Decision> decision;  // the last one
   StageSeconds seconds;
   std::once_flag is_registering;
   std::optional<FrameAlignment> registration;  // once it is asked for
@@ -187,7 +188,8 @@ struct ViewPlanner::Impl {
   }
 
   // After a choice, which takes the place of an earlier one of the same view.
-  void remember(const std::optional<DecisionMaking::Decision>& decision, const Proposal& from) {
+  void remember(std::optional<DecisionMaking::Decision> chosen, const Proposal& from) {
+    decision = chosen;
     StopRules rules(planning, state.before_choice);
     state.of_choice = rules.after_decision(decision, from, state.seen_area);
     state.after_choice = rules.memory();
@@ -377,5 +379,9 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
 
 const ViewScorer& ViewPlanner::scorer() const noexcept { return impl_->scorer; }
 const StageSeconds& ViewPlanner::seconds() const noexcept { return impl_->seconds; }
+const PlanningConfig& ViewPlanner::planning() const noexcept { return impl_->planning; }
+const std::optional<DecisionMaking::Decision>& ViewPlanner::decision() const noexcept {
+  return impl_->decision;
+}
 
 }  // namespace viewgain

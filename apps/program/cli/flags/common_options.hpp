@@ -23,15 +23,15 @@ struct CommonOptions {
 };
 inline void add_common_options(App& program, CommonOptions& options) {
   program.add_flag("--json", options.json, "print one JSON object instead of text");
-  program.add_flag("--quiet", options.quiet, "say nothing of how far the call is");
+  program.add_flag("--quiet", options.quiet, "do not print progress");
   program.add_option("--threads", options.threads, "threads; 0: as many as the machine has");
   program
       .add_option("--trace", options.trace,
-                  "how rays meet voxels: by Embree's BVH or by sweeping cells from near to "
-                  "far, as unless told otherwise; never changes a result")
+                  "how to find the voxels that rays hit: embree (BVH) or sweep (cells from near to "
+                  "far); automatic is sweep; the result is the same")
       ->check(one_of(tracer_names(), "tracer"));
   program.add_option("--save-config", options.save_config,
-                     "TOML file to write what was given to, for --config");
+                     "write the given flags to this TOML file, for --config");
 }
 
 [[nodiscard]] inline ExecConfig exec_of(const CommonOptions& options) {

@@ -98,6 +98,7 @@ Confidence parse_confidence(const std::string& text) {
   if (number.empty() || number.find_first_not_of("0123456789") != std::string::npos) {
     return {text};
   }
+  if (comma == 0) refuse("--confidence " + text + ": needs DIR,LEAST");
   const std::size_t least =
       parse_count("--confidence", parse_numbers("--confidence", number, 1, 1)[0]);
   if (least < 1 || least > 255) refuse("--confidence " + text + ": LEAST must be in 1..255");

@@ -68,10 +68,10 @@ double total_gain(const NextViews& next) {
 
 void add_plan_option(App& app, std::string& text) {
   app.add_option("--plan", text,
-                 "K[,M]: K views are planned together, at most, as a set, and taken in an order "
-                 "that is short to drive by straight ways; M of them, all unless given, are taken "
-                 "before it is planned anew, if they are possible and promise enough by then; 1: "
-                 "one at a time");
+                 "K[,M]: plan up to K views as a set, in an order with a short straight-line path. "
+                 "Plan anew after M of them (default: K), or earlier if none is left that is "
+                 "possible and promises enough. next, and model without --watch, list the first M. "
+                 "1: one view at a time");
 }
 
 PlanAhead parse_plan(const std::string& text) {
@@ -135,13 +135,14 @@ std::string summary_of(const NextViews& next) {
   if (next.candidates == 0 && next.dropped.empty()) return "nothing is left to look at";
   const std::string count = with_commas(next.candidates);
   std::string text = next.candidates == 0 ? "no view is possible"
-                     : next.views.empty() ? "none of " + count + " views gains"
-                                          : "the best of " + count + " views";
+                     : next.views.empty()
+                         ? "none of the " + count + " candidate views has a positive gain"
+                         : "the best of " + count + " views";
   if (!next.dropped.empty()) text += "; dropped: " + counts_text(next.dropped);
   if (next.candidates == 0 && next.dropped.contains("collision")) {
     text +=
-        " (the body would be in voxels that are not known to be free: is the workspace only "
-        "round the object? see --workspace, --body)";
+        " (the body would be in voxels not known to be free; does the workspace include the "
+        "camera's positions? see --workspace, --body)";
   }
   return text;
 }
@@ -172,11 +173,27 @@ std::string text_of(const NextViews& next) {
   }
   if (next.views.size() > 1 && next.together) {
     text += has_area ? "gain and area are" : "gain is";
-    text += " what each view adds to the others\n";
+    text += " marginal: what each view adds to those before it\n";
   }
-  if (next.plan_metres) text += formatted("%.3f m by straight ways\n", *next.plan_metres);
-  if (next.views.front().worth <= 0) text += "no view is worth its way\n";
+  if (next.plan_metres) text += formatted("%.3f m of straight-line path\n", *next.plan_metres);
+  if (next.views.front().worth <= 0) text += "no view gains more than it costs\n";
   return text + unworthy;
+}
+
+std::string outside_text(const NextViews& next, const BeliefGrid& grid) {
+  const Box box = grid.workspace();
+  const auto outside = std::count_if(next.views.begin(), next.views.end(), [&](const auto& view) {
+    const Eigen::Vector3d eye = grid.T_world_grid().inverse() * view.T_world_camera.translation();
+    for (int a = 0; a < 3; ++a) {
+      const auto k = static_cast<std::size_t>(a);
+      if (eye[a] < box.min[k] || eye[a] > box.max[k]) return true;
+    }
+    return false;
+  });
+  if (outside == 0) return {};
+  return std::to_string(outside) + " of " + std::to_string(next.views.size()) +
+         " views stand outside the workspace, where nothing is known to be free (--workspace, "
+         "--reach)\n";
 }
 
 std::vector<Pose> poses_of(const NextViews& next) {

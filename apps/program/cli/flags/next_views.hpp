@@ -12,6 +12,7 @@
 #include "viewgain/core/boundary_class.hpp"
 #include "viewgain/core/planning.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/planner/rank_views.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 #include "viewgain/support/json.hpp"
@@ -50,6 +51,9 @@ struct NextViews {
   bool all_worth = true;                ///< false: other views gain less than they cost
   bool together = true;  ///< gains are what each adds to those before; false: its own
 };
+
+/// "3 of the views stand outside the workspace, ..." for a terminal; empty where none does.
+[[nodiscard]] std::string outside_text(const NextViews& next, const BeliefGrid& grid);
 
 /// Of a ranking of a proposal's candidates.
 [[nodiscard]] NextViews next_views(const Ranking& ranking, const Proposal& proposal,

@@ -5,9 +5,11 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <numbers>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "program/cli/values.hpp"
@@ -50,7 +52,8 @@ std::vector<Pose> poses_of(const SetOfPoses& set, const Eigen::Vector3d& center,
                            std::uint64_t seed) {
   const bool is_orbit = set.kind == "orbit", is_shell = set.kind == "shell";
   const std::size_t least = is_orbit || is_shell ? 3 : 2;
-  const auto n = parse_numbers("--poses", set.numbers, least, is_orbit ? 5 : least);
+  const std::string flag = "--poses " + std::string(set.kind) + ":";
+  const auto n = parse_numbers(flag, set.numbers, least, is_orbit ? 5 : least);
   if (is_orbit) return orbit(n, center);
   const std::size_t count = parse_count("--poses", n[0]);
   if (is_shell) return shell_poses(count, n[1], n[2], seed, center);
@@ -76,9 +79,9 @@ void add_pose_options(App& app, PoseOptions& options) {
 }
 
 void add_cost_options(App& app, CostOptions& options, const std::string& of) {
-  app.add_option("--costs", options.file,
-                 "file of one number for each of " + of +
-                     ", which is subtracted from its gain, in the gain's unit");
+  app.add_option(
+      "--costs", options.file,
+      "file of one cost per pose of " + of + ", subtracted from its gain, in the gain's unit");
   app.add_option("--cost-per-metre", options.per_metre, kCostPerMetreHelp);
   app.add_option(
       "--from", options.from,
@@ -90,8 +93,7 @@ void check(const CostOptions& options, bool has_way) {
   check_at_least_0("--cost-per-metre", options.per_metre);
   if (options.from.empty()) return;
   if (options.per_metre == 0 && !has_way) {
-    refuse("--from", options.from,
-           "goes with ways that cost (--cost-per-metre) or are planned (next --plan)");
+    refuse("--from", options.from, "requires --cost-per-metre or --plan");
   }
   (void)parse_point("--from", options.from);
 }
@@ -123,7 +125,14 @@ PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {
     }
   }
   if (!options.center.empty()) {
-    refuse("--center", options.center, "goes with sets of poses, not with a file of them");
+    refuse("--center", options.center, "cannot be used with a file of poses");
+  }
+  std::error_code ignored;
+  const std::size_t colon = options.poses.find(':');
+  if (colon != std::string::npos && !std::filesystem::exists(options.poses, ignored)) {
+    const std::vector<std::string> kinds(kKinds.begin(), kKinds.end());
+    refuse("--poses " + options.poses + ": no such file, and " +
+           fault_of_name(options.poses.substr(0, colon), kinds, "set of poses"));
   }
   PoseList list = load_poses(options.poses);
   return {std::move(list.poses), list.orthonormalized};
@@ -141,14 +150,16 @@ std::optional<Pose> begin_of_ways(const CostOptions& options,
   }
   if (last_pose) return last_pose;
   if (options.per_metre > 0) {
-    refuse(
-        "--cost-per-metre: the map has no view, which would say where the camera is; --from x,y,z "
-        "does");
+    refuse("--cost-per-metre: the map has no view to start paths from; give --from x,y,z");
   }
   return std::nullopt;
 }
 
 std::vector<Pose> poses_in(const std::string& file) {
+  if (const auto set = set_in(file)) {
+    refuse("--poses " + file + ": a set is given by --generator " + std::string(set->kind) +
+           " here, with --count and --distance");
+  }
   PoseOptions options;
   options.poses = file;
   return make_poses(options, 0).poses;

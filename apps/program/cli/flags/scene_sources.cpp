@@ -33,7 +33,7 @@ std::string difference(const Sensor& there, const Sensor& here) {
     std::getline(of_here, b);
   } while (a == b && of_there && of_here);
   const auto shown = [](const std::string& line) { return line.substr(0, line.find("  #")); };
-  return shown(a) + " there, " + shown(b) + " here";
+  return shown(a) + " in the map, " + shown(b) + " in --sensor";
 }
 
 }  // namespace
@@ -44,12 +44,17 @@ namespace {
 std::string rates_of(const std::string& hazard) {
   if (!hazard.starts_with("size=")) return hazard;
   const std::size_t comma = hazard.find(',');
-  return comma == std::string::npos ? "" : hazard.substr(comma + 1);
+  if (comma == std::string::npos) return "";
+  if (comma + 1 == hazard.size()) refuse("--hazard " + hazard + ": ends in a comma");
+  return hazard.substr(comma + 1);
 }
 
 }  // namespace
 
-bool is_hazard_file(const std::string& value) { return small_ending(rates_of(value)) == ".vdb"; }
+std::string hazard_file_of(const std::string& value) {
+  const std::string rates = rates_of(value);
+  return small_ending(rates) == ".vdb" ? rates : "";
+}
 
 std::optional<double> object_size_of(const std::string& hazard) {
   if (!hazard.starts_with("size=")) return std::nullopt;
@@ -65,7 +70,7 @@ HazardConfig hazard_source(const std::string& text, const BeliefGrid& grid) {
   HazardConfig config;
   config.object_size = object_size;
   if (hazard.empty()) return config;
-  if (is_hazard_file(hazard)) {
+  if (!hazard_file_of(hazard).empty()) {
     config.volume = std::make_shared<const HazardConfig::Volume>(load_hazard_vdb(hazard, grid));
     return config;
   }

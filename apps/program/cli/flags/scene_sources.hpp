@@ -17,8 +17,8 @@
 
 namespace viewgain::app {
 
-/// Is the value of --hazard a file of rates? By its ending, .vdb.
-[[nodiscard]] bool is_hazard_file(const std::string& value);
+/// The file of rates that a value of --hazard names, by its ending, .vdb; empty: none.
+[[nodiscard]] std::string hazard_file_of(const std::string& value);
 
 /// Of "size=0.3,5" the longest side of the object [m]; nothing where there is none. Throws
 /// Error(invalid_argument).
@@ -31,10 +31,10 @@ namespace viewgain::app {
 [[nodiscard]] HazardConfig hazard_source(const std::string& text, const BeliefGrid& grid);
 
 inline constexpr const char* kHazardHelp =
-    "of the surface and combined gain: rate at which rays meet the surface in unknown voxels "
-    "[1/m], the same everywhere, or a .vdb file of such rates; default: by distance from and "
-    "elevation over what is seen; size=L, also before the others with a comma: the longest side of "
-    "the object [m]; default: that of what is seen of it";
+    "rate at which rays meet surface in unknown voxels [1/m], for --gain surface and combined: a "
+    "number for all voxels, or a .vdb file (default: from distance to and elevation above the seen "
+    "surface). size=L, alone or before the rate and a comma: the object's longest side [m] "
+    "(default: that of its seen part)";
 
 /// What --size [m], --place center and --up say of a mesh.
 [[nodiscard]] MeshPlacement placement_of(std::optional<double> size, const std::string& place,

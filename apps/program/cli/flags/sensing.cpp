@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/help.hpp"
@@ -26,16 +27,22 @@ bool SimulatedNoise::has_flying_pixels(const Sensor& sensor) const {
 SimulatedNoise parse_noise(const std::string& text, bool readings) {
   SimulatedNoise noise;
   noise.readings = readings;
+  std::set<std::string> words;
   for (const std::string& part : names_in(text)) {
     const std::size_t equals = part.find('=');
     const std::string word = part.substr(0, equals);
     const std::string fault =
         fault_of_name(word, {"on", "off", "plain", "flying", "scale", "pose"}, "word of --noise");
     if (!fault.empty()) refuse("--noise: " + fault);
-    if ((word == "scale" || word == "pose") != (equals != std::string::npos)) {
-      refuse("--noise " + part + ": scale and pose alone have a value, as in scale=0.01");
+    const bool has_value = word == "scale" || word == "pose";
+    if (has_value && equals == std::string::npos) {
+      refuse("--noise " + part + ": needs a value, as in scale=0.01 or pose=0.002/0.2");
     }
-    const std::string value = equals == std::string::npos ? "" : part.substr(equals + 1);
+    if (!has_value && equals != std::string::npos) refuse("--noise " + part + ": takes no value");
+    if (!words.insert(has_value ? word : "readings").second) {
+      refuse("--noise " + text + ": says the same twice");
+    }
+    const std::string value = has_value ? part.substr(equals + 1) : "";
     if (word == "on" || word == "off") noise.readings = word == "on";
     if (word == "plain" || word == "flying") {
       noise.readings = word == "plain";
@@ -43,9 +50,12 @@ SimulatedNoise parse_noise(const std::string& text, bool readings) {
     }
     if (word == "scale") noise.scale_error = parse_numbers("--noise scale", value, 1, 1)[0];
     if (word != "pose") continue;
-    std::string sigmas = value;
-    std::replace(sigmas.begin(), sigmas.end(), '/', ',');
-    noise.pose = parse_pose_sigma("--noise pose", sigmas);
+    const std::size_t slash = value.find('/');
+    if (slash == std::string::npos) {
+      refuse("--noise " + part + ": needs pose=SIGMA_M/SIGMA_DEG, with a slash");
+    }
+    noise.pose =
+        parse_pose_sigma("--noise pose", value.substr(0, slash) + "," + value.substr(slash + 1));
   }
   return noise;
 }
@@ -53,15 +63,14 @@ SimulatedNoise parse_noise(const std::string& text, bool readings) {
 void add_sensing_options(App& app, SensingOptions& o) {
   begin_group(app, "Simulated camera");
   app.add_option("--support-plane", o.support_plane,
-                 "height z of a table without end that occludes [m]; default: none");
+                 "height z of an infinite table that occludes [m] (default: none)");
   app.add_option(
       "--noise", o.noise,
-      "off; or on: Gaussian along the ray and across it by the sensor's model, and pixels that mix "
-      "the returns of 3x3 rays in sensors with a modulation frequency; plain: without these "
-      "pixels; flying: these alone. With commas also scale=E: ranges read 1 + E times what they "
-      "are, as by a calibration that is off; pose=SIGMA_M/SIGMA_DEG: reported poses are off by "
-      "this, in each axis [m] and each component of the rotation vector [deg]; the first view's is "
-      "exact and defines the world");
+      "off; on: the sensor's Gaussian noise along and across the ray and, for sensors with a "
+      "modulation frequency, flying pixels (each mixes 3x3 rays); plain: on without flying pixels; "
+      "flying: flying pixels only. Also, alone or after a comma: scale=E (ranges read 1 + E times "
+      "the true value), pose=SIGMA_M/SIGMA_DEG (error of reported poses per axis [m] and per "
+      "rotation-vector component [deg]; the first pose is exact and defines the world)");
   app.add_option("--background", o.background,
                  "radius of a sphere round the origin that stands for the room [m]; 0: none");
   add_seed_option(app, o.seed, "of the noise of readings and of poses");
@@ -97,14 +106,16 @@ void add_registration_option(App& app, RegistrationOptions& options) {
   begin_group(app, "Poses that are a little wrong");
   app.add_option(
       "--register", options.text,
-      "off; or on: align frames with one another, or as they arrive with the map, before "
-      "they go in, and leave out those that contradict it; or the same with "
-      "SIGMA_M,SIGMA_DEG by which reported poses may be off; default of these: "
-      "0.005,0.5, or what --noise says");
+      "off; on: align frames with one another (integrate and --watch: each with the map) and leave "
+      "out those that contradict the rest; or SIGMA_M,SIGMA_DEG: on, with these standard "
+      "deviations of reported poses (default: 0.005,0.5; reconstruct: those of --noise if given)");
 }
 
 std::optional<PoseSigma> stated_sigma(const RegistrationOptions& options) {
   if (options.text == "on" || options.text == "off") return std::nullopt;
+  if (options.text.find(',') == std::string::npos) {
+    refuse("--register " + options.text + ": needs on, off or SIGMA_M,SIGMA_DEG");
+  }
   const PoseSigma stated = parse_pose_sigma("--register", options.text);
   check_positive("--register", std::min(stated.translation, stated.rotation));
   return stated;
@@ -137,7 +148,7 @@ std::array<std::size_t, 2> parse_scales(const std::string& text) {
 
 void ScaleOptions::set(ScorerConfig& config) const {
   const auto [coarsest, finest] = parse_scales(scales);
-  if (coarsest == 0 && !fine.empty()) refuse("--fine goes with --scales");
+  if (coarsest == 0 && !fine.empty()) refuse("--fine requires --scales");
   config.coarsest = static_cast<int>(coarsest);
   config.finest = static_cast<int>(finest);
   for (const std::string& box : fine) config.fine.push_back(parse_box("--fine", box));
@@ -151,11 +162,13 @@ Json ScaleOptions::settings() const {
 
 void add_scale_options(App& app, ScaleOptions& options) {
   begin_group(app, "Scales");
-  app.add_option("--scales", options.scales,
-                 "COARSEST[,FINEST]: up to 2^COARSEST voxels an edge are known as one cell where a "
-                 "pixel is as large, 0 to 3; a nearer look makes them finer, down to 2^FINEST");
-  app.add_option("--fine", options.fine,
-                 "x0,y0,z0,x1,y1,z1 [m]: known by single voxels all the same; may be repeated")
+  app.add_option(
+      "--scales", options.scales,
+      "COARSEST[,FINEST], each 0 to 3: merge voxels into cells of up to 2^COARSEST voxels per edge "
+      "where a pixel covers that much; closer views refine them down to 2^FINEST");
+  app.add_option(
+         "--fine", options.fine,
+         "x0,y0,z0,x1,y1,z1 [m]: box that keeps single voxels (requires --scales); may be repeated")
       ->allow_extra_args(false);
 }
 

@@ -51,8 +51,8 @@ void add_sensing_options(App& app, SensingOptions& options);
 
 /// Wherever frames go into a map.
 inline constexpr const char* kJumpEdgeHelp =
-    "ANGLE_DEG of the filter that takes flying pixels: a reading goes when the edge to a nearer "
-    "neighbour is within 1..10 degrees of its ray; or off";
+    "ANGLE_DEG, 1..10: remove a reading if the edge to a nearer neighbour is within this angle of "
+    "its ray (a flying pixel); or off";
 
 /// --jump-edge-filter ANGLE_DEG|off. Throws Error(invalid_argument) for other text; the filter
 /// itself refuses angles out of its bounds.

@@ -10,21 +10,18 @@
 namespace viewgain::app {
 
 void add_stop_option(App& app, std::string& text) {
-  begin_group(app, "When to stop");
   app.add_option(
          "--stop", text,
-         "RULE=LIMIT,...: gain (by --gain paper: the best view gains less per touched voxel [nat, "
-         "m^2]; default 1.2, trace 0.01 of the first view's), area (by surface and combined: the "
-         "best "
-         "candidate promises less than this share of the surface so far as new surface, on the "
-         "mean "
-         "of three decisions; default 0.004), idle (so many views in a row change entropy and "
-         "unknown "
-         "voxels by less than 0.1 %; default 3), promises (so many views in a row bring less than "
-         "a "
-         "fifth of what they promised; default 3), coverage (of the visible surface, 0..1, where "
-         "the "
-         "mesh is known); 0: never; may be repeated")
+         "RULE=LIMIT,...: gain: the best view gains less than this per touched voxel [nat, m^2] "
+         "(--gain "
+         "paper; default 1.2, trace: 0.01 of the first view's); area: the best candidate's "
+         "expected "
+         "new surface is below this share of the surface so far, mean of three decisions (--gain "
+         "surface, combined; default 0.004); idle: this many views in a row change entropy and "
+         "unknown voxels by less than 0.1 % (default 3); promises: this many views in a row bring "
+         "less than a fifth of what was promised (default 3); coverage: this share of the visible "
+         "surface is covered, 0..1 (reconstruct only). 0 disables a rule, except coverage; may be "
+         "repeated")
       ->join(',')
       ->check(CLI::Validator(
           [](std::string& value) {

@@ -11,7 +11,7 @@
 
 namespace viewgain::app {
 
-/// What --stop says of the rules that end a run; nothing: the default.
+/// Limits given by --stop; an unset optional means the default.
 struct StopLimits {
   std::optional<double> gain, area, coverage;
   std::size_t idle = PlanningConfig{}.idle_views;
@@ -21,7 +21,7 @@ struct StopLimits {
 /// --stop RULE=LIMIT,...
 void add_stop_option(App& app, std::string& text);
 
-/// Throws Error(invalid_argument), naming the rule, with the nearest for one that is none.
+/// Throws Error(invalid_argument), naming the rule and, for an unknown one, the nearest.
 [[nodiscard]] StopLimits stop_limits(const std::string& text);
 
 }  // namespace viewgain::app

@@ -59,9 +59,9 @@ class FrameMap {
   }
 
   /// Throws as FrameTally::require_any().
-  void require_frames(bool needs_surface = false) {
+  void require_frames() {
     consistency_ = scorer_.consistency();
-    tally_.require_any(folder_, scorer_.grid(), consistency_, needs_surface);
+    tally_.require_any(folder_, scorer_.grid(), consistency_);
   }
   /// Whether the frames fit one another, for JSON; after require_frames().
   [[nodiscard]] Json consistency_json() const { return to_json(consistency_, tally_.numbers()); }

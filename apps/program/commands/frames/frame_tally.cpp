@@ -170,8 +170,8 @@ void FrameTally::warn_of_contradictions(const FrameFolder& folder,
 }
 
 void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
-                             const FrameConsistency& found, bool needs_surface) const {
-  if (blames_masks(folder, map, needs_surface)) return;
+                             const FrameConsistency& found) const {
+  if (blames_masks(folder, map)) return;
   const std::string suspicion = suspicion_of(found);
   if (counts_.empty() || is_in_map(counts_.begin()->first)) {
     name_left_out();
@@ -190,7 +190,7 @@ void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
     }
     if (!suspicion.empty()) warning += (warning.empty() ? "" : "; ") + suspicion;
     if (warning.empty()) return;
-    if ((is_outside && !suspicion.empty()) || (needs_surface && !has_surface) ||
+    if ((is_outside && !suspicion.empty()) ||
         (folder.refuses_contradictions() && !suspicion.empty())) {
       refuse(folder.name() + ": " + warning);
     }

@@ -61,9 +61,9 @@ class FrameTally {
   /// reading in the workspace and something is suspected, with the reasons, and where the folder
   /// refuses contradictions; else names the first of each kind that was left out, unless quiet, and
   /// warns of what is suspected (`found`), and where no voxel of their `map` is occupied and no
-  /// frame shows the support plane: an error where the caller `needs_surface`.
-  void require_any(const FrameFolder& folder, const BeliefGrid& map, const FrameConsistency& found,
-                   bool needs_surface = false) const;
+  /// frame shows the support plane.
+  void require_any(const FrameFolder& folder, const BeliefGrid& map,
+                   const FrameConsistency& found) const;
   /// Warns of what is suspected of frames that go into a map which has others already, or throws
   /// where the folder refuses contradictions.
   void warn_of_contradictions(const FrameFolder& folder, const FrameConsistency& found) const;
@@ -81,8 +81,7 @@ class FrameTally {
 
  private:
   /// Says, or throws as require_any(), that masks explain what became of the frames (mask_use.hpp).
-  [[nodiscard]] bool blames_masks(const FrameFolder& folder, const BeliefGrid& map,
-                                  bool needs_surface) const;
+  [[nodiscard]] bool blames_masks(const FrameFolder& folder, const BeliefGrid& map) const;
   [[nodiscard]] std::string none_inside(const FrameFolder& folder) const;
 
   bool quiet_;

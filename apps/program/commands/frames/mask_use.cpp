@@ -61,13 +61,11 @@ std::string masked_text(const FrameFolderOptions& options, std::uint64_t pixels)
   return "pixels taken away by masks: " + with_commas(pixels) + "\n";
 }
 
-bool FrameTally::blames_masks(const FrameFolder& folder, const BeliefGrid& map,
-                              bool needs_surface) const {
+bool FrameTally::blames_masks(const FrameFolder& folder, const BeliefGrid& map) const {
   const std::string what = mask_suspicion(folder, &map);
   if (what.empty()) return false;
   const bool has_frames = counts_.empty() || is_in_map(counts_.begin()->first);
-  const bool has_surface = sees_plane_ || map.statistics().occupied > 0;
-  if (!has_frames || (needs_surface && !has_surface)) refuse(folder.name() + ": " + what);
+  if (!has_frames) refuse(folder.name() + ": " + what);
   name_left_out();
   std::fprintf(stderr, "viewgain: warning: %s: %s\n", folder.name().c_str(), what.c_str());
   return true;

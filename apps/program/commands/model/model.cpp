@@ -4,6 +4,7 @@
 
 #include "program/cli/flags/stop_rules.hpp"
 #include "program/cli/help.hpp"
+#include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/model/model_options.hpp"
 
@@ -14,24 +15,25 @@ void add_model_options(App& app, ModelOptions& o) {
   add_registration_option(app, o.registration);
   add_next_view_options(app, o.proposal);
   app.add_option("--top", o.top,
-                 "views to name at most, each by what it adds to those before it, so that no two "
-                 "show the same; with --plan that has the numbers")
+                 "maximum number of views to propose, each with its marginal gain (with --plan, M "
+                 "replaces it)")
       ->check(counted(1, 1'000'000));
   add_output_options(app, o.outputs);
-  begin_group(app, "Frames that are still to come");
+  begin_group(app, "With --watch: when next.json says to stop");
   Option* watch = app.add_flag(
       "--watch", o.watch,
-      "wait for more frames until a signal, or until FRAMES_DIR/done is there; after each frame "
-      "OUT has state.vdb, next.txt and next.json; the same call goes on, also after a kill");
-  app.add_option("--max-views", o.max_views, "view budget: a reason to stop")
+      "requires --workspace: wait for frames until a signal, or until FRAMES_DIR/done exists; "
+      "after each frame write "
+      "state.vdb, next.txt and next.json to OUT; the same call resumes after a kill (cannot be "
+      "used with --costs, --from, --save-maps, --pictures, --report or --resume)");
+  app.add_option("--max-views", o.max_views,
+                 "view budget; when it is used up, next.json has the stop_reason max_views "
+                 "(requires --watch)")
       ->check(counted(1, 1'000'000))
       ->needs(watch);
   add_stop_option(app, o.stop);
   app.get_option("--stop")->needs(watch);
-  for (const char* name :
-       {"--costs", "--from", "--save-maps", "--pictures", "--report", "--resume"}) {
-    watch->excludes(app.get_option(name));
-  }
+  for (const char* name : {"--costs", "--from", "--resume"}) watch->excludes(app.get_option(name));
   most_need(app, {"--voxel", "--workspace", "--out", "--sensor", "--top", "--reach", "--register",
                   "--support-plane", "--watch", "--report"});
   add_help(app, kLoopGroup, "model frames --voxel 0.01 --pictures off --out run_of_frames");
@@ -39,12 +41,18 @@ void add_model_options(App& app, ModelOptions& o) {
 
 Command add_model(App& program) {
   auto options = std::make_shared<ModelOptions>();
-  App* app = program.add_subcommand(
-      "model",
-      "A folder of depth frames into a map, its surface, its points, and the views to take next. "
-      "With --watch also of frames that are still to come, beside the program that writes them.");
+  App* app =
+      program.add_subcommand("model",
+                             "Turn a folder of depth frames into a map, its surface and points, "
+                             "and propose the next views. "
+                             "With --watch, also take frames as another program writes them.");
   add_model_options(*app, *options);
   return command_of(app, options, [app](const ModelOptions& given) {
+    const RunOutputs& outputs = given.outputs;
+    const bool draws = app->count("--pictures") > 0 && outputs.with_pictures();
+    if (given.watch && (draws || outputs.saves_maps() || outputs.with_report())) {
+      refuse("--watch cannot be used with --pictures, --save-maps or --report");
+    }
     given.watch ? model_arriving_frames(given) : model_recorded_frames(given, *app);
   });
 }

@@ -23,7 +23,7 @@ struct ModelOptions {
   RegistrationOptions registration;
   RunOutputs outputs;
   bool watch = false;  ///< frames are still to come
-  // Of --watch alone: when next.json says that it is enough.
+  // Only with --watch: when next.json gives a stop_reason.
   std::size_t max_views = PlannerConfig{}.max_views;
   std::string stop;
 };

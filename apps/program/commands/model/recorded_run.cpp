@@ -105,9 +105,9 @@ class Recording {
         exec_(exec_of(options.common)),
         beside_(beside_json(options.outputs)) {
     check(proposal_);
-    map_.emplace(options.frames, proposal_, options.common.quiet, exec_);
     sigma_ = registration_sigma(options.registration);
     check_contradiction(options.frames.folder, sigma_.has_value());
+    map_.emplace(options.frames, proposal_, options.common.quiet, exec_);
     if (const auto stated = stated_sigma(options.registration)) {
       warn(suspect_pose_sigma(*stated, sensor().working_distance, grid().voxel_size()),
            "--register");
@@ -222,6 +222,12 @@ class Recording {
     for (const auto& [stage, value] : seconds) views_->add_seconds(stage, value);
   }
 
+  // Null where the poses of --poses alone are candidates.
+  [[nodiscard]] Json generator() const {
+    if (!proposal_.generator.empty()) return proposal_.generator;
+    return proposal_.poses.empty() ? Json("boundary") : Json();
+  }
+
   [[nodiscard]] Json settings() const {
     const FrameSequence& frames = map_->folder().frames();
     const BeliefGrid& grid = map_->scorer().grid();
@@ -243,7 +249,7 @@ class Recording {
         {"register", sigma_.has_value()},
         {"on_contradiction", sigma_ ? Json(folder.on_contradiction) : Json()},
         {"pose_sigma", sigma_ ? pose_sigma_json(*sigma_) : Json()},
-        {"generator", proposal_.generator.empty() ? "boundary" : proposal_.generator},
+        {"generator", generator()},
         {"poses", or_null(proposal_.poses)},
         {"count", proposal_.count},
         {"distance", proposal_.distance},
@@ -295,6 +301,7 @@ void print(const Options& options, const Json& run, const BeliefGrid& grid,
               with_commas(run["points"].get<std::size_t>()).c_str(),
               with_commas(run["triangles"].get<std::size_t>()).c_str());
   std::printf("next: %s\n%s", summary_of(next).c_str(), text_of(next).c_str());
+  if (options.proposal.reach.empty()) std::printf("%s", outside_text(next, grid).c_str());
   std::printf("%.2f s\n", run["seconds"]["total"].get<double>());
   print_left(
       options.outputs,

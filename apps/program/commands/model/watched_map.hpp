@@ -64,8 +64,8 @@ class AskedViews {
  public:
   explicit AskedViews(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// What an earlier call has left in next.json, whose map has these frames. A file of another hand
-  /// says nothing.
+  /// What an earlier call has left in next.json, whose map has these frames. A file that viewgain
+  /// did not write is ignored.
   void recall(const std::filesystem::path& next_json, const std::set<std::string>& identities);
 
   /// These are asked for now, best first; the map has these frames.
@@ -77,7 +77,7 @@ class AskedViews {
 
   /// The frame is left out; false if that was known.
   bool leave_out(const std::string& name) { return left_out_.insert(name).second; }
-  /// Nobody will use the image as it is, and it is no view.
+  /// The image is not used and does not count as a view.
   void ignore(const std::string& name) { ignored_.insert(name); }
   /// The frame is in the map after all.
   void take(const std::string& name) { left_out_.erase(name); }
@@ -113,8 +113,8 @@ class WatchedMap {
   /// Where candidates come from; to be said once.
   void propose_by(const GenerationConfig& config, const ExecConfig& exec);
 
-  /// What is probably wrong with the frames that came, said once: after six, twelve, 24, ... of
-  /// them, or when there will be no more.
+  /// Likely fault of the frames so far, reported once; checked after 6, 12, 24, ... frames, and at
+  /// the end.
   [[nodiscard]] std::string suspicion(bool is_last);
   /// Whether the frames of this call fit one another.
   [[nodiscard]] Json consistency_json() const {
@@ -130,8 +130,8 @@ class WatchedMap {
   /// A frame is left out; `T_world_camera`: where it was taken, if that is known.
   void drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera);
 
-  /// A frame came after these views were asked for, best first. Where it is of none of them the
-  /// best was not reached: it is not proposed again.
+  /// A frame came after these views were asked for, best first. If it matches none of them, the
+  /// best one counts as not reached and is not proposed again.
   void answer(std::span<const Pose> asked, const std::optional<Pose>& T_world_camera);
 
   /// Nothing while no frame could be used; else the best candidates, each by what it adds to those

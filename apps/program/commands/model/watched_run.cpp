@@ -30,6 +30,8 @@
 #include "viewgain/formats/frame_watch.hpp"
 #include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/formats/staged_folder.hpp"
+#include "viewgain/planner/stop_settings.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -43,28 +45,24 @@ constexpr std::chrono::milliseconds kPause{100};  // between looks at the folder
 // While frames wait, views are proposed and all is written this often at most [s].
 constexpr double kLeastInterval = 0.5;
 
-// Files of these names that are somebody else's stay.
-void check_folder(const fs::path& out) {
-  for (const char* name : {"next.txt", "next.json"}) {
-    std::error_code ignored;
-    if (!fs::exists(out / name, ignored)) continue;
-    refuse((out / name).string() + ": is there, but no state.vdb; name a new folder");
+// Files that are somebody else's, or another kind of run's, stay.
+void check_folder(const fs::path& out, bool goes_on) {
+  std::error_code ignored;
+  for (const fs::path& name : run_files(out)) {
+    const bool is_own = goes_on && name != "map.vdb" && name != "run.json";
+    if (!is_own && fs::exists(out / name, ignored)) {
+      refuse((out / name).string() + ": is there, but not of --watch; name a new folder");
+    }
   }
-}
-
-// Without the names of what is the default: boundaries need no views yet.
-ProposalOptions proposal_of(const ModelOptions& options) {
-  ProposalOptions proposal = options.proposal;
-  check(proposal);
-  if (proposal.generator == "boundary" && proposal.poses.empty()) proposal.generator.clear();
-  return proposal;
 }
 
 // Settings of the map, without those that depend on the sensor.
 ScorerConfig map_config(const ModelOptions& options) {
   ScorerConfig config = scorer_config(options.frames, options.proposal);
   if (options.frames.workspace.empty()) {
-    refuse("--watch requires --workspace x0,y0,z0,x1,y1,z1: nobody knows what frames will see");
+    refuse(
+        "--watch requires --workspace x0,y0,z0,x1,y1,z1: it cannot be taken from frames that are "
+        "still to come");
   }
   config.workspace = parse_box("--workspace", options.frames.workspace);
   config.gain.model = parse_gain_model(options.proposal.gain);
@@ -76,11 +74,15 @@ PlannerConfig planner_config(const ModelOptions& options) {
   if (!options.proposal.reach.empty()) config.reach = read_reach_toml(options.proposal.reach);
   config.max_views = options.max_views;
   const StopLimits stop = stop_limits(options.stop);
-  if (stop.coverage) refuse("--stop coverage: nobody knows the object");
+  if (stop.coverage)
+    refuse("--stop coverage cannot be used with model: it needs the object's mesh");
   config.idle_views = stop.idle;
   config.broken_promises = stop.promises;
   config.stop_gain = stop.gain;
   config.stop_area = stop.area;
+  PlanningConfig rules;
+  set_stop_rules(rules, parse_gain_model(options.proposal.gain), Criterion::log_diagonal,
+                 config.stop_gain, config.stop_area);
   config.ahead = parse_plan(options.proposal.plan);
   return config;
 }
@@ -91,13 +93,14 @@ class Watching {
   explicit Watching(const ModelOptions& options)
       : options_(options),
         folder_(options.frames.folder),
-        proposal_(proposal_of(options)),
+        proposal_(options.proposal),
         map_config_(map_config(options)),
         planner_config_(planner_config(options)),
         sigma_(registration_sigma(options.registration)),
         frames_(folder_.folder),
         out_(options.outputs.out),
         views_(frames_) {
+    check(proposal_);
     check_contradiction(folder_, sigma_.has_value());
     if (!folder_.sensor.empty()) (void)load_sensor(folder_.sensor);
     (void)with_body(Sensor{}, proposal_);
@@ -109,9 +112,10 @@ class Watching {
     saved_ = saved_frames(out_ / "state.vdb", exec_of(options.common));
     if (saved_) {
       views_.recall(out_ / "next.json", saved_->frames);
-    } else {
-      check_folder(out_);
+      say("goes on with the " + std::to_string(saved_->frames.size()) + " frames of " +
+          (out_ / "state.vdb").string());
     }
+    check_folder(out_, saved_.has_value());
     watch_.emplace(watch_of(folder_, saved_));
   }
 
@@ -236,7 +240,7 @@ class Watching {
     map_config_.hazard = hazard_source(proposal_.hazard, empty);
     const ExecConfig exec = exec_of(options_.common);
     map_.emplace(sensor, map_config_, planner_config_, out_ / "state.vdb", saved_, sigma_, exec);
-    map_->propose_by(generation_config(proposal_, sensor, map_->grid(), frames_.string()), exec);
+    map_->propose_by(generation_config(proposal_, sensor, map_->grid(), ""), exec);
     // What was next may be missing or older than the state, which has not heard of it: a frame that
     // waits is held against it.
     has_news_ = saved_.has_value();
@@ -339,7 +343,7 @@ class Watching {
 
   const ModelOptions& options_;
   const FrameFolderOptions& folder_;
-  ProposalOptions proposal_;
+  const ProposalOptions& proposal_;
   ScorerConfig map_config_;
   PlannerConfig planner_config_;
   std::optional<PoseSigma> sigma_;  // of the poses, if frames are registered

@@ -73,31 +73,29 @@ PoseSetRequest request_of(const ProposalOptions& options, const Sensor& sensor,
 
 void add_next_view_options(App& app, ProposalOptions& o) {
   begin_group(app, "Candidates");
-  app.add_option("--generator", o.generator,
-                 "where views come from: boundary (open boundaries of the surface in the "
-                 "map, and where more of it is expected), sphere, dome, rings, shell, sequence, or "
-                 "several with commas; default: boundary, and a "
-                 "sphere round the workspace of a map without a surface or views")
-      ->check(several_of(generator_names(), "generator"));
   app.add_option(
-      "--poses", o.poses,
-      "TUM or .npy file of camera-to-world poses to choose among; with --generator beside "
-      "what that proposes, else alone");
+         "--generator", o.generator,
+         "where candidates come from, comma-separated: boundary (open surface boundaries, and "
+         "places where more surface is expected), sphere, dome, rings, shell, sequence (default: "
+         "boundary; a map without surface or views gets a sphere round the workspace instead)")
+      ->check(several_of(generator_names(), "generator"));
+  app.add_option("--poses", o.poses,
+                 "TUM or .npy file of camera-to-world poses to choose among; with --generator, in "
+                 "addition to its candidates");
   add_cost_options(app, o.costs, "--poses");
   app.add_option("--count", o.count,
                  "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
                  "(default 48)")
       ->check(counted(1, 1'000'000));
   app.add_option("--distance", o.distance,
-                 "boundary: from the surface; else from the centre [m]; default: the sensor's "
-                 "working distance; the workspace fills the view, and a shell fills the shells or "
-                 "boxes of --reach");
+                 "distance from the surface (boundary) or from the centre (other generators) [m]. "
+                 "Default: boundary: the sensor's working distance; others: the workspace fills "
+                 "the view; shell: the shells or boxes of --reach");
   app.add_option("--center", o.center,
                  "x,y,z that poses look at, world [m]; default: the workspace's centre");
-  app.add_option(
-      "--reach", o.reach,
-      "TOML file: boxes, shells, half-spaces, poses in reach; default: all, or, for views at "
-      "boundaries, the workspace if all views so far are inside of it");
+  app.add_option("--reach", o.reach,
+                 "TOML file of reachable boxes, shells, half-spaces and poses (default: "
+                 "everywhere; boundary views: the workspace, if it contains all views so far)");
   begin_group(app, "What is in the way");
   app.add_option("--body", o.body, kBodyHelp);
   app.add_option("--support-plane", o.support_plane, "height z of a table [m]");
@@ -158,7 +156,7 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
   config.at_boundaries = is_at_boundaries(options);
   if (options.distance) config.boundary.working_distance = *options.distance;
   if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
-  if (has_generator(options, "boundary") && grid.views().empty()) {
+  if (!map.empty() && has_generator(options, "boundary") && grid.views().empty()) {
     refuse(map + ": has no views, which boundary candidates need; try --generator sphere");
   }
   if (!options.poses.empty()) config.sets.push_back({kGivenPoses, poses_in(options.poses)});

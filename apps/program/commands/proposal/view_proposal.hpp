@@ -57,9 +57,9 @@ void check(const ProposalOptions& options);
                                     const ExecConfig& exec);
 
 /// Without --reach the views at boundaries stay inside of the workspace where all views so far
-/// were, as in a room. `map`: what errors call it; `tried`: views that
-/// brought nothing. Throws Error(invalid_argument) where boundaries
-/// are asked for by name of a map without views, and as read_reach_toml().
+/// were, as in a room. `map`: what errors call it, empty for one whose views are still to come;
+/// `tried`: views that brought nothing. Throws Error(invalid_argument) where boundaries are asked
+/// for by name of a map without views, and as read_reach_toml().
 [[nodiscard]] GenerationConfig generation_config(const ProposalOptions& options,
                                                  const Sensor& sensor, const BeliefGrid& grid,
                                                  const std::string& map,

@@ -95,10 +95,6 @@ void warn_of_set_up(const ReconstructOptions& options, const RunSetup& setup) {
 }
 
 void reconstruct(const ReconstructOptions& options, const App& app) {
-  if (std::error_code ignored; std::filesystem::is_directory(options.mesh, ignored)) {
-    refuse(options.mesh + ": is a folder; frames become a model by viewgain model " + options.mesh +
-           " --out RUN");
-  }
   const RunOutputs& outputs = options.outputs;
   if (outputs.with_report()) check_report_page("--report");
   const Json beside = beside_json(outputs);

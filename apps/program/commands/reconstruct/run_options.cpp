@@ -23,10 +23,10 @@ void add_output_options(App& app, RunOutputs& outputs) {
   add_switch(app, "--save-maps", outputs.save_maps, "keep maps/NN.vdb after each view");
   add_switch(app, "--pictures", outputs.pictures, "draw views/NN.png");
   app.add_option("--report", outputs.report,
-                 "off, or on: write report.html, the run to look at in a browser, in one file; or "
-                 "the folder of another run, whose curves are drawn over this one's there");
+                 "off; on: write report.html (one file, for a browser); or the folder of another "
+                 "run, to overlay its curves");
   app.add_flag("--resume", outputs.resume,
-               "go on where the same call was ended, if it was: by a kill, a signal, a full disk");
+               "resume this call if it was interrupted (kill, signal, full disk)");
   app.add_option("--out", outputs.out, "folder to write")->required();
 }
 

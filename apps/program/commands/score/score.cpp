@@ -325,9 +325,8 @@ Command add_score(App& program) {
   app->add_option("--reach", options->reach,
                   "TOML file: boxes, shells, half-spaces, poses in reach; other poses are dropped");
   add_switch(*app, "--feasible", options->feasible,
-             "drop poses where the sensor's body would touch the map, an obstacle "
-             "or the table, much would be too near to be measured, or a view of "
-             "the map was taken");
+             "drop poses where the sensor's body would touch the map, an obstacle or the table, "
+             "where much of the scene is too near to measure, or where the map already has a view");
   app->add_option("--body", options->body, kBodyHelp);
   begin_group(*app, "Gain");
   app->add_option("--criterion", options->criterion,
@@ -348,16 +347,16 @@ Command add_score(App& program) {
   auto* selection = app->add_option_group("selection", "at most one of; default: score all poses");
   selection->add_flag(
       "--race", options->race,
-      "the best poses, very probably: all by about 400 of their rays, the best of these in full");
+      "score all poses with about 400 rays each, then the best of them with all rays; a best pose "
+      "is rarely missed (only one of --race, --approximate, --set)");
   selection
-      ->add_option(
-          "--approximate", options->approximate,
-          "SHARE: estimates with standard errors from at most this share of each view's rays")
+      ->add_option("--approximate", options->approximate,
+                   "SHARE: estimate gains, with standard errors, from at most this share of each "
+                   "view's rays")
       ->check(CLI::Range(1e-6, 1.0, "share in (0, 1]"));
   selection
       ->add_option("--set", options->set,
-                   "K views that are good together on this map, with what each adds to those "
-                   "before")
+                   "choose K views that are best together; print the marginal gain of each")
       ->check(counted(1, 1'000'000));
   selection->require_option(0, 1);
   app->add_option("--deadline", options->deadline,
@@ -366,18 +365,16 @@ Command add_score(App& program) {
                   "of a shell of poses, --race (the paper's gain) and --approximate");
   begin_group(*app, "Output");
   app->add_option("--out", options->out,
-                  "CSV file, or .npy with the same columns, of all poses that were not dropped, in "
-                  "input order; with a selection, "
-                  "of those scored in full, "
-                  "of the estimates, or of the set in order");
-  app->add_option(
-      "--picture", options->picture,
-      "PNG file: the map, the best view's frustum and the voxels where its rays end; surface "
-      "and combined: may end, the larger the likelier");
+                  "CSV or .npy file (same columns) of all poses that were not dropped, in input "
+                  "order; with --race: those scored in full; with --approximate: the estimates; "
+                  "with --set: the set, in order");
+  app->add_option("--picture", options->picture,
+                  "PNG file: map, the best view's frustum and the voxels where its rays end "
+                  "(surface, combined: where they may end; larger is likelier)");
   app->add_option("--report", options->report,
                   "HTML file: map, candidates by gain, ranking and what the best ones see, to look "
                   "at in a browser");
-  most_need(*app, {"--sensor", "--gain", "--top", "--out", "--reach", "--feasible", "--obstacle",
+  most_need(*app, {"--sensor", "--gain", "--top", "--out", "--reach", "--feasible", "--race",
                    "--report"});
   add_help(*app, kViewsGroup,
            "score map.vdb --poses sphere:500,0.6 --sensor sr4000 --gain surface --top 5");

@@ -183,7 +183,8 @@ std::string identity_of_flag(const std::string& flag) {
     const auto poses = reach_poses_file(value);
     return name + "=" + identity_of(value) + (poses ? " " + identity_of(*poses) : "");
   }
-  const bool is_file = name == "--poses" || (name == "--hazard" && is_hazard_file(value)) ||
+  const bool is_file = name == "--poses" ||
+                       (name == "--hazard" && !hazard_file_of(value).empty()) ||
                        (name == "--obstacle" && is_obstacle_file(value));
   return is_file ? name + "=" + identity_of(value) : flag;
 }

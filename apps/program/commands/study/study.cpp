@@ -102,11 +102,11 @@ class StudyFolder {
 // Deals out the runs that are not there and that nobody else works on.
 class Workers {
  public:
-  Workers(const StudySpec& spec, const StudyFolder& folder, int threads, std::stop_token stop,
+  Workers(const StudySpec& spec, const StudyFolder& folder, ExecConfig exec, std::stop_token stop,
           const std::function<void(const StudyProgress&)>& on_progress)
       : spec_(spec),
         folder_(folder),
-        threads_(threads),
+        exec_(exec),
         stop_(std::move(stop)),
         on_progress_(on_progress),
         claims_(folder.runs()),
@@ -193,7 +193,7 @@ class Workers {
     std::stop_source either;
     const std::stop_callback by_user(stop_, [&] { either.request_stop(); });
     const std::stop_callback by_failure(ours_.get_token(), [&] { either.request_stop(); });
-    const std::optional<StudyResult> result = make_run(spec_, run, threads_, either.get_token());
+    const std::optional<StudyResult> result = make_run(spec_, run, exec_, either.get_token());
     if (result) folder_.write(run, *result);
     claims_.give_back(run.hash);
     const std::lock_guard lock(mutex_);
@@ -208,7 +208,7 @@ class Workers {
 
   const StudySpec& spec_;
   const StudyFolder& folder_;
-  const int threads_;
+  const ExecConfig exec_;
   const std::stop_token stop_;
   const std::function<void(const StudyProgress&)>& on_progress_;
   Claims claims_;
@@ -219,14 +219,14 @@ class Workers {
   std::stop_source ours_;  // when one has failed
 };
 
-// Makes the runs that are not there yet, `jobs` at once, each on `threads` threads, together with
+// Makes the runs that are not there yet, `jobs` at once, each by `exec`, together with
 // whoever else works in the same folder; returns when all are there or a stop is requested.
 // Whether all are there. `on_progress` is called at the start and after each run, by one thread at
 // a time. Throws the first Error of a run, when those under way have ended.
-bool make_runs(const StudySpec& spec, const StudyFolder& folder, std::size_t jobs, int threads,
-               const std::stop_token& stop,
+bool make_runs(const StudySpec& spec, const StudyFolder& folder, std::size_t jobs,
+               const ExecConfig& exec, const std::stop_token& stop,
                const std::function<void(const StudyProgress&)>& on_progress) {
-  Workers workers(spec, folder, threads, stop, on_progress);
+  Workers workers(spec, folder, exec, stop, on_progress);
   {
     std::vector<std::jthread> team;
     try {
@@ -324,14 +324,14 @@ void study(const Options& options) {
                                   ? static_cast<std::size_t>(options.common.threads)
                                   : std::max(1U, std::thread::hardware_concurrency());
   const std::size_t jobs = options.jobs.value_or(threads);
-  const auto threads_per_run = static_cast<int>(std::max<std::size_t>(1, threads / jobs));
+  ExecConfig exec = exec_of(options.common);
+  exec.num_threads = static_cast<int>(std::max<std::size_t>(1, threads / jobs));
   const InterruptGuard interrupt;
   const Stopwatch watch;
-  const bool complete = make_runs(spec, folder, jobs, threads_per_run, interrupt.token(),
-                                  [&](const StudyProgress& progress) {
-                                    if (!options.common.quiet)
-                                      print_progress(spec, progress, watch.seconds());
-                                  });
+  const bool complete =
+      make_runs(spec, folder, jobs, exec, interrupt.token(), [&](const StudyProgress& progress) {
+        if (!options.common.quiet) print_progress(spec, progress, watch.seconds());
+      });
   if (!complete) throw Stopped{"stopped; the same call goes on with what is in " + options.out};
 
   std::vector<ResultRow> rows;
@@ -365,7 +365,7 @@ Command add_study(App& program) {
   App* app = program.add_subcommand(
       "study",
       "Compares policies and gains: a run of `reconstruct` for every object, policy, seed, sensor, "
-      "voxel and size of a spec, in one table; stopped and called again it goes on.");
+      "voxel and size of a spec, in one table. If it was stopped, the same call resumes it.");
   app->add_option(
          "SPEC", options->spec,
          "TOML file that says what to compare: lists objects, policies, seeds, sensors and "

@@ -41,10 +41,9 @@ auto named(const StudySpec& spec, const StudyRun& run, Work&& work) {
   }
 }
 
-std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& study_run, int threads,
-                                     const std::stop_token& stop) {
+std::optional<StudyResult> result_of(const StudySpec& spec, const StudyRun& study_run,
+                                     const ExecConfig& exec, const std::stop_token& stop) {
   const ReconstructOptions options = options_of(spec, study_run);
-  const ExecConfig exec{threads};
   RunSetup setup = set_up(options, exec);
   setup.planning.stop = stop;
   RunParts run(std::move(setup), options.frames_per_view, exec);
@@ -75,9 +74,9 @@ void check_run(const StudySpec& spec, const StudyRun& run) {
   named(spec, run, [&] { return set_up(options_of(spec, run), ExecConfig{}); });
 }
 
-std::optional<StudyResult> make_run(const StudySpec& spec, const StudyRun& run, int threads,
-                                    const std::stop_token& stop) {
-  return named(spec, run, [&] { return result_of(spec, run, threads, stop); });
+std::optional<StudyResult> make_run(const StudySpec& spec, const StudyRun& run,
+                                    const ExecConfig& exec, const std::stop_token& stop) {
+  return named(spec, run, [&] { return result_of(spec, run, exec, stop); });
 }
 
 }  // namespace viewgain::app

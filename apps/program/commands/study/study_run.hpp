@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "program/commands/study/spec.hpp"
+#include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/support/json.hpp"
 
@@ -22,10 +23,11 @@ struct StudyResult {
 /// Checks a run's flags and files without running it. Throws Error, naming the run.
 void check_run(const StudySpec& spec, const StudyRun& run);
 
-/// Makes one run, on `threads` threads. Nothing if a stop was requested before it was done. The
+/// Makes one run. Nothing if a stop was requested before it was done. The
 /// same for any number of threads, but for what stands under `seconds`. Throws Error, naming the
 /// run.
 [[nodiscard]] std::optional<StudyResult> make_run(const StudySpec& spec, const StudyRun& run,
-                                                  int threads, const std::stop_token& stop);
+                                                  const ExecConfig& exec,
+                                                  const std::stop_token& stop);
 
 }  // namespace viewgain::app

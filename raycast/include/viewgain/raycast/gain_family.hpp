@@ -19,8 +19,8 @@
 #include "viewgain/raycast/voxel_scene.hpp"
 
 /// @file
-/// Gains beside viewgain's own that policies and the program rank by, as those of
-/// viewgain::literature: registered by whoever has them, known by name to the rest.
+/// Additional gains that policies and the program can rank by, such as those of
+/// viewgain::literature. They are registered at run time and looked up by name.
 
 namespace viewgain {
 
@@ -29,12 +29,12 @@ class VIEWGAIN_EXPORT FamilyEvaluator {
  public:
   virtual ~FamilyEvaluator() = default;
   /// results[i * gains + g] for pose i and gain g, by every s-th pixel of every s-th row; NaN for a
-  /// bad pose. `statuses` is empty or has one place a pose. Throws Error(invalid_argument) if sizes
-  /// do not fit.
+  /// bad pose. `statuses` is empty or has one element per pose. Throws Error(invalid_argument) if
+  /// sizes do not fit.
   virtual void evaluate(std::span<const Pose> T_world_camera, int pixel_stride,
                         std::span<double> results, std::span<ViewGain::Status> statuses,
                         const BatchControl& control) = 0;
-  /// Of all pixels.
+  /// Rays per pose at pixel stride 1.
   [[nodiscard]] virtual std::size_t rays_per_pose() const = 0;
 };
 
@@ -42,19 +42,20 @@ class VIEWGAIN_EXPORT FamilyEvaluator {
 class VIEWGAIN_EXPORT GainFamily {
  public:
   virtual ~GainFamily() = default;
-  /// In their order.
+  /// Names of the gains, in a fixed order.
   [[nodiscard]] virtual const std::vector<std::string>& names() const = 0;
-  /// Of one of the names, as "nat" or "voxels".
+  /// Unit of the named gain, such as "nat" or "voxels".
   [[nodiscard]] virtual std::string_view unit(std::string_view name) const = 0;
-  /// For views of `sensor` on the map as it is, whose readings are of `sensor`, too. Throws
-  /// Error(invalid_argument) for a name that is none, and as the gains' own evaluator.
+  /// Evaluator for views of `sensor` on the current map, whose readings must come from `sensor`
+  /// too. Throws Error(invalid_argument) for an unknown name, and what the gains' own evaluator
+  /// throws.
   [[nodiscard]] virtual std::unique_ptr<FamilyEvaluator> evaluator(
       std::shared_ptr<const VoxelScene> scene, const BeliefGrid& grid, const Sensor& sensor,
       std::span<const std::string> names, const ExecConfig& exec) const = 0;
 };
 
-/// Makes the names known in this process, instead of those registered before; null: none. To be
-/// called before other threads ask for them.
+/// Registers the family for this process and replaces the previous one; null registers none. Call
+/// before other threads look gains up.
 VIEWGAIN_EXPORT void register_gains(std::shared_ptr<const GainFamily> family);
 /// What was registered; a family without names where nothing was.
 [[nodiscard]] VIEWGAIN_EXPORT const GainFamily& registered_gains() noexcept;

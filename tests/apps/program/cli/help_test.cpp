@@ -156,8 +156,11 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
 TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
   using Set = std::set<std::string>;
   Set subcommands(kSubcommands.begin(), kSubcommands.end());
-  subcommands.insert({"--help", "--version"});
+  subcommands.insert({"--help", "--version", "--json", "--quiet", "--threads", "--trace", "--config",
+                      "--save-config"});
   EXPECT_EQ(completions({"viewgain", ""}), subcommands);
+  EXPECT_EQ(completions({"viewgain", "--threads", "2", ""}), subcommands);
+  EXPECT_EQ(completions({"viewgain", "--json", "score", "--feasible", ""}), (Set{"on", "off"}));
   EXPECT_EQ(completions({"viewgain", "s"}),
             (Set{"score", "sensors", "simulate", "study", "surface"}));
   for (const std::string& subcommand : kSubcommands) {

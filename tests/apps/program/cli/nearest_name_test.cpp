@@ -74,7 +74,7 @@ TEST_F(Spelling, TheNearestIsNamed) {
        {{"--versoin"}, "did you mean --version?"},
        {{"info", "map.vdb", "--jsno"}, "--jsno: no such flag of info; did you mean --json?"},
        {{"score", "map.vdb", "--poss=5,1"}, "--poss: no such flag of score; did you mean --poses?"},
-       {{"convert", "map.vdb", "--out", "map.ot"}, "--out: OUT is given without a flag (see"},
+       {{"convert", "map.vdb", "--out", "map.ot"}, "--out: OUT is positional; give it without a flag (see"},
        {{"reconstruct", "--nonsense"}, "--nonsense: no such flag of reconstruct (see"},
        {{"score", "map.vdb", "--gain", "surfce"},
         "--gain: surfce is no gain; did you mean surface? There are paper, surface, combined"},
@@ -86,7 +86,16 @@ TEST_F(Spelling, TheNearestIsNamed) {
        {{"simulate", "cube.off", "--sensor", "kinect", "--poses", "orbit:1,6,20", "--out",
          "frames"},
         "did you mean kinect_v1? (there are sr4000"},
-       {{"score", "map.vdb", "--top"}, "--top"},
+       {{"score", "map.vdb", "--top"}, "--top: needs a value"},
+       {{"simulate", "cube.off", "--out", "--quiet"}, "--out: needs a value"},
+       {{"scor", "map.vdb", "--poses", "sphere:3,0.6"}, "did you mean score?"},
+       {{"follow", "frames", "--voxel", "0.1"}, "viewgain model FRAMES_DIR --watch"},
+       {{"candidates", "map.vdb", "--out", "c.txt"}, "viewgain next MAP --top all"},
+       {{"simulate", "cube.off", "--amplitude", "on"}, "shot noise"},
+       {{"info", "a.vdb", "b.vdb"}, "b.vdb: info takes no more words"},
+       {{"simulate", "cube.off", "--noise", "pose=0.1,0.5", "--sensor", "sr4000", "--poses",
+         "orbit:1,1,1", "--out", "frames"},
+        "--noise"},
        {{"score", "map.vdb", "--gain", "--top", "3"}, "--gain"}});
 }
 

@@ -91,7 +91,7 @@ TEST_F(ScoreCandidates, PosesOfAFileThatSeeNothingAreExplained) {
     EXPECT_EQ(away.err,
               "viewgain: warning: poses.txt: 100 % of the poses see no voxel of the map\n");
     if (call == "next") {
-      EXPECT_NE(away.out.find("none of 40 views gains"), std::string::npos) << away.out;
+      EXPECT_NE(away.out.find("none of the 40 candidate views has a positive gain"), std::string::npos) << away.out;
     }
   }
 }

@@ -181,7 +181,7 @@ TEST_F(Sensing, BadFlagsAndImagesAreRefused) {
   refused({"--jump-edge-filter", "11"}, "1..10 degrees");
   refused({"--jump-edge-filter", "on"}, "--jump-edge-filter");
   refused({"--scales", "4"}, "--scales 4");
-  refused({"--fine", "0,0,0,1,1,1"}, "--fine goes with --scales");
+  refused({"--fine", "0,0,0,1,1,1"}, "--fine requires --scales");
   refused({"--scales", "1,2"}, "--scales 1,2");
   refused({"--scales", "1", "--fine", "0,0,0,0,1,1"}, "--fine");
   refused({"--support-plane", "nan", "--workspace", "-1,-1,-1,1,1,1"}, "support plane");

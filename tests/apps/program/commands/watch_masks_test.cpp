@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// `follow` beside a program that writes masks of the robot's arm, or confidences, with its frames.
+// `model --watch` beside a program that writes masks of the robot's arm, or confidences, with its
+// frames.
 
 #include <cstddef>
 #include <filesystem>

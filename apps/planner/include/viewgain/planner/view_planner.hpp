@@ -171,6 +171,10 @@ class VIEWGAIN_EXPORT ViewPlanner {
                                         const ScorerConfig& scorer, const PlannerConfig& config,
                                         const ExecConfig& exec = {});
 
+  /// What the last rank() of the proposal decided on, for Algorithm 1; nothing: none will do.
+  [[nodiscard]] const std::optional<DecisionMaking::Decision>& decision() const noexcept;
+  /// When a run by these settings ends, for active_view_planning().
+  [[nodiscard]] const PlanningConfig& planning() const noexcept;
   /// The map, its scene and its evaluator. Its address stays the same when the planner is moved.
   [[nodiscard]] const ViewScorer& scorer() const noexcept;
   /// What the steps since the last add() took, it included: integrate, snapshot, candidates, score.

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/planning.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/planner/rank_views.hpp"
+#include "viewgain/planner/view_planner.hpp"
+
+namespace viewgain {
+
+/// A planner as the parts of Algorithm 1: its map is the representation, its proposals are the
+/// candidates, its ranking is the choice. active_view_planning(start, camera, parts, parts, parts,
+/// planner.planning()) takes the views that add(), propose() and rank() take one after the other.
+/// Thread safety and costs as these.
+/// @code
+/// ViewPlanner planner(ViewScorer(sensor, {.voxel_size = 0.01, .workspace = box}));
+/// planner.add_poses({"sphere", poses});
+/// PlannerParts parts(planner);
+/// parts.update({T_world_camera, {frame}});
+/// const Proposal proposal = parts.generate(T_world_camera);
+/// const std::size_t next = parts.decide(T_world_camera, proposal.candidates)->candidate;
+/// const Pose& there = proposal.candidates[next].T_world_camera;
+/// @endcode
+class VIEWGAIN_EXPORT PlannerParts final : public RepresentationUpdate,
+                                           public ViewpointGeneration,
+                                           public DecisionMaking {
+ public:
+  /// The planner must outlive it and stay where it is. `config`: as ViewPlanner::rank(); ways begin
+  /// where the loop says that the camera is.
+  explicit PlannerParts(ViewPlanner& planner, const RankConfig& config = {})
+      : planner_(planner), config_(config) {}
+
+  /// ViewPlanner::add().
+  ModelProgress update(const Measurements& measurements) override;
+  /// ViewPlanner::propose().
+  Proposal generate(const Pose& T_world_camera) override;
+  /// ViewPlanner::rank(); `candidates` must be those of the last generate().
+  std::optional<Decision> decide(const Pose& T_world_camera,
+                                 std::span<const Candidate> candidates) override;
+
+ private:
+  ViewPlanner& planner_;
+  RankConfig config_;
+};
+
+}  // namespace viewgain
