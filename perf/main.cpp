@@ -6,7 +6,6 @@
 
 #include "benches/bars.hpp"
 #include "benches/decision_bench.hpp"
-#include "benches/honesty_bench.hpp"
 #include "benches/integrate_bench.hpp"
 #include "benches/trace_bench.hpp"
 #include "benches/tracers_bench.hpp"
@@ -96,19 +95,6 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   decision_app->add_option("--recording", decision.recording, "frames of the map room")
       ->check(CLI::ExistingDirectory);
-
-  viewgain::bench::HonestyOptions honesty;
-  honesty.mesh = viewgain::test::camel_mesh_path();
-  CLI::App* honesty_app = app.add_subcommand(
-      "honesty", "consistency of the sigmas and error of the surface as readings accumulate");
-  honesty_app->add_option("--threads", honesty.num_threads, "threads, 0: all")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  honesty_app->add_option("--views", honesty.views, "views on the sphere, repeated up to ten times")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  honesty_app->add_option("--mesh", honesty.mesh, "mesh file")->capture_default_str();
-  honesty_app->add_flag("--json", honesty.json, "print JSON");
 
   viewgain::bench::ScalingOptions scaling;
   scaling.mesh = viewgain::test::camel_mesh_path();
@@ -329,7 +315,6 @@ int run(int argc, char** argv) {
   if (trace_app->parsed()) return viewgain::bench::run_trace(trace);
   if (integrate_app->parsed()) return viewgain::bench::run_integrate(integrate);
   if (decision_app->parsed()) return viewgain::bench::run_decision(decision);
-  if (honesty_app->parsed()) return viewgain::bench::run_honesty(honesty);
   if (scaling_app->parsed()) return viewgain::bench::run_scaling(scaling);
   if (approximate_app->parsed()) return viewgain::bench::run_approximate(approximate);
   if (choose_app->parsed()) return viewgain::bench::run_choose(choose);

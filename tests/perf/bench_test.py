@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Each subcommand of viewgain-bench but honesty, which takes minutes, runs at a tiny size, prints JSON and says in its exit code what
+"""Each subcommand of viewgain-bench runs at a tiny size, prints JSON and says in its exit code what
 its bars say; ways to do the same agree. bench_test.py VIEWGAIN_BENCH VIEWGAIN_MICRO PEERS_FOLDER"""
 import json
 import pathlib
