@@ -22,9 +22,10 @@ packages=(
 npm --version >/dev/null 2>&1 || packages+=(nodejs npm)
 tests=(
   pkg-config python3 pybind11-dev python3-dev python3-numpy python3-pytest python3-matplotlib
+  python3-scipy python3-distributed
   libgtest-dev liboctomap-dev libopenvdb-tools file locales
 )
-perf=(libbenchmark-dev libnanovdb-dev python3-scipy)
+perf=(libbenchmark-dev libnanovdb-dev)
 browser=(chromium-headless-shell)
 fuzz=(clang-19 libclang-rt-19-dev)
 docs=(doxygen doxygen-awesome-css python3-sphinx python3-myst-parser furo libjs-mathjax)

@@ -44,7 +44,7 @@ for picture in "${wanted[@]}"; do
       for mesh in camel lion-head mannequin-devil armadillo elephant bunny00; do
         ./apps/extract_mesh.sh "$mesh.off" build/meshes
       done
-      viewgain study perf/studies/policies.toml --out "$work/policies" --plots off >"$work/policies.md"
+      python3 -m viewgain.study perf/studies/policies.toml --out "$work/policies" >"$work/policies.md"
       "$python" $gallery/draw.py coverage "$work/policies/results.json" $gallery/coverage.png ;;
     approximate)
       viewgain-bench approximate --json >"$work/approximate.json"

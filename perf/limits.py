@@ -5,7 +5,7 @@
 
     limits.py SPEC.toml DIR [--samples 1000] [--seconds 20] [--dense 162] [--own 160]
 
-DIR is what `viewgain study SPEC.toml --out DIR` left; its spec has kept_candidates. What each view sees of the true surface
+DIR is what `python3 -m viewgain.study SPEC.toml --out DIR` left; its spec has kept_candidates. What each view sees of the true surface
 (visibility.py) is kept in DIR/visibility. Shares are of the samples that some view of the object sees: of the dense set (so
 many poses on each of three spheres, at 0.8, 1 and 1.25 times the start's distance), of any run's candidates or views. The
 first view is given and counts. The least number of views to a share, and the best k views, are integer programs; where one is

@@ -6,13 +6,14 @@ what a call leaves that nobody ended.
 
     tests/kill.py PROGRAM MESH [--kills 100] [--seed 1] [--work FOLDER]
 
-Half of the kills hit `reconstruct --resume` (of a mesh into no folder, over an earlier run, with a report; of
-recorded frames), a quarter `model --watch`, a quarter `study`. Bytes are compared, but for times: values and
+Half of the kills hit `reconstruct --resume` (of a mesh into no folder, over an earlier run, with a report) and `model --resume`, a
+quarter `model --watch`, a quarter `python3 -m viewgain.study`. Bytes are compared, but for times: values and
 columns named seconds and deciding_seconds, and a table's columns in s. Ends with 1 where anything differs.
 """
 import argparse
 import difflib
 import json
+import os
 import pathlib
 import random
 import re
@@ -22,6 +23,7 @@ import subprocess
 import sys
 import time
 
+PACKAGE = str(pathlib.Path(__file__).resolve().parents[1] / "apps/python")  # a study needs no extension module
 TIMES = ("seconds", "deciding_seconds")
 
 
@@ -69,7 +71,10 @@ class Kills:
         self.failures = []
 
     def start(self, arguments):
-        return subprocess.Popen([self.program, *arguments], cwd=self.work, stdout=subprocess.DEVNULL,
+        call = [self.program, *arguments]
+        if arguments[0] == "study":
+            call = [sys.executable, "-m", "viewgain.study", *arguments[1:], "--program", self.program]
+        return subprocess.Popen(call, env={**os.environ, "PYTHONPATH": PACKAGE}, cwd=self.work, stdout=subprocess.DEVNULL,
                                 stderr=subprocess.PIPE)
 
     def run(self, arguments):

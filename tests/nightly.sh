@@ -81,7 +81,7 @@ run_part() {
     kill)
       build program
       ./apps/extract_mesh.sh camel.off build/kill
-      ./tests/kill.py build/release/bin/viewgain build/kill/camel.off --work build/kill/work | tee build/kill.log
+      /usr/bin/python3 tests/kill.py build/release/bin/viewgain build/kill/camel.off --work build/kill/work | tee build/kill.log
       ;;
     vdb) build release; run_ctest --preset vdb ;;
     mutate) build release; ./tests/mutate.py build/release | tee build/mutate.log ;;

@@ -31,7 +31,6 @@ namespace {
 
 constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
-constexpr int kStopped = 130;  // as shells have it for SIGINT
 
 // One thread at most says why the program ends; what comes after it waits for the end.
 std::atomic_flag is_reported = ATOMIC_FLAG_INIT;
@@ -56,9 +55,9 @@ int run(int argc, char** argv) {
   CommonOptions common;
   const std::unique_ptr<App> program = make_program(common);
   std::vector<Command> commands;
-  for (const auto add : {add_model, add_reconstruct, add_study, add_simulate, add_import,
-                         add_calibrate, add_integrate, add_score, add_next, add_info, add_surface,
-                         add_convert, add_render, add_sensors}) {
+  for (const auto add :
+       {add_model, add_reconstruct, add_simulate, add_import, add_calibrate, add_integrate,
+        add_score, add_next, add_info, add_surface, add_convert, add_render, add_sensors}) {
     commands.push_back(add(*program));
   }
   program->footer(
@@ -124,8 +123,6 @@ int guarded_run(int argc, char** argv) {
   } catch (const Error& error) {
     if (error.code() == ErrorCode::backend) leave(report(error.what(), kInternalError));
     return report(error.what(), kBadInput);
-  } catch (const Stopped& stopped) {
-    return report(stopped.message, kStopped);
   } catch (const std::bad_alloc&) {
     leave(report("out of memory", kInternalError));
   } catch (const std::system_error& error) {

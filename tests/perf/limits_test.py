@@ -213,7 +213,7 @@ tolerance = 0.02
 
             def limits(name, text):
                 pathlib.Path(folder, f"{name}.toml").write_text(text, encoding="utf-8")
-                subprocess.run([VIEWGAIN, "study", f"{name}.toml", "--out", name, "--plots", "off", "--quiet"], cwd=folder, check=True,
+                subprocess.run([sys.executable, "-m", "viewgain.study", f"{name}.toml", "--out", name, "--program", VIEWGAIN, "--quiet"], cwd=folder, check=True,
                                stdout=subprocess.DEVNULL)
                 return lambda *more: subprocess.run([sys.executable, f"{PERF}/limits.py", f"{name}.toml", name, "--samples", "150",
                                                      "--dense", "20", *more], cwd=folder, capture_output=True, text=True)

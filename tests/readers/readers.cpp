@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "choose/planner_state.hpp"
 #include "mesh/files/mesh_dialects.hpp"
 #include "program/commands/reconstruct/checkpoint.hpp"
-#include "program/commands/study/results.hpp"
 #include "support/pose_file_text.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose_io.hpp"
@@ -273,47 +271,6 @@ std::vector<Reader> state_readers() {
            [=](const fs::path& folder) { checkpoint(folder, nullptr); }}};
 }
 
-// A run of a study's folder, which machines share: a row of its tables.
-Reader study_reader() {
-  app::StudySpec spec;
-  spec.objects = {{"cube", "cube.off"}};
-  spec.policies = {{"gain:combined", "gain", "combined", "", ""},
-                   {"frontier", "frontier", "", "", ""}};
-  spec.max_views = 5;
-  spec.tolerance = 0.01;
-  spec.against = 1;
-  for (std::size_t policy = 0; policy < 2; ++policy) {
-    spec.runs.push_back({0, policy, 3, "sr4000", 0.01, std::nullopt, {}, "0123"});
-  }
-  app::Json good{{"stop_reason", "max_views"},
-                 {"views", 3U},
-                 {"coverage", 0.5},
-                 {"rms_error", 1e-3},
-                 {"consistency", nullptr},
-                 {"outliers", 2},
-                 {"travelled", 1.5},
-                 {"isa", "AVX2"},
-                 {"seconds", {{"candidates", 0.75}, {"score", 0.25}, {"total", 4.0}}}};
-  for (int view = 0; view < 3; ++view) {
-    good["per_view"].push_back({{"coverage_visible", 0.3 + 0.3 * view},
-                                {"travelled", 0.5 * view},
-                                {"generator", view == 0 ? "start" : "boundary"}});
-  }
-  Reader reader = file_reader("study.json", good.dump(), [=](const fs::path& path) {
-    try {
-      const app::Json read = app::parse_or_null(read_all(path));
-      const std::vector rows{app::row_of(spec.runs[0], read, spec.max_views),
-                             app::row_of(spec.runs[1], good, spec.max_views)};
-      (void)app::results_csv(app::results_json(spec, rows));
-      (void)app::results_markdown(spec, rows);
-    } catch (const app::Json::exception& error) {  // as the program does
-      throw Error(ErrorCode::format, path.string() + ": " + error.what());
-    }
-  });
-  reader.one_in = 4;  // makes tables
-  return reader;
-}
-
 }  // namespace
 
 std::vector<Reader> all_readers() {
@@ -322,7 +279,6 @@ std::vector<Reader> all_readers() {
                            cloud_and_map_readers(), mesh_readers(), state_readers()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
-  all.push_back(study_reader());
   return all;
 }
 

@@ -5,8 +5,7 @@ set(VIEWGAIN_READERS
   ${CMAKE_CURRENT_LIST_DIR}/readers.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../fuzz/c_calls.cpp ${CMAKE_CURRENT_LIST_DIR}/../fuzz/scorer_calls.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../mesh/files/mesh_dialects.cpp
-  ${apps}/program/cli/values.cpp ${apps}/program/commands/reconstruct/checkpoint.cpp
-  ${apps}/program/commands/study/markdown.cpp ${apps}/program/commands/study/results.cpp)
+  ${apps}/program/cli/values.cpp ${apps}/program/commands/reconstruct/checkpoint.cpp)
 if(BUILD_SHARED_LIBS)  # of which this is hidden
   list(APPEND VIEWGAIN_READERS ${apps}/planner/src/choose/planner_state.cpp)
 endif()

@@ -270,7 +270,7 @@ std::vector<fs::path> run_files(const fs::path& dir) {
   }
   for (const auto& [folder, endings] :
        {std::pair{"views", std::vector<const char*>{".png", ".amplitude.png"}},
-        std::pair{"maps", std::vector<const char*>{".vdb"}}}) {
+        std::pair{"maps", std::vector<const char*>{".vdb", ".txt"}}}) {
     for (const std::string& name : names_in(dir / folder)) {
       if (std::any_of(endings.begin(), endings.end(),
                       [&](const char* ending) { return is_numbered(name, ending); })) {
@@ -313,10 +313,10 @@ fs::path RunFolder::view(std::size_t index, const char* ending) const {
   return file("views") / numbered(index, ending);
 }
 
-fs::path RunFolder::map(std::size_t index) const {
+fs::path RunFolder::map(std::size_t index, const char* ending) const {
   std::error_code ignored;
   fs::create_directories(file("maps"), ignored);  // a failure shows when the map is written
-  return file("maps") / numbered(index, ".vdb");
+  return file("maps") / numbered(index, ending);
 }
 
 }  // namespace viewgain

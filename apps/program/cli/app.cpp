@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/cli/app.hpp"
 
-#include "program/cli/successors.hpp"
 #include "program/cli/values.hpp"
 
 namespace viewgain::app {
@@ -39,18 +38,6 @@ CLI::Validator counted(std::size_t least, std::size_t most) {
 }
 
 CLI::Validator a_seed() { return CLI::Range(std::size_t{0}, std::size_t{1} << 62U, "number"); }
-
-void parse_words(App& app, const std::vector<std::string>& words) {
-  try {
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as CLI11 wants them
-  } catch (const CLI::ParseError& error) {
-    for (const std::string& word : words) {
-      const std::string gone = successor_of(word.substr(0, word.find('=')));
-      if (!gone.empty()) throw UsageError(ErrorCode::invalid_argument, gone);
-    }
-    throw UsageError(ErrorCode::invalid_argument, error.what());
-  }
-}
 
 void add_switch(App& app, const std::string& name, std::string& value, const std::string& help) {
   app.add_option(name, value, help)->check(on_or_off());

@@ -30,9 +30,6 @@ class UsageError : public Error {
 /// With the same bounds in every subcommand.
 [[nodiscard]] CLI::Validator a_seed();
 
-/// Parses words, the first one first. Throws UsageError; also for a help.
-void parse_words(App& app, const std::vector<std::string>& words);
-
 /// A switch that shows its default.
 void add_switch(App& app, const std::string& name, std::string& value, const std::string& help);
 

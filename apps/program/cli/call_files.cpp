@@ -85,7 +85,7 @@ Kind kind_of(const FileOption& option, const std::string& subcommand) {
   if (option.name != "--out") return option.kind;
   if (subcommand == "simulate" || subcommand == "import") return Kind::frames_output;
   if (subcommand == "model") return Kind::model_output;
-  return subcommand == "reconstruct" || subcommand == "study" ? Kind::run_output : option.kind;
+  return subcommand == "reconstruct" ? Kind::run_output : option.kind;
 }
 
 bool is_run(const App& subcommand) {

@@ -48,7 +48,7 @@ std::string fault_of_flag(const App& called, const std::string& flag) {
 }
 
 bool is_flag(const std::string& word) {
-  return word.size() > 1 && word[0] == '-' &&
+  return word.size() > 1 && word[0] == '-' && word != "--" &&
          std::isdigit(static_cast<unsigned char>(word[1])) == 0 && word[1] != '.';
 }
 

@@ -13,6 +13,7 @@ struct Successor {
 constexpr std::array kSuccessors{
     Successor{"candidates", "viewgain next MAP --top all --out FILE"},
     Successor{"follow", "viewgain model FRAMES_DIR --watch --out OUT"},
+    Successor{"study", "python3 -m viewgain.study SPEC --out DIR"},
     Successor{"--sphere", "--poses sphere:N,RADIUS"},
     Successor{"--dome", "--poses dome:N,RADIUS"},
     Successor{"--rings", "--poses rings:N,RADIUS"},

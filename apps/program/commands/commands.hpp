@@ -4,8 +4,8 @@
 
 #include <functional>
 #include <memory>
-#include <utility>
 #include <string>
+#include <utility>
 
 #include "program/cli/app.hpp"
 #include "program/cli/flags/common_options.hpp"
@@ -29,11 +29,6 @@ template <typename Options, typename Run>
           }};
 }
 
-/// Thrown by a command that a signal stopped before it was done: one line, exit code 130.
-struct Stopped {
-  std::string message;
-};
-
 [[nodiscard]] Command add_simulate(App& program);
 [[nodiscard]] Command add_calibrate(App& program);
 [[nodiscard]] Command add_import(App& program);
@@ -47,6 +42,5 @@ struct Stopped {
 [[nodiscard]] Command add_surface(App& program);
 [[nodiscard]] Command add_render(App& program);
 [[nodiscard]] Command add_sensors(App& program);
-[[nodiscard]] Command add_study(App& program);
 
 }  // namespace viewgain::app

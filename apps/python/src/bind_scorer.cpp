@@ -101,11 +101,10 @@ std::unique_ptr<Scorer> make_scorer(
   if (prior_sigma && !map.is_none() && (grid != nullptr || !is_octomap(file))) {
     throw py::value_error("map brings its own prior_sigma; leave yours out");
   }
+  std::optional<BeliefGrid> copy;
+  if (grid != nullptr) copy = grid->read([](const BeliefGrid& g) { return g.clone(); });
   ViewScorer scorer = outside_gil([&] {
-    if (grid != nullptr) {
-      return ViewScorer(grid->read([](const BeliefGrid& g) { return g.clone(); }), sensor, config,
-                        exec);
-    }
+    if (copy) return ViewScorer(std::move(*copy), sensor, config, exec);
     if (file.empty()) return ViewScorer(sensor, config, exec);
     return ViewScorer(load_map(file, &sensor, {.prior_sigma = prior_sigma}, exec), sensor, config,
                       exec);

@@ -23,17 +23,27 @@ damaged or of another kind, and what a data structure cannot hold. What a functi
 say what is raised beside that.
 """
 
+import importlib.util as _util
+
 try:
     import numpy as _numpy  # here, so that the extension does not fail without saying why
 except ImportError as error:
     raise ImportError(f"viewgain needs numpy, which cannot be imported: {error}") from error
 
-from . import _calls, _viewgain
+if _util.find_spec("viewgain._viewgain") is None:  # a source folder: viewgain.study needs none
 
-_calls.explain(_viewgain)
-from ._viewgain import *
-from ._viewgain import __version__
-from .codes import HitKind, Infeasibility, ViewStatus, VoxelState
-from .results import (AddedView, BestViews, Cloud, Frame, FrameConsistency, FrameRegistration, GridStatistics, IntegrationReport, MapUpdate, Proposal,
-                      Ranking, RayOutcomes, Sigmas, SimulatedFrame, Suspicion, TimedPoses, ViewSet, ViewTour)
-from . import plot
+    def __getattr__(name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise ImportError(f"viewgain.{name} needs the extension module, which is not in {__path__[0]}: build it, or install the package")
+
+else:
+    from . import _calls, _viewgain
+
+    _calls.explain(_viewgain)
+    from ._viewgain import *
+    from ._viewgain import __version__
+    from .codes import HitKind, Infeasibility, ViewStatus, VoxelState
+    from .results import (AddedView, BestViews, Cloud, Frame, FrameConsistency, FrameRegistration, GridStatistics, IntegrationReport, MapUpdate,
+                          Proposal, Ranking, RayOutcomes, Sigmas, SimulatedFrame, Suspicion, TimedPoses, ViewSet, ViewTour)
+    from . import plot

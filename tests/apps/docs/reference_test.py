@@ -31,17 +31,7 @@ CALLS = {
     "surface": "surface run/map.vdb --out surface.ply --truth meshes/camel.off --size 0.35 --place center",
     "render": "render run sigma --out sigma.png",
     "sensors": "sensors",
-    "study": "study spec.toml --out study --plots off",
 }
-SPEC = """objects = ["meshes/camel.off"]
-policies = ["gain:combined"]
-seeds = [1]
-sensors = ["sr4000"]
-voxels = [0.02]
-sizes = [0.35]
-max_views = 2
-tolerance = 0.02
-"""
 WALL = "OFF\n4 2 0\n-3 -3 1\n3 -3 1\n3 3 1\n-3 3 1\n3 0 1 2\n3 0 2 3\n"
 # A wall with a box's front before it.
 STATIC = """OFF
@@ -88,7 +78,7 @@ def main():
     gains = set()
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([source / "apps/extract_mesh.sh", "camel.off", f"{folder}/meshes"], check=True)
-        for file, text in {"spec.toml": SPEC, "wall.off": WALL, "static.off": STATIC, "poses.txt": POSES,
+        for file, text in {"wall.off": WALL, "static.off": STATIC, "poses.txt": POSES,
                            "pose.txt": POSES.splitlines()[0]}.items():
             pathlib.Path(folder, file).write_text(text, encoding="utf-8")
         for call in ["simulate wall.off --poses poses.txt --sensor sr4000 --out wall",

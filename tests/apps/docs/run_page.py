@@ -48,7 +48,7 @@ def check_console(source, block, where):
 def main():
     source, binaries, page = (pathlib.Path(word).resolve() for word in sys.argv[1:])
     blocks = blocks_of(page)
-    environment = os.environ | {"PATH": f"{binaries}:{os.environ['PATH']}", "MPLBACKEND": "agg"}
+    environment = os.environ | {"PATH": f"{binaries}:{os.path.dirname(sys.executable)}:{os.environ['PATH']}", "MPLBACKEND": "agg"}
     os.environ.update(environment)
     names, ran = {"__name__": "__main__"}, 0
     with tempfile.TemporaryDirectory() as folder:

@@ -186,15 +186,16 @@ TEST_F(StagedFolderTest, FramesThatNobodySimulatedAreRefused) {
 
 TEST_F(StagedFolderTest, RunsThatNobodyLeftAreRefused) {
   std::size_t cases = 0;
-  for (const char* name : {"run.json", "views.txt", "map.vdb", "surface.ply", "points.ply",
-                           "views/00.png", "views/01.amplitude.png", "maps/00.vdb"}) {
+  for (const char* name :
+       {"run.json", "views.txt", "map.vdb", "surface.ply", "points.ply", "views/00.png",
+        "views/01.amplitude.png", "maps/00.vdb", "maps/00.txt"}) {
     const std::string folder = "foreign" + std::to_string(cases);
     write(folder + "/" + name, "mine");
     EXPECT_THROW(RunFolder run(dir / folder), Error) << name;
     EXPECT_EQ(read(folder + "/" + name), "mine");
     ++cases;
   }
-  EXPECT_EQ(cases, 8U);
+  EXPECT_EQ(cases, 9U);
 }
 
 Calls calls_of(const std::function<void()>& work) {

@@ -118,16 +118,5 @@ sweep next map.vdb --top 3 --threads 2
 sweep score map.vdb --poses sphere:200,0.6 --top 3 --threads 2
 sweep score map.vdb --poses sphere:200,0.6 --top 3 --threads 2 --trace embree
 sweep score map.vdb --poses sphere:200,0.6 --top 3 --threads 2 --race --obstacle cube.off
-cat >study.toml <<'END'
-objects = ["cube.off"]
-policies = ["gain:combined", "frontier"]
-seeds = [1]
-sensors = ["sr4000"]
-voxels = [0.0125]
-sizes = [0.2]
-max_views = 2
-END
-goes_on study study.toml --quiet --threads 2 --out out/study
-
 [ "$ended" -ge 30 ] && [ "$done" -ge 20 ] || { echo "only $ended calls ended, $done were done"; exit 1; }
 echo "$ended calls ended, $done were done"

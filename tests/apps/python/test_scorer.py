@@ -101,14 +101,14 @@ def test_files_come_back(sensor, tmp_path):
     depth = frame(sensor, POSES[0])[0]
     scorer.add(depth, POSES[0])
     scorer.save(tmp_path / "map.vdb")
-    again = viewgain.ViewScorer.load(tmp_path / "map.vdb", sensor)
+    again = viewgain.ViewScorer.load(tmp_path / "map.vdb", sensor, support_plane=SETTINGS["support_plane"])
     assert np.array_equal(again.evaluate(POSES), scorer.evaluate(POSES))
     scorer.grid.save(tmp_path / "map.ot")
     octree = viewgain.ViewScorer(sensor, map=tmp_path / "map.ot", prior_sigma=0.003)
     assert octree.evaluate(POSES).shape == (len(POSES),) and octree.grid.prior_sigma == 0.003
     with pytest.raises(FileNotFoundError, match="none.vdb"):
         viewgain.ViewScorer(sensor, map="none.vdb")
-    of_grid = viewgain.ViewScorer(sensor, map=scorer.grid)
+    of_grid = viewgain.ViewScorer(sensor, map=scorer.grid, support_plane=SETTINGS["support_plane"])
     assert np.array_equal(of_grid.evaluate(POSES), scorer.evaluate(POSES))
     # What the map has is not said twice.
     for said in ({"voxel_size": 0.01}, {"workspace": WORKSPACE}, {"T_world_grid": np.eye(4)}, {"prior_sigma": 0.01}):

@@ -60,6 +60,13 @@ Json write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t
   return run;
 }
 
+// What the next view was chosen among; no file where nothing was proposed.
+void write_candidates(const std::filesystem::path& path, const std::vector<Candidate>& candidates) {
+  std::vector<Pose> poses;
+  for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
+  if (!poses.empty()) write_tum(path, poses);
+}
+
 std::string run_title(const ReconstructOptions& options, const RunSetup& setup) {
   return std::filesystem::path(options.mesh).filename().string() + ", " + setup.sensor.name;
 }
@@ -125,6 +132,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
     add_to(seconds, record.seconds);
     if (outputs.saves_maps()) {
       save_vdb(model.grid(), folder.map(record.index));
+      write_candidates(folder.map(record.index, ".txt"), record.proposal.candidates);
     }
     if (outputs.draws()) {
       const GainEvaluator evaluator = step_evaluator(model, setup, exec);

@@ -20,7 +20,9 @@ constexpr std::size_t kMaxCount = 1'000'000;
 
 void add_output_options(App& app, RunOutputs& outputs) {
   begin_group(app, "Output");
-  add_switch(app, "--save-maps", outputs.save_maps, "keep maps/NN.vdb after each view");
+  add_switch(app, "--save-maps", outputs.save_maps,
+             "keep maps/NN.vdb after each view; reconstruct also the candidates for the next one, "
+             "maps/NN.txt");
   add_switch(app, "--pictures", outputs.pictures, "draw views/NN.png");
   app.add_option("--report", outputs.report,
                  "off; on: write report.html (one file, for a browser); or the folder of another "

@@ -25,7 +25,7 @@ namespace {
 // In an order in which the examples of their help find what they name.
 const Strings kSubcommands{"simulate", "import",  "calibrate",   "integrate", "model",
                            "next",     "score",   "reconstruct", "render",    "info",
-                           "convert",  "sensors", "study",       "surface"};
+                           "convert",  "sensors", "surface"};
 
 Strings words_of(const std::string& text) {
   std::istringstream in(text);
@@ -117,10 +117,10 @@ TEST_F(Help, GroupsSubcommandsByTaskAndItsExamplesWork) {
   const std::string help = run_well({"--help"});
   std::size_t last = 0;
   for (const char* line :
-       {"\nThe whole loop:\n  model ", "\n  reconstruct ", "\n  study ",
-        "\nMake a map:\n  simulate ", "\n  import ", "\n  calibrate ", "\n  integrate ",
-        "\nChoose views:\n  score ", "\n  next ", "\nLook and convert:\n  info ", "\n  surface ",
-        "\n  convert ", "\n  render ", "\n  sensors ", "\nExamples:\n  viewgain "}) {
+       {"\nThe whole loop:\n  model ", "\n  reconstruct ", "\nMake a map:\n  simulate ",
+        "\n  import ", "\n  calibrate ", "\n  integrate ", "\nChoose views:\n  score ", "\n  next ",
+        "\nLook and convert:\n  info ", "\n  surface ", "\n  convert ", "\n  render ",
+        "\n  sensors ", "\nExamples:\n  viewgain "}) {
     const std::size_t at = help.find(line);
     ASSERT_NE(at, std::string::npos) << line;
     EXPECT_GT(at + 1, last) << line;
@@ -156,13 +156,12 @@ TEST_F(Help, EachSubcommandHasAnExampleThatWorks) {
 TEST_F(Help, BashCompletesSubcommandsFlagsAndValues) {
   using Set = std::set<std::string>;
   Set subcommands(kSubcommands.begin(), kSubcommands.end());
-  subcommands.insert({"--help", "--version", "--json", "--quiet", "--threads", "--trace", "--config",
-                      "--save-config"});
+  subcommands.insert({"--help", "--version", "--json", "--quiet", "--threads", "--trace",
+                      "--config", "--save-config"});
   EXPECT_EQ(completions({"viewgain", ""}), subcommands);
   EXPECT_EQ(completions({"viewgain", "--threads", "2", ""}), subcommands);
   EXPECT_EQ(completions({"viewgain", "--json", "score", "--feasible", ""}), (Set{"on", "off"}));
-  EXPECT_EQ(completions({"viewgain", "s"}),
-            (Set{"score", "sensors", "simulate", "study", "surface"}));
+  EXPECT_EQ(completions({"viewgain", "s"}), (Set{"score", "sensors", "simulate", "surface"}));
   for (const std::string& subcommand : kSubcommands) {
     EXPECT_EQ(completions({"viewgain", subcommand, "--"}), flags_in_help(subcommand)) << subcommand;
   }

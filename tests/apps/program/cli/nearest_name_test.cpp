@@ -69,12 +69,17 @@ class Spelling : public test::ProgramTest {
 
 TEST_F(Spelling, TheNearestIsNamed) {
   expect_refused(
-      {{{"scor"}, "scor is no subcommand; did you mean score? There are model, reconstruct, study"},
-       {{"zzz"}, "zzz is no subcommand; there are model, reconstruct, study"},
+      {{{"scor"},
+        "scor is no subcommand; did you mean score? There are model, reconstruct, simulate"},
+       {{"zzz"}, "zzz is no subcommand; there are model, reconstruct, simulate"},
        {{"--versoin"}, "did you mean --version?"},
        {{"info", "map.vdb", "--jsno"}, "--jsno: no such flag of info; did you mean --json?"},
        {{"score", "map.vdb", "--poss=5,1"}, "--poss: no such flag of score; did you mean --poses?"},
-       {{"convert", "map.vdb", "--out", "map.ot"}, "--out: OUT is positional; give it without a flag (see"},
+       {{"convert", "map.vdb", "--out", "map.ot"},
+        "--out: OUT is positional; give it without a flag (see"},
+       {{"reconstruct", "--voxel=0.01", "--policy=best", "--sensor=sr4000", "--out=run", "--",
+         "cube.off"},
+        "--policy: best is"},
        {{"reconstruct", "--nonsense"}, "--nonsense: no such flag of reconstruct (see"},
        {{"score", "map.vdb", "--gain", "surfce"},
         "--gain: surfce is no gain; did you mean surface? There are paper, surface, combined"},

@@ -82,7 +82,11 @@ TEST_F(Reconstruct, LeavesAConsistentFolder) {
   ASSERT_EQ(result["per_view"].size(), 3U);
   EXPECT_EQ(list("run"), (Strings{"config.toml", "map.vdb", "maps", "points.ply", "run.json",
                                   "surface.ply", "views", "views.txt"}));
-  EXPECT_EQ(list("run/maps"), (Strings{"00.vdb", "01.vdb", "02.vdb"}));
+  EXPECT_EQ(list("run/maps"), (Strings{"00.txt", "00.vdb", "01.txt", "01.vdb", "02.vdb"}));
+  for (std::size_t view = 1; view < 3; ++view) {  // what it was chosen among
+    const PoseList candidates = read_tum(dir / ("run/maps/0" + std::to_string(view - 1) + ".txt"));
+    EXPECT_EQ(candidates.poses.size(), result["per_view"][view]["candidates"]);
+  }
   EXPECT_EQ(list("run/views"), (Strings{"00.amplitude.png", "00.png", "01.amplitude.png", "01.png",
                                         "02.amplitude.png", "02.png"}));
   const json run_file = json::parse(read("run/run.json"));

@@ -78,11 +78,10 @@ VIEWGAIN_EXPORT void remove_staged_folders() noexcept;
 inline constexpr const char* kCheckpoint = "checkpoint.json";
 
 /// The folder that `reconstruct` and `model` leave: run.json, config.toml, views.txt, next.txt,
-/// next.json, map.vdb,
-/// surface.ply, points.ply, report.html, views/NN.png, views/NN.amplitude.png, maps/NN.vdb. Nothing
-/// is in it, and an earlier run is as it was, until commit(). Thread safety: one call at a time.
-/// Members that throw say so: names are not checked. Cost of the constructor: O(files); calls that
-/// name a file take constant time.
+/// next.json, map.vdb, surface.ply, points.ply, report.html, views/NN.png, views/NN.amplitude.png,
+/// maps/NN.vdb, maps/NN.txt. Nothing is in it, and an earlier run is as it was, until commit().
+/// Thread safety: one call at a time. Members that throw say so: names are not checked. Cost of the
+/// constructor: O(files); calls that name a file take constant time.
 class VIEWGAIN_EXPORT RunFolder {
  public:
   /// Throws Error(io), and Error(invalid_argument) if the folder holds files of these names without
@@ -94,8 +93,9 @@ class VIEWGAIN_EXPORT RunFolder {
   [[nodiscard]] std::filesystem::path file(const char* name) const { return staged_.path() / name; }
   /// A file of view `index`, by its ending; makes the folder views/.
   [[nodiscard]] std::filesystem::path view(std::size_t index, const char* ending) const;
-  /// The map after view `index`; makes the folder maps/.
-  [[nodiscard]] std::filesystem::path map(std::size_t index) const;
+  /// The map after view `index`, or by the ending .txt the candidates for the next one; makes the
+  /// folder maps/.
+  [[nodiscard]] std::filesystem::path map(std::size_t index, const char* ending = ".vdb") const;
 
   /// The checkpoint that was there before this run wrote one: what was gone on with has it, or the
   /// folder itself; empty if there is none.

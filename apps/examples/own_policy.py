@@ -1,0 +1,28 @@
+"""A gain of one's own as a policy of a study: {name = "near", command = "python3 own_policy.py"} in its spec. It is called as
+`viewgain reconstruct` is, and leaves the run that --out names."""
+import json, pathlib, subprocess, sys, tempfile
+import numpy as np, viewgain
+
+def near_unknown(pose, hits):  # distinct unknown voxels in view, by how near they are
+    unknown = hits[hits["state"] == viewgain.VoxelState.UNKNOWN]
+    _, first = np.unique(unknown["voxel"], axis=0, return_index=True)
+    return float(np.sum(1 / unknown["range"][first] ** 2))
+
+given = dict(word.lstrip("-").split("=", 1) for word in sys.argv[1:] if "=" in word)
+flags = [word for word in sys.argv[1:sys.argv.index("--")] if not word.startswith(("--max-views=", "--out="))]
+mesh, poses, own = sys.argv[-1], np.empty((0, 4, 4)), []
+with tempfile.TemporaryDirectory() as work:
+    for views in range(1, int(given["max-views"]) + 1):  # the study's start, camera, noise and truth, views of our choice
+        last = views == int(given["max-views"])
+        out = given["out"] if last else f"{work}/run"
+        subprocess.run(["viewgain", "reconstruct", *flags, "--policy=sequence", f"--max-views={views}", f"--out={out}", *own, "--", mesh],
+                       check=True, stdout=subprocess.DEVNULL)
+        if last:
+            break
+        run = json.loads(pathlib.Path(out, "run.json").read_text())
+        scorer = viewgain.ViewScorer.load(f"{out}/map.vdb", viewgain.Sensor.load(given["sensor"]))
+        sphere = viewgain.sphere_poses(200, run["settings"]["distance"])
+        best = scorer.evaluate(sphere, measure=near_unknown).argmax()
+        poses = np.concatenate([poses, sphere[best:best + 1]])
+        viewgain.write_poses(f"{work}/own.txt", poses)
+        own = [f"--poses={work}/own.txt"]

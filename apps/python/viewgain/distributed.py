@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""Scores poses on many machines, by Dask (Debian: python3-distributed). The workers need this package.
+
+>>> import distributed, viewgain, viewgain.distributed                     # doctest: +SKIP
+>>> with distributed.Client("tcp://scheduler:8786") as client:
+...     gains = viewgain.distributed.evaluate(client, "map.vdb", poses, sensor="sr4000", gain="paper")
+"""
+from __future__ import annotations
+
+import concurrent.futures
+import os
+from typing import Any, Callable, Optional, Union
+
+import distributed
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._viewgain import BeliefGrid, Error, Sensor, ViewScorer
+
+_ROUNDS = 4  # of giving out what was lost with workers
+_LOST = (distributed.scheduler.KilledWorker, concurrent.futures.CancelledError, distributed.comm.CommClosedError)
+
+
+def _evaluate(scorer: ViewScorer, poses: NDArray[np.float64], measure: Any) -> NDArray[np.float64]:
+    return scorer.evaluate(poses, measure=measure)
+
+
+def _rows(poses: ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
+    """The poses in a list, and the leading shape."""
+    array = np.asarray(poses, np.float64)
+    pose = array.shape[-1:] if array.shape[-1:] == (7,) else array.shape[-2:]
+    if pose not in ((7,), (3, 4), (4, 4)):
+        raise ValueError(f"poses must be (..., 4, 4), (..., 3, 4) or (..., 7), not {array.shape}")
+    lead = array.shape[:array.ndim - len(pose)]
+    return np.ascontiguousarray(array.reshape(-1, *pose)), lead
+
+
+def _answers(client: distributed.Client, scorer: ViewScorer, chunks: dict[int, NDArray[np.float64]], measure: Any):
+    """Number and gains of each chunk as it is done; the map goes to each worker once. What was lost with workers is left out."""
+    (shared,) = client.scatter([scorer], broadcast=True, hash=False)
+    futures = {client.submit(_evaluate, shared, poses, measure, pure=False): number for number, poses in chunks.items()}
+    try:
+        for future in distributed.as_completed(list(futures)):
+            try:
+                gains = future.result()
+            except _LOST:
+                continue
+            yield futures[future], gains
+    finally:
+        client.cancel(list(futures))
+
+
+def evaluate(client: distributed.Client, map: Union[BeliefGrid, str, os.PathLike[str]], poses: ArrayLike, *,
+             sensor: Union[Sensor, str, os.PathLike[str]], chunk_size: Optional[int] = None, measure: Any = None,
+             progress: Optional[Callable[[int, int], None]] = None, **gain: Any) -> NDArray[np.float64]:
+    """The gain of each pose on a map, computed by the workers of a Dask cluster.
+
+    The same bits as ``ViewScorer.evaluate`` gives on one machine, in the poses' order, whatever the workers are and when they
+    answer. Chunks of a worker that dies go to the others. Cost: the map is read here and goes to each worker once;
+    a chunk costs its poses, 128 bytes each, there and 8 bytes each back.
+
+    Parameters
+    ----------
+    client : distributed.Client
+    map : BeliefGrid or path-like
+        Its file is read here: workers need not see it.
+    poses : array_like, (..., 4, 4), (..., 3, 4) or (..., 7)
+        T_world_camera.
+    sensor : Sensor, or the name of a preset or .toml file
+    chunk_size : int, optional
+        Poses of a task; default: about four tasks for each thread of the cluster, at most 4096 poses each.
+    measure : callable, optional
+        A gain of your own, as in ``ViewScorer.evaluate``.
+    progress : callable, optional
+        Is called with how many poses are scored and how many there are.
+    **gain
+        As in ``ViewScorer``: gain, criterion, pixel_stride, weights, boxes, meshes, ...; num_threads is that of a task, 1.
+
+    Returns
+    -------
+    ndarray, (...), float64
+        NaN for a bad pose.
+
+    Raises
+    ------
+    viewgain.Error
+        If workers are lost again and again.
+    ValueError, TypeError, OSError
+        As ``ViewScorer``, before anything is sent.
+    """
+    rows, lead = _rows(poses)
+    camera = sensor if isinstance(sensor, Sensor) else Sensor.load(sensor)
+    scorer = ViewScorer(camera, map=map, **{"num_threads": 1, **gain})
+    if chunk_size is not None and chunk_size < 1:
+        raise ValueError(f"chunk_size must be positive, not {chunk_size}")
+    threads = max(1, sum(client.nthreads().values()))
+    size = chunk_size or min(4096, max(1, -(-len(rows) // (4 * threads))))
+    chunks = {begin: rows[begin:begin + size] for begin in range(0, len(rows), size)}
+    gains, done = np.empty(len(rows)), 0
+    for _ in range(_ROUNDS):
+        if not chunks:
+            break
+        for begin, some in _answers(client, scorer, chunks.copy(), measure):
+            gains[begin:begin + len(some)] = some
+            done += len(some)
+            del chunks[begin]
+            if progress is not None:
+                progress(done, len(rows))
+    if chunks:
+        raise Error(f"{len(rows) - done} of {len(rows)} poses are without a gain: their workers were lost {_ROUNDS} times")
+    return gains.reshape(lead)

@@ -1,0 +1,18 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""Compares policies and gains: a run of ``viewgain reconstruct`` for every object, policy, seed, sensor, voxel and size of a
+spec, in one table. ``python3 -m viewgain.study SPEC.toml --out DIR``; the keys of a spec are in the tutorial "Compare methods".
+
+Needs the program ``viewgain``, numpy and scipy, but not the extension module. Frames and units are those of the program.
+
+>>> from viewgain import study                                  # doctest: +SKIP
+>>> spec = study.read_spec("spec.toml")
+>>> rows = study.make_runs(spec, "out", jobs=4)                 # one dict a run; those that are there are not made again
+>>> print(study.table(rows, spec.against, spec.max_views, spec.tolerance))
+"""
+from .rows import SpecError, row_of
+from .runs import RunError, find_program, make_runs
+from .spec import Spec, read_spec
+from .table import table
+
+__all__ = ["RunError", "Spec", "SpecError", "find_program", "make_runs", "read_spec", "row_of", "table"]

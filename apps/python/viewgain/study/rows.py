@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a study compares of a run, and the statistics of its tables."""
+from __future__ import annotations
+
+import collections
+import math
+
+import numpy as np
+from scipy import stats
+
+GOALS = (0.80, 0.90, 0.95)  # shares of the visible surface to which views are counted
+
+
+class SpecError(ValueError):
+    """A spec, or a file that belongs to a study, is not what it should be. The text names the file and the cure."""
+
+
+def _number(value):
+    return math.nan if value is None else float(value)
+
+
+def row_of(run, record, max_views):
+    """The row of ``results.json`` for a `Run` of a spec and its run.json, a dict. Raises KeyError where something is missing in it."""
+    views = record["per_view"]
+    covered = [view["coverage_visible"] or 0.0 for view in views][:max_views]
+    covered += [covered[-1]] * (max_views - len(covered))  # a run that ended early keeps its last over the rest of the budget
+    row = {"object": run.object.name, "policy": run.policy.policy, "gain": run.policy.gain, "seed": run.seed, "sensor": run.sensor,
+           "voxel": run.voxel, "size": run.size, "views": record["views"],
+           "decisions": sum(view["generator"] not in ("start", "plan") for view in views), "stop_reason": record["stop_reason"]}
+    to = [next((i + 1 for i, share in enumerate(covered) if share >= goal), None) for goal in GOALS]
+    for goal, count in zip(GOALS, to):
+        row[f"views_to_{100 * goal:.0f}"] = count
+    for goal, count in zip(GOALS, to):  # the whole way where it was never reached
+        row[f"metres_to_{100 * goal:.0f}"] = views[min(count or len(views), len(views)) - 1]["travelled"]
+    row["auc"], row["coverage_visible"] = float(np.mean(covered)), covered[-1]
+    for key in ("coverage", "rms_error", "consistency", "outliers", "travelled"):
+        row[key] = record[key]
+    seconds = record["seconds"]
+    deciding = seconds.get("candidates", 0) + seconds.get("score", 0)
+    return {**row, "coverage_by_view": covered, "hash": run.hash,
+            "deciding_seconds": deciding / (record["views"] - 1) if record["views"] > 1 else None, "seconds": seconds["total"]}
+
+
+def name_of(row):
+    """The policy of a row, as a spec names it."""
+    return f"{row['policy']}:{row['gain']}" if row["gain"] else row["policy"]
+
+
+def values_of(rows, key, factor=1.0):
+    """A column as floats; null is NaN."""
+    return np.array([factor * _number(row[key]) for row in rows])
+
+
+def counted_views(rows, goal, max_views):
+    """Views to a goal as means count them: one more than the budget where it was never reached."""
+    return np.array([row[f"views_to_{100 * goal:.0f}"] or max_views + 1 for row in rows], float)
+
+
+def mean_and_error(values, clusters):
+    """Mean, standard error and count of the values that are not NaN. The error is by cluster where there are several (CR1 of
+    Cameron and Miller, J. Human Resources 50, 2015), as runs on one object are not independent, else over the values."""
+    values = np.asarray(values, float)
+    kept = np.isfinite(values)
+    n = int(kept.sum())
+    if n == 0:
+        return math.nan, math.nan, 0
+    mean = math.fsum(values[kept]) / n
+    several = len(set(clusters)) > 1
+    sums = collections.defaultdict(float)
+    for i in np.flatnonzero(kept):
+        sums[clusters[i] if several else i] += values[i] - mean
+    groups = len(sums)
+    error = math.sqrt(groups / (groups - 1) * math.fsum(s * s for s in sums.values())) / n if groups > 1 else math.nan
+    return mean, error, n
+
+
+def half_interval(values, clusters):
+    """Half the 95 % interval of the mean for other seeds on the same objects: Student's t with n - G degrees of freedom over
+    G clusters; NaN where there are none."""
+    groups = collections.defaultdict(list)
+    for value, cluster in zip(values, clusters):
+        if math.isfinite(value):
+            groups[cluster].append(value)
+    n = sum(map(len, groups.values()))
+    freedom = n - len(groups)
+    if freedom == 0:
+        return math.nan
+    squares = math.fsum(float(np.sum((np.array(group) - np.mean(group)) ** 2)) for group in groups.values())
+    return float(stats.t.ppf(0.975, freedom)) * math.sqrt(squares / (freedom * n))
+
+
+def sign_test(differences):
+    """Two-sided p of the exact sign test; pairs without a difference and NaN are left out. 1 for none."""
+    d = np.asarray(differences, float)
+    d = d[np.isfinite(d) & (d != 0)]
+    return stats.binomtest(int((d > 0).sum()), len(d)).pvalue if len(d) else 1.0
+
+
+def signed_rank_test(differences):
+    """Two-sided p of Wilcoxon's signed-rank test; zeros and NaN are left out, ties have the mean of their places. Exact up to 50 pairs
+    without ties and 13 with ties, else by the normal distribution with the variance for ties, without a correction for continuity."""
+    d = np.asarray(differences, float)
+    d = d[np.isfinite(d) & (d != 0)]
+    if len(d) == 0:
+        return 1.0
+    has_ties = len(np.unique(np.abs(d))) < len(d)
+    if has_ties and len(d) <= 13:
+        ranks = stats.rankdata(np.abs(d))
+        return float(stats.permutation_test((np.sign(d) * ranks,), lambda x, axis: np.sum(x, axis=axis), permutation_type="samples",
+                                            vectorized=True, n_resamples=np.inf).pvalue)
+    return float(stats.wilcoxon(d, method="exact" if len(d) <= 50 and not has_ties else "approx", correction=False).pvalue)

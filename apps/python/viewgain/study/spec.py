@@ -1,0 +1,261 @@
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""The spec of a study: a TOML file whose lists are crossed."""
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import itertools
+import json
+import pathlib
+import re
+import shlex
+from typing import Optional
+
+from .rows import SpecError
+
+try:
+    import tomllib
+except ImportError:  # Python 3.9 and 3.10
+    import tomli as tomllib
+
+_FORMAT = 5  # of what is kept of a run; grows when that changes
+_MOST_RUNS = 1_000_000
+_KEYS = ("objects", "policies", "against", "seeds", "sensors", "voxels", "sizes", "max_views", "tolerance", "flags", "kept_candidates")
+_OBJECT_KEYS = ("mesh", "name", "reach", "obstacles", "flags")
+_OWN_FLAGS = {f"--{name}" for name in ("sensor voxel size seed policy gain out max-views pictures report save-maps plan threads json "
+                                       "quiet config save-config tolerance resume").split()}  # what the study asks of a run
+_FILE_FLAGS = ("--reach", "--poses", "--hazard", "--obstacle")
+
+
+@dataclasses.dataclass(frozen=True)
+class Object:
+    """A mesh and what stands round it."""
+    name: str
+    mesh: pathlib.Path
+    words: tuple[str, ...]  # of reconstruct, for this object alone
+
+
+@dataclasses.dataclass(frozen=True)
+class Policy:
+    """A way to choose views. With a `command` that program is called in the place of ``viewgain reconstruct``."""
+    name: str
+    policy: str
+    gain: Optional[str] = None
+    words: tuple[str, ...] = ()
+    command: tuple[str, ...] = ()
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    """One run; `hash` is that of all that can change its result."""
+    object: Object
+    policy: Policy
+    seed: int
+    sensor: str
+    voxel: float  # [m]
+    size: Optional[float]  # longest side [m]
+    configuration: dict = dataclasses.field(compare=False)
+    hash: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Spec:
+    """What to compare. `runs` are in the order sensor, voxel, size, object, seed, policy."""
+    path: pathlib.Path
+    objects: tuple[Object, ...]
+    policies: tuple[Policy, ...]
+    against: str  # the policy that the others are paired with
+    max_views: int
+    tolerance: float  # of coverage [m]
+    flags: tuple[str, ...]
+    kept_candidates: int  # of each view
+    runs: tuple[Run, ...]
+
+    def title(self, run: Run) -> str:
+        """"camel, gain:combined, seed 3", and where there are several of them sensor, voxel and size."""
+        parts = [run.object.name, run.policy.name, f"seed {run.seed}"]
+        for key, text in (("sensor", run.sensor), ("voxel", f"voxel {run.voxel:g}"), ("size", f"size {run.size or 0:g}")):
+            if len({getattr(other, key) for other in self.runs}) > 1:
+                parts.append(text)
+        return ", ".join(parts)
+
+    def words(self, run: Run) -> list[str]:
+        """The command line of a run after ``reconstruct``, but for --out and --threads. No rule ends it before its budget is
+        used up, unless a flag of the spec says so."""
+        words = [f"--sensor={run.sensor}", f"--voxel={run.voxel!r}", f"--seed={run.seed}", f"--max-views={self.max_views}",
+                 f"--tolerance={self.tolerance!r}", "--pictures=off", "--quiet", *run.policy.words]
+        if run.size is not None:
+            words.append(f"--size={run.size!r}")
+        if self.kept_candidates:
+            words.append("--save-maps=on")
+        stop = ["gain=0,area=0,idle=0,promises=0"]
+        for flag in (*self.flags, *run.object.words):
+            if flag.startswith("--stop="):
+                stop.append(flag[len("--stop="):])
+            else:
+                words.append(flag)
+        return [*words, f"--stop={','.join(stop)}", "--", str(run.object.mesh)]
+
+
+class _Reader:
+    """The keys of a TOML file; what is wrong is said with its file and line."""
+
+    def __init__(self, path):
+        self.path, self.folder = path, path.parent
+        try:
+            self.text = path.read_text(encoding="utf-8")
+            self.table = tomllib.loads(self.text)
+        except OSError as error:
+            raise SpecError(f"{path}: {error.strerror}") from error
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise SpecError(f"{path}: {error}") from error
+        for key in self.table:
+            if key not in _KEYS:
+                self.fail(key, f"is no key of a study; there are {', '.join(_KEYS)}")
+
+    def fail(self, key, message):
+        found = re.search(rf"^\s*\"?{re.escape(key)}\"?\s*=", self.text, re.MULTILINE)
+        line = f", line {self.text.count(chr(10), 0, found.end()) + 1}" if found else ""
+        raise SpecError(f"{self.path}{line}: {key} {message}")
+
+    def values(self, key, kind, is_right, must):
+        """A list without a value twice."""
+        if key not in self.table:
+            raise SpecError(f"{self.path}: {key} is missing; it {must}")
+        values = self.table[key]
+        if not isinstance(values, list) or not values:
+            self.fail(key, "must be a list that is not empty")
+        for i, value in enumerate(values):
+            if isinstance(value, bool) or not isinstance(value, kind) or not is_right(value):
+                self.fail(key, f"holds {value!r}; it {must}")
+            if value in values[:i]:
+                self.fail(key, f"holds {value!r} twice")
+        return values
+
+    def lengths(self, key):
+        return [float(value) for value in self.values(key, (int, float), lambda v: 0 < v < float("inf"),
+                                                      "must be a list of positive lengths [m]")]
+
+    def number(self, key, kind, least, most, otherwise=None):
+        value = self.table.get(key, otherwise)
+        if value is None and key not in self.table:
+            raise SpecError(f"{self.path}: {key} is missing; it must be a number in {least}..{most}")
+        if isinstance(value, bool) or not isinstance(value, kind) or not least <= value <= most:
+            self.fail(key, f"must be a {'whole ' if kind is int else ''}number in {least}..{most}, not {value!r}")
+        return value
+
+    def flags(self, key, values):
+        """Further flags of reconstruct; files in them from where the program is called."""
+        if not isinstance(values, list):
+            self.fail(key, 'must be a list of texts like "--up=y"')
+        flags = []
+        for flag in values:
+            if not isinstance(flag, str) or not re.match(r"--\w", flag):
+                self.fail(key, f'holds {flag!r}; it must be a list of texts like "--up=y"')
+            name, equals, value = flag.partition("=")
+            if name in _OWN_FLAGS:
+                self.fail(key, f"holds {name}, which the study sets itself")
+            if name == "--help":
+                self.fail(key, "holds --help, which is no setting of a run")
+            is_file = name in _FILE_FLAGS and pathlib.Path(value).is_file()
+            flags.append(name + equals + (str(pathlib.Path(value).resolve()) if is_file else value))
+        return flags
+
+    def file(self, key, name):
+        path = (self.folder / name).resolve()
+        if not path.is_file():
+            self.fail(key, f"holds {name!r}: no file at {path}")
+        return path
+
+
+def _object(reader, value):
+    entry = {"mesh": value} if isinstance(value, str) else value
+    unknown = set(entry) - set(_OBJECT_KEYS)
+    if unknown or not isinstance(entry.get("mesh"), str):
+        reader.fail("objects", f"holds {value!r}; an object is a mesh file or {{{', '.join(_OBJECT_KEYS)}}} with at least a mesh")
+    mesh = reader.file("objects", entry["mesh"])
+    name = entry.get("name", mesh.stem)
+    if not isinstance(name, str) or not name.isprintable() or "|" in name or not name:
+        reader.fail("objects", f"holds {value!r}, of a name that a table cannot show; {{mesh = ..., name = ...}} gives it another")
+    words = [f"--reach={reader.file('objects', entry['reach'])}"] if "reach" in entry else []
+    obstacles = entry.get("obstacles", [])
+    if not isinstance(obstacles, list):
+        reader.fail("objects", f"holds {value!r}; obstacles must be a list of files and of boxes \"x0,y0,z0,x1,y1,z1\"")
+    for obstacle in obstacles:
+        is_box = re.fullmatch(r"[-+.\deE]+(,[-+.\deE]+){5}", str(obstacle))
+        words.append(f"--obstacle={obstacle if is_box else reader.file('objects', str(obstacle))}")
+    return Object(name, mesh, (*words, *reader.flags("objects", entry.get("flags", []))))
+
+
+def _policy(reader, value):
+    if isinstance(value, dict):
+        name, command = value.get("name"), value.get("command")
+        if set(value) != {"name", "command"} or not isinstance(name, str) or not isinstance(command, str) or not command.split() or not name:
+            reader.fail("policies", f"holds {value!r}; a policy of your own is {{name = \"...\", command = \"...\"}}")
+        # Files of the spec's folder by their names there.
+        words = [str((reader.folder / word).resolve()) if (reader.folder / word).is_file() else word for word in shlex.split(command)]
+        return Policy(name, name, command=tuple(words))
+    if value.startswith("tour:") or value == "tour":
+        counts = re.fullmatch(r"tour:([1-9]\d{0,3}):([1-9]\d{0,3})", value)
+        if not counts or not 2 <= int(counts[1]) <= 1000 or int(counts[2]) > int(counts[1]):
+            reader.fail("policies", f"holds {value!r}; a tour is \"tour:K:M\", K of 2 to 1000 views planned, M of them taken before it is planned anew")
+        return Policy(value, value, words=("--policy=gain", f"--plan={counts[1]},{counts[2]}"))
+    policy, colon, gain = value.partition(":")
+    if (policy == "gain") != bool(gain) or (colon and not gain) or not policy:
+        reader.fail("policies", f"holds {value!r}; a policy is \"gain:NAME\" (\"gain:combined\") or another one of reconstruct's (\"frontier\")")
+    return Policy(value, policy, gain or None, (f"--policy={policy}", *([f"--gain={gain}"] if gain else [])))
+
+
+def _identity(path):
+    """A file by its contents; of a reach file also the poses that it names."""
+    data = pathlib.Path(path).read_bytes()
+    text = "file " + hashlib.sha256(data).hexdigest()[:16]
+    poses = re.search(rb"^\s*poses\s*=\s*[\"'](.+?)[\"']", data, re.MULTILINE) if str(path).endswith(".toml") else None
+    inner = pathlib.Path(path).parent / poses[1].decode(errors="replace") if poses else None
+    return text + " " + _identity(inner) if inner and inner.is_file() else text
+
+
+def _flag_identity(flag):
+    name, equals, value = flag.partition("=")
+    return name + equals + (_identity(value) if name in _FILE_FLAGS and pathlib.Path(value).is_file() else value)
+
+
+def read_spec(path, version: str = "") -> Spec:
+    """Reads a spec; `version` is that of the program, which runs are of. Raises SpecError, naming the file, the line and the cure."""
+    reader = _Reader(pathlib.Path(path))
+    text = (str, lambda value: bool(value))
+    objects = [_object(reader, value) for value in reader.values("objects", (str, dict), bool, "must be a list of mesh files or tables")]
+    names = [one.name for one in objects]
+    for name in names:
+        if names.count(name) > 1:
+            reader.fail("objects", f"holds two objects of the name {name!r}; {{mesh = ..., name = ...}} gives one another name")
+    policies = [_policy(reader, value) for value in reader.values("policies", (str, dict), bool, "must be a list of names")]
+    seeds = reader.values("seeds", int, lambda value: 0 <= value < 2**63, "must be a list of whole numbers from 0 on")
+    sensors = [str(reader.file("sensors", value)) if value.endswith(".toml") else value
+               for value in reader.values("sensors", *text, "must be a list of presets and .toml files")]
+    voxels = reader.lengths("voxels")
+    sizes = reader.lengths("sizes") if "sizes" in reader.table else [None]
+    max_views = reader.number("max_views", int, 1, 1000)
+    tolerance = float(reader.number("tolerance", (int, float), 1e-9, 1e9, max(0.005, *voxels)))
+    kept = reader.number("kept_candidates", int, 1, 100_000, None) if "kept_candidates" in reader.table else 0
+    flags = reader.flags("flags", reader.table.get("flags", []))
+    against = reader.table.get("against", policies[0].name)
+    if against not in [policy.name for policy in policies]:
+        reader.fail("against", "is none of the policies")
+    count = len(sensors) * len(voxels) * len(sizes) * len(objects) * len(seeds) * len(policies)
+    if count > _MOST_RUNS:
+        reader.fail("seeds", f"make {count:,} runs with the other lists; {_MOST_RUNS:,} at most")
+
+    shared = {"version": version, "format": _FORMAT, "max_views": max_views, "tolerance": tolerance, "kept_candidates": kept,
+              "flags": [_flag_identity(flag) for flag in flags]}
+    by_object = {one.name: {"object": one.name, "mesh": _identity(one.mesh), "own": [_flag_identity(w) for w in one.words]} for one in objects}
+    by_sensor = {sensor: _identity(sensor) if sensor.endswith(".toml") else sensor for sensor in sensors}
+    by_policy = {policy.name: [_identity(word) if pathlib.Path(word).is_file() else word for word in policy.command] for policy in policies}
+    runs = []
+    for sensor, voxel, size, one, seed, policy in itertools.product(sensors, voxels, sizes, objects, seeds, policies):
+        configuration = {**shared, **by_object[one.name], "policy": policy.name, "command": by_policy[policy.name], "seed": seed,
+                         "sensor": by_sensor[sensor], "voxel": voxel, "size": size}
+        digest = hashlib.sha256(json.dumps(configuration, sort_keys=True).encode()).hexdigest()[:16]
+        runs.append(Run(one, policy, seed, sensor, voxel, size, configuration, digest))
+    return Spec(reader.path, tuple(objects), tuple(policies), against, max_views, tolerance, tuple(flags), kept, tuple(runs))
