@@ -121,7 +121,8 @@ int run(int argc, char** argv) {
 
   viewgain::bench::ChooseOptions choose;
   CLI::App* choose_app = app.add_subcommand(
-      "choose", "race and approximate against scoring all, in a room or on maps of objects");
+      "choose",
+      "race and approximate against scoring all in a room, or approximate on maps of objects");
   choose_app->add_option("--threads", choose.num_threads, "threads, 0: all")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

@@ -9,9 +9,8 @@ namespace {
 
 SimulationConfig simulation(const char* noise, std::uint64_t seed, const Sensor& sensor) {
   app::SensingOptions options;
-  options.noise = noise;
   options.seed = seed;
-  return app::simulation_config(options, sensor);
+  return app::simulation_config(options, app::parse_noise(noise, true), sensor);
 }
 
 }  // namespace

@@ -121,8 +121,8 @@ def main():
     (args.out / "reach.toml").write_text(f"[[box]]\nmin = {numbers(reach[0] - middle)}\nmax = {numbers(reach[1] - middle)}\n")
     (args.out / "flags.toml").write_text(
         f'mesh = "{args.out / "scene.off"}"\nreach = "{args.out / "reach.toml"}"\nsensor = "d435"\nvoxel = 0.005\n'
-        f"workspace = {numbers([*low, *high])}\nstart = {numbers([*eye, *quaternion(eye, at)])}\n"
-        "max-views = 10\nstop-area = 0\nstop-idle = 0\nstop-promises = 0\npictures = false\n")
+        f"workspace = {numbers([*low, *high])}\nfrom = {numbers([*eye, *quaternion(eye, at)])}\n"
+        "max-views = 10\nstop = \"area=0,idle=0,promises=0\"\npictures = false\n")
 
 
 if __name__ == "__main__":

@@ -39,8 +39,9 @@ struct Figure {
 using BarGroup = std::vector<Figure> (*)(const BarsOptions& options);
 
 /// One interleaved run of `trace`: gain_over_quads, gain_over_quads_fast, gain_over_trace,
-/// floor_over_quads, trace_over_floor, gain_over_octomap, build_ms; by the tracer embree
-/// gain_embree_over_quads, gain_embree_over_gain, trace_embree_over_trace.
+/// floor_over_quads, trace_over_floor, gain_over_octomap, surface_over_paper, combined_over_paper,
+/// build_ms; by the tracer embree gain_embree_over_quads, gain_embree_over_gain,
+/// trace_embree_over_trace.
 [[nodiscard]] std::vector<Figure> trace_figures(const BarsOptions& options);
 /// thread_scaling, cost_512_over_128; the same by the tracer embree (`_embree`).
 [[nodiscard]] std::vector<Figure> scaling_figures(const BarsOptions& options);
@@ -50,7 +51,7 @@ using BarGroup = std::vector<Figure> (*)(const BarsOptions& options);
 [[nodiscard]] std::vector<Figure> integrate_figures(const BarsOptions& options);
 /// update_over_build.
 [[nodiscard]] std::vector<Figure> update_figures(const BarsOptions& options);
-/// race_over_exhaustive.
+/// race_over_exhaustive, stages_over_paper, stages_over_paper_combined.
 [[nodiscard]] std::vector<Figure> search_figures(const BarsOptions& options);
 /// memory_mb.
 [[nodiscard]] std::vector<Figure> memory_figures(const BarsOptions& options);
@@ -58,16 +59,13 @@ using BarGroup = std::vector<Figure> (*)(const BarsOptions& options);
 /// ViewPlanner, over the parts called one by one; stage_ms_*, as `decision` has them, by 500
 /// candidates, and turn_ms, from a frame to the default's best pose by two stages.
 [[nodiscard]] std::vector<Figure> decision_figures(const BarsOptions& options);
-/// surface_over_paper, combined_over_paper, hazard_ms_128, hazard_ms_512.
-[[nodiscard]] std::vector<Figure> surface_figures(const BarsOptions& options);
+/// hazard_ms_128, hazard_ms_512.
+[[nodiscard]] std::vector<Figure> hazard_figures(const BarsOptions& options);
 /// classic_over_paper: the time of all classic gains together over that of the paper's.
 [[nodiscard]] std::vector<Figure> classic_figures(const BarsOptions& options);
 /// wall_over_free, mesh_over_free, table_over_free, lens_over_pinhole: speeds with obstacles or a
 /// lens over speeds without, the least of the three gains.
 [[nodiscard]] std::vector<Figure> surroundings_figures(const BarsOptions& options);
-/// stages_over_paper, stages_over_paper_combined.
-[[nodiscard]] std::vector<Figure> stages_figures(const BarsOptions& options);
-
 /// Groups by the names that BarsOptions::only takes.
 struct NamedBarGroup {
   std::string_view name;

@@ -73,12 +73,17 @@ constexpr std::array kRules{
 };
 
 constexpr std::array kGroups{
-    NamedBarGroup{"trace", trace_figures},     NamedBarGroup{"scaling", scaling_figures},
-    NamedBarGroup{"latency", latency_figures}, NamedBarGroup{"integrate", integrate_figures},
-    NamedBarGroup{"update", update_figures},   NamedBarGroup{"search", search_figures},
-    NamedBarGroup{"memory", memory_figures},   NamedBarGroup{"decision", decision_figures},
-    NamedBarGroup{"surface", surface_figures}, NamedBarGroup{"stages", stages_figures},
-    NamedBarGroup{"classic", classic_figures}, NamedBarGroup{"surroundings", surroundings_figures},
+    NamedBarGroup{"trace", trace_figures},
+    NamedBarGroup{"scaling", scaling_figures},
+    NamedBarGroup{"latency", latency_figures},
+    NamedBarGroup{"integrate", integrate_figures},
+    NamedBarGroup{"update", update_figures},
+    NamedBarGroup{"search", search_figures},
+    NamedBarGroup{"memory", memory_figures},
+    NamedBarGroup{"decision", decision_figures},
+    NamedBarGroup{"hazard", hazard_figures},
+    NamedBarGroup{"classic", classic_figures},
+    NamedBarGroup{"surroundings", surroundings_figures},
 };
 
 /// A bar's entry in the list; `is_missed` is set if it is missed.

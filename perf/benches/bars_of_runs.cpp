@@ -78,6 +78,8 @@ std::vector<Figure> trace_figures(const BarsOptions& options) {
           {"gain_embree_over_quads", gain_embree / quads, agrees, note},
           {"gain_embree_over_gain", gain_embree / gain, agrees, note},
           {"trace_embree_over_trace", run.rate("viewgain_trace_embree") / ours, agrees, note},
+          {"surface_over_paper", run.rate("viewgain_surface") / gain, agrees, note},
+          {"combined_over_paper", run.rate("viewgain_combined") / gain, agrees, note},
           {"build_ms", median(run.build_ms)}};
 }
 

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// From hits to a gain: sums by voxel, entropy differences; whole views by each model.
+// From hits to a gain: sums by voxel, entropy differences.
 #include <benchmark/benchmark.h>
 
 #include "gain/evaluator_core.hpp"
 #include "micro_benchmarks.hpp"
 #include "micro_scene.hpp"
 #include "viewgain/core/criterion.hpp"
-#include "viewgain/core/generators.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 namespace viewgain::bench {
@@ -51,25 +50,9 @@ void entropy_difference(benchmark::State& state, Criterion criterion) {
       benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 
-// Whole views, one after another.
-void view(benchmark::State& state, GainModel model) {
-  const MicroScene& micro = MicroScene::get();
-  const GainEvaluator evaluator(micro.scene, micro.sensor, {.model = model}, {.num_threads = 1});
-  const std::vector<Pose> poses = sphere_poses(micro.views.size(), 0.6);
-  std::size_t next = 0;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(evaluator.evaluate(poses[next++ % poses.size()]).gain);
-  }
-  count(state, "rays", static_cast<double>(evaluator.rays_per_pose()));
-}
-
 }  // namespace
 
 void register_gain_benchmarks() {
-  for (const std::string& name : gain_model_names()) {
-    benchmark::RegisterBenchmark(("view/" + name).c_str(), view, parse_gain_model(name))
-        ->Unit(benchmark::kMicrosecond);
-  }
   for (const std::string& name : criterion_names()) {
     const Criterion criterion = parse_criterion(name);
     benchmark::RegisterBenchmark(("accumulation/" + name).c_str(), accumulation, criterion);

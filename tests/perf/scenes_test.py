@@ -56,7 +56,7 @@ class Scenes(unittest.TestCase):
             subprocess.run([sys.executable, f"{PERF}/scenes.py", name, "3", *self.paths, "--out", out], check=True)
             flags = tomllib.loads((out / "flags.toml").read_text())
             reach = tomllib.loads((out / "reach.toml").read_text())["box"][0]
-            eye = np.array(flags["start"][:3])
+            eye = np.array(flags["from"][:3])
             self.assertTrue((eye > reach["min"]).all() and (eye < reach["max"]).all())
             vertices, _ = meshes.read_mesh(out / "scene.off")
             low, high = np.reshape(flags["workspace"], (2, 3))

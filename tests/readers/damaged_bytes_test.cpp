@@ -84,6 +84,7 @@ TEST_P(DamagedBytes, AreReadOrRefused) {
   reader.write(folder_);
   ASSERT_TRUE(is_read());
   std::mt19937 random(7);
+  const std::size_t cuts = kCuts / reader.one_in, changes = kChanges / reader.one_in;
   for (const std::string& name : reader.damaged) {
     const std::string good = read_all(folder_.path() / name);
     ASSERT_GT(good.size(), 10U) << name;
@@ -93,14 +94,14 @@ TEST_P(DamagedBytes, AreReadOrRefused) {
       ++cases;
       refused += is_read() ? 0 : 1;
     };
-    const std::size_t step = (good.size() + kCuts - 1) / kCuts;
+    const std::size_t step = (good.size() + cuts - 1) / cuts;
     for (std::size_t length = 0; length < good.size(); length += step) {
       check(good.substr(0, length));
     }
     EXPECT_GT(refused, 0U) << name;
-    for (std::size_t i = 0; i < kChanges; ++i) check(changed(good, i, random));
+    for (std::size_t i = 0; i < changes; ++i) check(changed(good, i, random));
     folder_.file(name, good);
-    EXPECT_EQ(cases, (good.size() + step - 1) / step + kChanges) << name;
+    EXPECT_EQ(cases, (good.size() + step - 1) / step + changes) << name;
     ASSERT_TRUE(is_read()) << name;
   }
 }

@@ -19,6 +19,7 @@ struct Reader {
   std::function<void(const TemporaryFolder&)> write;
   std::vector<std::string> damaged;
   std::function<void(const std::filesystem::path&)> read;
+  std::size_t one_in = 1;  ///< of so many cuts and changes is tried, where reading takes long
 };
 
 /// All readers of foreign bytes but OpenVDB's.

@@ -38,7 +38,10 @@ def _rows(poses: ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
 
 def _answers(client: distributed.Client, scorer: ViewScorer, chunks: dict[int, NDArray[np.float64]], measure: Any):
     """Number and gains of each chunk as it is done; the map goes to each worker once. What was lost with workers is left out."""
-    (shared,) = client.scatter([scorer], broadcast=True, hash=False)
+    try:
+        (shared,) = client.scatter([scorer], broadcast=True, hash=False)
+    except (TimeoutError, distributed.TimeoutError) as error:
+        raise Error(f"the cluster has no workers: {error}") from error
     futures = {client.submit(_evaluate, shared, poses, measure, pure=False): number for number, poses in chunks.items()}
     try:
         for future in distributed.as_completed(list(futures)):
@@ -56,9 +59,9 @@ def evaluate(client: distributed.Client, map: Union[BeliefGrid, str, os.PathLike
              progress: Optional[Callable[[int, int], None]] = None, **gain: Any) -> NDArray[np.float64]:
     """The gain of each pose on a map, computed by the workers of a Dask cluster.
 
-    The same bits as ``ViewScorer.evaluate`` gives on one machine, in the poses' order, whatever the workers are and when they
-    answer. Chunks of a worker that dies go to the others. Cost: the map is read here and goes to each worker once;
-    a chunk costs its poses, 128 bytes each, there and 8 bytes each back.
+    The gains are in the order of the poses, and do not depend on the number of workers. They are bit-identical to
+    ``ViewScorer.evaluate`` if all machines have the same CPU model and C library. If a worker dies, its chunks go to the others.
+    Cost: the map is read here and sent to each worker once; each pose sends at most 128 bytes and returns 8.
 
     Parameters
     ----------
@@ -89,6 +92,8 @@ def evaluate(client: distributed.Client, map: Union[BeliefGrid, str, os.PathLike
     ValueError, TypeError, OSError
         As ``ViewScorer``, before anything is sent.
     """
+    if not isinstance(client, distributed.Client):
+        raise TypeError(f"client must be a distributed.Client, not {type(client).__name__}")
     rows, lead = _rows(poses)
     camera = sensor if isinstance(sensor, Sensor) else Sensor.load(sensor)
     scorer = ViewScorer(camera, map=map, **{"num_threads": 1, **gain})

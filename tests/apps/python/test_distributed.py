@@ -60,10 +60,13 @@ def test_bad_poses_and_a_gain_of_ones_own(cluster, grid, sensor, poses):
         viewgain.distributed.evaluate(cluster[1], grid, poses[:2], sensor=sensor, measure=fails, pixel_stride=8)
 
 
-def test_wrong_calls_are_refused_before_anything_is_sent(cluster, grid, sensor, poses):
+def test_wrong_calls_are_refused_before_anything_is_sent(cluster, grid, sensor, poses, monkeypatch):
+    monkeypatch.setattr(cluster[1], "scatter", lambda *given, **more: pytest.fail("something is sent"))
+    with pytest.raises(TypeError, match="must be a distributed.Client, not str"):
+        viewgain.distributed.evaluate("tcp://127.0.0.1:1", grid, poses, sensor=sensor)
     cases = 0
     for wrong, error in (({"poses": np.zeros((3, 5))}, ValueError), ({"gain": "papr"}, ValueError), ({"chunk_size": 0}, ValueError),
-                         ({"sensor": "sr4001"}, Exception), ({"map": "no.vdb"}, OSError), ({"gian": "paper"}, TypeError)):
+                         ({"sensor": "sr4001"}, ValueError), ({"map": "no.vdb"}, OSError), ({"gian": "paper"}, TypeError)):
         given = {"map": grid, "poses": poses, "sensor": sensor, **wrong}
         with pytest.raises(error):
             viewgain.distributed.evaluate(cluster[1], given.pop("map"), given.pop("poses"), **given)

@@ -16,19 +16,28 @@ def _group(row):
 
 def _title(group):
     sensor, voxel, size = group
-    return f"{sensor}, voxels {1e3 * voxel:g} mm" + (f", {size:g} m" if size else "")
+    return f"{_label(sensor)}, voxels {1e3 * voxel:g} mm" + (f", {size:g} m" if size else "")
+
+
+def _label(name):
+    return ("\N{ZERO WIDTH SPACE}" if name.startswith("_") else "") + name.replace("$", r"\$")  # no mathematics, none left out
 
 
 def _figure(groups, height):
+    """A panel for each group, four beside one another."""
     import matplotlib.figure  # not pyplot: no window, no state
 
-    figure = matplotlib.figure.Figure(figsize=(2.5 + 6 * len(groups), height), dpi=110, layout="constrained")
-    all_axes = figure.subplots(1, len(groups), squeeze=False, sharey=True)[0]
+    columns = min(4, len(groups))
+    lines = -(-len(groups) // columns)
+    figure = matplotlib.figure.Figure(figsize=(2.5 + 6 * columns, height * lines), dpi=110 if lines < 10 else 50, layout="constrained")
+    all_axes = figure.subplots(lines, columns, squeeze=False, sharey=True).ravel()
+    for axes in all_axes[len(groups):]:
+        axes.set_visible(False)
     for axes, group in zip(all_axes, groups):
         axes.set_title(_title(group), fontsize=9)
         axes.grid(alpha=0.3)
         axes.spines[["top", "right"]].set_visible(False)
-    return figure, all_axes
+    return figure, all_axes[:len(groups)]
 
 
 def _png(figure):
@@ -50,12 +59,12 @@ def coverage(rows: list[dict]) -> bytes:
             objects = [row["object"] for row in some]
             points = np.array([mean_and_error(view, objects)[:2] for view in zip(*(row["coverage_by_view"] for row in some))]) * 100
             views, mean, error = range(1, len(points) + 1), points[:, 0], np.nan_to_num(points[:, 1])
-            axes.plot(views, mean, label=name, **style)
+            axes.plot(views, mean, label=_label(name), **style)
             axes.fill_between(views, mean - error, mean + error, alpha=0.15, linewidth=0, color=style["color"])
         axes.set_xlabel("views")
         axes.xaxis.get_major_locator().set_params(integer=True)
     all_axes[0].set_ylabel("visible surface covered [%], mean ± standard error")
-    all_axes[-1].legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
+    all_axes[min(3, len(groups) - 1)].legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
     return _png(figure)
 
 
@@ -72,7 +81,7 @@ def differences(rows: list[dict], against: str) -> bytes:
             mean, error, _ = mean_and_error(values_of(of, "auc") - other, [row["object"] for row in of])
             axes.errorbar(mean, i, xerr=np.nan_to_num(error), fmt="o", color="tab:blue", capsize=3)
         axes.axvline(0, color="grey", linewidth=0.8)
-        axes.set_xlabel(f"AUC less that of {against}, mean ± standard error")
-    all_axes[0].set_yticks(range(len(names)), names)
-    all_axes[0].invert_yaxis()
+        axes.set_xlabel(f"AUC minus that of {_label(against)}, mean ± standard error")
+    all_axes[0].set_yticks(range(len(names)), map(_label, names))
+    all_axes[0].set_ylim(len(names) - 0.5, -0.5)
     return _png(figure)

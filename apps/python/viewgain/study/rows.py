@@ -20,31 +20,51 @@ def _number(value):
     return math.nan if value is None else float(value)
 
 
+def _figure(value):
+    """A number or null of a record. Raises ValueError for anything else."""
+    if value is None or (isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)):
+        return value
+    raise ValueError(f"{value!r} is no finite number")
+
+
 def row_of(run, record, max_views):
-    """The row of ``results.json`` for a `Run` of a spec and its run.json, a dict. Raises KeyError where something is missing in it."""
+    """The row of ``results.json`` for a `Run` of a spec and its run.json, a dict. Raises LookupError, TypeError, ValueError or AttributeError
+    where something in it is missing or is no number."""
     views = record["per_view"]
-    covered = [view["coverage_visible"] or 0.0 for view in views][:max_views]
+    covered = [float(_figure(view["coverage_visible"]) or 0.0) for view in views][:max_views]
     covered += [covered[-1]] * (max_views - len(covered))  # a run that ended early keeps its last over the rest of the budget
     row = {"object": run.object.name, "policy": run.policy.policy, "gain": run.policy.gain, "seed": run.seed, "sensor": run.sensor,
-           "voxel": run.voxel, "size": run.size, "views": record["views"],
-           "decisions": sum(view["generator"] not in ("start", "plan") for view in views), "stop_reason": record["stop_reason"]}
+           "voxel": run.voxel, "size": run.size, "views": int(record["views"]),
+           "decisions": sum(view["generator"] not in ("start", "plan") for view in views), "stop_reason": str(record["stop_reason"])}
     to = [next((i + 1 for i, share in enumerate(covered) if share >= goal), None) for goal in GOALS]
     for goal, count in zip(GOALS, to):
         row[f"views_to_{100 * goal:.0f}"] = count
     for goal, count in zip(GOALS, to):  # the whole way where it was never reached
-        row[f"metres_to_{100 * goal:.0f}"] = views[min(count or len(views), len(views)) - 1]["travelled"]
+        row[f"metres_to_{100 * goal:.0f}"] = _figure(views[min(count or len(views), len(views)) - 1]["travelled"])
     row["auc"], row["coverage_visible"] = float(np.mean(covered)), covered[-1]
     for key in ("coverage", "rms_error", "consistency", "outliers", "travelled"):
-        row[key] = record[key]
-    seconds = record["seconds"]
-    deciding = seconds.get("candidates", 0) + seconds.get("score", 0)
-    return {**row, "coverage_by_view": covered, "hash": run.hash,
-            "deciding_seconds": deciding / (record["views"] - 1) if record["views"] > 1 else None, "seconds": seconds["total"]}
+        row[key] = _figure(record[key])
+    # A run of one view has decided nothing, a program of one's own does not say how long it took.
+    stages = [_figure(record["seconds"].get(stage)) for stage in ("candidates", "score")]
+    deciding = sum(stage or 0 for stage in stages) / (row["views"] - 1) if row["views"] > 1 and stages != [None, None] else None
+    return {**row, "coverage_by_view": covered, "hash": run.hash, "deciding_seconds": deciding, "seconds": _figure(record["seconds"]["total"])}
 
 
 def name_of(row):
     """The policy of a row, as a spec names it."""
     return f"{row['policy']}:{row['gain']}" if row["gain"] else row["policy"]
+
+
+def early_ends(rows, max_views) -> list[str]:
+    """A line for each policy with runs that ended before the budget was used up."""
+    lines = []
+    for name in dict.fromkeys(map(name_of, rows)):
+        of = [row for row in rows if name_of(row) == name]
+        reasons = collections.Counter(row["stop_reason"] for row in of if row["views"] < max_views)
+        if reasons:
+            lines.append(f"{sum(reasons.values())} of {len(of)} runs of {name} ended before {max_views} views "
+                         f"({', '.join(f'{reason} {count}' for reason, count in reasons.items())}); their coverage stays as it was then")
+    return lines
 
 
 def values_of(rows, key, factor=1.0):

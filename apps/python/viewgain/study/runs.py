@@ -7,23 +7,24 @@ import concurrent.futures
 import contextlib
 import fcntl
 import json
+import logging
+import math
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
 from typing import Callable, Optional
 
-import numpy as np
-
 from .rows import SpecError, row_of
 from .spec import Run, Spec
 
-_children: set[subprocess.Popen] = set()  # of this process, so that none of them outlives a wish to stop
-_children_lock = threading.Lock()
+_WORKERS_WITHIN = 60  # that a cluster is waited for [s]
 
 
 class RunError(RuntimeError):
@@ -37,79 +38,109 @@ class RunError(RuntimeError):
         return self.text
 
 
+class _Children:
+    """The processes of one study here, so that none of them outlives a wish to stop."""
+
+    def __init__(self):
+        self._lock, self._running, self._is_over = threading.Lock(), set(), False
+
+    def call(self, words, title, beside):
+        """Calls a program in a session of its own, as Ctrl-C is the study's; raises RunError. A program of the user's own finds
+        `beside`, the folder of ``viewgain``, and this Python first in PATH."""
+        path = os.pathsep.join([beside, os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)])
+        try:
+            with self._lock:
+                if self._is_over:
+                    raise RunError(f"{title}: stopped")
+                process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                           errors="replace", start_new_session=True, env={**os.environ, "PATH": path})
+                self._running.add(process)
+        except OSError as error:
+            raise RunError(f"{title}: {words[0]}: {error.strerror}") from None
+        try:
+            _, said = process.communicate()
+        finally:
+            with self._lock:
+                self._running.discard(process)
+        if process.returncode != 0:
+            lines = [line for line in said.splitlines() if line.strip() and "warning:" not in line]
+            by_signal = f"ended by signal {-process.returncode}" if process.returncode < 0 else f"exit code {process.returncode}"
+            raise RunError(f"{title}: {lines[-1].removeprefix('viewgain: ') if lines else by_signal}", process.returncode)
+
+    def kill(self):
+        with self._lock:
+            self._is_over = True
+            for process in self._running:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+
+
 def find_program(name: Optional[str] = None) -> str:
     """The program ``viewgain``: `name` if given, else that of the build or prefix that this package lies in, else that on PATH.
     Raises SpecError where there is none."""
     if name is None:
         for folder in pathlib.Path(__file__).resolve().parents[2:]:
-            if os.access(folder / "bin/viewgain", os.X_OK):
+            if (folder / "bin/viewgain").is_file() and os.access(folder / "bin/viewgain", os.X_OK):
                 return str(folder / "bin/viewgain")
     found = shutil.which(name or "viewgain")
     if found is None:
         raise SpecError(f"there is no program {name or 'viewgain'}; put its folder into PATH, or name it by --program")
-    return str(pathlib.Path(found).resolve())
+    return os.path.abspath(found)
 
 
-def _called(words, title):
-    """Calls a program in a session of its own, as Ctrl-C is the study's; raises RunError."""
+def version_of(program: str) -> str:
+    """What the program says. Raises SpecError where it is another one."""
     try:
-        with _children_lock:
-            process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                       errors="replace", start_new_session=True)
-            _children.add(process)
+        said = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace").stdout
     except OSError as error:
-        raise RunError(f"{title}: {words[0]}: {error.strerror}") from None
-    try:
-        _, said = process.communicate()
-    finally:
-        with _children_lock:
-            _children.discard(process)
-    if process.returncode != 0:
-        lines = [line for line in said.splitlines() if line and "warning:" not in line]
-        by_signal = f"ended by signal {-process.returncode}" if process.returncode < 0 else f"exit code {process.returncode}"
-        raise RunError(f"{title}: {lines[-1].removeprefix('viewgain: ') if lines else by_signal}", process.returncode)
+        raise SpecError(f"{program}: {error.strerror}") from error
+    found = re.fullmatch(r"viewgain (\S+)\s*", said)
+    if not found:
+        raise SpecError(f"{program} is not the program viewgain: --version says {said[:60]!r}")
+    return found[1]
 
 
-def _kill_children():
-    with _children_lock:
-        for process in _children:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
-
-
-def make_run(words, title, kept, folder=None):
-    """One run in a folder of its own inside `folder` (default: the system's for such files), which it removes: run.json's text, and
-    of each view's candidates `kept`, evenly taken, as TUM lines whose time is how many views there were. Raises RunError."""
+def make_run(words, title, kept, beside, is_own=False, folder=None, children=None):
+    """Makes one run in a temporary folder inside `folder` (default: the system's), which it removes. Returns run.json as a dict, up to
+    `kept` candidates per view, evenly sampled, as TUM lines whose time stamp is the number of views so far, and the seconds it took.
+    Raises RunError. Of a program of one's own (`is_own`) the seconds are those of the whole call."""
+    begin = time.monotonic()
     with tempfile.TemporaryDirectory(prefix=".run-", dir=folder) as work:
         split = words.index("--")
-        _called([*words[:split], f"--out={work}/run", *words[split:]], title)
-        record = pathlib.Path(work, "run/run.json")
-        if not record.is_file():
-            raise RunError(f"{title}: {words[0]} left no run.json in the folder that --out names", 2)
+        (children or _Children()).call([*words[:split], f"--out={work}/run", *words[split:]], title, beside)
+        seconds = time.monotonic() - begin
+        try:
+            record = json.loads(pathlib.Path(work, "run/run.json").read_text(encoding="utf-8"))
+            record["seconds"] = {"total": seconds} if is_own else record["seconds"]
+        except FileNotFoundError:
+            raise RunError(f"{title}: {words[0]} left no run.json in the folder that --out names", 2) from None
+        except (LookupError, TypeError, ValueError) as error:
+            raise RunError(f"{title}: run.json of {words[0]}: {type(error).__name__}: {error}", 2) from None
         lines = []
-        for view, path in enumerate(sorted(pathlib.Path(work, "run/maps").glob("*.txt")) if kept else [], start=1):
+        for path in sorted(pathlib.Path(work, "run/maps").glob("*.txt"), key=lambda path: int(path.stem)) if kept else []:
             poses = [line.split(maxsplit=1)[1] for line in path.read_text().splitlines() if line and not line.startswith("#")]
             count = min(kept, len(poses))
-            lines += [f"{view} {poses[i * len(poses) // count]}\n" for i in range(count)]
-        return record.read_text(encoding="utf-8"), "".join(lines)
+            lines += [f"{int(path.stem) + 1} {poses[i * len(poses) // count]}\n" for i in range(count)]
+        return record, "".join(lines), seconds
 
 
-def write_text(path, text):
+def write_file(path, content):
     """Writes a file as a whole or not at all; of one that is there the mode stays."""
-    descriptor, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    temporary = path.with_name(f".{path.name}.tmp")  # one study at a time is in a folder: a killed one's is written anew
     try:
-        with open(descriptor, "wb") as file:
-            file.write(text if isinstance(text, bytes) else text.encode())
+        with open(temporary, "wb") as file:
+            file.write(content if isinstance(content, bytes) else content.encode())
             os.fchmod(file.fileno(), path.stat().st_mode & 0o7777 if path.exists() else 0o644)
+            os.fsync(file.fileno())
         os.replace(temporary, path)
-    except BaseException:
-        os.unlink(temporary)
-        raise
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 @contextlib.contextmanager
 def _study_folder(out):
-    """Makes DIR/runs for one study at a time, and clears what a killed one has left."""
+    """Makes DIR/runs for one study at a time, and clears what a killed one has left. Of a study without a run nothing stays."""
     runs = out / "runs"
     try:
         runs.mkdir(parents=True, exist_ok=True)
@@ -120,12 +151,19 @@ def _study_folder(out):
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise SpecError(f"--out {out}: another study is at work there; several machines share one by --scheduler") from None
+            raise SpecError(f"--out {out}: another study is at work there; to use several machines, give --scheduler") from None
         except OSError:
             pass  # a file system without locks
         for left in runs.glob(".run-*"):
             shutil.rmtree(left, ignore_errors=True)
-        yield runs
+        try:
+            yield runs
+        finally:
+            if not any(path.is_dir() for path in runs.iterdir()):
+                (runs / ".lock").unlink()
+                for folder in (runs, out):
+                    with contextlib.suppress(OSError):  # others' files are in it
+                        folder.rmdir()
 
 
 def _command(spec, run, program, threads):
@@ -149,99 +187,160 @@ def _one_view(words):
 
 
 @contextlib.contextmanager
-def _executor(jobs, scheduler):
-    """What runs are submitted to. Ends what is under way if the block is left by an exception."""
-    if scheduler is None:
-        pool, client = concurrent.futures.ThreadPoolExecutor(jobs), None  # each thread waits for a process
-    else:
+def _here(jobs, folder):
+    """A function that makes a run by a process of this machine, as a future. What is under way is killed if the block is left by an
+    exception."""
+    children = _Children()
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:  # each thread waits for a process
         try:
-            import distributed
-        except ImportError as error:
-            raise SpecError(f"--scheduler needs Dask (Debian: python3-distributed), which cannot be imported: {error}") from error
-        try:
-            client = distributed.Client(scheduler, timeout="10s", set_as_default=False)
-        except (OSError, ValueError) as error:
-            raise SpecError(f"--scheduler {scheduler}: no scheduler answers there: {error}") from error
-        pool = client.get_executor(pure=False)
-    try:
-        yield pool
-    except BaseException:
-        if client is None:
+            yield lambda *run: pool.submit(make_run, *run, folder, children)
+        except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
-            _kill_children()
-        else:
-            pool.shutdown(wait=False)
-        raise
-    finally:
-        pool.shutdown()
-        if client is not None:
-            client.close()
+            children.kill()
+            raise
+
+
+@contextlib.contextmanager
+def _on_cluster(scheduler, progress):
+    """The same by the workers of a Dask cluster."""
+    try:
+        import distributed
+    except ImportError as error:
+        raise SpecError(f"--scheduler needs Dask (Debian: python3-distributed), which cannot be imported: {error}") from error
+    if not re.fullmatch(r"(\w+://)?\S+:\d+", scheduler):
+        raise SpecError(f"--scheduler {scheduler}: no address of a scheduler; one is tcp://HOST:8786")
+    for name in ("asyncio", "distributed", "tornado"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said here
+    try:
+        client = distributed.Client(scheduler, timeout="10s", set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise SpecError(f"--scheduler {scheduler}: no scheduler answers there: {error}") from error
+    with client:
+        if not client.nthreads():
+            progress(f"{scheduler} has no workers yet; waiting {_WORKERS_WITHIN} s for one")
+        try:
+            client.wait_for_workers(1, timeout=_WORKERS_WITHIN)
+        except (OSError, TimeoutError, distributed.TimeoutError) as error:
+            raise SpecError(f"--scheduler {scheduler}: has no workers; start some by: dask worker {scheduler}") from error
+        futures = []
+
+        def submit(*run):
+            futures.append(client.submit(make_run, *run, pure=False))
+            return futures[-1]
+
+        try:
+            yield submit
+        except BaseException:
+            with contextlib.suppress(Exception):  # where the scheduler is gone
+                client.cancel(futures)
+            raise
+
+
+def _results(futures, title, scheduler):
+    """The futures' keys with what they have made, or with the RunError, as they are done."""
+    if scheduler is None:
+        done = concurrent.futures.as_completed(futures)
+    else:
+        import distributed
+
+        done = distributed.as_completed(list(futures), loop=next(iter(futures)).client.loop)
+    for future in done:
+        try:
+            yield futures[future], future.result()
+        except RunError as error:
+            yield futures[future], error
+        except Exception as error:  # of a cluster
+            cure = "; its workers need this package and scipy" if "ModuleNotFoundError" in repr(error) else ""
+            yield futures[future], RunError(f"{title(futures[future])}: on {scheduler}: {type(error).__name__}: {error}{cure}")
 
 
 def make_runs(spec: Spec, out, jobs: Optional[int] = None, scheduler: Optional[str] = None, program: Optional[str] = None,
               progress: Callable[[str], None] = lambda line: None) -> list[dict]:
-    """Makes the runs that are not in ``out/runs/HASH`` yet, `jobs` at once (default: a thread of this machine each), or on the
-    workers of a Dask cluster, which must have the program and the files by the same names. `progress` gets a line at the start
-    and after each run. Returns the rows of all runs in the spec's order. Raises SpecError and RunError; what is whole stays."""
-    out = pathlib.Path(out)
+    """Makes the runs that are not in ``out/runs/HASH`` yet, `jobs` at once (default: one per thread of this machine), or on the
+    workers of a Dask cluster, which need the program and the files at the same paths. `progress` gets a line if runs are reused
+    and after each run. Returns the rows of all runs in the spec's order. Raises SpecError and RunError; finished runs stay."""
     cores = len(os.sched_getaffinity(0))
     threads = max(1, cores // jobs) if jobs and scheduler is None else 1
     program = program or find_program()
-    with _study_folder(out) as folder:
-        missing = [run for run in spec.runs if not (folder / run.hash / "run.json").exists()]
-        if len(missing) < len(spec.runs):
-            progress(f"{len(spec.runs) - len(missing)} of {len(spec.runs)} runs are there")
-        work = None if scheduler else str(folder.resolve())
-        with _executor(jobs or cores, scheduler) if missing else contextlib.nullcontext() as pool:
-            checks = {pool.submit(make_run, _one_view(_command(spec, run, program, threads)), spec.title(run), 0, work): run
-                      for run in _first_of_each(missing)}
-            for future in concurrent.futures.as_completed(checks):
-                _checked(future, spec, checks[future])
-            begin = time.monotonic()
-            futures = {pool.submit(_timed_run, _command(spec, run, program, threads), spec.title(run), spec.kept_candidates, work): run
-                       for run in missing}
-            for done, future in enumerate(concurrent.futures.as_completed(futures), start=1):
-                run = futures[future]
-                record, candidates, seconds = future.result()
+    with _study_folder(pathlib.Path(out)) as folder:
+        rows = {run.hash: _row(folder / run.hash / "run.json", run, spec.max_views)
+                for run in spec.runs if (folder / run.hash / "run.json").exists()}
+        missing = [run for run in spec.runs if run.hash not in rows]
+        if rows:
+            progress(f"{len(rows)} of {len(spec.runs)} runs are there")
+        if missing:
+            at = _here(jobs or cores, str(folder.resolve())) if scheduler is None else _on_cluster(scheduler, progress)
+            with at as submit:
+                def start(run, kept, words):
+                    return submit(words, spec.title(run), kept, os.path.dirname(program), bool(run.policy.command))
+
+                _check(spec, {start(run, 0, _one_view(_command(spec, run, program, threads))): run for run in _first_of_each(missing)}, scheduler)
+                futures = {start(run, spec.kept_candidates, _command(spec, run, program, threads)): run for run in missing}
+                _gather(spec, folder, futures, scheduler, rows, progress)
+        return [rows[run.hash] for run in spec.runs]
+
+
+def _check(spec, futures, scheduler):
+    """Raises what the first failed call says."""
+    for run, made in _results(futures, spec.title, scheduler):
+        if isinstance(made, RunError):
+            is_word = "--policy" in str(made) and not run.policy.gain and not run.policy.command
+            hint = f"; a gain is written \"gain:{run.policy.name}\"" if is_word else ""
+            raise RunError(f"{spec.path}: {made}{hint}", made.code)
+        _row_of(spec, run, made[0], 1)
+
+
+def _gather(spec, folder, futures, scheduler, rows, progress):
+    """Keeps each run as it is done. If some fail, the others are made all the same; then raises RunError."""
+    begin, failures, total = time.monotonic(), [], len(spec.runs)
+    for done, (run, made) in enumerate(_results(futures, spec.title, scheduler), start=1):
+        if not isinstance(made, RunError):
+            record, candidates, seconds = made
+            try:
+                rows[run.hash] = _row_of(spec, run, record, spec.max_views)
                 _keep(folder / run.hash, run, record, candidates)
-                left = (time.monotonic() - begin) / done * (len(missing) - done)
-                progress(f"run {len(spec.runs) - len(missing) + done} of {len(spec.runs)}: {spec.title(run)}, {seconds:.1f} s; "
-                         f"{_time_text(left)} left")
-        return [_row(folder / run.hash / "run.json", run, spec.max_views) for run in spec.runs]
+            except RunError as error:
+                made = error
+        if isinstance(made, RunError):
+            failures.append(made)
+            progress(str(made))
+            continue
+        left = (time.monotonic() - begin) / done * (len(futures) - done)
+        progress(f"run {total - len(futures) + done} of {total}: {spec.title(run)}, {seconds:.1f} s; {_time_text(left)} left")
+    if failures:
+        raise RunError(f"{len(failures)} of {total} runs failed, the first: {failures[0]}; the same call makes them again", failures[0].code)
 
 
-def _checked(future, spec, run):
+def _row_of(spec, run, record, max_views):
+    """The row of a run just made. Raises RunError."""
     try:
-        future.result()
-    except RunError as error:
-        hint = "; a gain is \"gain:NAME\"" if "--policy" in str(error) and not run.policy.gain and not run.policy.command else ""
-        raise RunError(f"{spec.path}: {error}{hint}", error.code) from None
-
-
-def _timed_run(*arguments):
-    begin = time.monotonic()
-    return (*make_run(*arguments), time.monotonic() - begin)
+        made_by = record.get("versions", {}).get("viewgain")
+        if made_by not in (None, run.configuration["version"]) and run.configuration["version"]:
+            raise ValueError(f"it was made by viewgain {made_by}, not {run.configuration['version']}")
+        return row_of(run, record, max_views)
+    except (AttributeError, LookupError, TypeError, ValueError) as error:
+        raise RunError(f"{spec.title(run)}: run.json: {type(error).__name__}: {error}", 2) from None
 
 
 def _keep(folder, run: Run, record, candidates):
     """run.json last, so that a run that is there is whole."""
     folder.mkdir(exist_ok=True)
     if candidates:
-        write_text(folder / "candidates.txt", candidates)
-    write_text(folder / "run.json", json.dumps({"configuration": run.configuration, **json.loads(record)}, indent=2) + "\n")
+        write_file(folder / "candidates.txt", candidates)
+    write_file(folder / "run.json", json.dumps({**record, "configuration": run.configuration}, indent=2) + "\n")
 
 
 def _row(path, run, max_views):
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
         if record["configuration"] != run.configuration:
-            raise ValueError("it is not of the run that its folder stands for")
+            raise ValueError("its configuration differs from that of this run")
         return row_of(run, record, max_views)
-    except (LookupError, TypeError, ValueError) as error:
-        raise SpecError(f"{path}: {type(error).__name__}: {error}; a run whose folder is removed is made again") from error
+    except (AttributeError, LookupError, TypeError, ValueError) as error:
+        raise SpecError(f"{path}: {type(error).__name__}: {error}; remove its folder and repeat the call") from error
 
 
 def _time_text(seconds):
-    for unit, factor, most in (("s", 1, 120), ("min", 60, 7200), ("h", 3600, np.inf)):
+    for unit, factor, most in (("s", 1, 120), ("min", 60, 7200), ("h", 3600, math.inf)):
         if seconds < most:
-            return f"{np.ceil(seconds / factor):.0f} {unit}"
+            return f"{math.ceil(seconds / factor)} {unit}"

@@ -4,9 +4,12 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
+import functools
 import hashlib
 import itertools
 import json
+import os
 import pathlib
 import re
 import shlex
@@ -26,6 +29,14 @@ _OBJECT_KEYS = ("mesh", "name", "reach", "obstacles", "flags")
 _OWN_FLAGS = {f"--{name}" for name in ("sensor voxel size seed policy gain out max-views pictures report save-maps plan threads json "
                                        "quiet config save-config tolerance resume").split()}  # what the study asks of a run
 _FILE_FLAGS = ("--reach", "--poses", "--hazard", "--obstacle")
+_REPEATED = ("--obstacle", "--fine", "--stop")  # flags of an object beside those of all, not in their place
+
+
+def _is_file(path):
+    try:
+        return pathlib.Path(path).is_file()
+    except (OSError, ValueError):  # a name too long, a byte that no name has
+        return False
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,13 +83,15 @@ class Spec:
     kept_candidates: int  # of each view
     runs: tuple[Run, ...]
 
+    @functools.cached_property
+    def _varied(self):
+        return {key for key in ("sensor", "voxel", "size") if len({getattr(run, key) for run in self.runs}) > 1}
+
     def title(self, run: Run) -> str:
         """"camel, gain:combined, seed 3", and where there are several of them sensor, voxel and size."""
         parts = [run.object.name, run.policy.name, f"seed {run.seed}"]
-        for key, text in (("sensor", run.sensor), ("voxel", f"voxel {run.voxel:g}"), ("size", f"size {run.size or 0:g}")):
-            if len({getattr(other, key) for other in self.runs}) > 1:
-                parts.append(text)
-        return ", ".join(parts)
+        texts = {"sensor": run.sensor, "voxel": f"voxel {run.voxel:g}", "size": f"size {run.size or 0:g}"}
+        return ", ".join(parts + [text for key, text in texts.items() if key in self._varied])
 
     def words(self, run: Run) -> list[str]:
         """The command line of a run after ``reconstruct``, but for --out and --threads. No rule ends it before its budget is
@@ -89,8 +102,8 @@ class Spec:
             words.append(f"--size={run.size!r}")
         if self.kept_candidates:
             words.append("--save-maps=on")
-        stop = ["gain=0,area=0,idle=0,promises=0"]
-        for flag in (*self.flags, *run.object.words):
+        stop, replaced = ["gain=0,area=0,idle=0,promises=0"], {word.partition("=")[0] for word in run.object.words} - set(_REPEATED)
+        for flag in (*(flag for flag in self.flags if flag.partition("=")[0] not in replaced), *run.object.words):
             if flag.startswith("--stop="):
                 stop.append(flag[len("--stop="):])
             else:
@@ -108,11 +121,12 @@ class _Reader:
             self.table = tomllib.loads(self.text)
         except OSError as error:
             raise SpecError(f"{path}: {error.strerror}") from error
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise SpecError(f"{path}: {error}") from error
+        except (ValueError, RecursionError) as error:  # also of bytes that are no UTF-8
+            raise SpecError(f"{path}: is no TOML: {error}") from error
         for key in self.table:
             if key not in _KEYS:
-                self.fail(key, f"is no key of a study; there are {', '.join(_KEYS)}")
+                near = difflib.get_close_matches(key, _KEYS, 1)
+                self.fail(key, f"is no key of a study; {f'did you mean {near[0]}? There' if near else 'there'} are {', '.join(_KEYS)}")
 
     def fail(self, key, message):
         found = re.search(rf"^\s*\"?{re.escape(key)}\"?\s*=", self.text, re.MULTILINE)
@@ -126,15 +140,17 @@ class _Reader:
         values = self.table[key]
         if not isinstance(values, list) or not values:
             self.fail(key, "must be a list that is not empty")
-        for i, value in enumerate(values):
+        seen = set()
+        for value in values:
             if isinstance(value, bool) or not isinstance(value, kind) or not is_right(value):
                 self.fail(key, f"holds {value!r}; it {must}")
-            if value in values[:i]:
+            if repr(value) in seen:
                 self.fail(key, f"holds {value!r} twice")
+            seen.add(repr(value))
         return values
 
     def lengths(self, key):
-        return [float(value) for value in self.values(key, (int, float), lambda v: 0 < v < float("inf"),
+        return [float(value) for value in self.values(key, (int, float), lambda v: 0 < v < 1e9,
                                                       "must be a list of positive lengths [m]")]
 
     def number(self, key, kind, least, most, otherwise=None):
@@ -154,52 +170,73 @@ class _Reader:
             if not isinstance(flag, str) or not re.match(r"--\w", flag):
                 self.fail(key, f'holds {flag!r}; it must be a list of texts like "--up=y"')
             name, equals, value = flag.partition("=")
-            if name in _OWN_FLAGS:
+            if "\0" in flag:
+                self.fail(key, f"holds {flag!r}, with a byte that no argument has")
+            if name in _OWN_FLAGS and not (key == "objects" and name == "--size"):
                 self.fail(key, f"holds {name}, which the study sets itself")
             if name == "--help":
                 self.fail(key, "holds --help, which is no setting of a run")
-            is_file = name in _FILE_FLAGS and pathlib.Path(value).is_file()
-            flags.append(name + equals + (str(pathlib.Path(value).resolve()) if is_file else value))
+            before, file = _file_of(name, value)
+            flags.append(name + equals + before + (os.path.abspath(file) if file else ""))
         return flags
 
     def file(self, key, name):
-        path = (self.folder / name).resolve()
-        if not path.is_file():
-            self.fail(key, f"holds {name!r}: no file at {path}")
-        return path
+        if not isinstance(name, str) or not _is_file(self.folder / name):
+            self.fail(key, f"holds {name!r}: no file at {self.folder / str(name)}")
+        return pathlib.Path(os.path.abspath(self.folder / name))  # links stay, as a mesh's kind is told by its name
+
+
+def _file_of(name, value):
+    """What a flag's value has before a file's name, and that name; the whole value and none where it names no file."""
+    before, comma, last = value.rpartition(",") if name == "--hazard" else ("", "", value)  # size=L,FILE
+    return (before + comma, last) if name in _FILE_FLAGS and _is_file(last) else (value, "")
+
+
+def _is_name(text):
+    return isinstance(text, str) and text and text.isprintable() and "|" not in text
 
 
 def _object(reader, value):
     entry = {"mesh": value} if isinstance(value, str) else value
-    unknown = set(entry) - set(_OBJECT_KEYS)
-    if unknown or not isinstance(entry.get("mesh"), str):
-        reader.fail("objects", f"holds {value!r}; an object is a mesh file or {{{', '.join(_OBJECT_KEYS)}}} with at least a mesh")
-    mesh = reader.file("objects", entry["mesh"])
+    for key in entry:
+        if key not in _OBJECT_KEYS:
+            reader.fail("objects", f"holds an object with the key {key!r}; there are {', '.join(_OBJECT_KEYS)}")
+    mesh = reader.file("objects", entry.get("mesh"))
     name = entry.get("name", mesh.stem)
-    if not isinstance(name, str) or not name.isprintable() or "|" in name or not name:
-        reader.fail("objects", f"holds {value!r}, of a name that a table cannot show; {{mesh = ..., name = ...}} gives it another")
+    if not _is_name(name):
+        reader.fail("objects", f"holds {value!r}, whose name a table cannot show; rename it with {{mesh = ..., name = ...}}")
     words = [f"--reach={reader.file('objects', entry['reach'])}"] if "reach" in entry else []
     obstacles = entry.get("obstacles", [])
     if not isinstance(obstacles, list):
         reader.fail("objects", f"holds {value!r}; obstacles must be a list of files and of boxes \"x0,y0,z0,x1,y1,z1\"")
     for obstacle in obstacles:
-        is_box = re.fullmatch(r"[-+.\deE]+(,[-+.\deE]+){5}", str(obstacle))
-        words.append(f"--obstacle={obstacle if is_box else reader.file('objects', str(obstacle))}")
-    return Object(name, mesh, (*words, *reader.flags("objects", entry.get("flags", []))))
+        numbers = re.fullmatch(r"[-+.\deE]+(,[-+.\deE]+)+", str(obstacle))
+        if numbers and str(obstacle).count(",") != 5:
+            reader.fail("objects", f"holds the obstacle {obstacle!r}; a box has six numbers, \"x0,y0,z0,x1,y1,z1\" [m]")
+        words.append(f"--obstacle={obstacle if numbers else reader.file('objects', obstacle)}")
+    words += reader.flags("objects", entry.get("flags", []))
+    if "sizes" in reader.table and any(word.startswith("--size=") for word in words):
+        reader.fail("objects", f"holds {value!r}; give either sizes for all or --size for each object")
+    return Object(name, mesh, tuple(words))
 
 
 def _policy(reader, value):
     if isinstance(value, dict):
         name, command = value.get("name"), value.get("command")
-        if set(value) != {"name", "command"} or not isinstance(name, str) or not isinstance(command, str) or not command.split() or not name:
-            reader.fail("policies", f"holds {value!r}; a policy of your own is {{name = \"...\", command = \"...\"}}")
+        if set(value) != {"name", "command"} or not _is_name(name) or ":" in name or not isinstance(command, str) or "\0" in command:
+            reader.fail("policies", f"holds {value!r}; a policy of your own is {{name = \"...\", command = \"...\"}}, its name without : and |")
+        try:
+            words = shlex.split(command)
+        except ValueError as error:
+            reader.fail("policies", f"holds {value!r}: {error}")
+        if not words:
+            reader.fail("policies", f"holds {value!r}, without a command")
         # Files of the spec's folder by their names there.
-        words = [str((reader.folder / word).resolve()) if (reader.folder / word).is_file() else word for word in shlex.split(command)]
-        return Policy(name, name, command=tuple(words))
+        return Policy(name, name, command=tuple(os.path.abspath(reader.folder / word) if _is_file(reader.folder / word) else word for word in words))
     if value.startswith("tour:") or value == "tour":
         counts = re.fullmatch(r"tour:([1-9]\d{0,3}):([1-9]\d{0,3})", value)
         if not counts or not 2 <= int(counts[1]) <= 1000 or int(counts[2]) > int(counts[1]):
-            reader.fail("policies", f"holds {value!r}; a tour is \"tour:K:M\", K of 2 to 1000 views planned, M of them taken before it is planned anew")
+            reader.fail("policies", f"holds {value!r}; a tour is \"tour:K:M\": plan K views (2..1000), take M of them before replanning")
         return Policy(value, value, words=("--policy=gain", f"--plan={counts[1]},{counts[2]}"))
     policy, colon, gain = value.partition(":")
     if (policy == "gain") != bool(gain) or (colon and not gain) or not policy:
@@ -210,28 +247,28 @@ def _policy(reader, value):
 def _identity(path):
     """A file by its contents; of a reach file also the poses that it names."""
     data = pathlib.Path(path).read_bytes()
-    text = "file " + hashlib.sha256(data).hexdigest()[:16]
     poses = re.search(rb"^\s*poses\s*=\s*[\"'](.+?)[\"']", data, re.MULTILINE) if str(path).endswith(".toml") else None
     inner = pathlib.Path(path).parent / poses[1].decode(errors="replace") if poses else None
-    return text + " " + _identity(inner) if inner and inner.is_file() else text
+    return "file " + hashlib.sha256(data + (inner.read_bytes() if inner and _is_file(inner) else b"")).hexdigest()[:16]
 
 
 def _flag_identity(flag):
     name, equals, value = flag.partition("=")
-    return name + equals + (_identity(value) if name in _FILE_FLAGS and pathlib.Path(value).is_file() else value)
+    before, file = _file_of(name, value)
+    return name + equals + before + (_identity(file) if file else "")
 
 
 def read_spec(path, version: str = "") -> Spec:
-    """Reads a spec; `version` is that of the program, which runs are of. Raises SpecError, naming the file, the line and the cure."""
+    """Reads a spec; `version` is the program's version, part of each run's hash. Raises SpecError with the file, the line and the cure."""
     reader = _Reader(pathlib.Path(path))
     text = (str, lambda value: bool(value))
     objects = [_object(reader, value) for value in reader.values("objects", (str, dict), bool, "must be a list of mesh files or tables")]
     names = [one.name for one in objects]
-    for name in names:
-        if names.count(name) > 1:
-            reader.fail("objects", f"holds two objects of the name {name!r}; {{mesh = ..., name = ...}} gives one another name")
+    for i, name in enumerate(names):
+        if name in names[:i]:
+            reader.fail("objects", f"holds two objects named {name!r}; rename one with {{mesh = ..., name = ...}}")
     policies = [_policy(reader, value) for value in reader.values("policies", (str, dict), bool, "must be a list of names")]
-    seeds = reader.values("seeds", int, lambda value: 0 <= value < 2**63, "must be a list of whole numbers from 0 on")
+    seeds = reader.values("seeds", int, lambda value: 0 <= value <= 2**62, "must be a list of whole numbers in 0..2^62")
     sensors = [str(reader.file("sensors", value)) if value.endswith(".toml") else value
                for value in reader.values("sensors", *text, "must be a list of presets and .toml files")]
     voxels = reader.lengths("voxels")
@@ -241,8 +278,13 @@ def read_spec(path, version: str = "") -> Spec:
     kept = reader.number("kept_candidates", int, 1, 100_000, None) if "kept_candidates" in reader.table else 0
     flags = reader.flags("flags", reader.table.get("flags", []))
     against = reader.table.get("against", policies[0].name)
-    if against not in [policy.name for policy in policies]:
-        reader.fail("against", "is none of the policies")
+    policy_names = [policy.name for policy in policies]
+    if against not in policy_names:
+        reader.fail("against", f"is {against!r}, none of the policies {', '.join(policy_names)}")
+    for key, given in (("policies", policy_names), ("sensors", sensors)):
+        twice = next((one for i, one in enumerate(given) if one in given[:i]), None)
+        if twice is not None:
+            reader.fail(key, f"holds {twice!r} twice")
     count = len(sensors) * len(voxels) * len(sizes) * len(objects) * len(seeds) * len(policies)
     if count > _MOST_RUNS:
         reader.fail("seeds", f"make {count:,} runs with the other lists; {_MOST_RUNS:,} at most")
@@ -251,7 +293,7 @@ def read_spec(path, version: str = "") -> Spec:
               "flags": [_flag_identity(flag) for flag in flags]}
     by_object = {one.name: {"object": one.name, "mesh": _identity(one.mesh), "own": [_flag_identity(w) for w in one.words]} for one in objects}
     by_sensor = {sensor: _identity(sensor) if sensor.endswith(".toml") else sensor for sensor in sensors}
-    by_policy = {policy.name: [_identity(word) if pathlib.Path(word).is_file() else word for word in policy.command] for policy in policies}
+    by_policy = {policy.name: [_identity(word) if _is_file(word) else word for word in policy.command] for policy in policies}
     runs = []
     for sensor, voxel, size, one, seed, policy in itertools.product(sensors, voxels, sizes, objects, seeds, policies):
         configuration = {**shared, **by_object[one.name], "policy": policy.name, "command": by_policy[policy.name], "seed": seed,

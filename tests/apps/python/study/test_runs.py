@@ -68,6 +68,7 @@ def test_leaves_what_it_says(folder, program, calls):
     for name in ("coverage.png", "differences.png"):
         assert (folder / "out" / name).read_bytes().startswith(b"\x89PNG")
     assert names(f"out/runs/{rows[0]['hash']}") == ["run.json"]
+    assert not list((folder / "out").rglob(".run-*")) and not list((folder / "out").rglob("*.tmp"))
     # A check of one view for each policy, then a call for each run; none when all are there, in seconds.
     assert len(calls()) == 6 and len(calls(all_of_them=True)) == 9
     begin = time.monotonic()
@@ -83,7 +84,8 @@ def test_only_what_is_new_is_made_and_progress_says_how_long(folder, program, ca
     process = start("spec.toml", "--out", "out", program=program)
     said = process.communicate()[1].splitlines()
     assert process.returncode == 0 and len(calls()) == 9
-    assert said[0] == "6 of 9 runs are there" and len(said) == 4
+    assert said[0] == "6 of 9 runs are there" and [line.startswith("warning: ") for line in said[4:]] == [True] * (len(said) - 4)
+    assert "ended before 12 views (no_gain 1); their coverage stays as it was then" in said[4]
     assert said[1].startswith("run 7 of 9: cube, ") and said[3].endswith("; 0 s left")
     assert (folder / "out/results.json").stat().st_mode & 0o777 == 0o600  # as of every file that is written anew
 
@@ -99,13 +101,14 @@ def test_keeps_candidates_of_each_view(folder, program):
 def test_wrong_words_are_known_before_the_first_run(folder, program, calls):
     (folder / "spec.toml").write_text(SPEC.replace('"frontier"', '"nonsense"'))
     error = study("spec.toml", "--out", "out", code=1, program=program)
-    assert "spec.toml: cube, nonsense, seed 1: --policy: nonsense is no policy; a gain is \"gain:NAME\"" in error
-    assert calls() == [] and runs_in("out") == 0
+    assert "spec.toml: cube, nonsense, seed 1: --policy: nonsense is no policy; a gain is written \"gain:nonsense\"" in error
+    assert calls() == [] and not (folder / "out").exists()
     (folder / "spec.toml").write_text(SPEC.replace("max_views", "max_view"))
     assert "line 7" in study("spec.toml", "--out", "other", code=2, program=program) and not (folder / "other").exists()
+    assert "is not the program viewgain" in study("spec.toml", "--out", "other", code=2, program="/bin/true")
     assert "--program" in study("spec.toml", "--out", "other", code=2, program="no-such-program")
     assert "--jobs" in study("spec.toml", "--out", "other", "--jobs", "0", code=2, program=program)
-    assert names(folder) == ["calls", "cube.off", "more", "out", "program", "spec.toml", "tof.toml"]
+    assert names(folder) == ["calls", "cube.off", "more", "program", "spec.toml", "tof.toml"]
 
 
 def test_killed_it_goes_on(folder, program, calls):
@@ -129,7 +132,7 @@ def test_killed_it_goes_on(folder, program, calls):
         assert (folder / "killed/runs" / run.parent.name / "run.json").read_bytes() == run.read_bytes()
 
 
-@pytest.mark.parametrize("wish", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("wish", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_wish_to_stop_leaves_what_is_whole(folder, program, wish):
     (folder / "spec.toml").write_text(SPEC.replace("max_views", 'flags = ["--distance=0.5"]\nmax_views'))
     process = start("spec.toml", "--out", "out", "--jobs", "1", program=program)
@@ -147,6 +150,7 @@ def test_one_study_at_a_time_in_a_folder(folder, program):
     (folder / "spec.toml").write_text(SPEC.replace("max_views", 'flags = ["--distance=0.5"]\nmax_views'))
     process = start("spec.toml", "--out", "out", "--jobs", "1", program=program)
     while runs_in("out") < 1:
+        assert process.poll() is None
         time.sleep(0.01)
     assert "another study is at work there" in study("spec.toml", "--out", "out", code=2, program=program)
     process.terminate()
@@ -158,14 +162,14 @@ def test_damaged_runs_are_named_and_nothing_is_left(folder, program):
     study("spec.toml", "--out", "out", program=program)
     path = folder / "out/runs" / rows_in("out")[0]["hash"] / "run.json"
     whole, cases = path.read_text(), 0
-    for old, new in (('"per_view"', '"other"'), ('"stop_reason"', '"other"'), ('"seed": 1', '"seed": 7'), ("{", "")):
+    for old, new in (('"per_view"', '"other"'), ('"stop_reason"', '"other"'), ('"seed": 1', '"seed": 7'), ("{", ""), (whole, "")):
         for name in ("results.csv", "results.json"):
             (folder / "out" / name).unlink(missing_ok=True)
         path.write_text(whole.replace(old, new, 1))
         assert f"{path.relative_to(folder)}" in study("spec.toml", "--out", "out", code=2, program=program)
         assert not (folder / "out/results.csv").exists()
         cases += 1
-    assert cases == 4
+    assert cases == 5
 
 
 def test_a_folder_of_other_things_is_refused(folder, program):
@@ -174,6 +178,8 @@ def test_a_folder_of_other_things_is_refused(folder, program):
     (folder / "other/notes.txt").write_text("mine")
     assert "name a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
     assert names("other") == ["notes.txt"]
+    (folder / "other/runs").mkdir()  # of something else
+    assert "name a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
     # The spec may lie there, and stays as it is.
     (folder / "home").mkdir()
     spec = SPEC.replace("cube.off", "../cube.off").replace("tof.toml", "../tof.toml")
@@ -182,13 +188,43 @@ def test_a_folder_of_other_things_is_refused(folder, program):
     assert (folder / "home/results.csv").exists() and (folder / "home/my.toml").read_text() == spec
 
 
+def test_runs_that_fail_keep_nobody_from_the_others(folder, program, calls):
+    (folder / "mine.sh").write_text(f"""case "$*" in *--max-views=12*--seed=1*|*--seed=1*--max-views=12*) echo "no luck" >&2; exit 1;; esac
+exec {program} reconstruct "$@"
+""")
+    (folder / "spec.toml").write_text(SPEC.replace('"frontier"', '{name = "mine", command = "sh mine.sh"}'))
+    error = study("spec.toml", "--out", "out", "--jobs", "1", code=1, program=program)
+    assert "1 of 6 runs failed, the first: cube, mine, seed 1: no luck; the same call makes them again" in error
+    assert runs_in("out") == 5 and not (folder / "out/results.csv").exists()
+    (folder / "mine.sh").write_text(f'exec {program} reconstruct "$@"\n')
+    study("spec.toml", "--out", "out", program=program)
+    assert len(rows_in("out")) == 6
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"seconds": {}}', "\\377"])
+def test_a_run_that_is_none_is_refused_at_once(folder, program, text):
+    (folder / "mine.sh").write_text(f"""for word in "$@"; do case "$word" in --out=*) out=${{word#--out=}};; esac; done
+mkdir "$out" && printf '{text}' >"$out/run.json"
+""")
+    (folder / "spec.toml").write_text(SPEC.replace('"frontier"', '{name = "mine", command = "sh mine.sh"}'))
+    assert "cube, mine, seed 1: run.json" in study("spec.toml", "--out", "out", code=2, program=program)
+    assert not (folder / "out").exists()
+
+
+def test_names_that_matplotlib_would_read_otherwise(folder, program):
+    spec = SPEC.replace('"frontier"', '{name = "_a$\\\\frac$", command = "PROGRAM reconstruct"}').replace("PROGRAM", program)
+    (folder / "spec.toml").write_text(spec.replace("voxels = [0.0125]", "voxels = [0.01, 0.011, 0.012, 0.013, 0.014]"))
+    study("spec.toml", "--out", "out", program=program)
+    assert names("out") == ["coverage.png", "differences.png", "results.csv", "results.json", "runs", "table.md"]
+
+
 def test_without_matplotlib_there_are_no_plots(folder, program):
     (folder / "spec.toml").write_text(SPEC)
     (folder / "hidden").mkdir()
     (folder / "hidden/matplotlib.py").write_text("raise ImportError('not here')\n")
     process = start("spec.toml", "--out", "out", program=program, environment={"PYTHONPATH": f"{folder}/hidden:{SOURCES}"})
     error = process.communicate()[1]
-    assert process.returncode == 0 and "warning: no plots: not here" in error
+    assert process.returncode == 0 and "warning: no coverage.png: not here; install matplotlib" in error
     assert names("out") == ["results.csv", "results.json", "runs", "table.md"]
 
 
@@ -215,6 +251,7 @@ def test_a_cluster_gives_what_this_machine_gives(folder, program, calls):
     assert process.returncode == 0, error
     assert rows_in("there") == rows_in("here") and names("there/runs") == names("here/runs")
     assert (folder / "there/table.md").read_text().splitlines()[:10] == (folder / "here/table.md").read_text().splitlines()[:10]
+    assert "no address of a scheduler" in study("spec.toml", "--out", "there2", "--scheduler", "tcp://127.0.0.1", code=2, program=program)
     assert "no scheduler answers" in study("spec.toml", "--out", "there2", "--scheduler", "tcp://127.0.0.1:9", code=2, program=program)
 
 
@@ -254,8 +291,9 @@ def test_a_run_is_that_of_reconstruct(folder):
         assert rows[0][key] == alone[key], key
     assert rows[0]["decisions"] == 2 and rows[0]["coverage_by_view"] == [view["coverage_visible"] for view in alone["per_view"]]
     same = [{key: value for key, value in row.items() if key not in ("policy", "hash")} for row in rows[1:]]
+    assert rows[2]["decisions"] == 2
     assert same[0] == same[1] and [row["policy"] for row in rows] == ["frontier", "random", "mine"]
     kept = (folder / "out/runs" / rows[0]["hash"] / "candidates.txt").read_text().splitlines()
     assert [line.split()[0] for line in kept] == ["1"] * 4 + ["2"] * 4 and all(len(line.split()) == 8 for line in kept)
     (folder / "spec.toml").write_text((folder / "spec.toml").read_text().replace('"frontier"', '"unknown_count"'))
-    assert "a gain is \"gain:NAME\"" in study("spec.toml", "--out", "out", code=2, program=REAL)
+    assert "a gain is written \"gain:unknown_count\"" in study("spec.toml", "--out", "out", code=2, program=REAL)

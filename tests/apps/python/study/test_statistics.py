@@ -92,8 +92,15 @@ def test_figures_of_a_run():
     assert (row["policy"], row["gain"], row["decisions"]) == ("gain", "combined", 2)
     assert row["deciding_seconds"] == pytest.approx(1 / 3) and row["consistency"] is None
     assert list(rows.counted_views([row], 0.95, 5)) == [6]
-    with pytest.raises(KeyError):
-        rows.row_of(run_of("sr4000", "cube", 3, "random"), {**record, "per_view": [{}]}, 5)
+    cases = 0
+    for wrong in ({"per_view": [{}]}, {"per_view": []}, {"rms_error": math.nan}, {"rms_error": "1"}, {"seconds": []}, {"views": None}):
+        with pytest.raises((LookupError, TypeError, ValueError, AttributeError)):
+            rows.row_of(run_of("sr4000", "cube", 3, "random"), {**record, **wrong}, 5)
+        cases += 1
+    assert cases == 6
+    assert rows.row_of(run_of("sr4000", "cube", 3, "mine"), {**record, "seconds": {"total": 9}}, 5)["deciding_seconds"] is None
+    assert rows.early_ends([row, {**row, "views": 5}, {**row, "gain": "paper", "views": 5}], 5) == [
+        "1 of 2 runs of gain:combined ended before 5 views (max_views 1); their coverage stays as it was then"]
 
 
 def cells(text):

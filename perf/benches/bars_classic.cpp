@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The other gains against the paper's, and the hazard that the surface and the combined gain need.
+// The hazard that the surface and the combined gain need, and the classic gains against the
+// paper's.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -18,26 +19,7 @@
 namespace viewgain::bench {
 namespace {
 
-constexpr std::array kModels{GainModel::paper, GainModel::surface, GainModel::combined};
 constexpr std::size_t kChecked = 16;  // poses whose gains are compared with those of one thread
-
-bool same_bits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-/// Some poses have the gains that one thread finds, and they are not all zero.
-bool is_as_alone(const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor,
-                 GainModel model, std::span<const Pose> poses, std::span<const ViewGain> gains) {
-  const std::size_t count = std::min(kChecked, poses.size());
-  const auto alone = GainEvaluator(scene, sensor, {.model = model}, {.num_threads = 1})
-                         .evaluate(poses.first(count));
-  double most = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!same_bits(alone[i].gain, gains[i].gain)) return false;
-    most = std::max(most, gains[i].gain);
-  }
-  return most > 0;
-}
 
 /// The hazard field of camel-N after one more frame [ms].
 double hazard_ms(int voxels, const BarsOptions& options) {
@@ -80,29 +62,8 @@ bool are_as_alone(const std::shared_ptr<const ClassicMap>& map, const Sensor& se
 
 }  // namespace
 
-std::vector<Figure> surface_figures(const BarsOptions& options) {
-  const auto scene = VoxelScene::build(test::camel_grid(options.voxels, options.mesh));
-  const Sensor sensor = sensor_preset("sr4000");
-  const std::vector<Pose> poses = sphere_poses(static_cast<std::size_t>(options.poses), 0.6);
-  std::vector<GainEvaluator> evaluators;
-  for (const GainModel model : kModels) {
-    evaluators.emplace_back(scene, sensor, GainConfig{.model = model},
-                            ExecConfig{.num_threads = options.num_threads});
-  }
-  std::array<std::vector<double>, kModels.size()> seconds;
-  std::array<std::vector<ViewGain>, kModels.size()> gains;
-  for (int repetition = -1; repetition < options.repetitions; ++repetition) {
-    for (std::size_t i = 0; i < kModels.size(); ++i) {
-      const double value = seconds_of([&] { gains[i] = evaluators[i].evaluate(poses); });
-      if (repetition >= 0) seconds[i].push_back(value);  // -1: to warm up
-    }
-  }
-  const auto over_paper = [&](const char* name, std::size_t i) {
-    const bool same = is_as_alone(scene, sensor, kModels[i], poses, gains[i]);
-    return Figure{name, median(seconds[0]) / median(seconds[i]), same, same ? "" : "gains differ"};
-  };
-  return {over_paper("surface_over_paper", 1), over_paper("combined_over_paper", 2),
-          Figure{"hazard_ms_128", hazard_ms(options.voxels, options)},
+std::vector<Figure> hazard_figures(const BarsOptions& options) {
+  return {Figure{"hazard_ms_128", hazard_ms(options.voxels, options)},
           Figure{"hazard_ms_512", hazard_ms(options.large_voxels, options)}};
 }
 
