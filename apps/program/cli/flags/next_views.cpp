@@ -131,6 +131,20 @@ Json to_json(const NextViews& next) {
   return json;
 }
 
+std::string help_text(std::size_t candidates, const std::map<std::string, std::size_t>& dropped) {
+  std::size_t all = candidates;
+  for (const auto& [reason, count] : dropped) all += count;
+  // What would help where most are dropped for one reason.
+  for (const auto& [reason, what] :
+       {std::pair(kUnreachable, "out of reach: --generator boundary,shell adds poses within it"),
+        std::pair(std::string_view("too_near"), "too near: --distance puts them farther away")}) {
+    const auto found = dropped.find(std::string(reason));
+    if (found == dropped.end() || 2 * found->second <= all) continue;
+    return with_commas(found->second) + " of " + with_commas(all) + " candidates are " + what;
+  }
+  return {};
+}
+
 std::string summary_of(const NextViews& next) {
   if (next.candidates == 0 && next.dropped.empty()) return "nothing is left to look at";
   const std::string count = with_commas(next.candidates);
@@ -139,6 +153,9 @@ std::string summary_of(const NextViews& next) {
                          ? "none of the " + count + " candidate views has a positive gain"
                          : "the best of " + count + " views";
   if (!next.dropped.empty()) text += "; dropped: " + counts_text(next.dropped);
+  if (const std::string help = help_text(next.candidates, next.dropped); !help.empty()) {
+    text += "; " + help;
+  }
   if (next.candidates == 0 && next.dropped.contains("collision")) {
     text +=
         " (the body would be in voxels not known to be free; does the workspace include the "

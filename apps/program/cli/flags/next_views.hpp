@@ -67,7 +67,11 @@ void explain(NextViews& next, const Proposal& proposal, const GainEvaluator& eva
 /// a view.
 [[nodiscard]] Json to_json(const NextViews& next);
 
-/// "12 of 480 possible views; dropped: 3 collision"
+/// What would help if most candidates were dropped for one reason; empty if nothing is known.
+[[nodiscard]] std::string help_text(std::size_t candidates,
+                                    const std::map<std::string, std::size_t>& dropped);
+
+/// "the best of 480 views; dropped: 3 collision", and help_text().
 [[nodiscard]] std::string summary_of(const NextViews& next);
 
 /// A table for people, one line a view, and one more where it is explained; empty without views

@@ -10,6 +10,7 @@
 
 #include "program/cli/config_file.hpp"
 #include "program/cli/flags/gain_names.hpp"
+#include "program/cli/flags/next_views.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/file_format.hpp"
 #include "program/commands/frames/frame_tally.hpp"
@@ -266,8 +267,10 @@ std::string RunReport::text(StopReason reason) const {
                                std::string(stop_reason_name(reason)).c_str());
   const std::map<std::string, std::size_t>& dropped = last.record.proposal.dropped;
   if (!dropped.empty()) {
-    text += formatted("last candidates: %zu feasible; dropped: %s\n",
-                      last.record.proposal.candidates.size(), counts_text(dropped).c_str());
+    const std::size_t feasible = last.record.proposal.candidates.size();
+    const std::string help = help_text(feasible, dropped);
+    text += formatted("last candidates: %zu feasible; dropped: %s%s%s\n", feasible,
+                      counts_text(dropped).c_str(), help.empty() ? "" : "; ", help.c_str());
   }
   text += formatted(
       "coverage at %g mm %.2f %% of all, %.2f %% of the visible (by points %.2f %%, by triangles "

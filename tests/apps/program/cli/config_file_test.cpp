@@ -63,7 +63,7 @@ TEST_F(ConfigFile, ARunIsRepeatedByteForByte) {
     }
   }
   EXPECT_EQ(cases, contents("again").size());
-  EXPECT_EQ(cases, 14U);  // six files; two pictures and a map of each view; two folders
+  EXPECT_EQ(cases, 15U);  // six files; two pictures and a map of each view; two folders
   // The run that the file is in is not replaced while it is read.
   expect_refused({"reconstruct", "--config", "run/config.toml", "--out", "run"},
                  "--config run/config.toml");
@@ -172,7 +172,8 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithFileAndLine) {
       {"reach = \"r.toml\\u0000x\"\n", "line 4: key \"reach\" must not hold a zero byte"},
       {"[gain]\nmodel = 1\n", "line 4: key \"gain\" must be"},
       {"top = 1\ntop = 2\n", "c.toml: line 5"},
-      {"dome = \"20,0.6\"\n", "key \"dome\" is of a flag: --dome was removed; use --poses dome:N,RADIUS"}};
+      {"dome = \"20,0.6\"\n",
+       "key \"dome\" is of a flag: --dome was removed; use --poses dome:N,RADIUS"}};
   for (const auto& [text, word] : files) {
     write("c.toml", head + text);
     expect_refused({"score", "--config", "c.toml", "--out", "s.csv"}, word);

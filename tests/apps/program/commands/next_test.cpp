@@ -137,6 +137,25 @@ TEST_F(Next, AShellIsRoundTheReach) {
       300);
 }
 
+TEST_F(Next, WhereMostIsOutOfReachItSaysWhatWouldHelp) {
+  write("arm.toml", "[[box]]\nmin = [0.4, -0.1, 0.2]\nmax = [0.9, 0.1, 0.3]\n");
+  std::size_t helped = 0;
+  for (const std::string generator : {"boundary", "sphere", "shell"}) {
+    const json result = candidates(generator, {"--reach", "arm.toml"});
+    std::size_t all = result["candidates"].get<std::size_t>();
+    for (const auto& [reason, count] : result["dropped"].items()) all += count.get<std::size_t>();
+    const std::size_t far = result["dropped"].value("unreachable", std::size_t{0});
+    const std::string text = run_well({"next", "run/map.vdb", "--generator", generator, "--reach",
+                                       "arm.toml", "--sensor", "tof.toml"});
+    const std::string help = std::to_string(far) + " of " + std::to_string(all) +
+                             " candidates are out of reach: --generator boundary,shell adds";
+    EXPECT_EQ(text.find(help) != std::string::npos, 2 * far > all) << generator << text;
+    EXPECT_EQ(text.find("out of reach") != std::string::npos, 2 * far > all) << generator << text;
+    helped += 2 * far > all ? 1 : 0;
+  }
+  EXPECT_EQ(helped, 2U);
+}
+
 TEST_F(Next, SeveralGeneratorsAreOneAfterTheOther) {
   const json boundary = candidates("boundary"), sphere = candidates("sphere", {"--count", "60"});
   const json both = candidates("sphere,boundary", {"--count", "60"});
