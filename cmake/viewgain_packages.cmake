@@ -65,6 +65,8 @@ if(VIEWGAIN_BUILD_PYTHON AND BUILD_SHARED_LIBS)
   viewgain_package(python python3-viewgain Apache-2.0
     "Expected information gain of camera poses, Python" SECTION python DEPENDS runtime
     DEBIAN ${python_depends})
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-scipy, python3-matplotlib") # viewgain.study, viewgain.plot
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "viewgain, python3-distributed")
   if(TARGET _mesh)
     viewgain_package(python-mesh python3-viewgain-mesh GPL-3.0-or-later
       "Surfaces and the reconstruction loop of viewgain, Python" SECTION python

@@ -7,7 +7,11 @@ import collections
 import math
 
 import numpy as np
-from scipy import stats
+
+try:
+    from scipy import stats
+except ImportError as error:
+    raise ImportError(f"viewgain.study needs scipy (Debian: python3-scipy), which cannot be imported: {error}") from error
 
 GOALS = (0.80, 0.90, 0.95)  # shares of the visible surface to which views are counted
 

@@ -25,6 +25,8 @@ from .rows import SpecError, row_of
 from .spec import Run, Spec
 
 _WORKERS_WITHIN = 60  # that a cluster is waited for [s]
+# Before a command: it ends with the process that called it, even if that is killed (util-linux).
+_ENDS_WITH_US = ["setpriv", "--pdeathsig", "KILL", "--"] if shutil.which("setpriv") else []
 
 
 class RunError(RuntimeError):
@@ -52,7 +54,7 @@ class _Children:
             with self._lock:
                 if self._is_over:
                     raise RunError(f"{title}: stopped")
-                process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                process = subprocess.Popen([*_ENDS_WITH_US, *words], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                            errors="replace", start_new_session=True, env={**os.environ, "PATH": path})
                 self._running.add(process)
         except OSError as error:
