@@ -214,13 +214,20 @@ StagedFolder::~StagedFolder() {
 void StagedFolder::remove() const noexcept {
   if (is_kept_) return;
   std::error_code ignored;
-  // Another thread may be putting a file into it when a signal ends the program.
-  for (int tries = 0; tries < 10 && fs::exists(staging_, ignored); ++tries) {
-    try {
-      fs::remove_all(staging_, ignored);
-    } catch (const std::bad_alloc&) {  // the next writer removes it
-      break;
+  try {
+    // Where a signal ends the program, other threads go on putting files into it, perhaps as fast
+    // as they can be removed: under another name they do not find it. One may be at it, and one may
+    // make it anew.
+    for (int tries = 0; tries < 10 && fs::exists(staging_, ignored); ++tries) {
+      const fs::path aside =
+          staging_.parent_path() / TemporaryNames::of_folder(target_).next().filename();
+      fs::rename(staging_, aside, ignored);
+      const fs::path& found = ignored ? staging_ : aside;
+      for (int again = 0; again < 10 && fs::exists(found, ignored); ++again) {
+        fs::remove_all(found, ignored);
+      }
     }
+  } catch (const std::bad_alloc&) {  // the next writer removes it
   }
   for (const fs::path& parent : parents_) fs::remove(parent, ignored);  // if empty
 }

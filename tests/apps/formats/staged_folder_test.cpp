@@ -13,6 +13,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "apps/program_runner.hpp"
@@ -130,6 +131,32 @@ TEST_F(StagedFolderTest, AFailureLeavesAnothersResultsInTheParentItMade) {
   EXPECT_EQ(read("runs/b/one.txt"), "new");
   { const StagedFolder alone(dir / "made/for/this"); }
   EXPECT_FALSE(fs::exists(dir / "made"));
+}
+
+// As where a signal ends a program of several threads.
+TEST_F(StagedFolderTest, WritersThatGoOnKeepNothingAlive) {
+  for (int round = 0; round < 5; ++round) {
+    const StagedFolder staged(dir / "made/out");
+    for (int i = 0; i < 500; ++i) put(staged.path() / std::to_string(i), "");
+    std::atomic<int> ended{0};
+    std::vector<std::thread> writers;
+    for (int writer = 0; writer < 3; ++writer) {
+      writers.emplace_back([&, writer] {
+        const std::string name = std::to_string(writer) + '-';
+        for (int i = 0; i < 200'000; ++i) {
+          if (!std::ofstream(staged.path() / (name + std::to_string(i)))) {
+            ++ended;
+            return;
+          }
+        }
+      });
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    remove_staged_folders();
+    for (std::thread& writer : writers) writer.join();
+    EXPECT_EQ(ended, 3);
+    EXPECT_EQ(list("."), Strings{});
+  }
 }
 
 TEST_F(StagedFolderTest, ALeftoverInUseStays) {
