@@ -62,6 +62,27 @@ struct Run {
 
 }  // namespace
 
+Pool pool_of(const BeliefGrid& grid, const DenseMap& map, Index3 voxel) {
+  Pool pool;
+  bool is_measured = false;
+  for (int i = 0; i < 27; ++i) {
+    const Index3 v{voxel.x + i / 9 - 1, voxel.y + i / 3 % 3 - 1, voxel.z + i % 3 - 1};
+    if (!map.inside(v) || map.state(v) != VoxelState::occupied) continue;
+    const auto belief = grid.belief(v);
+    if (!belief || belief->hits == 0) continue;
+    pool.information += belief->information_matrix().matrix() / std::pow(4.0, grid.scale(v));
+    ++pool.voxels;
+    if (i == 13) is_measured = true;
+  }
+  if (!is_measured) pool.voxels = 0;
+  return pool;
+}
+
+double pooled_entropy(const Pool& pool, double prior_sigma, double floor) {
+  const double prior = 9 / (prior_sigma * prior_sigma);
+  return entropy_with_floor(pool.information + prior * Eigen::Matrix3d::Identity(), floor);
+}
+
 SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const HazardField& hazard,
                            const Sensor& sensor, const GainConfig& config,
                            const Pose& T_world_camera, const Obstacles& obstacles) {
@@ -158,8 +179,8 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
       const auto [entry, is_first] =
           refined.try_emplace(cell_of(voxel, 0), Eigen::Matrix3d::Zero());
       entry->second += added;
-      const double most = entropy_with_floor(prior, floor) -
-                          entropy_with_floor(prior + added / std::max(passed, 1e-300), floor);
+      const double most = entropy_with_floor(9 * prior, floor) -
+                          entropy_with_floor(9 * (prior + added / std::max(passed, 1e-300)), floor);
       value.pixel_refinement = std::max(value.pixel_refinement, most);
       return true;
     });
@@ -169,13 +190,13 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
   value.pixel_refinement *= 1 + undecided;
   for (const auto& [cell, added] : refined) {
     const auto& [x, y, z] = cell;
-    const auto belief = grid.belief({x, y, z});
-    if (!belief) continue;  // what was never measured is not refined
-    const Eigen::Matrix3d before =
-        prior + belief->information_matrix().matrix() / std::pow(4.0, grid.scale({x, y, z}));
+    const Pool before = pool_of(grid, map, {x, y, z});
+    if (before.voxels == 0) continue;  // what was never measured is not refined
+    // The view adds as much as here to nine of the 27 voxels.
+    const Pool after{before.information + 9 * added, before.voxels};
     value.refinement_saturated +=
-        weight_of(config, V, {x, y, z}) *
-        (entropy_with_floor(before, floor) - entropy_with_floor(before + added, floor));
+        weight_of(config, V, {x, y, z}) * std::min(before.voxels / 9.0, 1.0) *
+        (pooled_entropy(before, sigma_0, floor) - pooled_entropy(after, sigma_0, floor));
   }
   if (config.model == GainModel::surface) {
     value.gain = value.area;

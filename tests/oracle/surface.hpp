@@ -17,6 +17,17 @@ struct SurfaceValue {
   double pixel_refinement = 0;  ///< [nat]
 };
 
+/// What is known of the surface at a voxel.
+struct Pool {
+  /// Of the readings of the occupied ones among the 27 voxels round it [m⁻²].
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  int voxels = 0;  ///< how many of these have readings; 0 if the voxel itself has none
+};
+[[nodiscard]] Pool pool_of(const BeliefGrid& grid, const DenseMap& map, Index3 voxel);
+
+/// ½ Σ_k ln ([9 / prior_sigma² I + Λ]⁻¹ + floor I)_kk [nat]; `floor` [m²].
+[[nodiscard]] double pooled_entropy(const Pool& pool, double prior_sigma, double floor);
+
 /// The surface and the combined gain of raycast/README.md for one pose outside occupied voxels,
 /// without a support plane. Hazards come from `hazard`, which has tests of its own.
 [[nodiscard]] SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map,

@@ -34,7 +34,7 @@ weights : iterable of (box, weight), optional
     Task weights >= 0 of parts of the workspace: boxes (2, 3) in the grid's frame [m]. The last that
     holds a voxel's centre counts, 1 outside all.
 refinement_weight : float, optional
-    Weight of refining against finding new surface, with "combined" alone. Default: 0.3.
+    Weight of refining against finding new surface, with "combined" alone. Default: 1.
 posterior_entropy : bool
     Let ``evaluate_detailed`` have it, too: with "paper" alone, some 4 % slower.
 tracer : {"automatic", "embree", "sweep"}

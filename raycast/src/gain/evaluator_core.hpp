@@ -131,7 +131,7 @@ struct RefiningHits {
   std::uint32_t places[HitList::kCapacity];
   std::uint64_t keep[HitList::kCapacity];  ///< as GainKernels::accumulate() has it
   // What the gain is made of, by place.
-  std::vector<const GridSnapshot::Leaf*> leaves;
+  std::vector<const BeliefBlock*> blocks;
   std::vector<std::uint32_t> offsets, members;
   std::vector<MatrixHalf> known_a, known_b;
   std::vector<double> each;

@@ -124,8 +124,8 @@ void accumulate(const HitBatch& batch, const std::uint32_t* places, const std::u
   }
 }
 
-void look_up(const GridSnapshot::Leaf* const* leaves, const std::uint32_t* offsets,
-             std::size_t count, MatrixHalf* known_a, MatrixHalf* known_b) {
+void look_up(const BeliefBlock* const* blocks, const std::uint32_t* offsets, std::size_t count,
+             MatrixHalf* known_a, MatrixHalf* known_b) {
   // Where the beliefs are is found some voxels ahead of reading them, so that memory can follow.
   constexpr std::size_t kAhead = 32;
   static constexpr Belief kNothing{};
@@ -136,7 +136,7 @@ void look_up(const GridSnapshot::Leaf* const* leaves, const std::uint32_t* offse
   for (std::size_t begin = 0; begin < count; begin += kAhead) {
     const std::size_t n = count - begin < kAhead ? count - begin : kAhead;
     for (std::size_t i = 0; i < n; ++i) {
-      const BeliefBlock* block = leaves[begin + i]->beliefs.get();
+      const BeliefBlock* block = blocks[begin + i];
       const Belief* belief = block != nullptr ? block->find(offsets[begin + i]) : nullptr;
       found[i] = belief != nullptr ? belief : &kNothing;
       shares[i] = belief != nullptr ? surface_share(block->scale) : 1.0;
@@ -152,7 +152,8 @@ void look_up(const GridSnapshot::Leaf* const* leaves, const std::uint32_t* offse
       }
       b[0] = static_cast<double>(information[4]) * shares[i];
       b[1] = static_cast<double>(information[5]) * shares[i];
-      b[2] = b[3] = 0;
+      b[2] = static_cast<double>(found[i]->hits);
+      b[3] = 0;
     }
   }
 }
@@ -313,8 +314,9 @@ void finish(Criterion criterion, double prior_information, const VoxelClass& vox
 }
 
 void finish_with_floor(double prior_information, double floor, const VoxelClass& voxels,
-                       LogProduct& ratios, double* each) {
-  finish_as<Criterion::log_diagonal, false, true>(prior_information, voxels, ratios, nullptr, each,
+                       double* each) {
+  LogProduct unused;
+  finish_as<Criterion::log_diagonal, false, true>(prior_information, voxels, unused, nullptr, each,
                                                   floor);
 }
 

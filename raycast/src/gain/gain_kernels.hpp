@@ -70,7 +70,7 @@ struct VoxelClass {
   const std::uint32_t*
       members;                ///< which of them belong to the class; readable up to 8 beyond count
   const MatrixHalf* known_a;  ///< Λ_v of the members: xx yy zz xy; null: unknown, none
-  const MatrixHalf* known_b;  ///< xz yz 0 0
+  const MatrixHalf* known_b;  ///< xz yz, and two numbers that are not looked at
   std::size_t count;
 };
 
@@ -84,19 +84,21 @@ struct GainKernels {
   /// of its voxel, and what stood there is forgotten; else it is all ones.
   void (*accumulate)(const HitBatch& batch, const std::uint32_t* places, const std::uint64_t* keep,
                      VoxelSum* sums);
-  /// Λ_v of occupied voxels: voxel i is the one at offsets[i] of leaves[i]; its share of
-  /// its cell's (surface_share()); zero without a belief.
-  void (*look_up)(const GridSnapshot::Leaf* const* leaves, const std::uint32_t* offsets,
-                  std::size_t count, MatrixHalf* known_a, MatrixHalf* known_b);
+  /// Λ_v of occupied voxels, xx yy zz xy and xz yz hits 0: voxel i is the one at offsets[i] of
+  /// blocks[i], which may be null; its share of its cell's (surface_share()); zero without a
+  /// belief.
+  void (*look_up)(const BeliefBlock* const* blocks, const std::uint32_t* offsets, std::size_t count,
+                  MatrixHalf* known_a, MatrixHalf* known_b);
   /// What the members gain and what stays. Multiplies the ratios whose logarithms, halved, are
   /// H(before) - H(after) into `ratios`, or, if `each` is not null (room for 8 beyond count),
   /// writes each ratio there, for the trace each difference. Multiplies Π_k [(Λ_v + ΣΛ_r)⁻¹]_kk
   /// into `posterior` unless that is null.
   void (*finish)(Criterion criterion, double prior_information, const VoxelClass& voxels,
                  LogProduct& ratios, LogProduct* posterior, double* each);
-  /// The same by log_diagonal with a floor: H_F(Λ) = ½ Σ_k ln [Λ⁻¹ + F]_kk, F = `floor` I [m²].
+  /// The ratios by log_diagonal with a floor, H_F(Λ) = ½ Σ_k ln [Λ⁻¹ + F]_kk, F = `floor` I [m²],
+  /// into `each` (room for 8 beyond count).
   void (*finish_with_floor)(double prior_information, double floor, const VoxelClass& voxels,
-                            LogProduct& ratios, double* each);
+                            double* each);
 };
 
 [[nodiscard]] const GainKernels& gain_kernels(Isa isa);

@@ -53,15 +53,17 @@ SurfaceView::SurfaceView(const SceneData& scene, const EvaluatorCore& core,
       bricks_(scene.tracing->bricks()),
       walk_(walk_kernels(scene.tracing->kernels.isa)),
       gain_kernels_(gain_kernels(scene.tracing->kernels.isa)),
+      pooled_(core.config.model == GainModel::combined ? &scene.tracing->pooled_surface()
+                                                       : nullptr),
       frontal_(core.sigmas),
       prior_information_(1.0 / (prior_sigma * prior_sigma)) {
   const double V = scene.snapshot.voxel_size;
   const double stride = core.config.pixel_stride;
   const double radius = bricks_.pooling_length;
   cap_ = static_cast<float>(stride * stride * std::numbers::pi * radius * radius / kLeastReadings);
-  floor_variance_ = V * V;
+  floor_variance_ = PooledSurface::kVoxels * V * V;
   frontal_.p0 = frontal_.p2 = 0;  // as core's frontal(): readings that share a pose share its error
-  nats_per_area_ = entropy_of_new_voxel(core, prior_information_, floor_variance_) / (V * V);
+  nats_per_area_ = entropy_of_new_voxel(core, prior_information_, V * V) / (V * V);
 }
 
 Index3 SurfaceView::voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) const {
@@ -172,30 +174,33 @@ double SurfaceView::saturated_gain(Workspace& workspace) const {
   RefiningHits& refining = workspace.refining;
   const std::uint32_t count = occupied.count();
   const std::size_t room = std::size_t{count} + VoxelSums::kOverhang;
-  if (refining.leaves.size() < room) {
-    refining.leaves.resize(room), refining.offsets.resize(room), refining.members.resize(room);
+  if (refining.blocks.size() < room) {
+    refining.blocks.resize(room), refining.offsets.resize(room), refining.members.resize(room);
     refining.known_a.resize(room), refining.known_b.resize(room), refining.each.resize(room);
   }
   for (std::uint32_t i = 0; i < count; ++i) {
     const Index3 voxel = occupied.voxel(i);
-    refining.leaves[i] = &scene_.snapshot.leaves[bricks_.leaf_of(voxel)];
+    refining.blocks[i] = &pooled_->block(bricks_.leaf_of(voxel));
     refining.offsets[i] = block_offset(voxel);
   }
-  gain_kernels_.look_up(refining.leaves.data(), refining.offsets.data(), count,
+  gain_kernels_.look_up(refining.blocks.data(), refining.offsets.data(), count,
                         refining.known_a.data(), refining.known_b.data());
   const std::uint32_t measured = refining.keep_measured(count);
-  const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
-  double* each = weights.empty() ? nullptr : refining.each.data();
-  LogProduct ratios;
   gain_kernels_.finish_with_floor(prior_information_, floor_variance_,
                                   {occupied.sums(), refining.members.data(),
                                    refining.known_a.data(), refining.known_b.data(), measured},
-                                  ratios, each);
-  if (each == nullptr) return 0.5 * ratios.log();
+                                  refining.each.data());
+  const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
   double sum = 0;
   for (std::uint32_t i = 0; i < measured; ++i) {
-    const Index3 voxel = occupied.voxel(refining.members[i]);
-    sum += task_weight(weights, voxel, scene_.snapshot.voxel_size) * 0.5 * std::log(each[i]);
+    const double gain =
+        PooledSurface::chance(refining.known_b[i].value[2]) * 0.5 * std::log(refining.each[i]);
+    if (weights.empty()) {
+      sum += gain;
+    } else {
+      const Index3 voxel = occupied.voxel(refining.members[i]);
+      sum += task_weight(weights, voxel, scene_.snapshot.voxel_size) * gain;
+    }
   }
   return sum;
 }
@@ -273,18 +278,16 @@ void SurfaceView::sample(const PoseFrame& frame, Workspace& workspace, double ra
 }
 
 double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const {
-  const GridSnapshot::Leaf* leaf = scene_.snapshot.find_leaf(voxel);
-  if (leaf == nullptr || !leaf->beliefs) return 0;
-  const Belief* belief = leaf->beliefs->find(block_offset(voxel));
+  const Belief* belief = pooled_->block(bricks_.leaf_of(voxel)).find(block_offset(voxel));
   if (belief == nullptr) return 0;
   const SymmetricMatrix3 before =
-      SymmetricMatrix3::identity(prior_information_) +
-      belief->information_matrix() * surface_share(leaf->beliefs->scale);
+      SymmetricMatrix3::identity(prior_information_) + belief->information_matrix();
   const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
   const double weight =
       weights.empty() ? 1.0 : task_weight(weights, voxel, scene_.snapshot.voxel_size);
-  return weight * (entropy_with_floor(before, floor_variance_) -
-                   entropy_with_floor(before + information, floor_variance_));
+  return weight * PooledSurface::chance(belief->hits) *
+         (entropy_with_floor(before, floor_variance_) -
+          entropy_with_floor(before + information, floor_variance_));
 }
 
 void SurfaceView::find_visits(const PoseFrame& frame, std::size_t number, const RayTile& rays,

@@ -112,7 +112,8 @@ class SurfaceView {
   [[nodiscard]] int cell_shift() const { return bricks_.rate_shift; }
   /// Nats for one m² of new surface: ΔH_new / V².
   [[nodiscard]] double nats_per_area() const { return nats_per_area_; }
-  /// w_v [H_F(Λ_0 + Λ_v) - H_F(Λ_0 + Λ_v + information)] of an occupied voxel.
+  /// w_v c_v [H_nF(Λ_0 + Λ̄_v) - H_nF(Λ_0 + Λ̄_v + information)] of an occupied voxel; by the
+  /// combined gain only.
   [[nodiscard]] double saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const;
 
  private:
@@ -148,9 +149,12 @@ class SurfaceView {
   const BrickTable& bricks_;
   const WalkKernels& walk_;
   const GainKernels& gain_kernels_;
+  const PooledSurface* pooled_;  // by the combined gain
   FrontalSigmas frontal_;
   float cap_;  // the most that a ray counts for [voxels²]
-  double prior_information_, floor_variance_, nats_per_area_;
+  double prior_information_;
+  double floor_variance_;  // n F
+  double nats_per_area_;
 };
 
 }  // namespace viewgain::detail

@@ -22,7 +22,7 @@ VoxelSums::VoxelSums(const SceneData& scene, const GainSettings& settings, std::
   sums_.resize(most);
   unknown_.resize(most);
   occupied_.resize(most);
-  occupied_leaf_.resize(most);
+  occupied_block_.resize(most);
   occupied_offset_.resize(most);
   known_a_.resize(most);
   known_b_.resize(most);
@@ -185,10 +185,10 @@ void VoxelSums::close() {
 void VoxelSums::look_up() {
   for (std::size_t i = 0; i < occupied_count_; ++i) {
     const std::uint32_t code = touched_[occupied_[i]];
-    occupied_leaf_[i] = blocks_[code >> 9U].leaf;
+    occupied_block_[i] = blocks_[code >> 9U].leaf->beliefs.get();
     occupied_offset_[i] = code & 511U;
   }
-  kernels_->look_up(occupied_leaf_.data(), occupied_offset_.data(), occupied_count_,
+  kernels_->look_up(occupied_block_.data(), occupied_offset_.data(), occupied_count_,
                     known_a_.data(), known_b_.data());
 }
 

@@ -170,7 +170,7 @@ class VoxelSums {
   // The classes: places, and of the occupied ones what is known.
   std::size_t unknown_count_ = 0, occupied_count_ = 0;
   std::vector<std::uint32_t> unknown_, occupied_;
-  std::vector<const GridSnapshot::Leaf*> occupied_leaf_;
+  std::vector<const BeliefBlock*> occupied_block_;  // null: without beliefs
   std::vector<std::uint32_t> occupied_offset_;
   std::vector<MatrixHalf> known_a_, known_b_;
 };

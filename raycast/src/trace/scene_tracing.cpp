@@ -38,4 +38,9 @@ const BrickTable& SceneTracing::bricks() const {
   return *bricks_;
 }
 
+const PooledSurface& SceneTracing::pooled_surface() const {
+  std::call_once(pooled_once_, [&] { pooled_.emplace(data_.snapshot); });
+  return *pooled_;
+}
+
 }  // namespace viewgain::detail

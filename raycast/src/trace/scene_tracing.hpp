@@ -10,6 +10,7 @@
 #include "device.hpp"
 #include "obstacle_scene.hpp"
 #include "scene/brick_table.hpp"
+#include "scene/pooled_surface.hpp"
 #include "scene/scene_data.hpp"
 #include "tile_kernels.hpp"
 
@@ -42,6 +43,9 @@ class SceneTracing {
   /// Error(capacity).
   [[nodiscard]] const BrickTable& bricks() const;
 
+  /// What is known of the surface; found when first asked for. Thread safe.
+  [[nodiscard]] const PooledSurface& pooled_surface() const;
+
   const TileKernels& kernels;
   const std::shared_ptr<const ObstacleScene> obstacles;  ///< null: none
 
@@ -54,6 +58,8 @@ class SceneTracing {
   mutable std::array<Bvh, kMarginLevels> bvhs_;
   mutable std::once_flag bricks_once_;
   mutable std::optional<BrickTable> bricks_;
+  mutable std::once_flag pooled_once_;
+  mutable std::optional<PooledSurface> pooled_;
 };
 
 }  // namespace viewgain::detail

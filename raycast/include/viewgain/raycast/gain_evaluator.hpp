@@ -68,7 +68,7 @@ struct VIEWGAIN_EXPORT GainConfig {
   std::optional<double> min_range{};
   std::optional<double> max_range{};    ///< along the ray [m]; the sensor's unless given
   std::vector<WeightRegion> weights{};  ///< task weights; in their order later ones count
-  double refinement_weight = 0.3;       ///< combined: w, of refining against finding new surface
+  double refinement_weight = 1.0;       ///< combined: w, of refining against finding new surface
   bool posterior_entropy = false;       ///< paper: ViewGain::posterior_entropy too; some 4 % slower
 };
 
@@ -91,8 +91,9 @@ struct VIEWGAIN_EXPORT ViewGain {
   double refinement = std::numeric_limits<double>::quiet_NaN();   ///< paper: occupied voxels' share
   /// surface, combined: new surface to be expected, measured across the rays [m²].
   double area = std::numeric_limits<double>::quiet_NaN();
-  /// combined: entropy removed in occupied voxels that have readings, with a floor below which
-  /// none is counted [nat]. Labelled voxels have none.
+  /// combined: entropy removed from the points at occupied voxels that have readings, each pooling
+  /// those of the voxels around, with a floor (docs/guide/surface_gain.md) [nat]. Labelled voxels
+  /// have none.
   double refinement_saturated = std::numeric_limits<double>::quiet_NaN();
   /// If GainConfig asks for it: the paper's eq. (6) over the touched voxels, Σ_v Σ_k ln[(Λ_v +
   /// ΣΛ_r)⁻¹]_kk, lengths in metres.

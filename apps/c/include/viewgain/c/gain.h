@@ -93,7 +93,7 @@ typedef struct vg_evaluator_config {
   double min_range, max_range;     /* along the ray [m]; NaN (the default): the sensor's */
   const vg_weight_region* weights; /* task weights of parts of the workspace; null: none */
   size_t weight_count;             /* how many weights */
-  double refinement_weight;  /* VG_GAIN_COMBINED: of refining against finding new surface (0.3) */
+  double refinement_weight;  /* VG_GAIN_COMBINED: of refining against finding new surface (1) */
   int32_t gain;              /* VG_GAIN_COMBINED */
   int32_t posterior_entropy; /* 1: vg_view_gain.posterior_entropy too, by VG_GAIN_PAPER; 0 (the
                                 default) */
