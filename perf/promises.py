@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""What views promise of known surface, and what their frames keep of it (apps/docs/guide/surface_gain.md).
+"""Compares the refinement that the combined gain promises with what frames bring (apps/docs/guide/surface_gain.md).
 
     promises.py SENSOR RUN...    RUN: a folder of `viewgain reconstruct --save-maps on`; SENSOR: its preset
 
-For each run the refinement in nats that the combined gain promises of the views after the first, summed, and how much
-of it the points at those voxels then lost in entropy.
+For each run: the refinement [nat] that is promised for the views after the first, and the share of it that the points at
+the same voxels then lost in entropy. Without obstacles and support plane; maps of one scale.
 """
 import argparse
 import pathlib
@@ -14,11 +14,9 @@ import pathlib
 import numpy as np
 import viewgain
 
-POOLED = 9  # voxels of a piece of surface, as in the gain
-
 
 def information(grid):
-    """Of each voxel of the workspace that is occupied and has readings: xx yy zz xy xz yz [1/m^2]; else 0."""
+    """Of each voxel of the workspace: xx yy zz xy xz yz [1/m^2]; 0 where it is not occupied or has no readings."""
     states, beliefs = np.asarray(grid.states()), grid.beliefs()
     voxels = beliefs["voxel"] - np.array(grid.min_index)
     inside = np.all((voxels >= 0) & (voxels < states.shape), axis=1)
@@ -30,18 +28,18 @@ def information(grid):
 
 
 def entropy(grid, known, voxels):
-    """Of the points at voxels, each pooling the 27 around [nat]."""
+    """Of the point at each voxel, which pools the 27 voxels centred on it [nat]."""
     padded = np.pad(known, [(1, 1)] * 3 + [(0, 0)])
     x, y, z = voxels.T
     pool = sum(padded[x + i, y + j, z + k] for i in range(3) for j in range(3) for k in range(3))
     xx, yy, zz, xy, xz, yz = pool.T
     matrices = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1)
-    covariances = np.linalg.inv(matrices + POOLED / grid.prior_sigma**2 * np.eye(3))
+    covariances = np.linalg.inv(matrices + np.eye(3) / grid.prior_sigma**2)
     return 0.5 * np.log(np.einsum("nii->ni", covariances) + grid.voxel_size**2).sum(axis=1)
 
 
 def promised_and_kept(run, sensor):
-    """[nat], one row for each view after the first."""
+    """Two columns, promised and lost [nat], with a row for each view after the first."""
     poses = viewgain.read_poses(run / "views.txt")
     rows = []
     after = viewgain.BeliefGrid.load(run / "maps" / "00.vdb")
@@ -62,12 +60,12 @@ def main():
     parser.add_argument("runs", nargs="+", type=pathlib.Path, metavar="RUN")
     options = parser.parse_args()
     sensor = viewgain.sensor_preset(options.sensor)
-    print("| run | promised [nat] | kept | of the first, second ... view |\n|---|---|---|---|")
+    print("| run | promised [nat] | kept | of the 2nd, 3rd, ... view |\n|---|---|---|---|")
     for run in options.runs:
         rows = promised_and_kept(run, sensor)
-        promised, kept = rows.sum(axis=0)
-        shares = ", ".join(f"{share:.2f}" for share in rows[:, 1] / rows[:, 0])
-        print(f"| {run.name} | {promised:.0f} | {kept / promised:.2f} | {shares} |", flush=True)
+        promised, lost = rows.sum(axis=0)
+        shares = ", ".join(f"{share:.2f}" for share in rows[rows[:, 0] > 0, 1] / rows[rows[:, 0] > 0, 0])
+        print(f"| {run.name} | {promised:.0f} | {lost / promised:.2f} | {shares} |" if promised > 0 else f"| {run.name} | 0 | | |", flush=True)
 
 
 if __name__ == "__main__":

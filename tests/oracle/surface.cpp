@@ -64,22 +64,38 @@ struct Run {
 
 Pool pool_of(const BeliefGrid& grid, const DenseMap& map, Index3 voxel) {
   Pool pool;
+  const int scale = grid.scale(voxel), edge = 1 << scale;
+  const auto low = [&](int i) { return (i >> scale) * edge; };
   bool is_measured = false;
   for (int i = 0; i < 27; ++i) {
-    const Index3 v{voxel.x + i / 9 - 1, voxel.y + i / 3 % 3 - 1, voxel.z + i % 3 - 1};
-    if (!map.inside(v) || map.state(v) != VoxelState::occupied) continue;
-    const auto belief = grid.belief(v);
-    if (!belief || belief->hits == 0) continue;
-    pool.information += belief->information_matrix().matrix() / std::pow(4.0, grid.scale(v));
-    ++pool.voxels;
-    if (i == 13) is_measured = true;
+    const Index3 cell{low(voxel.x) + (i / 9 - 1) * edge, low(voxel.y) + (i / 3 % 3 - 1) * edge,
+                      low(voxel.z) + (i % 3 - 1) * edge};
+    bool has_readings = false;
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (int k = 0; k < edge * edge * edge; ++k) {
+      const Index3 v{cell.x + k / (edge * edge), cell.y + k / edge % edge, cell.z + k % edge};
+      if (!map.inside(v) || map.state(v) != VoxelState::occupied) continue;
+      const auto belief = grid.belief(v);
+      if (!belief || belief->hits == 0) continue;
+      has_readings = true;
+      const Eigen::Matrix3d information = belief->information_matrix().matrix();
+      const int other = grid.scale(v);
+      if (other > scale) {
+        sum = information / std::pow(4.0, other);
+      } else {
+        sum += information / std::pow(8.0, other) / std::pow(4.0, scale);
+      }
+    }
+    pool.information += sum;
+    pool.voxels += has_readings ? 1 : 0;
+    if (i == 13) is_measured = has_readings;
   }
   if (!is_measured) pool.voxels = 0;
   return pool;
 }
 
 double pooled_entropy(const Pool& pool, double prior_sigma, double floor) {
-  const double prior = 9 / (prior_sigma * prior_sigma);
+  const double prior = 1 / (prior_sigma * prior_sigma);
   return entropy_with_floor(pool.information + prior * Eigen::Matrix3d::Identity(), floor);
 }
 
@@ -179,30 +195,34 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
       const auto [entry, is_first] =
           refined.try_emplace(cell_of(voxel, 0), Eigen::Matrix3d::Zero());
       entry->second += added;
-      const double most = entropy_with_floor(9 * prior, floor) -
-                          entropy_with_floor(9 * (prior + added / std::max(passed, 1e-300)), floor);
+      const double most =
+          entropy_with_floor(prior, floor) -
+          entropy_with_floor(prior + 9 * added / std::max(passed, 1e-300), floor);
       value.pixel_refinement = std::max(value.pixel_refinement, most);
       return true;
     });
     close();
   }
   value.pixel_area += undecided_area;
-  value.pixel_refinement *= 1 + undecided;
+  double largest_chance = 0;
   for (const auto& [cell, added] : refined) {
     const auto& [x, y, z] = cell;
     const Pool before = pool_of(grid, map, {x, y, z});
     if (before.voxels == 0) continue;  // what was never measured is not refined
     // The view adds as much as here to nine of the 27 voxels.
     const Pool after{before.information + 9 * added, before.voxels};
+    const double chance = std::min(before.voxels / 9.0, 1.0);
+    largest_chance = std::max(largest_chance, chance);
     value.refinement_saturated +=
-        weight_of(config, V, {x, y, z}) * std::min(before.voxels / 9.0, 1.0) *
+        weight_of(config, V, {x, y, z}) * chance *
         (pooled_entropy(before, sigma_0, floor) - pooled_entropy(after, sigma_0, floor));
   }
+  value.pixel_refinement *= (1 + undecided) * largest_chance;
   if (config.model == GainModel::surface) {
     value.gain = value.area;
   } else {
     const Eigen::Matrix3d seen =
-        prior + 3 * information_of(sensor, Eigen::Vector3d::UnitZ(), sensor.working_distance);
+        prior + 27 * information_of(sensor, Eigen::Vector3d::UnitZ(), sensor.working_distance);
     const double each = entropy_with_floor(prior, floor) - entropy_with_floor(seen, floor);
     value.gain =
         value.area / (V * V) * each + config.refinement_weight * value.refinement_saturated;

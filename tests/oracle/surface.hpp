@@ -19,13 +19,14 @@ struct SurfaceValue {
 
 /// What is known of the surface at a voxel.
 struct Pool {
-  /// Of the readings of the occupied ones among the 27 voxels round it [m⁻²].
+  /// Of the readings of the occupied ones among the 27 voxels centred on it [m⁻²]. Where it is of a
+  /// larger scale, of the 27 cells, as far as each is a piece of surface of 4^scale voxels.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   int voxels = 0;  ///< how many of these have readings; 0 if the voxel itself has none
 };
 [[nodiscard]] Pool pool_of(const BeliefGrid& grid, const DenseMap& map, Index3 voxel);
 
-/// ½ Σ_k ln ([9 / prior_sigma² I + Λ]⁻¹ + floor I)_kk [nat]; `floor` [m²].
+/// ½ Σ_k ln ([prior_sigma⁻² I + Λ]⁻¹ + floor I)_kk [nat]; `floor` [m²].
 [[nodiscard]] double pooled_entropy(const Pool& pool, double prior_sigma, double floor);
 
 /// The surface and the combined gain of raycast/README.md for one pose outside occupied voxels,

@@ -25,7 +25,7 @@ WEDGE = ("OFF\n6 8 0\n0 0 0\n3 0 0\n0 2 0\n0 0 1\n3 0 1\n0 2 1\n3 0 2 1\n3 3 4 5
 def entropy_by_hand(grid, voxel):
     low, states = np.array(grid.min_index), np.asarray(grid.states())
     beliefs = {tuple(row["voxel"] - low): row for row in grid.beliefs()}
-    pool = np.eye(3) * 9 / grid.prior_sigma**2
+    pool = np.eye(3) / grid.prior_sigma**2
     for step in itertools.product((-1, 0, 1), repeat=3):
         at = tuple(np.add(voxel, step))
         belief = beliefs.get(at)
@@ -52,6 +52,11 @@ class Promises(unittest.TestCase):
                 self.assertGreater(refinement, 0.1)
                 self.assertAlmostEqual(promised / refinement, 1, delta=1e-5)
             self.assertEqual(len(rows), 3)
+            parts = viewgain.GainEvaluator(viewgain.VoxelScene(grids[0]), sensor).contributions(poses[1])
+            lost = sum(entropy_by_hand(grids[0], voxel) - entropy_by_hand(grids[1], voxel)
+                       for voxel, state, gain in zip(parts["voxel"] - np.array(grids[0].min_index), parts["state"], parts["gain"])
+                       if state == viewgain.VoxelState.OCCUPIED and gain > 0)
+            self.assertAlmostEqual(rows[0, 1], lost, delta=1e-9 * abs(lost))
             known = promises.information(grids[1])
             voxels = np.argwhere(known.any(axis=-1))[::40]
             self.assertGreater(len(voxels), 20)

@@ -56,8 +56,8 @@ inline constexpr const char* kWithSceneDoc =
     R"(The evaluator of another scene, for following a map as it grows.
 
 It has the sensor, the settings and the threads of this one, which stays as it is; nothing is computed
-anew. Cost: some microseconds; by the surface and the combined gain the hazard of a scene that has none
-yet, some milliseconds. Its results are those of an evaluator made for that scene, whose
+anew. Cost: some microseconds; by the surface and the combined gain the hazard and the known surface of a
+scene that has neither yet, some milliseconds. Its results are those of an evaluator made for that scene, whose
 map's ``prior_sigma`` counts unless one was given.
 
 Parameters

@@ -141,7 +141,7 @@ struct RefiningHits {
   std::uint32_t keep_measured(std::uint32_t count) {
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      if (known_a[i].value[0] == 0) continue;
+      if (known_b[i].value[2] == 0) continue;
       members[kept] = i;
       known_a[kept] = known_a[i];
       known_b[kept] = known_b[i];

@@ -32,7 +32,8 @@ double entropy_with_floor(const SymmetricMatrix3& information, double floor_vari
                         (sigma.zz + floor_variance));
 }
 
-// ΔH_new: what readings from the working distance take off a voxel of which nothing is known.
+// ΔH_new: what readings from the working distance take off the point at a voxel if nothing is known
+// around.
 double entropy_of_new_voxel(const EvaluatorCore& core, double prior_information,
                             double floor_variance) {
   const MeasurementSigmas sigmas = core.frontal(core.working_distance);
@@ -56,14 +57,14 @@ SurfaceView::SurfaceView(const SceneData& scene, const EvaluatorCore& core,
       pooled_(core.config.model == GainModel::combined ? &scene.tracing->pooled_surface()
                                                        : nullptr),
       frontal_(core.sigmas),
-      prior_information_(1.0 / (prior_sigma * prior_sigma)) {
+      prior_information_(1.0 / (PooledSurface::kCells * prior_sigma * prior_sigma)) {
   const double V = scene.snapshot.voxel_size;
   const double stride = core.config.pixel_stride;
   const double radius = bricks_.pooling_length;
   cap_ = static_cast<float>(stride * stride * std::numbers::pi * radius * radius / kLeastReadings);
-  floor_variance_ = PooledSurface::kVoxels * V * V;
+  floor_variance_ = PooledSurface::kCells * V * V;
   frontal_.p0 = frontal_.p2 = 0;  // as core's frontal(): readings that share a pose share its error
-  nats_per_area_ = entropy_of_new_voxel(core, prior_information_, V * V) / (V * V);
+  nats_per_area_ = entropy_of_new_voxel(core, prior_information_, floor_variance_) / (V * V);
 }
 
 Index3 SurfaceView::voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) const {
@@ -278,10 +279,11 @@ void SurfaceView::sample(const PoseFrame& frame, Workspace& workspace, double ra
 }
 
 double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const {
-  const Belief* belief = pooled_->block(bricks_.leaf_of(voxel)).find(block_offset(voxel));
+  const BeliefBlock& block = pooled_->block(bricks_.leaf_of(voxel));
+  const Belief* belief = block.find(block_offset(voxel));
   if (belief == nullptr) return 0;
-  const SymmetricMatrix3 before =
-      SymmetricMatrix3::identity(prior_information_) + belief->information_matrix();
+  const SymmetricMatrix3 before = SymmetricMatrix3::identity(prior_information_) +
+                                  belief->information_matrix() * surface_share(block.scale);
   const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
   const double weight =
       weights.empty() ? 1.0 : task_weight(weights, voxel, scene_.snapshot.voxel_size);

@@ -61,8 +61,8 @@ struct SampleTally {
 /// the evaluator of one scene. Immutable; thread safe.
 class SurfaceView {
  public:
-  /// Scene and tracer must outlive it. Finds the scene's hazard if it is not there yet. Throws
-  /// Error(capacity), Error(backend), Error(invalid_argument).
+  /// Scene and tracer must outlive it. Finds what the scene has not found yet, as its hazard.
+  /// Throws Error(capacity), Error(backend), Error(invalid_argument).
   SurfaceView(const SceneData& scene, const EvaluatorCore& core, const ViewTracer& tracer,
               double prior_sigma);
 
@@ -112,7 +112,7 @@ class SurfaceView {
   [[nodiscard]] int cell_shift() const { return bricks_.rate_shift; }
   /// Nats for one m² of new surface: ΔH_new / V².
   [[nodiscard]] double nats_per_area() const { return nats_per_area_; }
-  /// w_v c_v [H_nF(Λ_0 + Λ̄_v) - H_nF(Λ_0 + Λ̄_v + information)] of an occupied voxel; by the
+  /// w_v c_v [H_nF(Λ̄_v) - H_nF(Λ̄_v + information)] of an occupied voxel; by the
   /// combined gain only.
   [[nodiscard]] double saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const;
 
@@ -151,9 +151,9 @@ class SurfaceView {
   const GainKernels& gain_kernels_;
   const PooledSurface* pooled_;  // by the combined gain
   FrontalSigmas frontal_;
-  float cap_;  // the most that a ray counts for [voxels²]
-  double prior_information_;
-  double floor_variance_;  // n F
+  float cap_;                 // the most that a ray counts for [voxels²]
+  double prior_information_;  // Λ_0 / n
+  double floor_variance_;     // n F
   double nats_per_area_;
 };
 

@@ -110,7 +110,7 @@ class VoxelSums {
     for (std::size_t i = 0; i < occupied_count_; ++i) {
       const auto& a = known_a_[i].value;
       const auto& b = known_b_[i].value;
-      call(occupied_[i], VoxelSum{{a[0], a[1], a[2], a[3]}, {b[0], b[1], b[2], b[3]}});
+      call(occupied_[i], VoxelSum{{a[0], a[1], a[2], a[3]}, {b[0], b[1], 0, 0}});
     }
   }
 

@@ -4,18 +4,22 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 namespace viewgain::detail {
 namespace {
 
-// What one leaf's voxels and those next to them have; one object serves leaf by leaf.
+// Sums over the 27 cells round each cell of one leaf at a time; reused for all leaves.
 class Pool {
  public:
   void look_at(const GridSnapshot& snapshot, const GridSnapshot::Leaf& leaf) {
-    sums_.fill(0);
+    scale_ = leaf.beliefs->scale;
+    along_ = (std::size_t{8} >> static_cast<unsigned>(scale_)) + 2;
+    used_ = along_ * along_ * along_ * kRow;
+    std::fill_n(sums_.begin(), used_, 0.0F);
     measured_ = {};
-    // The workspace may cut the leaf's low corner off.
+    // The leaf's lowest voxel may lie outside the workspace, where find_leaf() finds nothing.
     const auto [low_x, low_y, low_z] = snapshot.min_index;
     const Index3 inside{std::max(leaf.origin.x, low_x), std::max(leaf.origin.y, low_y),
                         std::max(leaf.origin.z, low_z)};
@@ -32,73 +36,86 @@ class Pool {
         }
       }
     }
-    for (const std::size_t step : {kRow, kRow * kAlong, kRow * kAlong * kAlong}) add_beside(step);
+    for (std::size_t step = kRow; step < used_; step *= along_) add_beside(step);
   }
 
-  // The leaf's occupied voxels with readings.
+  // The lowest voxels of the leaf's occupied cells with readings.
   [[nodiscard]] const LeafMask& measured() const { return measured_; }
 
-  // Of the 27 voxels round one of the leaf's.
+  // Of the cell whose lowest voxel has this offset.
   [[nodiscard]] Belief pooled(unsigned offset) const {
-    const auto [x, y, z] = position(offset);
-    const float* sum = &sums_[place(x, y, z)];
+    const float* sum = &sums_[place(position(offset))];
     Belief belief;
     for (std::size_t k = 0; k < 6; ++k) {
-      belief.information[k] = sum[k] / static_cast<float>(PooledSurface::kVoxels);
+      belief.information[k] = sum[k] / static_cast<float>(PooledSurface::kCells);
     }
     belief.hits = static_cast<std::uint32_t>(sum[6]);
     return belief;
   }
 
  private:
-  // Voxels from -1 to 8 along x, y, z, each with a row of numbers: Λ_v and 1, if it has readings.
-  static constexpr std::size_t kAlong = 10, kRow = 8;
-  using Rows = std::array<float, kAlong * kAlong * kAlong * kRow>;
-  static std::size_t place(int x, int y, int z) {
-    const auto at = [](int i) { return static_cast<std::size_t>(i + 1); };
-    return ((at(x) * kAlong + at(y)) * kAlong + at(z)) * kRow;
+  // Cells from -1 to the one behind the leaf's last along x, y, z, each with a row of numbers: Λ
+  // and 1, if it has readings.
+  static constexpr std::size_t kRow = 8;
+  using Rows = std::array<float, 10 * 10 * 10 * kRow>;
+
+  [[nodiscard]] std::size_t place(const std::array<int, 3>& voxel) const {
+    const auto cell = [&](int i) { return static_cast<std::size_t>((i >> scale_) + 1); };
+    return ((cell(voxel[0]) * along_ + cell(voxel[1])) * along_ + cell(voxel[2])) * kRow;
   }
   static std::array<int, 3> position(unsigned offset) {
     return {static_cast<int>(offset >> 6U), static_cast<int>(offset >> 3U & 7U),
             static_cast<int>(offset & 7U)};
   }
 
-  // To each row those of the two beside it along one axis; what comes from the rim's other side
-  // stays at the rim.
+  // Adds to each row the two beside it along one axis. Rows at the rim get one of the opposite rim,
+  // too; pooled() does not read them.
   void add_beside(std::size_t step) {
-    const Rows own = sums_;
-    for (std::size_t i = step; i < own.size() - step; ++i) {
+    Rows own;
+    std::copy_n(sums_.begin(), used_, own.begin());
+    for (std::size_t i = step; i < used_ - step; ++i) {
       sums_[i] = own[i - step] + own[i] + own[i + step];
     }
   }
 
-  // Of a leaf that is so far off, the occupied voxels that are next to this one, or in it.
-  static LeafMask near(const LeafMask& occupied, const std::array<int, 3>& shift) {
-    constexpr std::uint64_t kAll = ~std::uint64_t{0};
-    const auto rows = [](int along, std::uint64_t first, std::uint64_t last) {
-      return along < 0 ? last : along > 0 ? first : kAll;
+  // Of the leaf that is so far off, the occupied voxels that are next to this leaf, within a cell
+  // of this one; all of this leaf itself.
+  [[nodiscard]] LeafMask near(const LeafMask& occupied, const std::array<int, 3>& shift) const {
+    const unsigned edge = 1U << static_cast<unsigned>(scale_);
+    const auto slab = [&](int along) -> std::uint64_t {  // one bit for each of eight places
+      return along < 0 ? 0xFFU << (8 - edge) & 0xFFU : along > 0 ? 0xFFU >> (8 - edge) : 0xFFU;
     };
-    const std::uint64_t plane = rows(shift[1], 0xFF, std::uint64_t{0xFF} << 56U) &
-                                rows(shift[2], 0x0101010101010101, 0x8080808080808080);
+    std::uint64_t rows = 0;
+    for (unsigned y = 0; y < 8; ++y) {
+      if ((slab(shift[1]) >> y & 1U) != 0) rows |= slab(shift[2]) << 8 * y;
+    }
     LeafMask mask{};
-    const std::size_t begin = shift[0] < 0 ? 7 : 0, end = shift[0] > 0 ? 1 : 8;
-    for (std::size_t x = begin; x < end; ++x) mask[x] = occupied[x] & plane;
+    for (unsigned x = 0; x < 8; ++x) {
+      if ((slab(shift[0]) >> x & 1U) != 0) mask[x] = occupied[x] & rows;
+    }
     return mask;
   }
 
   void add(const GridSnapshot::Leaf& leaf, const std::array<int, 3>& shift) {
-    const auto share = static_cast<float>(surface_share(leaf.beliefs->scale));
+    const bool is_own = shift == std::array{0, 0, 0};
+    const int other = leaf.beliefs->scale, smaller = std::min(scale_, other);
+    // What a cell of this leaf's size has of a larger one.
+    const auto share =
+        static_cast<float>(surface_share(std::max(scale_, other)) / surface_share(scale_));
     for_each_bit(near(leaf.occupied, shift), [&](unsigned offset) {
+      if (cell_offset(offset, smaller) != offset) return;  // counts once
       const Belief* belief = leaf.beliefs->find(offset);
       if (belief == nullptr || belief->hits == 0) return;
-      const auto [x, y, z] = position(offset);
-      float* row = &sums_[place(x + shift[0], y + shift[1], z + shift[2])];
-      for (std::size_t k = 0; k < 6; ++k) row[k] = belief->information[k] * share;
+      auto [x, y, z] = position(offset);
+      float* row = &sums_[place({x + shift[0], y + shift[1], z + shift[2]})];
+      for (std::size_t k = 0; k < 6; ++k) row[k] += belief->information[k] * share;
       row[6] = 1;
-      if (shift == std::array{0, 0, 0}) set_bit(measured_, offset);
+      if (is_own) set_bit(measured_, offset);
     });
   }
 
+  int scale_ = 0;
+  std::size_t along_ = 0, used_ = 0;  // cells along an axis, numbers
   Rows sums_;
   LeafMask measured_;
 };
@@ -112,7 +129,11 @@ PooledSurface::PooledSurface(const GridSnapshot& snapshot) : blocks_(snapshot.le
     if (!leaf.beliefs || leaf.occupied == LeafMask{}) continue;
     pool.look_at(snapshot, leaf);
     blocks_[i].mask = pool.measured();
-    blocks_[i].beliefs.reserve(leaf.beliefs->beliefs.size());
+    blocks_[i].scale = leaf.beliefs->scale;
+    std::size_t count = 0;
+    for (const std::uint64_t word : pool.measured())
+      count += static_cast<std::size_t>(std::popcount(word));
+    blocks_[i].beliefs.reserve(count);
     for_each_bit(pool.measured(),
                  [&](unsigned offset) { blocks_[i].beliefs.push_back(pool.pooled(offset)); });
   }

@@ -11,23 +11,24 @@
 
 namespace viewgain::detail {
 
-/// What is known of the surface at each occupied voxel with readings, from its own and from those
-/// of the voxels around: what the combined gain's refinement is counted from
-/// (docs/guide/surface_gain.md). Immutable; thread safe.
+/// For each occupied voxel with readings, the information of the 27 voxels centred on it; in leaves
+/// of a larger scale of the 27 cells. The combined gain finds its refinement by it
+/// (apps/docs/guide/surface_gain.md). Immutable; thread safe.
 class PooledSurface {
  public:
-  /// n: how many voxels of a piece of surface a delivered point pools, 3 × 3.
-  static constexpr double kVoxels = 9;
+  /// n: how many of the 27 a flat piece of surface goes through, 3 × 3.
+  static constexpr double kCells = 9;
 
-  /// Cost: 27 voxels for each occupied one.
+  /// Cost: some microseconds for each leaf with readings.
   explicit PooledSurface(const GridSnapshot& snapshot);
 
-  /// By the snapshot's leaves. A belief's information is that of the 27 voxels round its voxel over
-  /// n, Λ̄_v; its hits are the number m of these voxels that are occupied and have readings.
+  /// Of the snapshot's leaf with this number, by its scale. A belief's information is the sum over
+  /// the 27 divided by n; its hits are no readings but m, how many of the 27 are occupied and have
+  /// readings.
   [[nodiscard]] const BeliefBlock& block(std::size_t leaf) const { return blocks_[leaf]; }
 
-  /// The chance that a surface goes through a voxel that has m voxels with readings round it.
-  [[nodiscard]] static double chance(double m) { return std::min(1.0, m / kVoxels); }
+  /// c_v: the chance that a surface goes through a voxel, of m.
+  [[nodiscard]] static double chance(double m) { return std::min(1.0, m / kCells); }
 
  private:
   std::vector<BeliefBlock> blocks_;

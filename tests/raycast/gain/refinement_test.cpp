@@ -55,7 +55,7 @@ double refinement_of(const BeliefGrid& grid, const GainConfig& config = {}) {
 
 // m voxels with readings round the one that the ray ends in.
 double expected_of(const BeliefGrid& grid, int m) {
-  const double prior = 1 / (grid.prior_sigma() * grid.prior_sigma());
+  const double prior = 1 / (9 * grid.prior_sigma() * grid.prior_sigma());
   const double floor = 9 * kExactVoxel * kExactVoxel;
   const auto entropy = [&](double information) { return 1.5 * std::log(1 / information + floor); };
   const double before = prior + m * kKnown / 9;
@@ -79,6 +79,16 @@ TEST(Refinement, IsThatOfThePointThatPoolsTheVoxelsAround) {
     ++checks;
   }
   EXPECT_EQ(checks, 6);
+}
+
+// Cells hold four voxels of the plate each.
+TEST(Refinement, IsTheSameByLargerCells) {
+  BeliefGrid grid = plate(15);
+  const double expected = refinement_of(grid);
+  for (int scale = 1; scale < 3; ++scale) {
+    EXPECT_GT(grid.resample(grid.workspace(), scale), 0U);
+    EXPECT_NEAR(refinement_of(grid), expected, 1e-6 * expected) << scale;
+  }
 }
 
 TEST(Refinement, FallsAsReadingsAdd) {

@@ -92,8 +92,8 @@ struct VIEWGAIN_EXPORT ViewGain {
   /// surface, combined: new surface to be expected, measured across the rays [m²].
   double area = std::numeric_limits<double>::quiet_NaN();
   /// combined: entropy removed from the points at occupied voxels that have readings, each pooling
-  /// those of the voxels around, with a floor (docs/guide/surface_gain.md) [nat]. Labelled voxels
-  /// have none.
+  /// those of the voxels around, with a floor (apps/docs/guide/surface_gain.md) [nat]. Labelled
+  /// voxels have none.
   double refinement_saturated = std::numeric_limits<double>::quiet_NaN();
   /// If GainConfig asks for it: the paper's eq. (6) over the touched voxels, Σ_v Σ_k ln[(Λ_v +
   /// ΣΛ_r)⁻¹]_kk, lengths in metres.
@@ -141,7 +141,7 @@ struct VIEWGAIN_EXPORT VoxelContribution {
 /// Cost of evaluate(): grows with the rays; the surface and the combined gain cost some 4 times the
 /// paper's (perf/README.md). That of approximate() grows with the rays that it traces.
 /// The constructor costs a PinholeCamera::ray() a pixel and, by the surface and the combined gain,
-/// the hazard of a scene that has none yet.
+/// the hazard of a scene that has none yet, by the combined gain also what is known of its surface.
 /// @code
 /// const GainEvaluator evaluator(VoxelScene::build(grid), sensor);
 /// const std::vector<ViewGain> gains = evaluator.evaluate(poses);
@@ -176,13 +176,14 @@ class VIEWGAIN_EXPORT GainEvaluator {
 
   /// The evaluator of another scene, for following a map as it grows: the same sensor and
   /// configuration, and shared with this one the ray table, the threads and what they work in.
-  /// Nothing is computed anew but, by the surface and the combined gain, the hazard of a scene that
-  /// has none yet (some milliseconds); without, it takes some microseconds. Results have the bits
-  /// of an evaluator made for that scene. sigma_0 is the configuration's or, unless given, that of
-  /// the new scene's map. This evaluator stays as it is, with its scene. Thread safety: both may be
-  /// used, moved and destroyed at the same time; while one's call has the threads, a call of the
-  /// other runs on its caller. Throws Error(invalid_argument) for a null scene or a map whose prior
-  /// sigma is outside 1e-6..1e3 m, Error(backend), Error(capacity) as VoxelScene::build().
+  /// Nothing is computed anew but, by the surface and the combined gain, the hazard and what is
+  /// known of the surface of a scene that has neither yet (some milliseconds); else it takes
+  /// microseconds. Results have the bits of an evaluator made for that scene. sigma_0 is the
+  /// configuration's or, unless given, that of the new scene's map. This evaluator stays as it is,
+  /// with its scene. Thread safety: both may be used, moved and destroyed at the same time; while
+  /// one's call has the threads, a call of the other runs on its caller. Throws
+  /// Error(invalid_argument) for a null scene or a map whose prior sigma is outside 1e-6..1e3 m,
+  /// Error(backend), Error(capacity) as VoxelScene::build().
   [[nodiscard]] GainEvaluator with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
   /// The expected gain of one pose: the paper's on all threads of the evaluator, the others on the

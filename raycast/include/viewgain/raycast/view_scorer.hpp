@@ -92,7 +92,7 @@ struct VIEWGAIN_EXPORT MapUpdate {
 /// others only their caller's. Changes wait for one another. During a change do not call
 /// progress(), consistency(), grid_after() or save(), and do not read grid(). Cost: the first call
 /// after a change that needs the scene pays for VoxelScene::update() and, unless the gain is the
-/// paper's, for the hazard: some milliseconds.
+/// paper's, for hazard and known surface: some milliseconds.
 /// @code
 /// ViewScorer scorer(sensor, {.voxel_size = 0.005, .workspace = box, .support_plane = 0.0});
 /// scorer.add(frame, T_world_camera);

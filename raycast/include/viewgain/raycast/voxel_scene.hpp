@@ -55,8 +55,8 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// finite, an index out of range or a box inside out, for a support plane that is not finite, or
   /// for a number of threads out of range. Runs on the calling thread, and with obstacles on those
   /// that the process's TBB has: exec does not limit it. Throws as HazardConfig::validate(), too.
-  /// The hazard of unknown voxels is found when an evaluator of the surface or combined gain first
-  /// wants it (some milliseconds).
+  /// The hazard of unknown voxels and what is known of the surface are found when an evaluator of
+  /// the surface or combined gain first wants them (some milliseconds).
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(
       const BeliefGrid& grid, const Surroundings& surroundings = {}, const ExecConfig& exec = {},
       const HazardConfig& hazard = {});
@@ -95,7 +95,7 @@ class VIEWGAIN_EXPORT VoxelScene {
   [[nodiscard]] std::string_view isa() const noexcept;
 
   /// Leaves and tiles, and the bytes that the scene adds to the snapshot's: primitives, boxes,
-  /// obstacles; Embree's BVH and the hazard not counted.
+  /// obstacles; Embree's BVH and what is found when it is wanted are not counted.
   [[nodiscard]] std::size_t primitive_count() const noexcept;
   /// Memory that the scene adds to the snapshot's [bytes].
   [[nodiscard]] std::uint64_t bytes() const noexcept;

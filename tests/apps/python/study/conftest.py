@@ -47,7 +47,8 @@ def program(tmp_path):
             (out / "maps").mkdir()
             for view in range(2):
                 (out / f"maps/{{view:02}}.txt").write_text("".join(f"{{i}} {{i}} {{view}} 0 0 0 0 1\\n" for i in range(5)))
-        (out / "run.json").write_text(json.dumps(records.record_of(flags["sensor"], pathlib.Path(sys.argv[-1]).stem, int(flags["seed"]), policy)))
+        sensor, name = pathlib.Path(flags["sensor"]).stem, pathlib.Path(sys.argv[-1]).stem
+        (out / "run.json").write_text(json.dumps(records.record_of(sensor, name, int(flags["seed"]), policy)))
         """))
     path.chmod(path.stat().st_mode | stat.S_IXUSR)
     return str(path)
