@@ -195,9 +195,8 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
       const auto [entry, is_first] =
           refined.try_emplace(cell_of(voxel, 0), Eigen::Matrix3d::Zero());
       entry->second += added;
-      const double most =
-          entropy_with_floor(prior, floor) -
-          entropy_with_floor(prior + 9 * added / std::max(passed, 1e-300), floor);
+      const double most = entropy_with_floor(prior, floor) -
+                          entropy_with_floor(prior + 9 * added / std::max(passed, 1e-300), floor);
       value.pixel_refinement = std::max(value.pixel_refinement, most);
       return true;
     });

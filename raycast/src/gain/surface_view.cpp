@@ -10,7 +10,6 @@
 #include "trace/scene_tracing.hpp"
 #include "view_driver.hpp"
 #include "viewgain/support/belief_block.hpp"
-#include "voxel_sums.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -191,17 +190,10 @@ double SurfaceView::saturated_gain(Workspace& workspace) const {
                                   {occupied.sums(), refining.members.data(),
                                    refining.known_a.data(), refining.known_b.data(), measured},
                                   refining.each.data());
-  const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
   double sum = 0;
   for (std::uint32_t i = 0; i < measured; ++i) {
-    const double gain =
-        PooledSurface::chance(refining.known_b[i].value[2]) * 0.5 * std::log(refining.each[i]);
-    if (weights.empty()) {
-      sum += gain;
-    } else {
-      const Index3 voxel = occupied.voxel(refining.members[i]);
-      sum += task_weight(weights, voxel, scene_.snapshot.voxel_size) * gain;
-    }
+    sum += weight_of(occupied.voxel(refining.members[i])) *
+           PooledSurface::chance(refining.known_b[i].value[2]) * 0.5 * std::log(refining.each[i]);
   }
   return sum;
 }
@@ -284,10 +276,7 @@ double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& informa
   if (belief == nullptr) return 0;
   const SymmetricMatrix3 before = SymmetricMatrix3::identity(prior_information_) +
                                   belief->information_matrix() * surface_share(block.scale);
-  const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
-  const double weight =
-      weights.empty() ? 1.0 : task_weight(weights, voxel, scene_.snapshot.voxel_size);
-  return weight * PooledSurface::chance(belief->hits) *
+  return weight_of(voxel) * PooledSurface::chance(belief->hits) *
          (entropy_with_floor(before, floor_variance_) -
           entropy_with_floor(before + information, floor_variance_));
 }
@@ -375,9 +364,6 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
                                   is_new ? part * across * weight * V * V : 0.0,
                                   {},
                                   rate});
-    };
-    const auto weight_of = [&](Index3 voxel) {
-      return weights.empty() ? 1.0 : task_weight(weights, voxel, V);
     };
     double weight_of_run = weights.empty() ? 1.0 : 0.0;
     for (auto visit = first; visit != last; ++visit) {

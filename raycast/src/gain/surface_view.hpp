@@ -12,6 +12,7 @@
 #include "trace/ordered_walk.hpp"
 #include "trace/ray_tile.hpp"
 #include "trace/view_tracer.hpp"
+#include "voxel_sums.hpp"
 
 namespace viewgain::detail {
 
@@ -138,6 +139,11 @@ class SurfaceView {
                    Workspace& workspace) const;
   void find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                    Workspace& workspace, SharesOf of) const;
+  /// w_v.
+  [[nodiscard]] double weight_of(Index3 voxel) const {
+    const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
+    return weights.empty() ? 1.0 : task_weight(weights, voxel, scene_.snapshot.voxel_size);
+  }
   [[nodiscard]] double area_of(const RayTile& rays, WalkedTile& tile) const;
   /// Does the ray come to an occupied voxel, in table coordinates, from behind?
   [[nodiscard]] bool is_behind(const RayTile& rays, int lane, Index3 at) const;
