@@ -215,9 +215,9 @@ void StagedFolder::remove() const noexcept {
   if (is_kept_) return;
   std::error_code ignored;
   try {
-    // Where a signal ends the program, other threads go on putting files into it, perhaps as fast
-    // as they can be removed: under another name they do not find it. One may be at it, and one may
-    // make it anew.
+    // When a signal ends the program, other threads still write files into the folder, perhaps as
+    // fast as these can be removed. They cannot find it under another name. The loops cover a file
+    // that is being opened and a thread that creates the folder again.
     for (int tries = 0; tries < 10 && fs::exists(staging_, ignored); ++tries) {
       const fs::path aside =
           staging_.parent_path() / TemporaryNames::of_folder(target_).next().filename();

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
+
+#include "viewgain/support/block_lattice.hpp"
 
 namespace viewgain::detail {
 namespace {
 
-// Sums over the 27 cells round each cell of one leaf at a time; reused for all leaves.
+// Sums over the 27 cells centred on each cell of one leaf. The same object serves all leaves.
 class Pool {
  public:
   void look_at(const GridSnapshot& snapshot, const GridSnapshot::Leaf& leaf) {
@@ -42,7 +43,7 @@ class Pool {
   // The lowest voxels of the leaf's occupied cells with readings.
   [[nodiscard]] const LeafMask& measured() const { return measured_; }
 
-  // Of the cell whose lowest voxel has this offset.
+  // The pooled belief of the cell whose lowest voxel has this offset.
   [[nodiscard]] Belief pooled(unsigned offset) const {
     const float* sum = &sums_[place(position(offset))];
     Belief belief;
@@ -68,8 +69,8 @@ class Pool {
             static_cast<int>(offset & 7U)};
   }
 
-  // Adds to each row the two beside it along one axis. Rows at the rim get one of the opposite rim,
-  // too; pooled() does not read them.
+  // Adds to each row the two rows beside it along one axis. Rows at the rim also get a wrong row,
+  // from the opposite rim. pooled() does not read rows at the rim.
   void add_beside(std::size_t step) {
     Rows own;
     std::copy_n(sums_.begin(), used_, own.begin());
@@ -78,8 +79,8 @@ class Pool {
     }
   }
 
-  // Of the leaf that is so far off, the occupied voxels that are next to this leaf, within a cell
-  // of this one; all of this leaf itself.
+  // The occupied voxels of the leaf at `shift` from this leaf that lie at most one cell away from
+  // this leaf. If the shift is 0, all of them.
   [[nodiscard]] LeafMask near(const LeafMask& occupied, const std::array<int, 3>& shift) const {
     const unsigned edge = 1U << static_cast<unsigned>(scale_);
     const auto slab = [&](int along) -> std::uint64_t {  // one bit for each of eight places
@@ -99,7 +100,7 @@ class Pool {
   void add(const GridSnapshot::Leaf& leaf, const std::array<int, 3>& shift) {
     const bool is_own = shift == std::array{0, 0, 0};
     const int other = leaf.beliefs->scale, smaller = std::min(scale_, other);
-    // What a cell of this leaf's size has of a larger one.
+    // A larger cell gives a cell of this leaf's size its share of the information.
     const auto share =
         static_cast<float>(surface_share(std::max(scale_, other)) / surface_share(scale_));
     for_each_bit(near(leaf.occupied, shift), [&](unsigned offset) {
@@ -130,10 +131,7 @@ PooledSurface::PooledSurface(const GridSnapshot& snapshot) : blocks_(snapshot.le
     pool.look_at(snapshot, leaf);
     blocks_[i].mask = pool.measured();
     blocks_[i].scale = leaf.beliefs->scale;
-    std::size_t count = 0;
-    for (const std::uint64_t word : pool.measured())
-      count += static_cast<std::size_t>(std::popcount(word));
-    blocks_[i].beliefs.reserve(count);
+    blocks_[i].beliefs.reserve(count_bits(pool.measured()));
     for_each_bit(pool.measured(),
                  [&](unsigned offset) { blocks_[i].beliefs.push_back(pool.pooled(offset)); });
   }

@@ -176,14 +176,13 @@ class VIEWGAIN_EXPORT GainEvaluator {
 
   /// The evaluator of another scene, for following a map as it grows: the same sensor and
   /// configuration, and shared with this one the ray table, the threads and what they work in.
-  /// Nothing is computed anew but, by the surface and the combined gain, the hazard and what is
-  /// known of the surface of a scene that has neither yet (some milliseconds); else it takes
-  /// microseconds. Results have the bits of an evaluator made for that scene. sigma_0 is the
-  /// configuration's or, unless given, that of the new scene's map. This evaluator stays as it is,
-  /// with its scene. Thread safety: both may be used, moved and destroyed at the same time; while
-  /// one's call has the threads, a call of the other runs on its caller. Throws
-  /// Error(invalid_argument) for a null scene or a map whose prior sigma is outside 1e-6..1e3 m,
-  /// Error(backend), Error(capacity) as VoxelScene::build().
+  /// Takes microseconds. If the gain is surface or combined and the scene is new, its hazard and
+  /// pooled information are computed first (some milliseconds). Results have the bits of an
+  /// evaluator made for that scene. sigma_0 is the configuration's or, unless given, that of the
+  /// new scene's map. This evaluator stays as it is, with its scene. Thread safety: both may be
+  /// used, moved and destroyed at the same time; while one's call has the threads, a call of the
+  /// other runs on its caller. Throws Error(invalid_argument) for a null scene or a map whose prior
+  /// sigma is outside 1e-6..1e3 m, Error(backend), Error(capacity) as VoxelScene::build().
   [[nodiscard]] GainEvaluator with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
   /// The expected gain of one pose: the paper's on all threads of the evaluator, the others on the
