@@ -14,12 +14,16 @@
 #include <system_error>
 #include <utility>
 
+#include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/scene_sources.hpp"
+#include "program/cli/flags/stop_rules.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/file_format.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/formats/frames.hpp"
 #include "viewgain/formats/map_file.hpp"
+#include "viewgain/formats/reach_toml.hpp"
+#include "viewgain/planner/stop_settings.hpp"
 #include "viewgain/raycast/suspect_frames.hpp"
 #include "viewgain/support/file_bytes.hpp"
 
@@ -61,6 +65,36 @@ std::set<std::string> images_in(const fs::path& folder) {
 }
 
 }  // namespace
+
+ScorerConfig map_config_of(const ModelOptions& options) {
+  ScorerConfig config = scorer_config(options.frames, options.proposal);
+  if (options.frames.workspace.empty()) {
+    refuse(
+        "--watch requires --workspace x0,y0,z0,x1,y1,z1: it cannot be taken from frames that are "
+        "still to come");
+  }
+  config.workspace = parse_box("--workspace", options.frames.workspace);
+  config.gain.model = parse_gain_model(options.proposal.gain);
+  return config;
+}
+
+PlannerConfig planner_config_of(const ModelOptions& options) {
+  PlannerConfig config;
+  if (!options.proposal.reach.empty()) config.reach = read_reach_toml(options.proposal.reach);
+  config.max_views = options.max_views;
+  const StopLimits stop = stop_limits(options.stop);
+  if (stop.coverage)
+    refuse("--stop coverage cannot be used with model: it needs the object's mesh");
+  config.idle_views = stop.idle;
+  config.broken_promises = stop.promises;
+  config.stop_gain = stop.gain;
+  config.stop_area = stop.area;
+  PlanningConfig rules;
+  set_stop_rules(rules, parse_gain_model(options.proposal.gain), Criterion::log_diagonal,
+                 config.stop_gain, config.stop_area);
+  config.ahead = parse_plan(options.proposal.plan);
+  return config;
+}
 
 FrameWatch watch_of(const FrameFolderOptions& options, const std::optional<SavedFrames>& saved) {
   if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
@@ -160,19 +194,20 @@ std::vector<Pose> AskedViews::answered_by(const std::string& name) {
   return std::exchange(asked_, {});
 }
 
-WatchedMap::WatchedMap(const Sensor& sensor, const ScorerConfig& map, const PlannerConfig& config,
-                       fs::path state, const std::optional<SavedFrames>& saved,
-                       const std::optional<PoseSigma>& sigma, const ExecConfig& exec)
-    : model_(map.gain.model),
-      state_(std::move(state)),
-      planner_(planner_of(sensor, map, config, state_, saved, exec)),
-      sigma_(sigma) {}
+WatchedMap::WatchedMap(const ModelOptions& options, const Sensor& sensor, const ScorerConfig& map,
+                       const PlannerConfig& config, const std::optional<SavedFrames>& saved)
+    : options_(options),
+      state_(fs::path(options.outputs.out) / "state.vdb"),
+      planner_(planner_of(sensor, map, config, state_, saved, exec_of(options.common))),
+      sigma_(registration_sigma(options.registration)) {
+  next_.model = map.gain.model;
+}
 
-void WatchedMap::propose_by(const GenerationConfig& config, const ExecConfig& exec) {
+void WatchedMap::propose_by(const GenerationConfig& config) {
   for (const PoseSet& set : config.sets) planner_.add_poses(set);
   if (!config.at_boundaries) return;
-  planner_.add_generation(
-      std::make_shared<BoundaryGeneration>(planner_.scorer(), config.boundary, exec));
+  planner_.add_generation(std::make_shared<BoundaryGeneration>(planner_.scorer(), config.boundary,
+                                                               exec_of(options_.common)));
 }
 
 std::string WatchedMap::suspicion(bool is_last) {
@@ -209,16 +244,19 @@ void WatchedMap::answer(std::span<const Pose> asked, const std::optional<Pose>& 
   planner_.tried(asked.front(), false);
 }
 
-NextViews WatchedMap::next(std::size_t top, double cost_per_metre) {
+Proposal WatchedMap::generate(const Pose&) {
   const FrameCounts& frames = planner_.frames();
-  if (frames.empty() || !is_in_map(frames.begin()->first)) {
-    NextViews none;
-    none.model = model_;
-    return none;
-  }
-  const Proposal& proposal = planner_.propose();
-  return next_views(planner_.rank(top, {.cost_per_metre = cost_per_metre, .together = true}),
-                    proposal, model_);
+  if (frames.empty() || !is_in_map(frames.begin()->first)) return {};
+  proposal_ = &planner_.propose();
+  next_ = next_views({}, *proposal_, next_.model);
+  return *proposal_;
+}
+
+std::optional<DecisionMaking::Decision> WatchedMap::decide(const Pose&,
+                                                           std::span<const Candidate>) {
+  const RankConfig config{.cost_per_metre = options_.proposal.costs.per_metre, .together = true};
+  next_ = next_views(planner_.rank(options_.top, config), *proposal_, next_.model);
+  return planner_.decision();
 }
 
 void WatchedMap::save() const { planner_.save(state_); }

@@ -13,7 +13,9 @@
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/commands/frames/frame_tally.hpp"
+#include "program/commands/model/model_options.hpp"
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/core/planning.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/frame_watch.hpp"
@@ -52,6 +54,11 @@ struct SavedFrames {
 /// for a map that does not say which frames all its views are of, and as load_map().
 [[nodiscard]] std::optional<SavedFrames> saved_frames(const std::filesystem::path& state,
                                                       const ExecConfig& exec);
+
+/// Settings of the map, without those that depend on the sensor, and of the planner. Throw Error,
+/// naming the flag.
+[[nodiscard]] ScorerConfig map_config_of(const ModelOptions& options);
+[[nodiscard]] PlannerConfig planner_config_of(const ModelOptions& options);
 
 /// What is looked for in the frames' folder. Throws Error, naming the flag or the file.
 [[nodiscard]] FrameWatch watch_of(const FrameFolderOptions& options,
@@ -100,18 +107,17 @@ class AskedViews {
 };
 
 /// A map that frames are put into as they come, the next best views on it, and the file that keeps
-/// both.
-class WatchedMap {
+/// both. Generation and decision of Algorithm 1; the planner knows where the camera is.
+class WatchedMap final : public ViewpointGeneration, public DecisionMaking {
  public:
-  /// An empty one or, with `saved`, the one of the file `state`. With a `sigma` of the poses frames
-  /// are registered. Throws Error as ViewPlanner's constructor and load(), and
-  /// Error(invalid_argument) if the saved frames are another sensor's than `sensor`.
-  WatchedMap(const Sensor& sensor, const ScorerConfig& map, const PlannerConfig& config,
-             std::filesystem::path state, const std::optional<SavedFrames>& saved,
-             const std::optional<PoseSigma>& sigma, const ExecConfig& exec);
+  /// An empty one or, with `saved`, the one of the file state.vdb. `options` must outlive it.
+  /// Throws Error as ViewPlanner's constructor and load(), and Error(invalid_argument) if the saved
+  /// frames are another sensor's than `sensor`.
+  WatchedMap(const ModelOptions& options, const Sensor& sensor, const ScorerConfig& map,
+             const PlannerConfig& config, const std::optional<SavedFrames>& saved);
 
   /// Where candidates come from; to be said once.
-  void propose_by(const GenerationConfig& config, const ExecConfig& exec);
+  void propose_by(const GenerationConfig& config);
 
   /// Likely fault of the frames so far, reported once; checked after 6, 12, 24, ... frames, and at
   /// the end.
@@ -134,9 +140,12 @@ class WatchedMap {
   /// best one counts as not reached and is not proposed again.
   void answer(std::span<const Pose> asked, const std::optional<Pose>& T_world_camera);
 
-  /// Nothing while no frame could be used; else the best candidates, each by what it adds to those
-  /// before it; or a plan's. `cost_per_metre` in the gain's unit.
-  [[nodiscard]] NextViews next(std::size_t top, double cost_per_metre);
+  /// ViewPlanner::propose(); nothing while no frame could be used.
+  Proposal generate(const Pose&) override;
+  /// ViewPlanner::rank() of the last generate().
+  std::optional<Decision> decide(const Pose&, std::span<const Candidate>) override;
+  /// What these came to: the best candidates, each by what it adds to those before it; or a plan's.
+  [[nodiscard]] const NextViews& next() const { return next_; }
 
   /// Why to end, as ViewPlanner::should_stop().
   [[nodiscard]] std::optional<StopReason> should_stop() const { return planner_.should_stop(); }
@@ -149,9 +158,11 @@ class WatchedMap {
   [[nodiscard]] const Sensor& sensor() const { return planner_.scorer().sensor(); }
 
  private:
-  GainModel model_;
+  const ModelOptions& options_;
   std::filesystem::path state_;
   ViewPlanner planner_;
+  const Proposal* proposal_ = nullptr;  // the planner's last
+  NextViews next_;
   std::optional<PoseSigma> sigma_;    // of the poses, if frames are registered
   std::vector<std::size_t> numbers_;  // of the frames that went in
   std::size_t due_ = 6;               // frames, when they are next held against one another

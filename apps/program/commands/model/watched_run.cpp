@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -13,11 +15,9 @@
 #include <vector>
 
 #include "program/cli/flags/frame_folder.hpp"
-#include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/flags/set_up_warnings.hpp"
-#include "program/cli/flags/stop_rules.hpp"
 #include "program/cli/interrupt.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/file_format.hpp"
@@ -26,12 +26,11 @@
 #include "program/commands/model/model_options.hpp"
 #include "program/commands/model/watched_map.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/core/planning.hpp"
 #include "viewgain/core/pose_io.hpp"
 #include "viewgain/formats/frame_watch.hpp"
-#include "viewgain/formats/reach_toml.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/formats/staged_folder.hpp"
-#include "viewgain/planner/stop_settings.hpp"
 #include "viewgain/planner_mesh/surface_model.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/stopwatch.hpp"
@@ -44,6 +43,7 @@ namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds kPause{100};  // between looks at the folder
 // While frames wait, views are proposed and all is written this often at most [s].
 constexpr double kLeastInterval = 0.5;
+constexpr std::size_t kTurns = 10;  // per run of the loop, which keeps a record of each turn
 
 // Files that are somebody else's, or another kind of run's, stay.
 void check_folder(const fs::path& out, bool goes_on) {
@@ -56,52 +56,21 @@ void check_folder(const fs::path& out, bool goes_on) {
   }
 }
 
-// Settings of the map, without those that depend on the sensor.
-ScorerConfig map_config(const ModelOptions& options) {
-  ScorerConfig config = scorer_config(options.frames, options.proposal);
-  if (options.frames.workspace.empty()) {
-    refuse(
-        "--watch requires --workspace x0,y0,z0,x1,y1,z1: it cannot be taken from frames that are "
-        "still to come");
-  }
-  config.workspace = parse_box("--workspace", options.frames.workspace);
-  config.gain.model = parse_gain_model(options.proposal.gain);
-  return config;
-}
-
-PlannerConfig planner_config(const ModelOptions& options) {
-  PlannerConfig config;
-  if (!options.proposal.reach.empty()) config.reach = read_reach_toml(options.proposal.reach);
-  config.max_views = options.max_views;
-  const StopLimits stop = stop_limits(options.stop);
-  if (stop.coverage)
-    refuse("--stop coverage cannot be used with model: it needs the object's mesh");
-  config.idle_views = stop.idle;
-  config.broken_promises = stop.promises;
-  config.stop_gain = stop.gain;
-  config.stop_area = stop.area;
-  PlanningConfig rules;
-  set_stop_rules(rules, parse_gain_model(options.proposal.gain), Criterion::log_diagonal,
-                 config.stop_gain, config.stop_area);
-  config.ahead = parse_plan(options.proposal.plan);
-  return config;
-}
-
-// A folder into which frames come: they go into the map, what is next into the files.
-class Watching {
+// Acquisition and update of Algorithm 1 where a robot moves the camera and writes frames into a
+// folder. They go into the map, and what is next into the files.
+class Watching final : private DataAcquisition, private RepresentationUpdate {
  public:
   explicit Watching(const ModelOptions& options)
       : options_(options),
         folder_(options.frames.folder),
         proposal_(options.proposal),
-        map_config_(map_config(options)),
-        planner_config_(planner_config(options)),
-        sigma_(registration_sigma(options.registration)),
+        map_config_(map_config_of(options)),
+        planner_config_(planner_config_of(options)),
         frames_(folder_.folder),
         out_(options.outputs.out),
         views_(frames_) {
     check(proposal_);
-    check_contradiction(folder_, sigma_.has_value());
+    check_contradiction(folder_, registration_sigma(options.registration).has_value());
     if (!folder_.sensor.empty()) (void)load_sensor(folder_.sensor);
     (void)with_body(Sensor{}, proposal_);
     std::error_code ignored;
@@ -119,36 +88,28 @@ class Watching {
     watch_.emplace(watch_of(folder_, saved_));
   }
 
-  // One frame at most; returns whether another look is due at once.
-  bool step() {
-    const FolderLook look = watch_->look(std::chrono::steady_clock::now());
-    if (!map_ && watch_->folder()) open_map();
-    leave_out(look.bad);
-    if (look.frame) take(*look.frame);
-    const bool is_due =
-        !look.frame || !since_written_ || since_written_->seconds() > kLeastInterval;
-    if (map_ && has_news_ && is_due) write();
-    write_new_counts();
-    return look.frame.has_value();
-  }
-
-  // Nothing more is to be expected of the frames that are there.
-  [[nodiscard]] bool is_settled() const { return watch_->is_settled(); }
-
-  // What is not there by now will not come, if all is done.
-  void finish(bool is_done) {
-    if (is_done) leave_out(watch_->give_up());
-    if (map_) {
-      warn_of_masks(true);
-      warn_of_contradictions(true);
+  // Until a signal comes or all is done. The stop reason is the planner's: it is written and ends
+  // nothing. The loop's own rules after a view are off, since they would skip the proposal.
+  void run(std::stop_token stop) {
+    stop_ = std::move(stop);
+    while (wait()) {
+      end_ = std::stop_source();
+      const PlanningConfig rules{.max_views = std::numeric_limits<std::size_t>::max(),
+                                 .idle_views = 0,
+                                 .broken_promises = 0,
+                                 .stop = end_.get_token()};
+      (void)active_view_planning({}, *this, *this, *map_, *map_, rules,
+                                 [this](const ViewRecord&) { write(); });
     }
-    if (map_ && has_news_) write();
+    if (!map_) return;
+    warn_of_masks(true);
+    warn_of_contradictions(true);
     write_new_counts();
-    if (is_done && map_ && !map_->grid().views().empty()) write_model();
+    if (is_done_ && !map_->grid().views().empty()) write_model();
   }
 
-  void print_summary(bool is_done, double seconds) const {
-    if (is_done && count() == 0) {
+  void print_summary(double seconds) const {
+    if (is_done_ && count() == 0) {
       const std::string bad = counts_text(watch_->bad());
       refuse(frames_.string() + ": done, but without a frame" +
              (bad.empty() ? "" : "; bad: " + bad));
@@ -158,7 +119,7 @@ class Watching {
       json["added"] = added_;
       json["masked_pixels"] = masked_pixels_;
       json["orthonormalized_poses"] = watch_->folder() ? watch_->folder()->orthonormalized : 0;
-      json["ended_by"] = is_done ? "done" : "signal";
+      json["ended_by"] = is_done_ ? "done" : "signal";
       json["hash"] = nullptr;
       json["contradiction"] = nullptr;
       if (map_) {
@@ -181,10 +142,54 @@ class Watching {
     }
     std::printf("%s: state.vdb (hash %s), next.txt, next.json%s\n", out_.c_str(),
                 map_->grid().content_hash().c_str(),
-                is_done ? ", surface.ply, points.ply, views.txt" : "");
+                is_done_ ? ", surface.ply, points.ply, views.txt" : "");
   }
 
  private:
+  // Waits for something that goes into the map; false if a signal came or all is done.
+  bool wait() {
+    while (!is_done_ && !stop_.stop_requested()) {
+      // Asked before the look: what came before the file is seen.
+      std::error_code ignored;
+      const bool is_last = fs::exists(frames_ / "done", ignored);
+      look();
+      if (frame_ || has_news_) return true;
+      write_new_counts();
+      is_done_ = is_last && watch_->is_settled();
+      if (!is_done_) std::this_thread::sleep_for(kPause);
+    }
+    // What is not there by now will not come.
+    if (is_done_) leave_out(watch_->give_up());
+    return has_news_;
+  }
+
+  void look() {
+    FolderLook look = watch_->look(std::chrono::steady_clock::now());
+    if (!map_ && watch_->folder()) open_map();
+    leave_out(look.bad);
+    frame_ = std::move(look.frame);
+  }
+
+  // run() has waited for the first turn. The frame stays in frame_, with its name and masks.
+  Measurements acquire(const Pose&, std::size_t turn) override {
+    if (turn > 0 && (turn == kTurns || !wait())) end_.request_stop();
+    return {frame_ ? frame_->T_world_camera : Pose(), {}};
+  }
+
+  // Takes the frames that wait, too, before views are proposed.
+  ModelProgress update(const Measurements&) override {
+    while (frame_) {
+      take(*std::exchange(frame_, std::nullopt));
+      const bool is_due = !since_written_ || since_written_->seconds() > kLeastInterval;
+      if (!is_due && !stop_.stop_requested()) look();
+    }
+    // What is saved now a later call would go on with.
+    if (has_news_ && folder_.on_contradiction == "error") warn_of_contradictions(true);
+    // Before views are proposed: that takes longest, and can be done again from the state.
+    if (has_news_) map_->save();
+    return progress_;
+  }
+
   void say(const std::string& text) const {
     if (!options_.common.quiet) std::fprintf(stderr, "viewgain: %s\n", text.c_str());
   }
@@ -238,14 +243,16 @@ class Watching {
     const BeliefGrid empty(map_config_.grid());
     if (!saved_) warn_of_few_voxels(empty);
     map_config_.hazard = hazard_source(proposal_.hazard, empty);
-    const ExecConfig exec = exec_of(options_.common);
-    map_.emplace(sensor, map_config_, planner_config_, out_ / "state.vdb", saved_, sigma_, exec);
-    map_->propose_by(generation_config(proposal_, sensor, map_->grid(), ""), exec);
+    map_.emplace(options_, sensor, map_config_, planner_config_, saved_);
+    map_->propose_by(generation_config(proposal_, sensor, map_->grid(), ""));
     // What was next may be missing or older than the state, which has not heard of it: a frame that
     // waits is held against it.
     has_news_ = saved_.has_value();
     warn_of_set_up(proposal_, map_config_.obstacles, map_->grid(), sensor, true);
-    if (saved_) propose(saved_->frames);
+    if (!saved_) return;
+    const Proposal proposal = map_->generate({});
+    if (!proposal.candidates.empty()) (void)map_->decide({}, proposal.candidates);
+    ask(saved_->frames);
   }
 
   void take(const WatchedFrame& frame) {
@@ -260,6 +267,8 @@ class Watching {
       why += ": " + registration->reason;
     } else {
       added = map_->add(frame, registration);
+      progress_ = added.progress;
+      has_news_ = true;
       verdict = added.update.verdict;
       warn_of_contradictions(false);
     }
@@ -280,29 +289,27 @@ class Watching {
                  added.update.new_area, added.entropy_removed);
   }
 
-  void propose(const std::set<std::string>& frames) {
-    next_ = map_->next(options_.top, proposal_.costs.per_metre);
-    views_.ask(poses_of(next_), frames);
-    if (next_.candidates > 0 || !next_.dropped.contains("obstacle")) return;
+  // For what is next in the map of these frames.
+  void ask(const std::set<std::string>& frames) {
+    const NextViews& next = map_->next();
+    views_.ask(poses_of(next), frames);
+    if (next.candidates > 0 || !next.dropped.contains("obstacle")) return;
     if (std::exchange(told_of_obstacles_, true)) return;
     warn_of_views_in_obstacles(map_config_.obstacles, map_->grid());
   }
 
-  // First the state: what is next takes longest, and can be made of it again.
   void write() {
-    // What is saved now a later call would go on with.
-    if (folder_.on_contradiction == "error") warn_of_contradictions(true);
-    const std::set<std::string> frames = watch_->taken();
-    map_->save();
-    propose(frames);
-    write_tum(out_ / "next.txt", poses_of(next_));
+    if (!has_news_) return;
+    const NextViews& next = map_->next();
+    ask(watch_->taken());
+    write_tum(out_ / "next.txt", poses_of(next));
     write_json();
     has_news_ = false;
     since_written_.emplace();
     if (options_.common.quiet) return;
-    std::fprintf(stderr, "%zu frames: %zu candidates", count(), next_.candidates);
-    if (!next_.views.empty()) {
-      std::fprintf(stderr, ", the best gains %.4g", next_.views.front().gain.gain);
+    std::fprintf(stderr, "%zu frames: %zu candidates", count(), next.candidates);
+    if (!next.views.empty()) {
+      std::fprintf(stderr, ", the best gains %.4g", next.views.front().gain.gain);
     }
     const auto reason = map_->should_stop();
     std::fprintf(stderr, "%s%s\n", reason ? "; enough: " : "",
@@ -337,7 +344,7 @@ class Watching {
     Json json{{"format", kRunFormat}};
     json.update(said_);
     json.update(views_.json());
-    json.update(to_json(next_));
+    json.update(to_json(map_->next()));
     write_file_atomically(out_ / "next.json", json_text(json));
   }
 
@@ -346,20 +353,23 @@ class Watching {
   const ProposalOptions& proposal_;
   ScorerConfig map_config_;
   PlannerConfig planner_config_;
-  std::optional<PoseSigma> sigma_;  // of the poses, if frames are registered
   fs::path frames_, out_;
   AskedViews views_;
   std::optional<FolderLock> lock_;
   std::optional<SavedFrames> saved_;
   std::optional<FrameWatch> watch_;
-  std::optional<WatchedMap> map_;  // once the sensor is known
+  std::optional<WatchedMap> map_;      // once the sensor is known
+  std::optional<WatchedFrame> frame_;  // that came and is not yet in the map
+  std::stop_token stop_;               // a signal
+  std::stop_source end_;               // of a run of the loop
+  ModelProgress progress_;             // after the last frame
+  bool is_done_ = false;
   MaskWatch masks_;
   std::size_t added_ = 0;            // frames, by this call
   std::uint64_t masked_pixels_ = 0;  // of these
   bool has_news_ = false;            // that are not yet written
   bool told_of_obstacles_ = false;   // that hold the views
   std::optional<Stopwatch> since_written_;
-  NextViews next_;
   Json said_;  // counts(), as next.json has them
 };
 
@@ -369,17 +379,8 @@ void model_arriving_frames(const ModelOptions& options) {
   const Stopwatch watch;
   Watching watching(options);
   const InterruptGuard interrupt;
-  bool is_done = false;
-  while (!is_done && !interrupt.token().stop_requested()) {
-    // Asked before the look: what came before the file is seen.
-    std::error_code ignored;
-    const bool is_last = fs::exists(fs::path(options.frames.folder.folder) / "done", ignored);
-    if (watching.step()) continue;
-    is_done = is_last && watching.is_settled();
-    if (!is_done) std::this_thread::sleep_for(kPause);
-  }
-  watching.finish(is_done);
-  watching.print_summary(is_done, watch.seconds());
+  watching.run(interrupt.token());
+  watching.print_summary(watch.seconds());
 }
 
 }  // namespace viewgain::app

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <set>
 #include <sstream>
@@ -344,6 +345,46 @@ TEST_F(Watch, SaysWhereToLookNext) {
     (void)run_well(watch({"--top", "5"}));
     EXPECT_EQ(read("plan/next.json"), before) << damaged;
   }
+}
+
+// Frames that come after it was enough: they are taken, and views are proposed after each of them,
+// as a planner of the test's own does.
+TEST_F(Watch, GoesOnAfterItWasEnough) {
+  run_well({"simulate", "cube.off", "--poses", "sphere:40,0.6", "--sensor", "small.toml", "--size",
+            "0.2", "--place", "center", "--out", "around"});
+  const FrameSequence frames = open_frames(dir / "whole");
+  test::PlannerSetUp config;
+  config.map.voxel_size = kVoxel;
+  config.map.workspace = {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
+  config.map.jump_edges.reset();
+  config.planner.max_views = 3;
+  ViewPlanner planner = config.make(frames.sensor, {1});
+  planner.add_poses({"poses", read_tum(dir / "around/poses.txt").poses});
+  const pid_t child =
+      start(watch({"--poses", "around/poses.txt", "--top", "2", "--max-views", "3"}));
+  std::optional<Pose> asked;
+  constexpr std::size_t kFrames = 13;
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    put(i);
+    ASSERT_TRUE(wait_for(i + 1)) << i;
+    (void)planner.add(load_frame(frames, i), frames.poses[i]);
+    if (asked) planner.tried(*asked, false);
+    const std::size_t count = planner.propose().candidates.size();
+    const Ranking best = planner.rank(2, {.together = true});
+    const json next = json::parse(read("plan/next.json"));
+    EXPECT_EQ(next["candidates"], count) << i;
+    ASSERT_EQ(next["next"].size(), best.views.size()) << i;
+    for (std::size_t k = 0; k < best.views.size(); ++k) {
+      EXPECT_EQ(next["next"][k]["gain"], best.views[k].gain.gain) << i;
+    }
+    const std::optional<StopReason> reason = planner.should_stop();
+    EXPECT_EQ(next["stop_reason"], reason ? json(stop_reason_name(*reason)) : json()) << i;
+    EXPECT_EQ(reason == StopReason::max_views, i >= 2) << i;
+    asked = best.views.at(0).T_world_camera;
+  }
+  EXPECT_EQ(::kill(child, SIGTERM), 0);
+  EXPECT_EQ(end_of(child), 0);
+  expect_each_once(kFrames);
 }
 
 TEST_F(Watch, AnEmptyViewBreaksItsPromise) {
