@@ -108,6 +108,8 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
   const double stride = config.pixel_stride;
   const double cap =
       stride * stride * std::numbers::pi * std::pow(hazard.pooling().length, 2) / 2;  // [m²]
+  // How much less than at the working distance readings at range t [m] say: they miss by σ_ax.
+  const auto misses = [&](double t) { return 1 + sensor.noise_sigmas(t).axial / V; };
   SurfaceValue value;
   std::map<Cell, Eigen::Matrix3d> refined;
 
@@ -139,7 +141,8 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
       const double depth = h * length * V;
       const double P = passed * -std::expm1(-depth);
       const double t = 0.5 * (run->begin + run->end) * V;
-      const double across = std::min(angle * t * t, cap);
+      const double across =
+          std::min(angle * t * t, cap) * misses(sensor.working_distance) / misses(t);
       value.pixel_area = std::max(value.pixel_area, across);
       last_across = across;
       if (hazard.is_new(run->voxel)) {

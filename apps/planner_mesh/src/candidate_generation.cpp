@@ -124,7 +124,7 @@ CandidateGeneration::CandidateGeneration(const SurfaceModel& model, const Genera
     : model_(model),
       config_(config),
       boundaries_(std::make_shared<BoundaryGeneration>(model, config.boundary, exec)),
-      proposer_(model.scene(), {config.feasibility}, exec) {
+      proposer_(model.scene(), {config.feasibility, true, config.boundary.working_distance}, exec) {
   for (const PoseSet& set : config.sets) proposer_.add_poses(set);
   if (config.at_boundaries) proposer_.add_generation(boundaries_);
 }

@@ -135,22 +135,28 @@ OracleChoice::OracleChoice(const SurfaceModel& model, const Sensor& sensor,
       exec_(exec),
       camera_(object.mesh, sensor, without_noise(object.simulation), exec) {}
 
-std::vector<std::size_t> OracleChoice::uncovered_in_view(
-    std::span<const Candidate> candidates) const {
+std::vector<double> OracleChoice::uncovered_in_view(std::span<const Candidate> candidates) const {
   const GroundTruth& truth = object_.truth->ground_truth();
   const std::vector<double> distances = truth.distances_to(model_.surface().vertices);
   std::vector<SurfaceSample> uncovered;
   for (std::size_t i = 0; i < distances.size(); ++i) {
     if (!(distances[i] <= object_.truth->tolerance())) uncovered.push_back(truth.samples()[i]);
   }
-  std::vector<std::size_t> counts(candidates.size());
+  // From afar readings miss the surface by more than makes points of it.
+  const auto worth = [&](const Eigen::Vector3d& sight) {
+    return 1 / (1 + sensor_.noise_sigmas(sight.norm()).axial / model_.grid().voxel_size());
+  };
+  std::vector<double> counts(candidates.size());
   ThreadPool pool(exec_.num_threads);
   pool.for_each_chunk(candidates.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::vector<std::uint8_t> seen(uncovered.size());
       mark_seen(*object_.mesh, object_.simulation.surroundings.get(), sensor_,
                 candidates[i].T_world_camera, kLeastCosine, uncovered, seen);
-      counts[i] = static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 1));
+      const Eigen::Vector3d eye = candidates[i].T_world_camera.translation();
+      for (std::size_t k = 0; k < seen.size(); ++k) {
+        if (seen[k] != 0) counts[i] += worth(uncovered[k].position - eye);
+      }
     }
   });
   return counts;
@@ -166,7 +172,7 @@ std::size_t OracleChoice::covered_after(const Pose& T_world_camera) const {
 }
 
 std::size_t OracleChoice::next(std::span<const Candidate> candidates) const {
-  const std::vector<std::size_t> counts = uncovered_in_view(candidates);
+  const std::vector<double> counts = uncovered_in_view(candidates);
   std::vector<std::size_t> ranking(candidates.size());
   std::iota(ranking.begin(), ranking.end(), std::size_t{0});
   std::stable_sort(ranking.begin(), ranking.end(),
@@ -349,7 +355,10 @@ std::optional<std::size_t> PolicyDecision::choose_by_boundary(
   if (const auto next = order_.next(candidates, generation_.estimated())) return next;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     // A pose of the reachable list.
-    if (!candidates[i].boundary_class && candidates[i].generator != kHazardViews) return i;
+    const std::string& generator = candidates[i].generator;
+    if (!candidates[i].boundary_class && generator != kHazardViews && generator != kReachViews) {
+      return i;
+    }
   }
   return std::nullopt;
 }

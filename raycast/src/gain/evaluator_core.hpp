@@ -213,8 +213,8 @@ struct SurfaceShare {
   float range;  ///< where the ray enters [voxels]
   Index3 voxel;
   bool is_occupied;
-  double probability;              ///< P; occupied: T
-  double area;                     ///< P min(ω t², cap) w_v where surface is new, else 0 [m²]
+  double probability;  ///< P; occupied: T
+  double area;         ///< P min(ω t², cap) ρ(t) w_v where surface is new, else 0 [m²]
   SymmetricMatrix3 information{};  ///< occupied, combined: T Λ_r [m⁻²]
   double rate = 0;                 ///< unknown: of its hazard cell [1/voxel]
 };

@@ -56,11 +56,19 @@ SurfaceView::SurfaceView(const SceneData& scene, const EvaluatorCore& core,
       pooled_(core.config.model == GainModel::combined ? &scene.tracing->pooled_surface()
                                                        : nullptr),
       frontal_(core.sigmas),
+      reading_worth_(core.sigmas, core.working_distance, scene.snapshot.voxel_size),
       prior_information_(1.0 / (PooledSurface::kCells * prior_sigma * prior_sigma)) {
   const double V = scene.snapshot.voxel_size;
   const double stride = core.config.pixel_stride;
   const double radius = bricks_.pooling_length;
-  cap_ = static_cast<float>(stride * stride * std::numbers::pi * radius * radius / kLeastReadings);
+  const ReadingWorth& worth = reading_worth_;
+  worth_ = {
+      static_cast<float>(stride * stride * std::numbers::pi * radius * radius / kLeastReadings),
+      static_cast<float>(worth.scale),
+      static_cast<float>(worth.s0),
+      static_cast<float>(worth.s1 * V),
+      static_cast<float>(worth.s2 * V * V),
+      static_cast<float>(worth.at / V)};
   floor_variance_ = PooledSurface::kCells * V * V;
   frontal_.p0 = frontal_.p2 = 0;  // as core's frontal(): readings that share a pose share its error
   nats_per_area_ = entropy_of_new_voxel(core, prior_information_, floor_variance_) / (V * V);
@@ -128,7 +136,7 @@ double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, const fl
   trace_rays(frame, workspace, [&](std::size_t number, const RayTile& rays) {
     if (rays.hit == 0) return;
     set_up(tracer_.table(), number, frame, rays, task);
-    walk_.area(bricks_, limits, task, cap_, missed, walked);
+    walk_.area(bricks_, limits, task, worth_, missed, walked);
     sum += area_of(rays, walked);
     if (by_lane != nullptr) {
       for_each_lane(rays.hit, [&](int lane) {
@@ -352,9 +360,10 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
     const double depth = rate * (end - begin);
     const double P = passed * -std::expm1(-depth);
     const double t = 0.5 * (begin + end);
-    const double across = std::min(
-        static_cast<double>(tracer_.table().solid_angle[number * kTileRays + first->lane]) * t * t,
-        static_cast<double>(cap_));
+    const auto angle =
+        static_cast<double>(tracer_.table().solid_angle[number * kTileRays + first->lane]);
+    const double across =
+        std::min(angle * t * t, static_cast<double>(worth_.cap)) * reading_worth_(t * V);
     const auto put = [&](Index3 voxel, float from, double part, double weight, bool is_new) {
       workspace.shares.push_back({lane,
                                   from,

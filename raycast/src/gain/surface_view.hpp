@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "evaluator_core.hpp"
+#include "reading_worth.hpp"
 #include "scene/scene_data.hpp"
 #include "trace/ordered_walk.hpp"
 #include "trace/ray_tile.hpp"
@@ -157,7 +158,8 @@ class SurfaceView {
   const GainKernels& gain_kernels_;
   const PooledSurface* pooled_;  // by the combined gain
   FrontalSigmas frontal_;
-  float cap_;                 // the most that a ray counts for [voxels²]
+  ReadingWorth reading_worth_;
+  PixelWorth worth_{};        // of a ray
   double prior_information_;  // Λ_0 / n
   double floor_variance_;     // n F
   double nats_per_area_;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "gain/evaluator_core.hpp"
+
 namespace viewgain::detail {
 namespace {
 
@@ -16,11 +18,13 @@ bool sees_plane(const Sensor& sensor, const Eigen::Vector3d& point, const Eigen:
 
 }  // namespace
 
-RealisedArea::RealisedArea(const Sensor& sensor, std::optional<double> support_plane)
+RealisedArea::RealisedArea(const Sensor& sensor, double voxel_size,
+                           std::optional<double> support_plane)
     : sensor_(sensor),
       support_plane_(support_plane),
       rays_(sensor.camera.ray_table()),
-      solid_angles_(sensor.camera.solid_angles(rays_)) {}
+      solid_angles_(sensor.camera.solid_angles(rays_)),
+      worth_(frontal_sigmas(sensor), sensor.working_distance, voxel_size) {}
 
 double RealisedArea::of(const DepthFrame& frame, const Pose& T_world_camera,
                         const BeliefGrid& before, const HazardField* hazard) const {
@@ -41,7 +45,7 @@ double RealisedArea::of(const DepthFrame& frame, const Pose& T_world_camera,
     const std::optional<Index3> voxel = before.index_of(point);
     if (!voxel || before.state(*voxel) != VoxelState::unknown) continue;
     if (hazard != nullptr && !hazard->is_new(*voxel)) continue;
-    area += solid_angles_[i] * range * range;
+    area += solid_angles_[i] * range * range * worth_(range);
   }
   return area;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "gain/reading_worth.hpp"
 #include "viewgain/core/depth_frame.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -19,12 +20,12 @@ namespace viewgain::detail {
 class RealisedArea {
  public:
   /// Undoes the lens distortion once. Readings of the support plane (world z [m]) show nothing.
-  explicit RealisedArea(const Sensor& sensor, std::optional<double> support_plane = {});
+  RealisedArea(const Sensor& sensor, double voxel_size, std::optional<double> support_plane = {});
 
-  /// Σ ω t² [m²], area across the rays, over the frame's readings within the sensor's range that
-  /// lie in a voxel of the workspace that is unknown in `before`, at d > 1.2 pooling lengths from
-  /// what is known of the surface, and show nothing known (DepthFrame::known_depth). `hazard`: that
-  /// of the same map; null: no surface is known, all is new. Throws Error(invalid_argument) as
+  /// Σ ω t² ρ(t) [m²], area across the rays, over the frame's readings within the sensor's range
+  /// that lie in a voxel of the workspace that is unknown in `before`, at d > 1.2 pooling lengths
+  /// from what is known of the surface, and show nothing known (DepthFrame::known_depth). `hazard`:
+  /// that of the same map; null: no surface is known, all is new. Throws Error(invalid_argument) as
   /// check_frame_size().
   [[nodiscard]] double of(const DepthFrame& frame, const Pose& T_world_camera,
                           const BeliefGrid& before, const HazardField* hazard) const;
@@ -34,6 +35,7 @@ class RealisedArea {
   std::optional<double> support_plane_;
   std::vector<Eigen::Vector3d> rays_;
   std::vector<double> solid_angles_;  // [sr]
+  ReadingWorth worth_;
 };
 
 }  // namespace viewgain::detail

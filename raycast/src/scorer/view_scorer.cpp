@@ -119,7 +119,7 @@ struct ViewScorer::Impl {
         obstacles(with.obstacles, of, by),
         integrator(of, with.integration(), by),
         check(of, with.support_plane),
-        new_surface(of, with.support_plane),
+        new_surface(of, grid.voxel_size(), with.support_plane),
         calibration(of, with.support_plane),
         learns(with.learn_hazard.value_or(with.gain.model != GainModel::paper)),
         voxels(VoxelBox::from_dims(grid.min_index(), grid.dims())),

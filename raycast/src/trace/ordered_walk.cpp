@@ -167,8 +167,14 @@ class AreaSink {
     return HazardFinder::is_in(place, BrickTable::kOccupiedVoxel, counts);
   }
 
-  HWY_INLINE AreaSink(const float* solid_angle, float cap, const float* missed)
-      : angle_(hn::LoadU(df, solid_angle)), cap_(hn::Set(df, cap)), missed_(missed) {}
+  HWY_INLINE AreaSink(const float* solid_angle, const PixelWorth& worth, const float* missed)
+      : angle_(hn::Mul(hn::LoadU(df, solid_angle), hn::Set(df, worth.scale))),
+        cap_(hn::Set(df, worth.cap * worth.scale)),
+        one_and_s0_(hn::Set(df, 1 + worth.s0)),
+        s1_(hn::Set(df, worth.s1)),
+        s2_(hn::Set(df, worth.s2)),
+        at_(hn::Set(df, worth.at)),
+        missed_(missed) {}
 
   HWY_INLINE void step(const HazardFinder& finder, const HazardStep& step) {
     const MF unknown = HazardFinder::is_in(step.place, BrickTable::kUnknownVoxel, step.counts);
@@ -196,7 +202,7 @@ class AreaSink {
       begin_ = hn::IfThenElse(keeps, begin_, t);
       run_ = hn::Add(hn::IfThenElseZero(keeps, run_), share);  // P so far
       const VF middle = hn::Mul(hn::Set(df, 0.5F), hn::Add(begin_, next));
-      VF across = hn::Min(hn::Mul(angle_, hn::Mul(middle, middle)), cap_);
+      VF across = hn::Div(hn::Min(hn::Mul(angle_, hn::Mul(middle, middle)), cap_), misses(middle));
       if constexpr (kMissed) across = hn::Mul(across, hn::GatherIndex(df, missed_, places));
       const MF is_known = hn::Lt(rate, hn::Zero(df));
       const VF whole = hn::IfThenZeroElse(is_known, hn::Mul(run_, across));
@@ -235,7 +241,13 @@ class AreaSink {
   }
 
  private:
-  VF angle_, cap_;
+  // 1 + s
+  [[nodiscard]] HWY_INLINE VF misses(VF t) const {
+    const VF off = hn::Sub(t, at_);
+    return hn::Add(hn::Add(one_and_s0_, hn::Mul(s1_, t)), hn::Mul(s2_, hn::Mul(off, off)));
+  }
+
+  VF angle_, cap_, one_and_s0_, s1_, s2_, at_;
   const float* missed_;
   VF passed_ = hn::Set(df, 1.0F), area_ = hn::Zero(df);
   MF in_unknown_ = no_lane();  // since the last step of any length
@@ -289,11 +301,11 @@ class VisitSink {
 };
 
 template <bool kMissed>
-void area_of(const BrickTable& table, const WalkLimits& limits, const WalkTask& task, float cap,
-             const float* missed, WalkedTile& out) {
+void area_of(const BrickTable& table, const WalkLimits& limits, const WalkTask& task,
+             const PixelWorth& worth, const float* missed, WalkedTile& out) {
   out.occupied = 0;
   for (int lane0 = 0; lane0 < kTileRays; lane0 += kWidth) {
-    AreaSink<kMissed> sink(task.solid_angle + lane0, cap, missed);
+    AreaSink<kMissed> sink(task.solid_angle + lane0, worth, missed);
     PacketWalk<HazardFinder, AreaSink<kMissed>> walk(HazardFinder(table, false));
     if (walk.begin(table, limits, task, lane0)) {
       while (walk.step(sink)) {
@@ -303,9 +315,9 @@ void area_of(const BrickTable& table, const WalkLimits& limits, const WalkTask& 
   }
 }
 
-void area(const BrickTable& table, const WalkLimits& limits, const WalkTask& task, float cap,
-          const float* missed, WalkedTile& out) {
-  (missed == nullptr ? area_of<false> : area_of<true>)(table, limits, task, cap, missed, out);
+void area(const BrickTable& table, const WalkLimits& limits, const WalkTask& task,
+          const PixelWorth& worth, const float* missed, WalkedTile& out) {
+  (missed == nullptr ? area_of<false> : area_of<true>)(table, limits, task, worth, missed, out);
 }
 
 void visits(const BrickTable& table, const WalkLimits& limits, const WalkTask& task,

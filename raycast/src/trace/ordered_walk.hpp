@@ -13,11 +13,17 @@
 
 namespace viewgain::detail {
 
+/// What new surface at range t counts for, a pixel of solid angle ω: min(ω t², cap) ρ(t), with
+/// ρ(t) = scale / (1 + s) and s = s0 + s1 t + s2 (t - at)² (ReadingWorth). Lengths in voxels.
+struct PixelWorth {
+  float cap, scale, s0, s1, s2, at;
+};
+
 /// What the rays of a tile meet, and where they end. Lengths in voxels, areas in voxels².
 struct alignas(64) WalkedTile {
   /// What is left of the ray at its end: T, the chance that it gets there.
   float passed[kTileRays];
-  /// Σ P min(ω t², cap) over its runs: the new surface to be expected, across the ray.
+  /// Σ P min(ω t², cap) ρ(t) over its runs: the new surface to be expected, across the ray.
   float area[kTileRays];
   /// Of the last stretch of unknown voxels, without a free one in between: its share of the area,
   /// the chance to end in it of a ray that gets there, its length. The chance is a sum of small
@@ -40,10 +46,10 @@ struct VoxelVisit {
 /// Walks rays through the bricks in order, through unknown voxels to the first occupied one or the
 /// end of what is to be seen.
 struct WalkKernels {
-  /// `cap`: the most that P is multiplied by. `missed`: what of a hazard cell's area counts, at the
+  /// `worth`: what P is multiplied by. `missed`: what of a hazard cell's area counts, at the
   /// places of BrickTable::rates; null: all.
-  void (*area)(const BrickTable& table, const WalkLimits& limits, const WalkTask& task, float cap,
-               const float* missed, WalkedTile& out);
+  void (*area)(const BrickTable& table, const WalkLimits& limits, const WalkTask& task,
+               const PixelWorth& worth, const float* missed, WalkedTile& out);
   /// The same voxel by voxel: appends what the rays of a tile visit, each ray's in order.
   void (*visits)(const BrickTable& table, const WalkLimits& limits, const WalkTask& task,
                  std::vector<VoxelVisit>& out);

@@ -188,5 +188,87 @@ TEST(HazardViews, AreProposedWhereFewBoundariesAreOpen) {
   }
 }
 
+// Each stands in the reach, before one of the places, and looks at it, at the middle of all or
+// between the two.
+TEST(ReachableHazardViews, StandInTheReachBeforeThePlaces) {
+  const SurfaceModel model = box_model({kFromAbove});
+  const std::vector<Expected> places = expected_places(*model.scene());
+  double sum = 0;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Expected& place : places) sum += place.area, middle += place.sum;
+  middle /= sum;
+  ReachRegion half;
+  half.half_spaces = {{Eigen::Vector3d(1, 0, 1), 0.05}};
+  int cases = 0;
+  for (const ReachRegion& reach : {ReachRegion{}, half}) {
+    const std::vector<Pose> views =
+        reachable_hazard_views(*model.scene(), reach, kDistance, kSpacing, 90);
+    EXPECT_EQ(views.size(), 90U);
+    std::map<double, int> at_distance;
+    for (const Pose& view : views) {
+      ASSERT_TRUE(reach.contains(view));
+      const Eigen::Vector3d eye = view.translation(), axis = view.rotation().col(2);
+      bool found = false;
+      for (const Expected& place : places) {
+        const Eigen::Vector3d target = place.sum / place.area;
+        for (const double far : {1.0, 1.6, 2.5}) {
+          if (std::abs((eye - target).norm() - far * kDistance) > 1e-7) continue;
+          for (const double to_middle : {0.0, 0.5, 1.0}) {
+            const Eigen::Vector3d aim = target + to_middle * (middle - target);
+            if (axis.dot((aim - eye).normalized()) < 1 - 1e-9) continue;
+            if (!found) ++at_distance[far];
+            found = true;
+          }
+        }
+      }
+      EXPECT_TRUE(found) << eye.transpose();
+      ++cases;
+    }
+    for (const double far : {1.0, 1.6, 2.5}) EXPECT_GE(at_distance[far], 25) << far;
+  }
+  EXPECT_EQ(cases, 180);
+}
+
+TEST(ReachableHazardViews, AreNoneWhereNothingIsWantedOrReached) {
+  const SurfaceModel model = box_model({kFromAbove});
+  EXPECT_TRUE(reachable_hazard_views(*model.scene(), {}, kDistance, kSpacing, 0).empty());
+  ReachRegion far;
+  far.shells = {{{10, 0, 0}, 0, 1}};
+  EXPECT_TRUE(reachable_hazard_views(*model.scene(), far, kDistance, kSpacing, 50).empty());
+  const BeliefGrid empty(test::model_config(test::half_sr4000(), 0.2, kVoxel).map.grid());
+  EXPECT_TRUE(
+      reachable_hazard_views(*VoxelScene::build(empty), {}, kDistance, kSpacing, 50).empty());
+}
+
+// Candidates of boundaries are joined by views from the reach, if it is a region.
+TEST(ReachableHazardViews, JoinTheBoundaries) {
+  const SurfaceModel model = box_model({kFromAbove});
+  ReachRegion half, list;
+  half.half_spaces = {{Eigen::Vector3d::UnitX(), 0.1}};
+  list.poses = {look_at({0.4, 0, 0.1}, {0, 0, 0})};
+  int cases = 0;
+  for (const auto& [reach, expected] :
+       {std::pair(ReachRegion{}, false), std::pair(half, true), std::pair(list, false)}) {
+    for (const bool at_boundaries : {true, false}) {
+      GenerationConfig config = default_generation(model.scorer().sensor(), kVoxel);
+      config.feasibility.reach = reach;
+      config.at_boundaries = at_boundaries;
+      config.sets = {{"one", {look_at({0.3, 0.2, 0.2}, {0, 0, 0})}}};
+      CandidateGeneration generation(model, config, {});
+      const Proposal proposal = generation.generate({});
+      const auto from_reach = std::count_if(
+          proposal.candidates.begin(), proposal.candidates.end(),
+          [](const Candidate& candidate) { return candidate.generator == kReachViews; });
+      EXPECT_EQ(from_reach > 100, expected && at_boundaries) << from_reach;
+      EXPECT_EQ(from_reach > 0, expected && at_boundaries) << from_reach;
+      for (const Candidate& candidate : proposal.candidates) {
+        EXPECT_TRUE(reach.contains(candidate.T_world_camera));
+      }
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 6);
+}
+
 }  // namespace
 }  // namespace viewgain

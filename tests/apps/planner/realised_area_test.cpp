@@ -30,6 +30,12 @@ BeliefGrid empty_map(double half = 0.3) {
 // Looks straight down at the plane z = 0.
 Pose from_above() { return look_at({0, 0, kEye}, {0, 0, 0}); }
 
+// How much less than from the working distance readings say: they miss the surface by σ_ax.
+double worth(const Sensor& sensor, double range) {
+  const auto misses = [&](double t) { return 1 + sensor.noise_sigmas(t).axial / kVoxel; };
+  return misses(sensor.working_distance) / misses(range);
+}
+
 // All pixels read a plane across the optical axis.
 DepthFrame plane_frame(const Sensor& sensor, double depth) {
   const auto pixels = static_cast<std::size_t>(sensor.camera.width * sensor.camera.height);
@@ -45,22 +51,24 @@ TEST(RealisedArea, APlaneSeenFrontallyFillsItsArea) {
   sensor.camera.fx *= 8, sensor.camera.fy *= 8;
   const PinholeCamera& c = sensor.camera;
   const double area = c.width * kEye / c.fx * (c.height * kEye / c.fy);
-  const RealisedArea realised(sensor);
+  const RealisedArea realised(sensor, kVoxel);
   EXPECT_NEAR(realised.of(plane_frame(sensor, kEye), from_above(), empty_map(), nullptr), area,
               2e-3 * area);
   // Seen from the side, by the wide camera, what counts is what lies across the rays.
   const Sensor wide = test::half_sr4000();
   double across = 0;
   for (const Eigen::Vector3d& ray : wide.camera.ray_table()) {
-    across += kEye * kEye / (wide.camera.fx * wide.camera.fy) / ray.norm();
+    across += kEye * kEye / (wide.camera.fx * wide.camera.fy) / ray.norm() *
+              worth(wide, kEye * ray.norm());
   }
-  EXPECT_NEAR(RealisedArea(wide).of(plane_frame(wide, kEye), from_above(), empty_map(), nullptr),
-              across, 1e-8);
+  EXPECT_NEAR(
+      RealisedArea(wide, kVoxel).of(plane_frame(wide, kEye), from_above(), empty_map(), nullptr),
+      across, 1e-8);
 }
 
 TEST(RealisedArea, NothingIsShownByWhatIsNoReading) {
   const Sensor sensor = test::half_sr4000();
-  const RealisedArea realised(sensor);
+  const RealisedArea realised(sensor, kVoxel);
   const BeliefGrid grid = empty_map();
   for (const float depth :
        {DepthFrame::kInvalid, DepthFrame::kOutOfRange, std::numeric_limits<float>::quiet_NaN(),
@@ -74,7 +82,7 @@ TEST(RealisedArea, NothingIsShownByWhatIsNoReading) {
 
 TEST(RealisedArea, WhatIsKnownShowsNothing) {
   const Sensor sensor = test::half_sr4000();
-  const RealisedArea realised(sensor);
+  const RealisedArea realised(sensor, kVoxel);
   const BeliefGrid grid = empty_map();
   DepthFrame frame = plane_frame(sensor, kEye);
   const double all = realised.of(frame, from_above(), grid, nullptr);
@@ -106,8 +114,8 @@ TEST(RealisedArea, TheSupportPlaneIsNotSurface) {
   const double sigma = sensor.sigmas(kEye).axial;
   for (const double above : {-0.01, 0.0, 2.5 * sigma, 4.5 * sigma}) {
     const DepthFrame frame = plane_frame(sensor, kEye - above);
-    const double with = RealisedArea(sensor, 0.0).of(frame, from_above(), grid, nullptr);
-    const double without = RealisedArea(sensor).of(frame, from_above(), grid, nullptr);
+    const double with = RealisedArea(sensor, kVoxel, 0.0).of(frame, from_above(), grid, nullptr);
+    const double without = RealisedArea(sensor, kVoxel).of(frame, from_above(), grid, nullptr);
     EXPECT_GT(without, 0);
     EXPECT_EQ(with, above > 3 * sigma ? without : 0.0) << above;
   }
@@ -120,7 +128,7 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
   };
   Sensor sensor = test::half_sr4000();
   sensor.camera.distortion = {-0.1, 0.02, 0.001, -0.001, 0};
-  const RealisedArea realised(sensor);
+  const RealisedArea realised(sensor, kVoxel);
   const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
   const std::vector<double> angles = sensor.camera.solid_angles(rays);
   std::size_t new_readings = 0, known = 0, near = 0;
@@ -161,7 +169,7 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
         continue;
       }
       ++new_readings;
-      expected += angles[i] * p.squaredNorm();
+      expected += angles[i] * p.squaredNorm() * worth(sensor, p.norm());
     }
     EXPECT_NEAR(realised.of(frame, pose, grid, &hazard), expected, 1e-9 * expected);
   }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/belief_block.hpp"
@@ -95,10 +96,13 @@ struct Place {
   }
 };
 
-}  // namespace
+// Where faces look out of the world's unknown places, the place of most area first.
+struct Target {
+  Eigen::Vector3d at, outward;  // world [m]
+  double area;                  // [m²]
+};
 
-std::vector<Pose> hazard_views(const VoxelScene& scene, double distance, double spacing,
-                               std::size_t most) {
+std::vector<Target> targets_in(const VoxelScene& scene, double distance, double spacing) {
   for (const double length : {distance, spacing}) {
     if (length > 0 && std::isfinite(length)) continue;
     refuse("views by the hazard: a length must not be " + short_text(length) + " m");
@@ -140,20 +144,73 @@ std::vector<Pose> hazard_views(const VoxelScene& scene, double distance, double 
   std::stable_sort(best.begin(), best.end(),
                    [](const Place& a, const Place& b) { return a.area() > b.area(); });
 
-  constexpr double kTilt = 30 * std::numbers::pi / 180;
   const Pose& T_world_grid = scene.snapshot().T_world_grid;
-  std::vector<Pose> views;
+  std::vector<Target> targets;
   for (const Place& place : best) {
-    const Eigen::Vector3d target = T_world_grid * Eigen::Vector3d(place.weighted / place.area());
-    const Eigen::Vector3d n = T_world_grid.rotation() * place.outward();
-    const Eigen::Vector3d beside = n.unitOrthogonal(), above = n.cross(beside);
-    const std::array<Eigen::Vector3d, 5> tilts{Eigen::Vector3d::Zero(), beside, -beside, above,
-                                               -above};
-    for (const Eigen::Vector3d& tilt : tilts) {
+    targets.push_back({T_world_grid * Eigen::Vector3d(place.weighted / place.area()),
+                       T_world_grid.rotation() * place.outward(), place.area()});
+  }
+  return targets;
+}
+
+// At an angle [rad] to n, turned about it by `turn` [rad].
+Eigen::Vector3d tilted(const Eigen::Vector3d& n, double tilt, double turn) {
+  const Eigen::Vector3d beside = n.unitOrthogonal();
+  return std::cos(tilt) * n +
+         std::sin(tilt) * (std::cos(turn) * beside + std::sin(turn) * n.cross(beside));
+}
+
+double fraction(double x) { return x - std::floor(x); }
+
+}  // namespace
+
+std::vector<Pose> hazard_views(const VoxelScene& scene, double distance, double spacing,
+                               std::size_t most) {
+  constexpr double kTilt = 30 * std::numbers::pi / 180, kQuarter = std::numbers::pi / 2;
+  std::vector<Pose> views;
+  for (const Target& target : targets_in(scene, distance, spacing)) {
+    for (const auto& [tilt, turn] :
+         {std::pair(0.0, 0.0), std::pair(kTilt, 0.0), std::pair(kTilt, 2 * kQuarter),
+          std::pair(kTilt, kQuarter), std::pair(kTilt, 3 * kQuarter)}) {
       if (views.size() == most) return views;
-      const Eigen::Vector3d away =
-          tilt.isZero(0) ? n : Eigen::Vector3d(std::cos(kTilt) * n + std::sin(kTilt) * tilt);
-      views.push_back(look_at(target + distance * away, target));
+      views.push_back(
+          look_at(target.at + distance * tilted(target.outward, tilt, turn), target.at));
+    }
+  }
+  return views;
+}
+
+std::vector<Pose> reachable_hazard_views(const VoxelScene& scene, const ReachRegion& reach,
+                                         double distance, double spacing, std::size_t count) {
+  constexpr std::array<double, 3> kDistances{1, 1.6, 2.5}, kToMiddle{0, 0.5, 1};
+  constexpr std::size_t kTries = 16;  // for a view
+  const double least_cosine = std::cos(75 * std::numbers::pi / 180);
+  const std::vector<Target> targets = targets_in(scene, distance, spacing);
+  std::vector<double> sums;
+  double sum = 0;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Target& target : targets) {
+    sums.push_back(sum += target.area);
+    middle += target.area * target.at;
+  }
+  middle /= sum;
+  std::vector<Pose> views;
+  for (std::size_t i = 0; i < count && sum > 0; ++i) {
+    for (std::size_t attempt = 0; attempt < kTries; ++attempt) {
+      // Sequences of which any number of members in a row is spread evenly.
+      const auto n = static_cast<double>(i + attempt * count + 1);
+      const double place = sum * fraction(n * 0.6180339887498949);
+      const std::size_t k = static_cast<std::size_t>(
+          std::lower_bound(sums.begin(), sums.end() - 1, place) - sums.begin());
+      const double cosine = 1 - (1 - least_cosine) * fraction(n * 0.7548776662466927);
+      const Eigen::Vector3d away = tilted(targets[k].outward, std::acos(cosine),
+                                          2 * std::numbers::pi * fraction(n * 0.5698402909980532));
+      const double far = kDistances[i % kDistances.size()] * distance;
+      const Pose view = look_at(targets[k].at + far * away,
+                                targets[k].at + kToMiddle[i / 3 % 3] * (middle - targets[k].at));
+      if (!reach.contains(view)) continue;
+      views.push_back(view);
+      break;
     }
   }
   return views;

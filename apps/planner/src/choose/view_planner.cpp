@@ -54,7 +54,7 @@ ProposerConfig proposer_config(const PlannerConfig& config, const ViewScorer& sc
   feasibility.reach = config.reach;
   feasibility.taken_tolerance = config.taken_tolerance;
   feasibility.max_near_share = config.max_near_share;
-  return {std::move(feasibility), config.check_feasibility};
+  return {std::move(feasibility), config.check_feasibility, scorer.sensor().working_distance};
 }
 
 PlanningConfig planning_config(const PlannerConfig& config, const GainConfig& gain) {

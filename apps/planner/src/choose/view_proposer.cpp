@@ -6,8 +6,13 @@
 #include <functional>
 #include <utility>
 
+#include "viewgain/planner/hazard_views.hpp"
+
 namespace viewgain {
 namespace {
+
+constexpr std::size_t kFromReach = 1200;  // views
+constexpr double kPlaces = 0.03;          // that they look at: apart [m]
 
 // Faces included, since a camera may stand on a limit.
 bool is_in_workspace(const BeliefGrid& grid, const Pose& pose) {
@@ -48,6 +53,12 @@ void ViewProposer::add_generation(std::shared_ptr<ViewpointGeneration> generatio
   generations_.push_back(std::move(generation));
 }
 
+bool ViewProposer::draws_from_reach() const {
+  const ReachRegion& reach = config_.feasibility.reach;
+  return !generations_.empty() && config_.distance_in_reach > 0 && !reach.is_everywhere() &&
+         reach.poses.empty();
+}
+
 bool ViewProposer::stays_inside(const BeliefGrid& grid) const {
   const std::vector<Pose>& views = grid.views();
   return config_.check_feasibility && config_.feasibility.reach.is_everywhere() && !views.empty() &&
@@ -78,6 +89,12 @@ Proposal ViewProposer::propose(const BeliefGrid& grid, std::shared_ptr<const Vox
     Proposal made = generation->generate(T_world_camera);
     std::move(made.candidates.begin(), made.candidates.end(), std::back_inserter(candidates));
     for (const auto& [reason, count] : made.dropped) proposal.dropped[reason] += count;
+  }
+  if (draws_from_reach()) {
+    add({std::string(kReachViews),
+         reachable_hazard_views(checker_.scene(), config_.feasibility.reach,
+                                config_.distance_in_reach, kPlaces, kFromReach)},
+        candidates);
   }
   keep_possible(std::move(candidates), of_sets, grid, reached, missed, proposal);
   return proposal;

@@ -136,7 +136,8 @@ std::string help_text(std::size_t candidates, const std::map<std::string, std::s
   for (const auto& [reason, count] : dropped) all += count;
   // What would help where most are dropped for one reason.
   for (const auto& [reason, what] :
-       {std::pair(kUnreachable, "out of reach: --generator boundary,shell adds poses within it"),
+       {std::pair(kUnreachable,
+                  "out of reach: a wider --reach or --generator boundary,shell would add some"),
         std::pair(std::string_view("too_near"), "too near: --distance puts them farther away")}) {
     const auto found = dropped.find(std::string(reason));
     if (found == dropped.end() || 2 * found->second <= all) continue;

@@ -77,8 +77,8 @@ struct VIEWGAIN_EXPORT MapUpdate {
   IntegrationReport counts{};                 ///< of all frames together
   std::size_t flying_pixels = 0;              ///< removed by the jump-edge filter
   /// Area of new surface in the first frame, perpendicular to the rays [m²]. Comparable with
-  /// ViewGain::area. It is Σ ω t² over readings in unknown voxels that are more than 1.2 pooling
-  /// lengths from known surface. NaN without ScorerConfig::learn_hazard.
+  /// ViewGain::area. It is Σ ω t² ρ(t) over readings in unknown voxels that are more than 1.2
+  /// pooling lengths from known surface. NaN without ScorerConfig::learn_hazard.
   double new_area = std::numeric_limits<double>::quiet_NaN();
   StageSeconds seconds{};  ///< "integrate": filters and map; "snapshot": what scenes are made of
 };

@@ -8,6 +8,7 @@
 
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/core/reach.hpp"
 #include "viewgain/raycast/voxel_scene.hpp"
 
 namespace viewgain {
@@ -30,5 +31,19 @@ inline constexpr std::string_view kHazardViews = "hazard";
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> hazard_views(const VoxelScene& scene,
                                                              double distance, double spacing,
                                                              std::size_t most);
+
+/// Who made candidates of reachable_hazard_views().
+inline constexpr std::string_view kReachViews = "reach_hazard";
+
+/// Views (T_world_camera) of the same places from where `reach` lets the camera be, at most
+/// `count`: places in turn by their area, each from 1, 1.6 or 2.5 times `distance` [m] and up to
+/// 75° beside where its faces look to. A view for which 16 tries find no reachable pose is left
+/// out. Deterministic; thread safe if the reach's predicate is. Throws and costs as hazard_views(),
+/// and up to 16 `count` calls of ReachRegion::contains().
+[[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> reachable_hazard_views(const VoxelScene& scene,
+                                                                       const ReachRegion& reach,
+                                                                       double distance,
+                                                                       double spacing,
+                                                                       std::size_t count);
 
 }  // namespace viewgain

@@ -44,6 +44,9 @@ struct VIEWGAIN_EXPORT ProposerConfig {
   FeasibilityConfig feasibility{};  ///< what is possible, and what is taken
   /// False: every candidate is possible but those that were taken or tried.
   bool check_feasibility = true;
+  /// Where reach is limited, candidates of generations are joined by 500 reachable_hazard_views()
+  /// of this distance [m]; 0: by none.
+  double distance_in_reach = 0;
 };
 
 /// Candidates of sets and generations, and which of them are possible. Where the map's views were
@@ -87,6 +90,7 @@ class VIEWGAIN_EXPORT ViewProposer {
   void keep_possible(std::vector<Candidate> candidates, std::size_t of_sets, const BeliefGrid& grid,
                      std::span<const Pose> reached, std::span<const Pose> missed,
                      Proposal& proposal);
+  [[nodiscard]] bool draws_from_reach() const;
   [[nodiscard]] bool stays_inside(const BeliefGrid& grid) const;
 
   ProposerConfig config_;

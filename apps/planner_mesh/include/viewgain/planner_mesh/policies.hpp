@@ -109,9 +109,9 @@ class VIEWGAIN_EXPORT OracleChoice {
   [[nodiscard]] std::size_t next(std::span<const Candidate> candidates) const;
 
   /// How many of the samples that the surface does not cover yet each candidate sees, in their
-  /// order. Costs up to two rays a sample and candidate.
-  [[nodiscard]] std::vector<std::size_t> uncovered_in_view(
-      std::span<const Candidate> candidates) const;
+  /// order; a sample at range t counts 1 / (1 + σ_ax(t) / V). Costs up to two rays a sample and
+  /// candidate.
+  [[nodiscard]] std::vector<double> uncovered_in_view(std::span<const Candidate> candidates) const;
   /// How many samples the map's points cover after a frame from there. Throws as
   /// SimulatedSensor::acquire(). Costs a simulated frame and a copy of the map.
   [[nodiscard]] std::size_t covered_after(const Pose& T_world_camera) const;
