@@ -4,7 +4,8 @@
 // rosbag2's files of SQLite: the tables `topics` and `messages`.
 #include <sqlite3.h>
 
-#include <array>
+#include <algorithm>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -21,7 +22,8 @@ class Db3Reader {
  public:
   Db3Reader(const std::filesystem::path& path, const MessageVisitor& visit, Warnings& warnings)
       : path_(path), visit_(visit), warnings_(warnings) {
-    (void)InputFile(path);  // a regular file
+    // No value is larger than the file; pages that lead to one another could make one up.
+    const std::uint64_t most = std::min(kMostRecordBytes, InputFile(path).left() + 4096);
     sqlite3* opened = nullptr;
     // Immutable: nothing is written beside the file, and no lock is waited for.
     const int code = sqlite3_open_v2(uri(path).c_str(), &opened,
@@ -29,7 +31,7 @@ class Db3Reader {
     db_.reset(opened);
     if (code != SQLITE_OK) fail(ErrorCode::io, "cannot be opened");
     // The file may be of anybody: no functions in its schema, no huge values.
-    sqlite3_limit(opened, SQLITE_LIMIT_LENGTH, static_cast<int>(kMostRecordBytes));
+    sqlite3_limit(opened, SQLITE_LIMIT_LENGTH, static_cast<int>(most));
     sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(opened, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
     sqlite3_db_config(opened, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
@@ -42,6 +44,7 @@ class Db3Reader {
     read_topics();
     warn_of_journal();
     const Statement rows = prepared("SELECT rowid, topic_id, data FROM messages ORDER BY rowid");
+    last_row_ = INT64_MIN;
     while (next(rows.get())) {
       const auto topic = topics_.find(sqlite3_column_int64(rows.get(), 1));
       if (topic == topics_.end()) continue;  // of a topic that was not written yet
@@ -82,11 +85,16 @@ class Db3Reader {
     return {statement, &sqlite3_finalize};
   }
 
-  // False at the end, also where the rest is damaged or missing.
+  // False at the end, also where the rest is damaged or missing; SQLite calls damaged sizes, too, a
+  // lack of memory.
   bool next(sqlite3_stmt* statement) {
-    const int code = sqlite3_step(statement);
-    if (code == SQLITE_ROW) return true;
-    if (code == SQLITE_NOMEM) throw std::bad_alloc();
+    int code = sqlite3_step(statement);
+    if (code == SQLITE_ROW) {
+      // Rows that come again are pages that lead in a circle.
+      const std::int64_t row = sqlite3_column_int64(statement, 0);
+      if (row > last_row_) return last_row_ = row, true;
+      code = SQLITE_CORRUPT;
+    }
     if (code != SQLITE_DONE) {
       warnings_.add(path_.string() + ": " + sqlite3_errmsg(db_.get()) +
                     ": the file is cut or damaged; it is read as far as it goes");
@@ -95,16 +103,17 @@ class Db3Reader {
   }
 
   void read_topics() {
-    const Statement rows = prepared("SELECT id, name, type, serialization_format FROM topics");
+    const Statement rows =
+        prepared("SELECT rowid, id, name, type, serialization_format FROM topics ORDER BY rowid");
     const auto text = [&](int column) {
       const auto* bytes = sqlite3_column_text(rows.get(), column);
       return bytes == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(bytes));
     };
     while (next(rows.get())) {
       topics_.insert_or_assign(
-          sqlite3_column_int64(rows.get(), 0),
-          Topic{text(1), message_type(text(2)),
-                text(3) == "cdr" ? MessageEncoding::cdr : MessageEncoding::other});
+          sqlite3_column_int64(rows.get(), 1),
+          Topic{text(2), message_type(text(3)),
+                text(4) == "cdr" ? MessageEncoding::cdr : MessageEncoding::other});
     }
   }
 
@@ -126,6 +135,7 @@ class Db3Reader {
   Warnings& warnings_;
   std::unique_ptr<sqlite3, decltype(&sqlite3_close)> db_{nullptr, &sqlite3_close};
   std::map<std::int64_t, Topic> topics_;
+  std::int64_t last_row_ = INT64_MIN;
 };
 
 }  // namespace
