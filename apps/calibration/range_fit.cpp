@@ -47,7 +47,7 @@ void RangeFit::add(const DepthFrame& frame, const Pose& T_world_camera, const st
     left_out_.push_back(name + ": " + std::to_string(saturated) + " pixels are saturated");
     return;
   }
-  // The wall's plane in the camera's frame: 1/z is linear in the ray. What is far off is no wall.
+  // The wall's plane in the camera's frame: 1/z is linear in the ray. Pixels far off are left out.
   std::vector<std::size_t> pixels;
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     const float z = frame.depth[i];

@@ -49,7 +49,7 @@ struct FrameCountsRead {
   std::size_t used = 0;
 };
 
-// What the calibration makes of the frames that can be used.
+// Runs the calibration on the frames that can be used.
 template <typename Calibration, typename Add>
 auto solved(const Options& options, const FrameSequence& frames, Calibration& calibration, Add add,
             FrameCountsRead& counts) {
@@ -190,7 +190,7 @@ Command add_calibrate(App& program) {
   app->add_flag("--range", options->range,
                 "measure the table range_calibration; some views should be turned by 10 to 30 deg");
   app->add_option("--sensor", options->sensor,
-                  kSensorHelp + "; default: FRAMES_DIR/sensor.toml. What is measured is replaced");
+                  kSensorHelp + "; default: FRAMES_DIR/sensor.toml. The measured part is replaced");
   app->add_option("--depth-scale", options->depth_scale,
                   "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
                   "poses.txt, 1e-3 with pose files)");
