@@ -39,11 +39,12 @@ bool TransformTree::add(const std::string& parent, const std::string& child, std
   const double norm =
       std::hypot(std::hypot(numbers[3], numbers[4]), std::hypot(numbers[5], numbers[6]));
   if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }) ||
-      std::abs(norm - 1) > 1e-2) {
+      std::abs(norm - 1) > 1e-2 || parent == child) {
     return false;
   }
-  Edge& edge = edges_[{child, parent}];
-  if (edge.parent.empty()) edge = {parent, child, is_static, {}};
+  const auto [found, is_new] = edges_.try_emplace({child, parent});
+  Edge& edge = found->second;
+  if (is_new) edge = {parent, child, is_static, {}};
   // A moving transform takes the place of a static one of the same frames.
   if (edge.is_static && !is_static) edge.poses.clear(), edge.is_static = false;
   if (!edge.is_static && is_static) return true;

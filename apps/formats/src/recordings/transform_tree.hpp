@@ -20,7 +20,8 @@ namespace viewgain {
 class TransformTree {
  public:
   /// T_parent_child as tx, ty, tz [m], qx, qy, qz, qw, at `stamp` [ns]. False, and nothing is
-  /// added, if a number is not finite or the quaternion's norm is off by over 1e-2.
+  /// added, if a number is not finite, the quaternion's norm is off by over 1e-2, or both frames
+  /// are one.
   bool add(const std::string& parent, const std::string& child, std::int64_t stamp,
            const std::array<double, 7>& numbers, bool is_static);
 

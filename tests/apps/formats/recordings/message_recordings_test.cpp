@@ -249,6 +249,9 @@ TEST_F(MessageRecordings, PosesMayComeFromATopic) {
     test::MessageFields pose = text.fields();
     pose.header(100 + along, "map").doubles(std::array<double, 7>{along, 0, 0, 0, 0, 0, 1});
     text.add("/pose", "geometry_msgs/msg/PoseStamped", pose);
+    test::MessageFields nameless = text.fields();  // as trackers send them, without a frame
+    nameless.header(100 + along, "").doubles(std::array<double, 7>{along, 0, 0, 0, 0, 0, 1});
+    text.add("/tracker", "geometry_msgs/msg/PoseStamped", nameless);
     test::MessageFields odometry = text.fields();
     odometry.header(100 + along, "odom").text("link");
     odometry.doubles(std::array<double, 7>{2 * along, 0, 0, 0, 0, 0, 1});
@@ -259,6 +262,8 @@ TEST_F(MessageRecordings, PosesMayComeFromATopic) {
   EXPECT_EQ(import(text, {"--poses", "/pose,0,0,0.2,0,0,0,1"})["world"], "map");
   EXPECT_NEAR(x_of(1), 0.15, 1e-9);
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.2, 1e-9);
+  EXPECT_TRUE(import(text, {"--poses", "/tracker,0,0,0.2,0,0,0,1"})["world"].is_null());
+  EXPECT_NEAR(x_of(4), 0.45, 1e-9);
   EXPECT_EQ(import(text, {"--poses", "/odom"})["world"], "odom");
   EXPECT_NEAR(x_of(1), 0.1 + 2 * 0.15, 1e-9);
   refuse(text, "/pose does not say where the camera is on its body", {"--poses", "/pose"});
@@ -344,7 +349,8 @@ TEST_F(MessageRecordings, WhatIsBrokenIsNamed) {
   test::MessageFields cut = some.fields();
   some.add(kTopic, "sensor_msgs/msg/Image", cut.put(std::uint32_t{5}));
   some.transform("/tf", 100.35, "base", "link", {0, 0, 0, 0, 0, 0, 2});
-  const json report = import(some, {}, "1 transforms are not rigid or damaged and are left out");
+  some.transform("/tf", 100.35, "link", "link", kStill);
+  const json report = import(some, {}, "2 transforms are not rigid or damaged and are left out");
   EXPECT_EQ(report["frames"], kImages);
   EXPECT_EQ(report["bad"], (json{{"unreadable", 3}, {"wrong_size", 1}}));
   EXPECT_EQ(report["warnings"].size(), 2);
