@@ -5,9 +5,9 @@
 
     make_recordings.py VIEWGAIN OUT_FOLDER
 
-Needs python3-rosbag, zstd and lz4 of Debian, node, and in the working folder npm's @mcap/core 2.1,
-@foxglove/rosmsg 5.0, @foxglove/rosmsg2-serialization 3.0 and @foxglove/rosmsg-msgs-common 3.2. Tests
-read what it has written, so that they need none of these.
+Needs python3-rosbag, python3-sensor-msgs, python3-tf2-msgs, zstd and lz4 of Debian, node, and in the
+working folder npm's @mcap/core 2.2, @foxglove/rosmsg 5.0, @foxglove/rosmsg2-serialization 3.1 and
+@foxglove/rosmsg-msgs-common 3.2. Tests read the committed files, so that they need none of these.
 
 Images come each 0.25 s and transforms each 1/30 s at other moments: the nearest transform is 16 mm
 off, and the images' log times are 80 ms late. The first and the last image have no transforms.
