@@ -16,6 +16,7 @@
 #include "apps/program_runner.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/png.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/support/json.hpp"
 
@@ -130,7 +131,7 @@ class MessageRecordings : public test::ProgramTest {
 };
 
 TEST_F(MessageRecordings, ComeThroughInEveryEncoding) {
-  for (const Kind kind : {Kind::little_cdr, Kind::big_cdr, Kind::ros1}) {
+  for (const Kind kind : {Kind::little_cdr, Kind::big_cdr, Kind::little_cdr2, Kind::ros1}) {
     const json report = import(good(kind));
     EXPECT_EQ(report["frames"], kImages);
     EXPECT_EQ(report["format"], "mcap");
@@ -170,6 +171,35 @@ TEST_F(MessageRecordings, FloatsAreAsRep117HasThem) {
   EXPECT_EQ(frame.depth[0], DepthFrame::kOutOfRange);
   for (std::size_t k = 1; k < 5; ++k) EXPECT_EQ(frame.depth[k], DepthFrame::kInvalid);
   EXPECT_NEAR(frame.depth[100], 0.51, 5e-5);
+}
+
+// What image_transport makes of floats: inverse depths as a PNG, and how they were quantised.
+TEST_F(MessageRecordings, CompressedFloatsAreInverseDepths) {
+  GrayImage inverse{kWidth, kHeight, {}};
+  for (std::size_t k = 0; k < kWidth * kHeight; ++k) {
+    inverse.pixels.push_back(static_cast<std::uint16_t>(k == 5 ? 0 : 900 + k));
+  }
+  write_png(dir / "inverse.png", inverse);
+  const std::array<float, 2> quantised{1000, -100};
+  std::string data(4, '\0');
+  data.append(reinterpret_cast<const char*>(quantised.data()), sizeof quantised);
+  const auto recording = [&](const std::string& format, const std::string& png) {
+    McapText text;
+    add_transforms(text);
+    add_info(text);
+    test::MessageFields message = text.fields();
+    message.header(image_time(0), "optical").text(format).blob(data + png);
+    text.add("/camera/depth/image_raw/compressedDepth", "sensor_msgs/msg/CompressedImage", message);
+    return text;
+  };
+  EXPECT_EQ(import(recording("32FC1; compressedDepth png", read("inverse.png")))["frames"], 1);
+  const DepthFrame frame = load_frame(open_frames(dir / "frames"), 0);
+  for (std::size_t k = 0; k < frame.depth.size(); ++k) {
+    const double z = k == 5 ? 0 : 1000.0 / (1000.0 + static_cast<double>(k));
+    ASSERT_NEAR(frame.depth[k], z, 6e-5) << k;
+  }
+  refuse(recording("16UC1; compressedDepth rvl", "\1\2\3\4"), "no topic has depth images");
+  refuse(recording("rgb8; jpeg compressed bgr8", "\xff\xd8"), "no topic has depth images");
 }
 
 TEST_F(MessageRecordings, CamerasAreThoseOfTheImages) {

@@ -17,15 +17,18 @@ namespace viewgain::test {
 /// ROS 1 has them. Its own code: nothing of the readers is in it.
 class MessageFields {
  public:
-  enum class Kind : std::uint8_t { little_cdr, big_cdr, ros1 };
+  enum class Kind : std::uint8_t { little_cdr, big_cdr, little_cdr2, ros1 };
 
   explicit MessageFields(Kind kind) : kind_(kind) {
-    if (kind != Kind::ros1) bytes_ = {'\0', kind == Kind::big_cdr ? '\0' : '\1', '\0', '\0'};
+    constexpr std::array kCdr{'\1', '\0', '\7'};
+    if (kind != Kind::ros1) bytes_ = {'\0', kCdr.at(static_cast<std::size_t>(kind)), '\0', '\0'};
   }
 
   template <typename Number>
   MessageFields& put(Number value) {
-    while (kind_ != Kind::ros1 && (bytes_.size() - 4) % sizeof value != 0) bytes_ += '\0';
+    const std::size_t most = kind_ == Kind::little_cdr2 ? 4 : 8;
+    const std::size_t to = std::min(sizeof value, most);
+    while (kind_ != Kind::ros1 && (bytes_.size() - 4) % to != 0) bytes_ += '\0';
     auto raw = std::bit_cast<std::array<char, sizeof value>>(value);
     if (kind_ == Kind::big_cdr) std::reverse(raw.begin(), raw.end());
     bytes_.append(raw.data(), raw.size());
