@@ -55,7 +55,8 @@ void MessageTopics::note(const Message& message) {
       const bool is_same = calibration_of(known->second.first) == calibration_of(info);
       known->second.others += is_same ? 0 : 1;
     }
-  } catch (const Error&) {  // images are counted in the second pass
+  } catch (const Error& error) {  // images are counted in the second pass
+    if (topic.fault.empty() && topic.encoding.empty()) topic.fault = error.what();
   }
 }
 
@@ -84,6 +85,9 @@ std::string MessageTopics::chosen_depth_topic(const std::filesystem::path& sourc
            "; choose one by --depth-topic");
     }
     if (names.size() == 1) return names.front();
+  }
+  for (const auto& [name, topic] : topics_) {
+    if (!topic.fault.empty() && is_image_type(topic.type)) fail("no depth images; " + topic.fault);
   }
   fail(topics_.empty() ? "holds no message"
                        : "no topic has depth images (sensor_msgs/Image of 16UC1, 32FC1 or mono16, "

@@ -18,6 +18,7 @@ struct SeenTopic {
   std::string encoding, frame;  ///< of the first image
   double farthest = 0;          ///< finite depth of 32FC1 [m]
   bool is_read = true;          ///< ROS 1 or CDR
+  std::string fault{};          ///< why its first image cannot be read
 };
 
 /// The topics of a recording: which one has the depth images, and their camera.
