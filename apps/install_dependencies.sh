@@ -16,6 +16,7 @@ packages=(
   g++ cmake ninja-build
   libeigen3-dev libembree-dev libopenvdb-dev libtbb-dev libcgal-dev libhwy-dev
   libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev zlib1g-dev
+  libzstd-dev liblz4-dev libbz2-dev libsqlite3-dev
   libcgal-demo
 )
 # Node.js may come from elsewhere than Debian.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes every picture of the READMEs and the site from the program's own output: apps/docs/gallery/, perf/*.png, apps/docs/figures/*.png. Needs a
 # full build and some minutes of a quiet machine; coverage, which makes a study, some hours.
-#   apps/make_pictures.sh [demo] [gains] [idea] [speed] [coverage] [approximate] [scaling] [depth_images] [scales]; default: all
+#   apps/make_pictures.sh [demo] [gains] [idea] [speed] [coverage] [approximate] [scaling] [depth_images] [scales] [own_camera]; default: all
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export PATH=$PWD/build/release/bin:$PATH PYTHONPATH=$PWD/build/release/python
@@ -10,7 +10,7 @@ gallery=apps/docs/gallery
 work=build/pictures
 mkdir -p "$work"
 wanted=("$@")
-[ "${#wanted[@]}" -gt 0 ] || wanted=(demo gains idea speed coverage approximate scaling depth_images scales)
+[ "${#wanted[@]}" -gt 0 ] || wanted=(demo gains idea speed coverage approximate scaling depth_images scales own_camera)
 
 # What demo.sh makes, kept for the pictures that show it.
 demo() {
@@ -58,6 +58,11 @@ for picture in "${wanted[@]}"; do
       examples=$PWD/apps/examples
       (cd "$work" && MPLBACKEND=agg "$python" "$examples/depth_images.py")
       for part in gains known why; do cp "$work/$part.png" "apps/docs/figures/depth_images_$part.png"; done ;;
+    own_camera)
+      data=tests/data/recordings
+      viewgain import $data/arm_zstd.mcap --sensor $data/frames/sensor.toml --out "$work/own/frames"
+      viewgain model "$work/own/frames" --voxel 0.01 --workspace=-0.26,-0.26,-0.26,0.26,0.26,0.26 --out "$work/own/run"
+      viewgain render "$work/own/run" surface --viewer 40,25,640 --out apps/docs/figures/own_camera.png ;;
     *) echo "apps/make_pictures.sh: no picture $picture" >&2; exit 2 ;;
   esac
 done

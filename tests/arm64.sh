@@ -20,7 +20,7 @@ export DEBIAN_FRONTEND=noninteractive LC_ALL=C CCACHE_DIR=/ccache CCACHE_MAXSIZE
 dpkg --add-architecture arm64
 apt-get update -qq
 apt-get install -y -qq --no-install-recommends cmake ninja-build ccache g++-aarch64-linux-gnu qemu-user-static libeigen3-dev \
-  libcli11-dev nlohmann-json3-dev lib{embree,openvdb,tbb,hwy,gtest,cgal,png,tomlplusplus,octomap,gmp,mpfr}-dev:arm64 zlib1g-dev:arm64 >/dev/null
+  libcli11-dev nlohmann-json3-dev lib{embree,openvdb,tbb,hwy,gtest,cgal,png,tomlplusplus,zstd,lz4,bz2,sqlite3,octomap,gmp,mpfr}-dev:arm64 zlib1g-dev:arm64 >/dev/null
 cd /source
 cmake -B build/arm64 -G Ninja -DCMAKE_TOOLCHAIN_FILE=cmake/aarch64-linux-gnu.cmake -DCMAKE_BUILD_TYPE=Release -DVIEWGAIN_WERROR=ON \
   -DVIEWGAIN_BUILD_PYTHON=OFF -DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/configure.log 2>&1 ||

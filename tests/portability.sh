@@ -38,7 +38,7 @@ cmake --build --preset release --target docs
 
 echo "Debian $(cat /etc/debian_version):"
 for package in g++ cmake libembree-dev libopenvdb-dev libcgal-dev libeigen3-dev libtbb-dev libhwy-dev \
-  libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev liboctomap-dev libgtest-dev \
+  libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev libzstd-dev liblz4-dev libbz2-dev libsqlite3-dev liboctomap-dev libgtest-dev \
   libbenchmark-dev python3 python3-numpy python3-pytest pybind11-dev \
   doxygen python3-sphinx furo; do
   dpkg-query -W -f '  ${Package} ${Version}\n' "$package" 2>/dev/null || true

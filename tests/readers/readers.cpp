@@ -68,6 +68,12 @@ void load_recording(const fs::path& folder) {
   (void)import_recording(folder, folder.string() + "/frames", config);
 }
 
+void load_messages(const fs::path& file) {
+  ImportConfig config;
+  config.sensor = small_sensor();
+  (void)import_recording(file, file.parent_path() / "frames", config);
+}
+
 std::string binary_ply(const std::string& order) {
   std::string bytes = "ply\nformat binary_" + order +
                       "_endian 1.0\nelement vertex 4\nproperty float x\nproperty float "
@@ -201,6 +207,33 @@ std::vector<Reader> frame_readers() {
           {"tum", write_tum_recording, {"depth.txt", "groundtruth.txt"}, load_recording, 20}};
 }
 
+// Recordings that the formats' own writers have written.
+std::vector<Reader> recording_readers() {
+  std::vector<Reader> readers;
+  for (const auto& [name, file] :
+       {std::pair("mcap", "tiny_plain.mcap"), std::pair("bag", "tiny_none.bag"),
+        std::pair("db3", "tiny.db3")}) {
+    const std::string bytes = read_all(fs::path(VIEWGAIN_DATA) / "recordings" / file);
+    readers.push_back(file_reader(std::string("recording.") + name, bytes, load_messages));
+    readers.back().name = name;
+    readers.back().one_in = 8;
+  }
+  readers.push_back(
+      {"transforms.json",
+       [](const TemporaryFolder& folder) {
+         write_images(folder, "depth", {"1.png", "2.png"});
+         folder.file("transforms.json",
+                     R"({"camera_model": "OPENCV", "w": 8, "h": 6, "fl_x": 9.5, "cx": 4, "cy": 3,
+ "k1": 0.01, "integer_depth_scale": 0.001, "frames": [
+ {"depth_file_path": "depth/1.png", "transform_matrix": [[1,0,0,0.5],[0,1,0,0],[0,0,1,0],[0,0,0,1]]},
+ {"depth_path": "./depth/2.png", "transform_matrix": [[1,0,0,1],[0,0,-1,2],[0,1,0,3],[0,0,0,1]]}]})");
+       },
+       {"transforms.json"},
+       [](const fs::path& folder) { load_messages(folder / "transforms.json"); },
+       8});
+  return readers;
+}
+
 std::vector<Reader> cloud_and_map_readers() {
   const auto cloud = [](const fs::path& path) { (void)load_cloud(path); };
   const auto map = [](const fs::path& path) { (void)load_octomap(path); };
@@ -275,8 +308,9 @@ std::vector<Reader> state_readers() {
 
 std::vector<Reader> all_readers() {
   std::vector<Reader> all;
-  for (const auto& some : {pose_readers(), settings_readers(), image_readers(), frame_readers(),
-                           cloud_and_map_readers(), mesh_readers(), state_readers()}) {
+  for (const auto& some :
+       {pose_readers(), settings_readers(), image_readers(), frame_readers(), recording_readers(),
+        cloud_and_map_readers(), mesh_readers(), state_readers()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;

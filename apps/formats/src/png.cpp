@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "png_bytes.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_bytes.hpp"
@@ -20,6 +21,8 @@
 
 namespace viewgain {
 namespace {
+
+constexpr std::size_t kSizeEnd = 24;  // of a file's signature and size
 
 // Everything that must survive libpng's longjmp lives here, outside of the functions that it
 // leaves.
@@ -156,7 +159,23 @@ void write_image(const std::filesystem::path& path, int width, int height, int c
   write_file_atomically(path, bytes);
 }
 
-// Runs libpng's reading on the file, of the size that `image` has.
+// Runs libpng's reading on the bytes, of the size that `image` has; `name` for messages.
+template <typename Image>
+Image decoded(std::string bytes, const std::filesystem::path& name, const Wanted& wanted,
+              Image image) {
+  PngState state;
+  state.bytes = std::move(bytes);
+  state.message.resize(160);
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &state, on_error, on_warning);
+  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
+  const bool ok = info != nullptr && decode(png, info, state, wanted, image);
+  png_destroy_read_struct(&png, &info, nullptr);
+  if (!ok) {
+    fail(ErrorCode::format, name, "not a usable image: " + std::string(state.message.c_str()));
+  }
+  return image;
+}
+
 template <typename Image>
 Image read_image(const std::filesystem::path& path, const Wanted& wanted, Image image) {
   if (image.width <= 0 || image.height <= 0) {
@@ -164,34 +183,12 @@ Image read_image(const std::filesystem::path& path, const Wanted& wanted, Image 
          "asked for as " + std::to_string(image.width) + " x " + std::to_string(image.height) +
              " px");
   }
-  PngState state;
-  state.bytes = folder_file_bytes(path);
-  state.message.resize(160);
-  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &state, on_error, on_warning);
-  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
-  const bool ok = info != nullptr && decode(png, info, state, wanted, image);
-  png_destroy_read_struct(&png, &info, nullptr);
-  if (!ok) {
-    fail(ErrorCode::format, path, "not a usable image: " + std::string(state.message.c_str()));
-  }
-  return image;
+  return decoded(folder_file_bytes(path), path, wanted, std::move(image));
 }
 
-}  // namespace
-
-GrayImage read_gray_png(const std::filesystem::path& path, int width, int height) {
-  constexpr Wanted kWanted{16, 16, "not a 16-bit grayscale image"};
-  return read_image<GrayImage>(path, kWanted, {width, height, {}});
-}
-
-Gray8Image read_gray8_png(const std::filesystem::path& path, int width, int height) {
-  constexpr Wanted kWanted{1, 8, "not a grayscale image of 1 to 8 bits"};
-  return read_image<Gray8Image>(path, kWanted, {width, height, {}});
-}
-
-std::array<int, 2> png_size(const std::filesystem::path& path) {
+// Width and height in a file's first bytes.
+std::array<int, 2> size_in(const std::filesystem::path& path, std::string_view head) {
   constexpr std::string_view kBegin("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
-  const std::string head = file_head(path, kBegin.size() + 8);
   const auto number = [&head](std::size_t at) {
     std::uint32_t value = 0;
     for (std::size_t i = at; i < at + 4; ++i) {
@@ -200,11 +197,39 @@ std::array<int, 2> png_size(const std::filesystem::path& path) {
     return value;
   };
   constexpr std::uint32_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (head.size() < kBegin.size() + 8 || !head.starts_with(kBegin) ||
-      number(kBegin.size()) > kMost || number(kBegin.size() + 4) > kMost) {
+  if (head.size() < kSizeEnd || !head.starts_with(kBegin) || number(kBegin.size()) > kMost ||
+      number(kBegin.size() + 4) > kMost) {
     fail(ErrorCode::format, path, "not a usable image: not a PNG file");
   }
   return {static_cast<int>(number(kBegin.size())), static_cast<int>(number(kBegin.size() + 4))};
+}
+
+constexpr Wanted kGray16{16, 16, "not a 16-bit grayscale image"};
+
+}  // namespace
+
+GrayImage read_gray_png(const std::filesystem::path& path, int width, int height) {
+  return read_image<GrayImage>(path, kGray16, {width, height, {}});
+}
+
+GrayImage gray_image_of_png(std::string_view bytes) {
+  const std::filesystem::path name = "PNG";
+  const auto [width, height] = size_in(name, bytes);
+  constexpr std::int64_t kMostPixels = std::int64_t{1} << 24U;
+  if (width == 0 || height == 0 || std::int64_t{width} * height > kMostPixels) {
+    fail(ErrorCode::format, name,
+         "an image of " + std::to_string(width) + " x " + std::to_string(height) + " px");
+  }
+  return decoded<GrayImage>(std::string(bytes), name, kGray16, {width, height, {}});
+}
+
+Gray8Image read_gray8_png(const std::filesystem::path& path, int width, int height) {
+  constexpr Wanted kWanted{1, 8, "not a grayscale image of 1 to 8 bits"};
+  return read_image<Gray8Image>(path, kWanted, {width, height, {}});
+}
+
+std::array<int, 2> png_size(const std::filesystem::path& path) {
+  return size_in(path, file_head(path, kSizeEnd));
 }
 
 void write_png(const std::filesystem::path& path, const GrayImage& image) {

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <map>
@@ -8,6 +10,7 @@
 #include <string>
 
 #include "calibration/noise_calibration.hpp"
+#include "calibration/range_fit.hpp"
 #include "program/cli/flags/common_options.hpp"
 #include "program/cli/flags/frame_folder.hpp"
 #include "program/cli/progress.hpp"
@@ -25,41 +28,117 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string frames;
-  bool noise = false;
+  bool noise = false, range = false;
   std::string sensor;
   std::optional<double> depth_scale;
   std::string out;
 };
 
-void calibrate(const Options& options) {
-  const Stopwatch watch;
-  FrameSequence frames =
-      opened(&open_depth_images, options.frames, options.sensor, options.depth_scale);
+// The frames that both calibrations read, without an earlier range calibration for `range`.
+FrameSequence opened_frames(const Options& options, OpenFrames open) {
+  FrameSequence frames = opened(open, options.frames, options.sensor, options.depth_scale);
   frames.out_of_range = Sensor::OutOfRange::invalid;
   frames.is_out_of_range_assumed = false;
   warn_of_assumptions(options.frames, frames);
-  NoiseCalibration calibration(frames.sensor, frames.depth_scale);
-  std::map<std::string, std::size_t> bad;
+  if (options.range) frames.sensor.range_calibration = {};
+  return frames;
+}
+
+struct FrameCountsRead {
+  std::map<std::string, std::size_t> bad{};
   std::size_t used = 0;
+};
+
+// Runs the calibration on the frames that can be used.
+template <typename Calibration, typename Add>
+auto solved(const Options& options, const FrameSequence& frames, Calibration& calibration, Add add,
+            FrameCountsRead& counts) {
   std::string fault;  // of the first frame that cannot be used
   Progress progress("frame", options.common.quiet);
   for (std::size_t i = 0; i < frames.images.size(); ++i) {
     progress.update(i + 1, frames.images.size());
     const FrameReading reading = read_frame(frames, i);
     if (reading.fault.verdict != FrameVerdict::used) {
-      ++bad[std::string(frame_verdict_name(reading.fault.verdict))];
+      ++counts.bad[std::string(frame_verdict_name(reading.fault.verdict))];
       if (fault.empty()) fault = "; " + reading.fault.what;
       continue;
     }
-    calibration.add(reading.frame);
-    ++used;
+    add(i, reading.frame);
+    ++counts.used;
   }
-  NoiseCalibrationResult result;
   try {
-    result = calibration.solve();
+    return calibration.solve();
   } catch (const Error& error) {
     throw Error(error.code(), error.what() + fault);
   }
+}
+
+void calibrate_range(const Options& options) {
+  const Stopwatch watch;
+  const FrameSequence frames = opened_frames(options, &open_frames);
+  RangeFit fit(frames.sensor);
+  FrameCountsRead counts;
+  const RangeFitResult result = solved(
+      options, frames, fit,
+      [&](std::size_t i, const DepthFrame& frame) {
+        fit.add(frame, frames.poses[i], frames.images[i].filename().string());
+      },
+      counts);
+  write_sensor_toml(options.out, result.sensor);
+  for (const std::string& text : result.left_out) {
+    std::fprintf(stderr, "viewgain: warning: left out: %s\n", printable(text).c_str());
+  }
+  double largest = 1e-6;  // error [m]
+  for (const RangeStep& step : result.steps) largest = std::max(largest, std::abs(step.error));
+  Json steps = Json::array();
+  if (!options.common.json) {
+    std::printf("%10s %10s %14s\n", "range [m]", "error [mm]", "residual [mm]");
+  }
+  for (const RangeStep& step : result.steps) {
+    steps.push_back({{"range", step.range},
+                     {"error", step.error},
+                     {"residual", step.residual},
+                     {"pixels", step.pixels}});
+    if (options.common.json) continue;
+    const auto bar = static_cast<int>(std::round(20 * std::abs(step.error) / largest));
+    const std::string left(static_cast<std::size_t>(step.error < 0 ? 20 - bar : 20), ' ');
+    std::printf("%10.3f %10.2f %14.2f  %s%s\n", step.range, 1e3 * step.error, 1e3 * step.residual,
+                left.c_str(), std::string(static_cast<std::size_t>(bar), '#').c_str());
+  }
+  if (options.common.json) {
+    print_json({{"frames", counts.used - result.left_out.size()},
+                {"bad", counts.bad},
+                {"left_out", result.left_out},
+                {"sensor", result.sensor.name},
+                {"depth_scale", frames.depth_scale},
+                {"distances", result.distances},
+                {"rms_before", result.rms_before},
+                {"rms_after", result.rms_after},
+                {"offset_sigma", result.offset_sigma},
+                {"steps", steps},
+                {"out", options.out},
+                {"seconds", watch.seconds()}});
+    return;
+  }
+  std::printf("%zu frames at %zu distances: error %.2f mm RMS, %.2f mm with the table\n",
+              counts.used - result.left_out.size(), result.distances, 1e3 * result.rms_before,
+              1e3 * result.rms_after);
+  if (!counts.bad.empty()) std::printf("left out: %s\n", counts_text(counts.bad).c_str());
+  std::printf("%s: %s with this range_calibration\n", options.out.c_str(),
+              result.sensor.name.c_str());
+}
+
+void calibrate(const Options& options) {
+  if (options.noise == options.range) refuse("give one of --noise and --range");
+  if (options.range) return calibrate_range(options);
+  const Stopwatch watch;
+  const FrameSequence frames = opened_frames(options, &open_depth_images);
+  NoiseCalibration calibration(frames.sensor, frames.depth_scale);
+  FrameCountsRead counts;
+  const NoiseCalibrationResult result = solved(
+      options, frames, calibration,
+      [&](std::size_t, const DepthFrame& frame) { calibration.add(frame); }, counts);
+  const auto& [bad, used] = counts;
   write_sensor_toml(options.out, result.sensor);
   if (options.common.json) {
     Json steps = Json::array();
@@ -101,14 +180,17 @@ Command add_calibrate(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "calibrate",
-      "How a depth camera's readings scatter, from 30 frames or more of a static scene: a sensor "
-      "file with sigma_ax and sigma_lat in the sensor's own noise model.");
-  app->add_option("FRAMES_DIR", options->frames, "folder of frames from one pose")->required();
+      "Measures a depth camera and writes a sensor file. --noise: how readings scatter, from 30 "
+      "frames or more of a static scene from one pose. --range: by how much ranges are off, from "
+      "frames of one flat wall at 8 distances or more with poses.");
+  app->add_option("FRAMES_DIR", options->frames, "folder of frames")->required();
   app->add_flag("--noise", options->noise,
-                "what is measured; the scene needs edges before a wall, poses need not be there")
-      ->required();
+                "measure sigma_ax and sigma_lat, in the sensor's own noise model; the scene needs "
+                "edges before a wall, poses need not be there");
+  app->add_flag("--range", options->range,
+                "measure the table range_calibration; some views should be turned by 10 to 30 deg");
   app->add_option("--sensor", options->sensor,
-                  kSensorHelp + "; default: FRAMES_DIR/sensor.toml. Its noise is replaced");
+                  kSensorHelp + "; default: FRAMES_DIR/sensor.toml. The measured part is replaced");
   app->add_option("--depth-scale", options->depth_scale,
                   "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
                   "poses.txt, 1e-3 with pose files)");

@@ -21,34 +21,65 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string source;
-  std::string format = "tum";
+  std::string format = "auto";
   std::string sensor;
   std::string intrinsics;
-  double max_time_gap = ImportConfig{}.max_time_gap;
+  std::optional<double> max_time_gap;
+  std::optional<double> depth_scale;
+  std::string world, depth_topic, poses;
   std::string mask, confidence;
   std::string out;
 };
 
-void check(const Options& options) {
-  check_at_least_0("--max-time-gap", options.max_time_gap);
-  if (options.intrinsics.empty() && options.sensor.empty()) {
-    refuse("--intrinsics or --sensor is needed: a recording does not say its camera");
+// In the order of RecordingFormat.
+const std::vector<std::string> kFormats{"tum", "mcap", "rosbag2", "rosbag", "transforms"};
+
+bool has_messages(RecordingFormat format) {
+  return format != RecordingFormat::tum && format != RecordingFormat::transforms;
+}
+
+void check(const Options& options, RecordingFormat format) {
+  const std::string& found = kFormats.at(static_cast<std::size_t>(format));
+  if (options.format != "auto" && options.format != found) {
+    refuse("--format", options.format, "SOURCE " + options.source + " is of the format " + found);
+  }
+  if (options.max_time_gap) check_at_least_0("--max-time-gap", *options.max_time_gap);
+  if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
+  if (format == RecordingFormat::tum && options.intrinsics.empty() && options.sensor.empty()) {
+    refuse(
+        "--intrinsics or --sensor is needed: a recording in TUM's layout does not say its camera");
+  }
+  for (const auto& [flag, value] :
+       {std::pair("--world", options.world), std::pair("--depth-topic", options.depth_topic),
+        std::pair("--poses", options.poses)}) {
+    if (value.empty() || has_messages(format)) continue;
+    refuse(flag, value, "is for recordings of messages, and SOURCE is of the format " + found);
   }
 }
 
-// From the flag, else the sensor's.
-PinholeCamera camera_of(const Options& options, const std::optional<Sensor>& sensor) {
-  if (options.intrinsics.empty()) return sensor->camera;
+// Of --poses TOPIC[,tx,ty,tz,qx,qy,qz,qw].
+void parse_poses(const std::string& text, ImportConfig& config) {
+  const std::size_t comma = text.find(',');
+  config.pose_topic = text.substr(0, comma);
+  if (comma != std::string::npos) {
+    config.T_body_camera = parse_pose("--poses", text.substr(comma + 1));
+  }
+}
+
+// Of the flag; without it of the library's choice.
+PinholeCamera camera_of(const Options& options) {
+  if (options.intrinsics.empty()) return {};
   const std::vector<double> k = parse_numbers("--intrinsics", options.intrinsics, 4, 4);
   return {0, 0, k[0], k[1], k[2], k[3], {}};
 }
 
-void print_summary(const Options& options, const ImportReport& report,
+void print_summary(const Options& options, RecordingFormat format, const ImportReport& report,
                    const std::optional<Sensor>& sensor, double seconds) {
   const PinholeCamera& camera = report.camera;
   const std::map<std::string, std::size_t> bad = bad_frames(report.bad);
   if (options.common.json) {
-    Json json{{"frames", report.frames},
+    Json json{{"format", kFormats.at(static_cast<std::size_t>(format))},
+              {"frames", report.frames},
               {"bad", bad},
               {"orthonormalized_poses", report.orthonormalized},
               {"width", camera.width},
@@ -57,6 +88,10 @@ void print_summary(const Options& options, const ImportReport& report,
               {"readings", report.readings},
               {"masks", report.masks},
               {"masked_pixels", report.masked_pixels},
+              {"depth_scale", report.depth_scale},
+              {"depth_topic", or_null(report.depth_topic)},
+              {"world", or_null(report.world)},
+              {"warnings", report.warnings},
               {"sensor", sensor ? Json(sensor->name) : Json()},
               {"out", options.out},
               {"seconds", seconds}};
@@ -64,6 +99,10 @@ void print_summary(const Options& options, const ImportReport& report,
   }
   std::printf("%zu frames of %dx%d px, %s readings: %s\n", report.frames, camera.width,
               camera.height, with_commas(report.readings).c_str(), options.out.c_str());
+  if (has_messages(format)) {
+    std::printf("depths of %s, poses in %s\n", printable(report.depth_topic).c_str(),
+                printable(report.world).c_str());
+  }
   if (!bad.empty()) std::printf("left out: %s\n", counts_text(bad).c_str());
   print_mended(report.orthonormalized);
   if (!options.mask.empty() || !options.confidence.empty()) {
@@ -74,19 +113,28 @@ void print_summary(const Options& options, const ImportReport& report,
 
 void import_frames(const Options& options) {
   const Stopwatch watch;
-  check(options);
+  const RecordingFormat format = recording_format(options.source);
+  check(options, format);
   ImportConfig config;
   if (!options.sensor.empty()) config.sensor = load_sensor(options.sensor);
   config.masks = options.mask;
   const Confidence confidence = parse_confidence(options.confidence);
   config.confidences = confidence.folder;
   config.least_confidence = confidence.least;
-  config.camera = camera_of(options, config.sensor);
+  config.camera = camera_of(options);
   config.max_time_gap = options.max_time_gap;
+  config.depth_scale = options.depth_scale;
+  config.world = options.world;
+  config.depth_topic = options.depth_topic;
+  parse_poses(options.poses, config);
   Progress progress("frame", options.common.quiet);
   config.progress = [&progress](std::size_t done, std::size_t of) { progress.update(done, of); };
   const ImportReport report = import_recording(options.source, options.out, config);
-  print_summary(options, report, config.sensor, watch.seconds());
+  progress.wipe();
+  for (const std::string& warning : report.warnings) {
+    std::fprintf(stderr, "viewgain: warning: %s\n", printable(warning).c_str());
+  }
+  print_summary(options, format, report, config.sensor, watch.seconds());
 }
 
 }  // namespace
@@ -95,20 +143,34 @@ Command add_import(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "import",
-      "A recording in TUM's layout (depth.txt, groundtruth.txt, images in 1/5000 m) as a folder of "
-      "frames that integrate reads. Frames that cannot be used are left out and counted by reason: "
-      "no_pose, lost_pose, unreadable, wrong_size.");
-  app->add_option("SOURCE", options->source, "folder of the recording")->required();
-  app->add_option("--format", options->format,
-                  "layout of the recording, of which there is one: tum")
-      ->check(one_of({"tum"}, "layout"));
+      "A recording as a folder of frames that integrate and model read: MCAP, rosbag2 (.db3) or "
+      "ROS 1 (.bag) with depth images and tf, transforms.json of nerfstudio or instant-ngp with "
+      "depth images, or TUM's layout (depth.txt, groundtruth.txt, images in 1/5000 m). Frames that "
+      "cannot be used are left out and counted by reason: no_pose, lost_pose, unreadable, "
+      "wrong_size.");
+  app->add_option("SOURCE", options->source, "file of the recording, or its folder")->required();
+  std::vector<std::string> formats{"auto"};
+  formats.insert(formats.end(), kFormats.begin(), kFormats.end());
+  app->add_option("--format", options->format, "format of the recording; auto: from its contents")
+      ->check(one_of(formats, "format"));
   app->add_option("--sensor", options->sensor,
                   kSensorHelp +
-                      ", whose noise and ranges the folder is to say; its intrinsics, too, "
-                      "without --intrinsics");
-  app->add_option("--intrinsics", options->intrinsics, "fx,fy,cx,cy [px]; default: the sensor's");
+                      ", whose noise and ranges the folder is to say; its intrinsics, too, if "
+                      "neither --intrinsics nor the recording has them");
+  app->add_option("--intrinsics", options->intrinsics,
+                  "fx,fy,cx,cy [px] (default: the recording's, else the sensor's)");
+  app->add_option("--depth-topic", options->depth_topic,
+                  "topic of the depth images (default: the only one)");
+  app->add_option("--world", options->world,
+                  "tf frame that is the world (default: the topmost parent of the images' frame)");
+  app->add_option("--poses", options->poses,
+                  "TOPIC[,tx,ty,tz,qx,qy,qz,qw]: topic of PoseStamped or Odometry to use in place "
+                  "of tf, and the camera's pose on its body");
   app->add_option("--max-time-gap", options->max_time_gap,
-                  "between an image and its pose [s]; nothing is interpolated");
+                  "largest time between an image and the nearer of the two transforms beside it "
+                  "(default: 0.1), in TUM's layout and its pose (0.02) [s]");
+  app->add_option("--depth-scale", options->depth_scale,
+                  "metres per unit of 16-bit depth images (default: the recording's, 1e-3)");
   add_mask_options(*app, options->mask, options->confidence);
   app->add_option(
          "--out", options->out,

@@ -204,9 +204,6 @@ class GainAccumulator : public VoxelSums {
   std::vector<double> each_;  // what voxels gain, unknown ones first; for weights and the trace
 };
 
-/// Frontal sigmas of a sensor in the form the kernels take.
-[[nodiscard]] FrontalSigmas frontal_sigmas(const Sensor& sensor);
-
 /// A voxel that a ray may end in, and what the ray would show there.
 struct SurfaceShare {
   int lane;     ///< the ray's, in its tile

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "gain_kernels.hpp"
+#include "frontal_sigmas.hpp"
 
 namespace viewgain::detail {
 

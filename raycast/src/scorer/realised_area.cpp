@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "gain/evaluator_core.hpp"
+#include "gain/frontal_sigmas.hpp"
 
 namespace viewgain::detail {
 namespace {

@@ -383,7 +383,7 @@ TEST_F(Recordings, FlagsThatDoNotFitAreRefused) {
        {call({"--intrinsics", "60,-60,23.5,17.5"}), "fy"},
        {{"import", "nowhere", "--sensor", "small.toml", "--out", "frames"}, "nowhere"},
        {{"import", "rec", "--format", "bop", "--sensor", "small.toml", "--out", "frames"},
-        "bop is no layout; there is tum"},
+        "bop is no format; there are auto, tum"},
        {{"import", "rec", "--sensor", "small.toml"}, "--out"}});
 }
 

@@ -8,6 +8,7 @@
 An entry names the capability, the call and what must hold of its JSON. Ends with 1 if one fails.
 """
 import json
+import math
 import pathlib
 import shutil
 import struct
@@ -54,6 +55,8 @@ CALLS = [
     ("a table and a room", "simulate cube.off --size 0.2 --place center,0,0,0.1 --sensor sr4000 --poses dome:2,0.6 "
      "--support-plane 0 --background 2 --out on_table", lambda j: j["support_plane"] == 0),
     ("frames into a map", f"integrate frames {MAP} --out map.vdb", lambda j: j["frames"] == 6 and j["occupied"] > 100),
+    ("recordings of messages", "import arm_zstd.mcap --sensor arm.toml --out imported",
+     lambda j: j["frames"] == 12 and j["bad"] == {"no_pose": 2} and j["world"] == "world"),
     ("a map goes on", "integrate frames --map map.vdb --out map.vdb", lambda j: j["skipped"] == 6),
     ("point clouds", "integrate --cloud cloud.ply --origin 0,0,0 --voxel 0.001 --sensor sr4000 --out cloud.vdb",
      lambda j: j["clouds"] == 1 and j["occupied"] == 2),
@@ -101,6 +104,9 @@ CALLS = [
     ("surface and points, held against a mesh", "surface model --out s.ply --points p.ply --truth cube.off --size 0.2 --place center",
      lambda j: j["points"] > 100),
     ("calibration of noise", "calibrate static --noise --sensor sr4000 --out measured.toml", lambda j: 0.003 < j["steps"][0]["sigma_axial"] < 0.006),
+    ("a wall", "simulate wall.off --poses wall_poses.txt --background 0 --sensor sr4000 --out walls", lambda j: j["frames"] == 8),
+    ("calibration of ranges", "calibrate --range walls --out ranges.toml",
+     lambda j: j["distances"] == 8 and j["rms_after"] < 0.001),
     ("presets", "sensors", lambda j: len(j) == 5),
 ]
 NEEDS_REPORT = {"the loop", "a report of scores"}  # npm, when the program was built
@@ -117,14 +123,27 @@ def write_png(path, width, height, halves):
                      chunk(b"IDAT", zlib.compress(row * height)) + chunk(b"IEND", b""))
 
 
+def wall_poses():
+    """Eight distances from the wall, turned by 12 degrees to either side."""
+    lines = []
+    for i in range(8):
+        s, c = math.sin((-1) ** i * math.radians(6)), math.cos(math.radians(6))
+        lines.append(f"{i} {0.4 - 0.5 * 1.18 ** i} 0 0 {(-c - s) / 2} {(c - s) / 2} {(s - c) / 2} {(c + s) / 2}\n")
+    return "".join(lines)
+
+
 def main():
     viewgain, work = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2])
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
     for name, text in {"cube.off": CUBE, "wall.off": WALL, "cloud.ply": CLOUD, "reach.toml": REACH, "costs.txt": "1\n2\n3\n",
                        "poses.txt": "".join(f"{i} {x} {y} 0 {q}\n" for i, (x, y, q) in enumerate(
-                           [(-0.6, 0, "-0.5 0.5 -0.5 0.5"), (0.6, 0, "0.5 0.5 -0.5 -0.5"), (0, -0.6, "-0.7071068 0 0 0.7071068")]))}.items():
+                           [(-0.6, 0, "-0.5 0.5 -0.5 0.5"), (0.6, 0, "0.5 0.5 -0.5 -0.5"), (0, -0.6, "-0.7071068 0 0 0.7071068")])),
+                       "wall_poses.txt": wall_poses()}.items():
         (work / name).write_text(text, encoding="utf-8")
+    recordings = pathlib.Path(__file__).resolve().parents[2] / "data/recordings"
+    shutil.copy(recordings / "arm_zstd.mcap", work)
+    shutil.copy(recordings / "frames/sensor.toml", work / "arm.toml")
 
     def call(words):
         done = subprocess.run([viewgain, *words.split(), "--json", "--quiet"], cwd=work, capture_output=True, text=True)

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/export.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/core/sensor.hpp"
+
+namespace viewgain {
+
+/// Readings of about one range.
+struct VIEWGAIN_EXPORT RangeStep {
+  double range = 0;     ///< measured, mean [m]
+  double error = 0;     ///< mean of measured minus true range [m]
+  double residual = 0;  ///< what the table leaves of it, RMS of frames' means [m]
+  std::size_t pixels = 0;
+};
+
+/// A sensor with its systematic error by range as it was measured.
+struct VIEWGAIN_EXPORT RangeFitResult {
+  Sensor sensor;                        ///< with the table `range_calibration`
+  double rms_before = 0;                ///< of the frames' mean errors, without the table [m]
+  double rms_after = 0;                 ///< with it [m]
+  double offset_sigma = 0;              ///< standard deviation of an offset of all ranges [m]
+  std::size_t distances = 0;            ///< that differ by over 2 %
+  std::vector<RangeStep> steps{};       ///< by range
+  std::vector<std::string> left_out{};  ///< why which frames were
+};
+
+/// Measures by how much a depth camera's ranges are off, as a function of the range (Fuchs and
+/// Hirzinger, CVPR 2008), from frames of one flat wall from poses that are known. Where the wall is
+/// need not be known: it is fitted with the error. Thread safety: one call at a time. Cost of a
+/// frame: O(pixels); of solve(): some thousand readings of each frame, ten times.
+class VIEWGAIN_EXPORT RangeFit {
+ public:
+  static constexpr std::size_t kLeastDistances = 8;
+
+  /// Throws Error(invalid_argument) for a sensor that is not valid.
+  explicit RangeFit(const Sensor& sensor);
+
+  /// `name` is for messages. A frame that shows no wall, or of which over 5 % is saturated, is left
+  /// out and named in the result. Throws Error(invalid_argument) for a frame of another size.
+  void add(const DepthFrame& frame, const Pose& T_world_camera, const std::string& name);
+
+  /// Throws Error(invalid_argument) for under kLeastDistances distances, a wall that is not flat,
+  /// frames that see different walls, and views too frontal to tell an offset of the camera from
+  /// one of the wall.
+  [[nodiscard]] RangeFitResult solve() const;
+
+ private:
+  struct Reading {
+    Eigen::Vector3d ray_world;  // unit
+    double range;               // measured [m]
+  };
+  struct Frame {
+    std::string name;
+    Eigen::Vector3d center;  // of the camera in the world [m]
+    double distance;         // mean range [m]
+    std::vector<Reading> readings;
+    Eigen::Vector3d normal_world;  // of the frame's own plane, towards the wall
+    double plane_offset;           // normal · p of it [m]
+  };
+  struct Wall;
+
+  Sensor sensor_;
+  std::vector<Eigen::Vector3d> rays_;
+  std::vector<Frame> frames_;
+  std::vector<std::string> left_out_;
+};
+
+}  // namespace viewgain

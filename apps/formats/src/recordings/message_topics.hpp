@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "recordings/messages.hpp"
+#include "recordings/ros_messages.hpp"
+
+namespace viewgain {
+
+/// A topic as the first pass saw it.
+struct SeenTopic {
+  std::string type;
+  std::size_t messages = 0;
+  std::string encoding, frame;  ///< of the first image
+  double farthest = 0;          ///< finite depth of 32FC1 [m]
+  bool is_read = true;          ///< ROS 1 or CDR
+  std::string fault{};          ///< why its first image cannot be read
+};
+
+/// The topics of a recording: which one has the depth images, and their camera.
+class MessageTopics {
+ public:
+  /// Takes any message; damaged ones are only counted.
+  void note(const Message& message);
+
+  [[nodiscard]] const std::map<std::string, SeenTopic>& all() const noexcept { return topics_; }
+
+  /// `wanted`, or the only one with depth images where that is empty. Throws Error(format), naming
+  /// the recording and the topics, if there is none or there are several.
+  [[nodiscard]] std::string chosen_depth_topic(const std::filesystem::path& source,
+                                               const std::string& wanted) const;
+
+  /// The first CameraInfo of the images: of the topic camera_info beside theirs, else of the only
+  /// one with their frame; null if there is none.
+  [[nodiscard]] const CameraInfoMessage* info_of(const std::string& depth_topic,
+                                                 const std::string& frame,
+                                                 Warnings& warnings) const;
+
+  /// By the topic's name, which contains "rect" for rectified images. Warns where it may mislead.
+  [[nodiscard]] static bool is_rectified(const std::string& depth_topic,
+                                         const CameraInfoMessage& info, Warnings& warnings);
+
+  /// "/tf (tf2_msgs/TFMessage, 12), ..."
+  [[nodiscard]] std::string listed() const;
+
+ private:
+  struct Info {
+    CameraInfoMessage first;
+    std::size_t others = 0;  // that differ from it
+  };
+
+  std::map<std::string, SeenTopic> topics_;
+  std::map<std::string, Info> infos_;
+};
+
+}  // namespace viewgain

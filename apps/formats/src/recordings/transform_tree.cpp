@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#include "recordings/transform_tree.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "viewgain/core/error.hpp"
+#include "viewgain/support/text.hpp"
+
+namespace viewgain {
+namespace {
+
+Eigen::Quaterniond rotation_of(const std::array<double, 7>& n) {
+  return Eigen::Quaterniond(n[6], n[3], n[4], n[5]).normalized();
+}
+
+Pose pose_between(const std::array<double, 7>& a, const std::array<double, 7>& b, double share) {
+  const Eigen::Vector3d from(a[0], a[1], a[2]), to(b[0], b[1], b[2]);
+  return {rotation_of(a).slerp(share, rotation_of(b)).toRotationMatrix(),
+          from + share * (to - from)};
+}
+
+std::string listed_frames(const std::set<std::string>& frames) {
+  constexpr std::size_t kMost = 30;
+  std::vector<std::string> names(frames.begin(), frames.end());
+  const bool has_more = names.size() > kMost;
+  names.resize(std::min(names.size(), kMost));
+  for (std::string& name : names) name = viewgain::quoted(name);
+  return listed(names) + (has_more ? ", ..." : "");
+}
+
+}  // namespace
+
+bool TransformTree::add(const std::string& parent, const std::string& child, std::int64_t stamp,
+                        const std::array<double, 7>& numbers, bool is_static) {
+  const double norm =
+      std::hypot(std::hypot(numbers[3], numbers[4]), std::hypot(numbers[5], numbers[6]));
+  if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }) ||
+      std::abs(norm - 1) > 1e-2 || parent == child) {
+    return false;
+  }
+  const auto [found, is_new] = edges_.try_emplace({child, parent});
+  Edge& edge = found->second;
+  if (is_new) edge = {parent, child, is_static, {}};
+  // A moving transform takes the place of a static one of the same frames.
+  if (edge.is_static && !is_static) edge.poses.clear(), edge.is_static = false;
+  if (!edge.is_static && is_static) return true;
+  if (is_static) edge.poses.clear();  // the last one holds
+  if (edge.latest > stamp) edge.went_back = std::max(edge.went_back, edge.latest - stamp);
+  edge.latest = std::max(edge.latest, stamp);
+  edge.poses.push_back({stamp, numbers});
+  return true;
+}
+
+void TransformTree::finish(Warnings& warnings) {
+  constexpr std::int64_t kOutOfOrder = 500'000'000;  // which several senders make [ns]
+  for (auto& [key, edge] : edges_) {
+    const auto is_earlier = [](const Stamped& a, const Stamped& b) { return a.stamp < b.stamp; };
+    std::stable_sort(edge.poses.begin(), edge.poses.end(), is_earlier);
+    if (edge.is_static || edge.went_back < kOutOfOrder) continue;
+    warnings.add("stamps of " + viewgain::quoted(edge.parent) + " to " +
+                 viewgain::quoted(edge.child) + " go back by " +
+                 short_text(static_cast<double>(edge.went_back / 1'000'000) * 1e-3) +
+                 " s: the clock was set back, or the recording holds two runs");
+  }
+}
+
+std::set<std::string> TransformTree::frames() const {
+  std::set<std::string> names;
+  for (const auto& [key, edge] : edges_) names.insert({edge.parent, edge.child});
+  return names;
+}
+
+TransformTree::Chain TransformTree::chain(std::string& world, const std::string& frame) const {
+  const auto fail = [](const std::string& what) -> void { throw Error(ErrorCode::format, what); };
+  // How each frame is reached from `frame`, and by how many transforms all of those are joined.
+  std::map<std::string, std::pair<const Edge*, bool>> reached{{frame, {nullptr, false}}};
+  std::set<std::string> roots, joined{frame};
+  std::size_t edges = 0;
+  for (std::deque<std::string> todo{frame}; !todo.empty(); todo.pop_front()) {
+    const std::string at = todo.front();
+    std::size_t parents = 0;
+    for (const auto& [key, edge] : edges_) {
+      if (edge.child != at && edge.parent != at) continue;
+      const bool is_up = edge.child == at;
+      parents += is_up ? 1 : 0;
+      edges += is_up ? 1 : 0;
+      const std::string& other = is_up ? edge.parent : edge.child;
+      if (reached.try_emplace(other, std::pair(&edge, !is_up)).second) {
+        joined.insert(other);
+        todo.push_back(other);
+      }
+    }
+    if (parents == 0) roots.insert(at);
+  }
+  if (edges == 0) {
+    fail("no transform leads to the frame " + viewgain::quoted(frame) + "; there are " +
+         listed_frames(frames()) + " (--world, --poses)");
+  }
+  if (edges >= joined.size()) {
+    fail("the transforms of " + listed_frames(joined) +
+         " form a loop: a frame has two parents, as if two nodes published it");
+  }
+  if (world.empty() && roots.size() > 1) {
+    fail("the frame " + viewgain::quoted(frame) +
+         " hangs below several worlds: " + listed_frames(roots) + "; choose one by --world");
+  }
+  if (world.empty()) world = *roots.begin();
+  if (!joined.contains(world)) {
+    fail("no transforms join the world " + viewgain::quoted(world) + " and the frame " +
+         viewgain::quoted(frame) + ", which has " + listed_frames(joined) + " (--world)");
+  }
+  Chain way;
+  for (std::string at = world; at != frame;) {
+    const auto& [edge, is_down] = reached.at(at);
+    way.emplace_back(edge, is_down);
+    at = is_down ? edge->parent : edge->child;
+  }
+  return way;
+}
+
+TransformTree::Found TransformTree::look_up(const Chain& chain, std::int64_t stamp,
+                                            std::int64_t max_gap, Pose& T_world_frame) {
+  T_world_frame = Pose();
+  for (const auto& [edge, is_inverted] : chain) {
+    Pose T_parent_child;
+    const std::vector<Stamped>& poses = edge->poses;
+    if (edge->is_static) {
+      T_parent_child = pose_between(poses[0].numbers, poses[0].numbers, 0);
+    } else {
+      const auto after = std::lower_bound(
+          poses.begin(), poses.end(), stamp,
+          [](const Stamped& pose, std::int64_t time) { return pose.stamp < time; });
+      if (after == poses.end()) return Found::after;
+      if (after->stamp == stamp) {
+        T_parent_child = pose_between(after->numbers, after->numbers, 0);
+      } else {
+        if (after == poses.begin()) return Found::before;
+        const Stamped& before = *std::prev(after);
+        const std::int64_t since = stamp - before.stamp, until = after->stamp - stamp;
+        if (std::min(since, until) > max_gap) return Found::gap;
+        T_parent_child =
+            pose_between(before.numbers, after->numbers,
+                         static_cast<double>(since) / static_cast<double>(since + until));
+      }
+    }
+    T_world_frame = T_world_frame * (is_inverted ? T_parent_child.inverse() : T_parent_child);
+  }
+  return Found::yes;
+}
+
+std::array<std::int64_t, 2> TransformTree::span_of(const Chain& chain) {
+  std::array<std::int64_t, 2> span{INT64_MIN, INT64_MAX};
+  for (const auto& [edge, is_inverted] : chain) {
+    if (edge->is_static) continue;
+    span[0] = std::max(span[0], edge->poses.front().stamp);
+    span[1] = std::min(span[1], edge->poses.back().stamp);
+  }
+  return span;
+}
+
+}  // namespace viewgain

@@ -1,0 +1,468 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// `viewgain import` on small recordings of messages that the tests write: encodings, cameras, poses
+// and what is broken.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "apps/formats/recordings/message_writer.hpp"
+#include "apps/program_runner.hpp"
+#include "viewgain/core/pose.hpp"
+#include "viewgain/formats/frames.hpp"
+#include "viewgain/formats/png.hpp"
+#include "viewgain/formats/sensor_toml.hpp"
+#include "viewgain/support/json.hpp"
+
+namespace viewgain {
+namespace {
+
+using test::McapText;
+using Kind = McapText::Kind;
+
+constexpr std::uint32_t kWidth = 48, kHeight = 36;
+constexpr std::size_t kImages = 5;
+constexpr const char* kTopic = "/camera/depth/image_raw";
+constexpr std::array<double, 7> kStill{0.1, 0, 0, 0, 0, 0, 1};
+
+double image_time(std::size_t i) { return 100.05 + 0.1 * static_cast<double>(i); }
+
+std::uint16_t depth_mm(std::size_t i, std::size_t k) {
+  return k == 5 ? std::uint16_t{0} : static_cast<std::uint16_t>(600 + k % kWidth + 20 * i);
+}
+
+// Rows of 16UC1, of so many bytes more than the pixels take.
+std::string rows_mm(std::size_t i, bool is_big_endian = false, std::size_t padding = 0) {
+  std::string rows;
+  for (std::size_t k = 0; k < kWidth * kHeight; ++k) {
+    const std::uint16_t value = depth_mm(i, k);
+    const char low = static_cast<char>(value & 255U), high = static_cast<char>(value >> 8U);
+    rows += is_big_endian ? std::string{high, low} : std::string{low, high};
+    if (k % kWidth == kWidth - 1) rows += std::string(padding, '\x7f');
+  }
+  return rows;
+}
+
+struct Camera {
+  std::string model = "plumb_bob";
+  std::vector<double> d{};
+  std::array<std::uint32_t, 2> size{kWidth, kHeight}, binning{};
+  std::array<std::uint32_t, 4> roi{};  // x, y, height, width
+  double stereo = 0;                   // P's Tx
+};
+
+class MessageRecordings : public test::ProgramTest {
+ protected:
+  MessageRecordings() { write_small_sensor(); }
+
+  // The arm's link moves along x at 1 m/s and turns; the optical frame is fixed to it.
+  static void add_transforms(McapText& text, double from = 100, double to = 101) {
+    text.transform("/tf_static", 0, "link", "optical", kStill);
+    for (double t = from; t <= to + 1e-9; t += 0.1) {
+      const double half = 0.05 * (t - 100);
+      text.transform("/tf", t, "base", "link",
+                     {t - 100, 0, 0.5, 0, 0, std::sin(half), std::cos(half)});
+    }
+  }
+  static void add_info(McapText& text, const Camera& camera = {},
+                       const std::string& topic = "/camera/depth/camera_info") {
+    test::MessageFields info = text.fields();
+    info.header(100, "optical").put(camera.size[1]).put(camera.size[0]).text(camera.model);
+    info.put(static_cast<std::uint32_t>(camera.d.size())).doubles(camera.d);
+    info.doubles(std::array<double, 9>{61, 0, 23, 0, 62, 17, 0, 0, 1});
+    info.doubles(std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1});
+    info.doubles(std::array<double, 12>{60, 0, 23.5, camera.stereo, 0, 60, 17.5, 0, 0, 0, 1, 0});
+    for (const std::uint32_t value : camera.binning) info.put(value);
+    for (const std::uint32_t value : camera.roi) info.put(value);
+    info.put(std::uint8_t{0});
+    text.add(topic, "sensor_msgs/msg/CameraInfo", info);
+  }
+  static void add_images(McapText& text, const std::string& topic = kTopic) {
+    for (std::size_t i = 0; i < kImages; ++i) {
+      text.image(topic, image_time(i), "optical", kWidth, kHeight, "16UC1", rows_mm(i), 2 * kWidth);
+    }
+  }
+  static McapText good(Kind kind = Kind::little_cdr) {
+    McapText text(kind);
+    add_transforms(text);
+    add_info(text);
+    add_images(text);
+    return text;
+  }
+
+  static Strings call(Strings more = {}) {
+    return test::joined({"import", "rec.mcap", "--sensor", "small.toml", "--out", "frames"}, more);
+  }
+  [[nodiscard]] json import(const McapText& text, Strings more = {},
+                            const std::string& warning = {}) const {
+    write("rec.mcap", text.bytes());
+    more.emplace_back("--json");
+    const test::ProgramResult result = run(call(more));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err.empty(), warning.empty()) << result.err;
+    EXPECT_NE(result.err.find(warning), std::string::npos) << result.err;
+    return json::parse(result.exit_code == 0 ? result.out : "{}");
+  }
+  void refuse(const McapText& text, const std::string& word, Strings more = {}) const {
+    write("rec.mcap", text.bytes());
+    expect_refused(call(more), word);
+  }
+
+  void expect_frames(const FrameSequence& frames) const {
+    ASSERT_EQ(frames.images.size(), kImages);
+    for (std::size_t i = 0; i < kImages; ++i) {
+      const Pose& pose = frames.poses[i];
+      const double along = image_time(i) - 100, angle = 0.1 * along;
+      EXPECT_NEAR(pose.m[3], along + 0.1 * std::cos(angle), 1e-9) << i;
+      EXPECT_NEAR(pose.m[7], 0.1 * std::sin(angle), 1e-9) << i;
+      EXPECT_NEAR(pose.m[4], std::sin(angle), 1e-9) << i;
+      const DepthFrame frame = load_frame(frames, i);
+      for (std::size_t k = 0; k < frame.depth.size(); ++k) {
+        ASSERT_NEAR(frame.depth[k], 0.001 * depth_mm(i, k), 1e-6) << i << ' ' << k;
+      }
+    }
+  }
+};
+
+TEST_F(MessageRecordings, ComeThroughInEveryEncoding) {
+  for (const Kind kind : {Kind::little_cdr, Kind::big_cdr, Kind::little_cdr2, Kind::ros1}) {
+    const json report = import(good(kind));
+    EXPECT_EQ(report["frames"], kImages);
+    EXPECT_EQ(report["format"], "mcap");
+    EXPECT_EQ(report["world"], "base");
+    EXPECT_EQ(report["depth_topic"], kTopic);
+    EXPECT_EQ(report["depth_scale"], 0.001);
+    EXPECT_EQ(report["intrinsics"], (json{61, 62, 23, 17}));
+    expect_frames(open_frames(dir / "frames"));
+  }
+  // Bytes in the other order, longer rows, mono16.
+  McapText text;
+  add_transforms(text);
+  add_info(text);
+  for (std::size_t i = 0; i < kImages; ++i) {
+    text.image(kTopic, image_time(i), "/optical", kWidth, kHeight, "mono16", rows_mm(i, true, 6),
+               2 * kWidth + 6, true);
+  }
+  EXPECT_EQ(import(text)["frames"], kImages);
+  expect_frames(open_frames(dir / "frames"));
+  EXPECT_EQ(import(text, {"--depth-scale", "0.0005"})["depth_scale"], 0.0005);
+}
+
+TEST_F(MessageRecordings, FloatsAreAsRep117HasThem) {
+  McapText text;
+  add_transforms(text);
+  add_info(text);
+  std::string rows;
+  for (std::size_t k = 0; k < kWidth * kHeight; ++k) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const std::array<float, 5> first{kInfinity, -kInfinity, std::nanf(""), -1.0F, 0.0F};
+    const float z = k < 5 ? first[k] : 0.5F + 0.0001F * static_cast<float>(k);
+    rows.append(reinterpret_cast<const char*>(&z), sizeof z);
+  }
+  text.image(kTopic, image_time(0), "optical", kWidth, kHeight, "32FC1", rows, 4 * kWidth);
+  EXPECT_EQ(import(text)["readings"], kWidth * kHeight - 5);
+  const DepthFrame frame = load_frame(open_frames(dir / "frames"), 0);
+  EXPECT_EQ(frame.depth[0], DepthFrame::kOutOfRange);
+  for (std::size_t k = 1; k < 5; ++k) EXPECT_EQ(frame.depth[k], DepthFrame::kInvalid);
+  EXPECT_NEAR(frame.depth[100], 0.51, 5e-5);
+}
+
+// What image_transport makes of floats: inverse depths as a PNG, and how they were quantised.
+TEST_F(MessageRecordings, CompressedFloatsAreInverseDepths) {
+  GrayImage inverse{kWidth, kHeight, {}};
+  for (std::size_t k = 0; k < kWidth * kHeight; ++k) {
+    inverse.pixels.push_back(static_cast<std::uint16_t>(k == 5 ? 0 : 900 + k));
+  }
+  write_png(dir / "inverse.png", inverse);
+  const std::array<float, 2> quantised{1000, -100};
+  std::string data(4, '\0');
+  data.append(reinterpret_cast<const char*>(quantised.data()), sizeof quantised);
+  const auto recording = [&](const std::string& format, const std::string& png) {
+    McapText text;
+    add_transforms(text);
+    add_info(text);
+    test::MessageFields message = text.fields();
+    message.header(image_time(0), "optical").text(format).blob(data + png);
+    text.add("/camera/depth/image_raw/compressedDepth", "sensor_msgs/msg/CompressedImage", message);
+    return text;
+  };
+  EXPECT_EQ(import(recording("32FC1; compressedDepth png", read("inverse.png")))["frames"], 1);
+  const DepthFrame frame = load_frame(open_frames(dir / "frames"), 0);
+  for (std::size_t k = 0; k < frame.depth.size(); ++k) {
+    const double z = k == 5 ? 0 : 1000.0 / (1000.0 + static_cast<double>(k));
+    ASSERT_NEAR(frame.depth[k], z, 6e-5) << k;
+  }
+  refuse(recording("16UC1; compressedDepth rvl", "\1\2\3\4"), "(such as RVL) is not read");
+  refuse(recording("rgb8; jpeg compressed bgr8", "\xff\xd8"), "no topic has depth images");
+}
+
+TEST_F(MessageRecordings, CamerasAreThoseOfTheImages) {
+  const auto camera_of = [&](const Camera& camera, const std::string& topic) {
+    McapText text;
+    add_transforms(text);
+    add_info(text, camera);
+    add_images(text, topic);
+    EXPECT_EQ(import(text)["frames"], kImages);
+    return open_frames(dir / "frames").sensor.camera;
+  };
+  const std::vector<double> lens{0.1, -0.05, 0.001, 0.002, 0.01};
+  // Rectified: P without distortion; raw: K and D.
+  const PinholeCamera rectified = camera_of({.d = lens}, "/camera/depth/image_rect");
+  EXPECT_EQ(rectified, (PinholeCamera{48, 36, 60, 60, 23.5, 17.5, {}}));
+  const PinholeCamera raw = camera_of({.d = lens}, kTopic);
+  EXPECT_EQ(raw, (PinholeCamera{48, 36, 61, 62, 23, 17, {0.1, -0.05, 0.001, 0.002, 0.01}}));
+  EXPECT_EQ(
+      camera_of({.model = "rational_polynomial", .d = {0.1, -0.05, 0.001, 0.002, 0.01, 0, 0, 0}},
+                kTopic),
+      raw);
+  // A region from (10, 4) of a larger image, and every second pixel of that.
+  const PinholeCamera region = camera_of({.size = {640, 480}, .roi = {10, 4, 36, 48}}, kTopic);
+  EXPECT_EQ(region, (PinholeCamera{48, 36, 61, 62, 13, 13, {}}));
+  const PinholeCamera binned =
+      camera_of({.size = {640, 480}, .binning = {2, 2}, .roi = {10, 4, 72, 96}}, kTopic);
+  EXPECT_EQ(binned, (PinholeCamera{48, 36, 30.5, 31, 6.25, 6.25, {}}));
+  // The second camera of a stereo pair stands 0.05 m to the right.
+  (void)camera_of({.stereo = -3}, "/camera/depth/image_rect");
+  EXPECT_NEAR(open_frames(dir / "frames").poses[0].m[3], 0.05 + 0.15 * std::cos(0.005), 1e-9);
+
+  const auto with = [](const Camera& camera) {
+    McapText text;
+    add_transforms(text);
+    add_info(text, camera);
+    add_images(text);
+    return text;
+  };
+  refuse(with({.model = "rational_polynomial", .d = {0.1, 0, 0, 0, 0, 0.2, 0, 0}}),
+         "'rational_polynomial' with 8 coefficients is not supported");
+  refuse(with({.model = "equidistant", .d = {0.1, 0, 0, 0}}), "'equidistant'");
+  write("rec.mcap", with({.d = lens}).bytes());
+  expect_refused({"import", "rec.mcap", "--out", "frames"}, "give --sensor");
+  EXPECT_EQ(import(with({.size = {40, 30}}), {"--intrinsics", "60,60,23.5,17.5"})["width"], 48);
+  refuse(with({.size = {40, 30}}), "5 wrong_size");
+  // Without a camera_info there is none, or the sensor's.
+  McapText text;
+  add_transforms(text);
+  add_images(text);
+  EXPECT_EQ(import(text, {}, "the intrinsics are the sensor's")["intrinsics"],
+            (json{60, 60, 23.5, 17.5}));
+  expect_refused({"import", "rec.mcap", "--out", "new"}, "no camera_info belongs to");
+}
+
+TEST_F(MessageRecordings, OneOfSeveralTopicsIsChosen) {
+  McapText text = good();
+  add_images(text, "/other/image_raw");
+  refuse(text,
+         "several topics have depth images: /camera/depth/image_raw (sensor_msgs/Image, "
+         "16UC1, 5 messages), /other/image_raw (");
+  EXPECT_EQ(import(text, {"--depth-topic", kTopic})["frames"], kImages);
+  // The other one has no camera_info beside it, but the same frame.
+  EXPECT_EQ(import(text, {"--depth-topic", "/other/image_raw"},
+                   "the intrinsics are those of /camera/depth/camera_info")["frames"],
+            kImages);
+  refuse(text, "has no topic /none (--depth-topic)", {"--depth-topic", "/none"});
+  refuse(text, "/tf (tf2_msgs/TFMessage, 11 messages) has no depth images",
+         {"--depth-topic", "/tf"});
+}
+
+TEST_F(MessageRecordings, PosesMayComeFromATopic) {
+  McapText text;
+  add_info(text);
+  add_images(text);
+  for (int i = 0; i < 20; ++i) {
+    const double along = 0.05 * i;
+    test::MessageFields pose = text.fields();
+    pose.header(100 + along, "map").doubles(std::array<double, 7>{along, 0, 0, 0, 0, 0, 1});
+    text.add("/pose", "geometry_msgs/msg/PoseStamped", pose);
+    test::MessageFields nameless = text.fields();  // as trackers send them, without a frame
+    nameless.header(100 + along, "").doubles(std::array<double, 7>{along, 0, 0, 0, 0, 0, 1});
+    text.add("/tracker", "geometry_msgs/msg/PoseStamped", nameless);
+    test::MessageFields odometry = text.fields();
+    odometry.header(100 + along, "odom").text("link");
+    odometry.doubles(std::array<double, 7>{2 * along, 0, 0, 0, 0, 0, 1});
+    text.add("/odom", "nav_msgs/msg/Odometry", odometry);
+  }
+  text.transform("/tf_static", 0, "link", "optical", kStill);
+  const auto x_of = [&](std::size_t i) { return open_frames(dir / "frames").poses[i].m[3]; };
+  EXPECT_EQ(import(text, {"--poses", "/pose,0,0,0.2,0,0,0,1"})["world"], "map");
+  EXPECT_NEAR(x_of(1), 0.15, 1e-9);
+  EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.2, 1e-9);
+  EXPECT_TRUE(import(text, {"--poses", "/tracker,0,0,0.2,0,0,0,1"})["world"].is_null());
+  EXPECT_NEAR(x_of(4), 0.45, 1e-9);
+  EXPECT_EQ(import(text, {"--poses", "/odom"})["world"], "odom");
+  EXPECT_NEAR(x_of(1), 0.1 + 2 * 0.15, 1e-9);
+  refuse(text, "/pose does not say where the camera is on its body", {"--poses", "/pose"});
+  Sensor mounted = read_sensor_toml(dir / "small.toml");
+  mounted.T_flange_camera = Pose(Eigen::Matrix3d::Identity(), {0, 0, 0.3});
+  write_sensor_toml(dir / "small.toml", mounted);
+  EXPECT_EQ(import(text, {"--poses", "/pose"})["frames"], kImages);
+  EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.3, 1e-9);
+  refuse(text, "/none has no poses", {"--poses", "/none"});
+  refuse(text, "--poses", {"--poses", "/pose,0,0"});
+}
+
+TEST_F(MessageRecordings, NothingIsExtrapolated) {
+  McapText text;
+  add_transforms(text, 100.1, 100.4);  // of images from 100.05 to 100.45
+  add_info(text);
+  add_images(text);
+  EXPECT_EQ(import(text, {}, "1 before the first transform, 1 after the last one")["bad"],
+            (json{{"no_pose", 2}}));
+  // Nor are gaps bridged.
+  McapText gap;
+  add_transforms(gap, 100, 100.1);
+  gap.transform("/tf", 101, "base", "link", {1, 0, 0.5, 0, 0, 0, 1});
+  add_info(gap);
+  add_images(gap);
+  EXPECT_EQ(import(gap, {}, "3 in gaps between them (--max-time-gap)")["frames"], 2);
+  EXPECT_EQ(import(gap, {"--max-time-gap", "1"})["frames"], kImages);
+}
+
+TEST_F(MessageRecordings, WorldsAreTold) {
+  McapText text = good();
+  text.transform("/tf_static", 0, "room", "base", kStill);
+  text.transform("/tf_static", 0, "room", "marker", {0, 2, 0, 0, 0, 0, 1});
+  EXPECT_EQ(import(text)["world"], "room");
+  EXPECT_NEAR(open_frames(dir / "frames").poses[0].m[3], 0.25, 1e-3);
+  EXPECT_EQ(import(text, {"--world", "base"})["world"], "base");
+  expect_frames(open_frames(dir / "frames"));
+  (void)import(text, {"--world", "marker"});
+  EXPECT_NEAR(open_frames(dir / "frames").poses[0].m[7], -2, 1e-3);
+  refuse(text, "no transforms join the world 'moon' and the frame 'optical'", {"--world", "moon"});
+  // Two worlds.
+  McapText two = good();
+  for (int i = 0; i < 11; ++i) {
+    two.transform("/tf", 100 + 0.1 * i, "marker", "link", {0, 1, 0, 0, 0, 0, 1});
+  }
+  refuse(two, "hangs below several worlds: 'base', 'marker'; choose one by --world");
+  EXPECT_EQ(import(two, {"--world", "base"})["frames"], kImages);
+  expect_frames(open_frames(dir / "frames"));
+  two.transform("/tf_static", 0, "room", "base", kStill);
+  two.transform("/tf_static", 0, "room", "marker", kStill);
+  refuse(two, "form a loop");
+}
+
+TEST_F(MessageRecordings, WhatIsBrokenIsNamed) {
+  McapText no_tf;
+  add_info(no_tf);
+  add_images(no_tf);
+  refuse(no_tf, "has no transforms: record /tf and /tf_static");
+  McapText of_others = no_tf;
+  of_others.transform("/tf", 100, "base", "link", kStill);
+  refuse(of_others, "no transform leads to the frame 'optical'; there are 'base', 'link'");
+  McapText top = no_tf;
+  top.transform("/tf", 100, "optical", "link", kStill);
+  refuse(top, "has no parent, so that the camera would never move");
+  refuse(McapText(), "holds no message");
+  McapText no_depth;
+  add_transforms(no_depth);
+  refuse(no_depth, "no topic has depth images");
+  McapText json_text = no_depth;
+  json_text.add("/depth", "foxglove.RawImage", json_text.fields(), "protobuf");
+  refuse(json_text, "/depth (foxglove.RawImage, 1 messages) in an unknown encoding");
+  // Clocks that are not the same.
+  McapText clocks;
+  add_transforms(clocks, 900, 901);
+  add_info(clocks);
+  add_images(clocks);
+  refuse(clocks, "the camera's clock is not the robot's");
+  // An empty image, a damaged one, a quaternion that is none.
+  McapText some = good();
+  some.image(kTopic, 100.3, "optical", kWidth, kHeight, "16UC1", "short", 2 * kWidth);
+  some.image(kTopic, 100.3, "optical", kWidth, kHeight, "rgb8", rows_mm(0), 2 * kWidth);
+  some.image(kTopic, 100.3, "optical", 8, 8, "16UC1", std::string(128, '\1'), 16);
+  test::MessageFields cut = some.fields();
+  some.add(kTopic, "sensor_msgs/msg/Image", cut.put(std::uint32_t{5}));
+  some.transform("/tf", 100.35, "base", "link", {0, 0, 0, 0, 0, 0, 2});
+  some.transform("/tf", 100.35, "link", "link", kStill);
+  const json report = import(some, {}, "2 transforms are not rigid or damaged and are left out");
+  EXPECT_EQ(report["frames"], kImages);
+  EXPECT_EQ(report["bad"], (json{{"unreadable", 3}, {"wrong_size", 1}}));
+  EXPECT_EQ(report["warnings"].size(), 2);
+}
+
+TEST_F(MessageRecordings, WhatIsSuspiciousIsSaid) {
+  McapText wrong;
+  add_transforms(wrong);
+  add_info(wrong);
+  for (std::size_t i = 0; i < kImages; ++i) {
+    wrong.image(kTopic, image_time(i), "optical", kWidth, kHeight, "16UC1", rows_mm(i, true),
+                2 * kWidth);
+  }
+  (void)import(wrong, {}, "is its is_bigendian wrong?");
+  McapText back = good();
+  add_images(back);
+  EXPECT_EQ(import(back, {}, "1 images have a stamp before that of an earlier image")["frames"],
+            2 * kImages);
+  McapText twice = good();
+  add_transforms(twice);
+  (void)import(twice, {}, "stamps of 'base' to 'link' go back by 1 s");
+  McapText other_lens = good();
+  add_info(other_lens, {.size = {96, 72}});
+  (void)import(other_lens, {}, "1 messages differ from the first one");
+  McapText unclear;
+  add_transforms(unclear);
+  add_info(unclear, {.d = {0.1, 0, 0, 0, 0}});
+  add_images(unclear, "/camera/depth/image");
+  (void)import(unclear, {}, "says neither raw nor rect");
+}
+
+// Every cut of a file is read as far as it goes, or refused in one line.
+TEST_F(MessageRecordings, CutsAreReadAsFarAsTheyGo) {
+  const std::string bytes = good().bytes();
+  std::size_t last = 0, cases = 0;
+  for (std::size_t length = 0; length < bytes.size() - 60; length += bytes.size() / 40) {
+    write("rec.mcap", bytes.substr(0, length));
+    const test::ProgramResult result = run(call({"--json"}));
+    ++cases;
+    if (result.exit_code == 0) {
+      const std::size_t frames = json::parse(result.out)["frames"];
+      EXPECT_GE(frames, last);
+      EXPECT_NE(result.err.find("read as far as it goes"), std::string::npos) << result.err;
+      last = frames;
+    } else {
+      EXPECT_EQ(result.exit_code, 2) << length;
+      EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+      EXPECT_NE(result.err.find("rec.mcap"), std::string::npos) << result.err;
+    }
+  }
+  EXPECT_GE(cases, 39U);
+  EXPECT_EQ(last, kImages - 1);
+  // A recorder that was ended leaves whole records and no end.
+  write("rec.mcap", good().bytes(false));
+  EXPECT_EQ(json::parse(run(call({"--json"})).out)["frames"], kImages);
+}
+
+TEST_F(MessageRecordings, FlagsAndFilesThatDoNotFitAreRefused) {
+  write("rec.mcap", good().bytes());
+  fs::create_directories(dir / "both");
+  fs::copy_file(dir / "rec.mcap", dir / "both/a.mcap");
+  write("both/b.bag", "#ROSBAG V2.0\n");
+  write("text.mcap", "no recording at all");
+  write("old.bag", "#ROSBAG V1.2\n");
+  write("whole.db3.zstd", "\x28\xb5\x2f\xfd and more");
+  write("empty.db3", "SQLite format 3");
+  fs::create_directories(dir / "none");
+  const auto import = [](const std::string& source, const Strings& more = {}) {
+    return test::joined({"import", source, "--sensor", "small.toml", "--out", "frames"}, more);
+  };
+  expect_refused({{import("rec.mcap", {"--format", "tum"}), "is of the format mcap"},
+                  {import("rec.mcap", {"--mask", "none"}), "no image files that masks belong to"},
+                  {import("rec.mcap", {"--depth-scale", "2"}), "within 0 and 1"},
+                  {import("rec.mcap", {"--depth-scale", "-1"}), "--depth-scale"},
+                  {import("both"), "two kinds, .mcap and .bag"},
+                  {import("none"), "holds no recording"},
+                  {import("text.mcap"), "is no recording"},
+                  {import("old.bag"), "rosbag fix"},
+                  {import("whole.db3.zstd"), "unzstd"},
+                  {import("empty.db3"), "empty.db3"},
+                  {import("nowhere.mcap"), "nowhere.mcap"}});
+}
+
+}  // namespace
+}  // namespace viewgain
