@@ -61,6 +61,7 @@ void check(const Options& options, RecordingFormat format) {
 void parse_poses(const std::string& text, ImportConfig& config) {
   const std::size_t comma = text.find(',');
   config.pose_topic = text.substr(0, comma);
+  if (!text.empty() && config.pose_topic.empty()) refuse("--poses", text, "names no topic");
   if (comma != std::string::npos) {
     config.T_body_camera = parse_pose("--poses", text.substr(comma + 1));
   }
@@ -167,8 +168,8 @@ Command add_import(App& program) {
                   "TOPIC[,tx,ty,tz,qx,qy,qz,qw]: topic of PoseStamped or Odometry to use in place "
                   "of tf, and the camera's pose on its body");
   app->add_option("--max-time-gap", options->max_time_gap,
-                  "largest time between an image and the nearer of the two transforms beside it "
-                  "(default: 0.1), in TUM's layout and its pose (0.02) [s]");
+                  "half of the largest time between the two transforms beside an image "
+                  "(default: 0.1), in TUM's layout the largest to its pose (0.02) [s]");
   app->add_option("--depth-scale", options->depth_scale,
                   "metres per unit of 16-bit depth images (default: the recording's, 1e-3)");
   add_mask_options(*app, options->mask, options->confidence);

@@ -57,6 +57,13 @@ class BagReader {
       : path_(path), visit_(visit), warnings_(warnings), file_(path) {}
 
   void read() {
+    read_records();
+    warn_of_left_out(path_, without_connection_,
+                     "without their connection, which may be in a damaged chunk,", warnings_);
+  }
+
+ private:
+  void read_records() {
     if (file_.left() < kBagMagic.size() || file_.read(kBagMagic.size()) != kBagMagic) {
       file_.fail_at(0, "is not a ROS 1 bag of version 2.0; `rosbag fix` converts older ones");
     }
@@ -84,7 +91,6 @@ class BagReader {
     }
   }
 
- private:
   bool read_length(std::uint64_t& length) {
     if (file_.left() < sizeof(std::uint32_t)) return false;
     length = ByteReader(file_.read(sizeof(std::uint32_t))).number<std::uint32_t>();
@@ -136,7 +142,8 @@ class BagReader {
     }
     const auto topic = topics_.find(id);
     if (topic == topics_.end()) {
-      file_.fail_at(begin_, "a message without its connection");
+      ++without_connection_;
+      return;
     }
     visit_({topic->second, data, path_, begin_});
   }
@@ -146,6 +153,7 @@ class BagReader {
   Warnings& warnings_;
   InputFile file_;
   std::uint64_t begin_ = 0;  // of the record
+  std::size_t without_connection_ = 0;
   std::string unpacked_;
   std::map<std::uint32_t, Topic> topics_;
 };

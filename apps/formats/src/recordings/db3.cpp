@@ -45,22 +45,28 @@ class Db3Reader {
     warn_of_journal();
     const Statement rows = prepared("SELECT rowid, topic_id, data FROM messages ORDER BY rowid");
     last_row_ = INT64_MIN;
+    std::size_t without_topic = 0;
     while (next(rows.get())) {
       const auto topic = topics_.find(sqlite3_column_int64(rows.get(), 1));
-      if (topic == topics_.end()) continue;  // of a topic that was not written yet
+      if (topic == topics_.end()) {
+        ++without_topic;
+        continue;
+      }
       const auto* bytes = static_cast<const char*>(sqlite3_column_blob(rows.get(), 2));
       const auto size = static_cast<std::size_t>(sqlite3_column_bytes(rows.get(), 2));
       visit_({topic->second, bytes == nullptr ? std::string_view() : std::string_view(bytes, size),
               path_, static_cast<std::uint64_t>(sqlite3_column_int64(rows.get(), 0))});
     }
+    warn_of_left_out(path_, without_topic, "of topics that the file does not list", warnings_);
   }
 
  private:
   using Statement = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;
 
   static std::string uri(const std::filesystem::path& path) {
-    std::string text = "file:";
-    for (const char c : std::filesystem::absolute(path).string()) {
+    std::string text = "file:", name = std::filesystem::absolute(path).string();
+    while (name.starts_with("//")) name.erase(0, 1);  // else a host follows
+    for (const char c : name) {
       constexpr std::string_view kDigits = "0123456789ABCDEF";
       if (c == '?' || c == '#' || c == '%') {
         text += {'%', kDigits[static_cast<unsigned char>(c) / 16],

@@ -99,12 +99,13 @@ DepthImage decode_depth(const DepthMessage& message, double unit) {
   return depth;
 }
 
-bool is_wrong_byte_order(const DepthMessage& message) {
+std::optional<bool> is_wrong_byte_order(const DepthMessage& message) {
   if (message.is_compressed) return false;
   DepthMessage swapped = message;
   swapped.is_big_endian = !message.is_big_endian;
   const double as_said = roughness(decode_depth(message)), other = roughness(decode_depth(swapped));
-  return std::isfinite(other) && !(as_said <= 0.004) && !(as_said <= 4 * other);
+  if (!std::isfinite(as_said)) return std::nullopt;
+  return std::isfinite(other) && as_said > 0.004 && as_said > 4 * other;
 }
 
 GrayImage gray_image(const DepthImage& depth, double unit) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ inline constexpr double kMillimetre = 1e-3;  ///< what 16 bits count, unless tol
 /// another encoding, a size that the bytes do not have, and a damaged PNG.
 [[nodiscard]] DepthImage decode_depth(const DepthMessage& message, double unit = kMillimetre);
 
-/// Whether the pixels make a much smoother image with their bytes in the other order.
-[[nodiscard]] bool is_wrong_byte_order(const DepthMessage& message);
+/// Whether the pixels make a much smoother image with their bytes in the other order; nothing for
+/// an image of too few readings.
+[[nodiscard]] std::optional<bool> is_wrong_byte_order(const DepthMessage& message);
 
 /// In units of `unit` [m], 65535 for infinity; too large for them: no reading.
 [[nodiscard]] GrayImage gray_image(const DepthImage& depth, double unit);

@@ -35,6 +35,10 @@ void import_images(const std::filesystem::path& source, const std::vector<Record
 /// Throws Error(invalid_argument) if the folder could not hold the camera's lens distortion.
 void require_sensor_for_distortion(const PinholeCamera& camera, const ImportConfig& config);
 
+/// Throws Error, without a file, for a camera that PinholeCamera::validate() refuses and for a
+/// principal point over 10 sizes off the image. A size of 0 is not known yet.
+void check_recorded_camera(const PinholeCamera& camera);
+
 // import_recording() of each layout.
 
 [[nodiscard]] ImportReport import_tum(const std::filesystem::path& source,

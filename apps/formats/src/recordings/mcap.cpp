@@ -41,6 +41,8 @@ class McapReader {
     }
     while (read_record()) {
     }
+    warn_of_left_out(path_, without_channel_,
+                     "without their channel, which may be in a damaged chunk,", warnings_);
   }
 
  private:
@@ -94,7 +96,10 @@ class McapReader {
       warnings_.add(file_.at(begin_, "a chunk does not have its checksum and is left out"));
       return;
     }
-    if (!why.empty() && !is_cut) file_.warn_of_chunk(begin_, why, warnings_);
+    if (!why.empty() && !is_cut) {
+      warnings_.add(file_.at(begin_, "a damaged chunk: " + why + "; it is left out"));
+      return;
+    }
     for (ByteReader records(unpacked_); records.left() >= kMcapHead;) {
       const McapRecord kind{records.number<std::uint8_t>()};
       const auto length = records.number<std::uint64_t>();
@@ -122,7 +127,10 @@ class McapReader {
     } else {
       file_.checked(begin_, [&] { return record.bytes(20); });  // sequence number, times of writing
       const auto topic = topics_.find(id);
-      if (topic == topics_.end()) file_.fail_at(begin_, "a message without its channel");
+      if (topic == topics_.end()) {
+        ++without_channel_;
+        return;
+      }
       visit_({topic->second, record.bytes(record.left()), path_, begin_});
     }
   }
@@ -132,6 +140,7 @@ class McapReader {
   Warnings& warnings_;
   InputFile file_;
   std::uint64_t begin_ = 0;  // of the record
+  std::size_t without_channel_ = 0;
   std::string unpacked_;
   std::map<std::uint16_t, std::string> schemas_;
   std::map<std::uint16_t, Topic> topics_;

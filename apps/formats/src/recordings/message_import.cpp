@@ -38,7 +38,9 @@ class MessageImport {
  public:
   MessageImport(const fs::path& source, const std::vector<fs::path>& files, RecordingFormat format,
                 const ImportConfig& config)
-      : source_(source), files_(files), format_(format), config_(config) {}
+      : source_(source), files_(files), format_(format), config_(config) {
+    if (report_.world.starts_with('/')) report_.world.erase(0, 1);  // as FieldReader::frame() does
+  }
 
   ImportReport run(const fs::path& out) try {
     read_all([this](const Message& message) { note(message); });
@@ -101,6 +103,12 @@ class MessageImport {
         (!is_chosen && !is_tf)) {
       return;
     }
+    if (is_chosen && is_tf) {
+      throw Error(ErrorCode::format,
+                  source_.string() + ": " + message.topic.name + " (" + type +
+                      ") has the transforms of all frames, not the poses of one body; leave out "
+                      "--poses, and choose the world by --world");
+    }
     std::vector<TransformMessage> transforms;
     try {
       transforms = read_transforms(message);
@@ -111,11 +119,25 @@ class MessageImport {
     for (const TransformMessage& transform : transforms) {
       const auto& [header, child, numbers] = transform;
       if (is_chosen && body_frame_.empty()) body_frame_ = child;
+      if (is_chosen && body_frame_ != child) {
+        throw Error(ErrorCode::format, of_message(message, "has the poses of several bodies, " +
+                                                               viewgain::quoted(body_frame_) +
+                                                               " and " + viewgain::quoted(child) +
+                                                               "; give a topic of one (--poses)"));
+      }
       const bool is_good = is_chosen
                                ? poses_.add(header.frame, kBody, header.stamp, numbers, false)
                                : tree_.add(header.frame, child, header.stamp, numbers, is_static);
       bad_transforms_ += is_good ? 0 : 1;
     }
+  }
+
+  // Throws Error(format) that names the recording.
+  void check_camera_of(const std::string& what) const try {
+    check_recorded_camera(report_.camera);
+  } catch (const Error& error) {
+    throw Error(ErrorCode::format, source_.string() + ": the camera of " + what + ": " +
+                                       error.what() + " (--intrinsics)");
   }
 
   void choose_camera(const SeenTopic& topic) {
@@ -126,6 +148,10 @@ class MessageImport {
       const bool is_rectified = topics_.is_rectified(report_.depth_topic, *info, warnings_);
       try {
         report_.camera = camera_of(*info, is_rectified);
+        check_recorded_camera(report_.camera);
+        if (!std::isfinite(info->p[3]) || !std::isfinite(info->p[7])) {
+          throw Error(ErrorCode::format, "P must be finite");
+        }
       } catch (const Error& error) {
         throw Error(ErrorCode::format, source_.string() + ": the camera_info of " +
                                            report_.depth_topic + ": " + error.what() +
@@ -229,13 +255,18 @@ class MessageImport {
       return drop(FrameVerdict::unreadable, error.what());
     }
     PinholeCamera& camera = report_.camera;
-    if (camera.width == 0) camera.width = depth.width, camera.height = depth.height;
+    if (camera.width == 0 || camera.height == 0) {
+      camera.width = depth.width, camera.height = depth.height;
+      check_camera_of(message.topic.name);
+    }
     if (camera.width != depth.width || camera.height != depth.height) {
       return drop(FrameVerdict::wrong_size,
                   "the image has " + size_text(depth.width, depth.height) + " pixels, not " +
                       size_text(camera.width, camera.height));
     }
-    if (report_.frames == 0 && is_wrong_byte_order(image)) {
+    if (!is_wrong_order_) is_wrong_order_ = is_wrong_byte_order(image);
+    if (is_wrong_order_.value_or(false)) {
+      is_wrong_order_ = false;  // said once
       warnings_.add(
           of_message(message,
                      "the image would be much smoother with its bytes in the other order; "
@@ -280,9 +311,12 @@ class MessageImport {
     for (std::size_t i = 0; i < kWhere.size(); ++i) {
       if (without_[i] > 0) text += " " + std::to_string(without_[i]) + " " + kWhere[i] + ",";
     }
-    text.back() = ';';
+    text.pop_back();
     const std::array<std::int64_t, 2> span = TransformTree::span_of(ways_.begin()->second.moving);
-    text += " transforms are from " + seconds_text(span[0]) + " to " + seconds_text(span[1]) + " s";
+    if (span[0] > INT64_MIN) {  // else all are static
+      text +=
+          "; transforms are from " + seconds_text(span[0]) + " to " + seconds_text(span[1]) + " s";
+    }
     const bool is_apart =
         report_.frames == 0 && without_[2] + without_[3] == 0 &&
         (images_from_ - 10 * kNanoseconds > span[1] || images_to_ + 10 * kNanoseconds < span[0]);
@@ -310,8 +344,9 @@ class MessageImport {
   Dropped dropped_{report_.bad};
   double scale_ = kMillimetre;
   Pose T_frame_camera_;
-  std::map<std::string, Way> ways_;  // by the images' frame
-  std::uint64_t number_ = 0;         // of the image
+  std::map<std::string, Way> ways_;     // by the images' frame
+  std::uint64_t number_ = 0;            // of the image
+  std::optional<bool> is_wrong_order_;  // of bytes, by the first image that tells
   std::size_t stamps_back_ = 0;
   std::int64_t last_stamp_ = INT64_MIN, images_from_ = INT64_MAX, images_to_ = INT64_MIN;
   std::array<std::size_t, 4> without_{};  // poses: before, after, in gaps, without a chain

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -46,6 +47,14 @@ class Warnings {
  private:
   std::vector<std::string> texts_;
 };
+
+/// Warns of messages that cannot be read, if there are any.
+inline void warn_of_left_out(const std::filesystem::path& file, std::size_t count,
+                             const std::string& which, Warnings& warnings) {
+  if (count == 0) return;
+  warnings.add(file.string() + ": " + std::to_string(count) + " messages " + which +
+               " are left out");
+}
 
 /// Visits the messages of one file in its order, in memory that does not grow with the file. A file
 /// that is cut is read as far as it goes, with a warning. Throw Error(io), and Error(format) that

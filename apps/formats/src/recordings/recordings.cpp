@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -76,6 +77,20 @@ void check(const fs::path& source, const ImportConfig& config) {
 void require_sensor_for_distortion(const PinholeCamera& camera, const ImportConfig& config) {
   if (config.sensor || !camera.has_distortion()) return;
   refuse("the images have lens distortion, which only a sensor file can hold; give --sensor");
+}
+
+void check_recorded_camera(const PinholeCamera& camera) {
+  constexpr double kMost = 10;  // sizes of the image
+  PinholeCamera sized = camera;
+  const bool has_size = camera.width != 0 && camera.height != 0;
+  if (!has_size) sized.width = sized.height = 1;
+  sized.validate();
+  if (!has_size || (std::abs(camera.cx) <= kMost * camera.width &&
+                    std::abs(camera.cy) <= kMost * camera.height)) {
+    return;
+  }
+  refuse("camera: the principal point (" + short_text(camera.cx) + ", " + short_text(camera.cy) +
+         ") px is far outside of the image of " + size_text(camera.width, camera.height) + " px");
 }
 
 RecordingFormat recording_format(const fs::path& source) {

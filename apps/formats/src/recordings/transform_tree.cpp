@@ -141,7 +141,7 @@ TransformTree::Found TransformTree::look_up(const Chain& chain, std::int64_t sta
         if (after == poses.begin()) return Found::before;
         const Stamped& before = *std::prev(after);
         const std::int64_t since = stamp - before.stamp, until = after->stamp - stamp;
-        if (std::min(since, until) > max_gap) return Found::gap;
+        if (since + until > 2 * max_gap) return Found::gap;
         T_parent_child =
             pose_between(before.numbers, after->numbers,
                          static_cast<double>(since) / static_cast<double>(since + until));

@@ -41,7 +41,7 @@ class TransformTree {
 
   enum class Found : std::uint8_t { yes, before, after, gap, unconnected };
   /// T_world_frame at `stamp` [ns]; not if a transform of the chain begins after it, ends before
-  /// it, or has none within `max_gap` [ns] of it.
+  /// it, or has two beside it that are over 2 `max_gap` [ns] apart.
   static Found look_up(const Chain& chain, std::int64_t stamp, std::int64_t max_gap,
                        Pose& T_world_frame);
 

@@ -25,22 +25,20 @@ using app::Json;
 
 constexpr std::uint64_t kMostJsonBytes = std::uint64_t{1} << 28U;
 
-// The camera of a file or of a frame in it; nothing for missing keys.
+// The camera of a frame: each key by the frame, else by the top of the file; nothing for missing
+// ones.
 class JsonCamera {
  public:
-  JsonCamera(const fs::path& file, const Json& json) : file_(file), json_(json) {}
+  JsonCamera(const fs::path& file, const Json& top, const Json& frame)
+      : file_(file), levels_{&frame, &top} {}
 
   [[nodiscard]] std::optional<double> number(const char* key) const {
-    const auto found = json_.find(key);
-    if (found == json_.end() || found->is_null()) return std::nullopt;
-    if (!found->is_number() || !std::isfinite(found->get<double>())) {
-      throw Error(ErrorCode::format, file_.string() + ": " + key + " is not a finite number");
-    }
-    return found->get<double>();
+    const Json* const found = find(key);
+    return found == nullptr ? std::nullopt : std::optional(number_of(key, *found));
   }
   [[nodiscard]] std::string text(const char* key) const {
-    const auto found = json_.find(key);
-    return found != json_.end() && found->is_string() ? found->get<std::string>() : std::string();
+    const Json* const found = find(key);
+    return found != nullptr && found->is_string() ? found->get<std::string>() : std::string();
   }
 
   void refuse_models() const {
@@ -48,9 +46,8 @@ class JsonCamera {
     const std::set<std::string> known{
         "", "OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL"};
     for (const char* key : {"k4", "k5", "k6", "is_fisheye"}) {
-      const auto found = json_.find(key);
-      const bool is_set =
-          found != json_.end() && !found->is_null() && *found != 0 && *found != Json(false);
+      const Json* const found = find(key);
+      const bool is_set = found != nullptr && *found != 0 && *found != Json(false);
       if (!is_set && known.contains(model)) continue;
       throw Error(ErrorCode::format, file_.string() + ": the camera model " +
                                          viewgain::quoted(is_set ? key : model.c_str()) +
@@ -58,9 +55,8 @@ class JsonCamera {
     }
   }
 
-  // In pixels of images of w x h, with the first pixel's middle at (0, 0).
-  [[nodiscard]] PinholeCamera camera() const {
-    refuse_models();
+  // In pixels of images of w x h, else of `image_size`, with the first pixel's middle at (0, 0).
+  [[nodiscard]] PinholeCamera camera(const std::array<int, 2>& image_size) const {
     PinholeCamera camera;
     for (const auto& [key, size] :
          {std::pair("w", &camera.width), std::pair("h", &camera.height)}) {
@@ -71,10 +67,19 @@ class JsonCamera {
       }
       *size = static_cast<int>(value);
     }
-    const auto focal = [&](const char* key, const char* angle, int size) {
-      std::optional<double> length = number(key);
-      if (!length && number(angle)) length = 0.5 * size / std::tan(0.5 * *number(angle));
-      return length;
+    if ((camera.width == 0) != (camera.height == 0)) {
+      throw Error(ErrorCode::format, file_.string() + ": has one of w and h; both are needed");
+    }
+    if (camera.width == 0) camera.width = image_size[0], camera.height = image_size[1];
+    // A frame's angle comes before the file's focal length.
+    const auto focal = [&](const char* key, const char* angle, int size) -> std::optional<double> {
+      for (const Json* const level : levels_) {
+        if (const Json* const length = find(key, *level)) return number_of(key, *length);
+        if (const Json* const width = find(angle, *level)) {
+          return 0.5 * size / std::tan(0.5 * number_of(angle, *width));
+        }
+      }
+      return std::nullopt;
     };
     const auto fx = focal("fl_x", "camera_angle_x", camera.width);
     const auto fy = focal("fl_y", "camera_angle_y", camera.height);
@@ -89,8 +94,24 @@ class JsonCamera {
   }
 
  private:
+  // Null for a missing one.
+  static const Json* find(const char* key, const Json& level) {
+    const auto found = level.find(key);
+    return found == level.end() || found->is_null() ? nullptr : &*found;
+  }
+  [[nodiscard]] const Json* find(const char* key) const {
+    const Json* const own = find(key, *levels_[0]);
+    return own != nullptr ? own : find(key, *levels_[1]);
+  }
+  [[nodiscard]] double number_of(const char* key, const Json& value) const {
+    if (!value.is_number() || !std::isfinite(value.get<double>())) {
+      throw Error(ErrorCode::format, file_.string() + ": " + key + " is not a finite number");
+    }
+    return value.get<double>();
+  }
+
   const fs::path& file_;
-  const Json& json_;
+  std::array<const Json*, 2> levels_;
 };
 
 ReadPose json_pose(const Json& frame, const std::string& where) {
@@ -126,28 +147,49 @@ ReadPose json_pose(const Json& frame, const std::string& where) {
   return pose;
 }
 
-// Images of another size than w x h, such as a phone's depth, show the same field of view.
-void scale_to_images(const std::vector<RecordedFrame>& frames, PinholeCamera& camera,
-                     std::vector<std::string>& warnings) {
+// Of the first image that can be read; 0 where there is none.
+std::array<int, 2> size_of_images(const std::vector<RecordedFrame>& frames) {
   for (const RecordedFrame& frame : frames) {
-    std::array<int, 2> size{};
     try {
-      size = png_size(frame.image);
-    } catch (const Error&) {
-      continue;  // counted where it is read
+      return png_size(frame.image);
+    } catch (const Error&) {  // counted where it is read
     }
-    const bool has_size = camera.width > 0 && camera.height > 0;
-    if (has_size && size != std::array{camera.width, camera.height}) {
-      warnings.push_back("depth images of " + size_text(size[0], size[1]) +
-                         " px; the intrinsics of " + size_text(camera.width, camera.height) +
-                         " px are scaled to them");
-      const double x = 1.0 * size[0] / camera.width, y = 1.0 * size[1] / camera.height;
-      camera.fx *= x, camera.fy *= y;
-      camera.cx = (camera.cx + 0.5) * x - 0.5, camera.cy = (camera.cy + 0.5) * y - 0.5;
-    }
-    camera.width = size[0], camera.height = size[1];
-    return;
   }
+  return {};
+}
+
+// Images of another size than w x h, such as a phone's depth, show the same field of view.
+void scale_to_images(const std::array<int, 2>& size, PinholeCamera& camera,
+                     std::vector<std::string>& warnings) {
+  if (size == std::array{camera.width, camera.height}) return;
+  warnings.push_back("depth images of " + size_text(size[0], size[1]) + " px; the intrinsics of " +
+                     size_text(camera.width, camera.height) + " px are scaled to them");
+  const double x = 1.0 * size[0] / camera.width, y = 1.0 * size[1] / camera.height;
+  camera.fx *= x, camera.fy *= y;
+  camera.cx = (camera.cx + 0.5) * x - 0.5, camera.cy = (camera.cy + 0.5) * y - 0.5;
+  camera.width = size[0], camera.height = size[1];
+}
+
+// The one camera of all frames that have a focal length, of images of this size, if any is known.
+// Throws Error(format).
+PinholeCamera camera_of_frames(const fs::path& file, const Json& json,
+                               const std::array<int, 2>& size) {
+  std::optional<PinholeCamera> known;
+  std::size_t number = 0;
+  for (const Json& frame : json["frames"]) {
+    const PinholeCamera camera = JsonCamera(file, json, frame).camera(size);
+    if (camera.fx != 0 && known && *known != camera) {
+      throw Error(ErrorCode::format, file.string() + ": frame " + std::to_string(number) +
+                                         " has another camera; one for all is supported");
+    }
+    if (camera.fx != 0) known = camera;
+    ++number;
+  }
+  if (!known && size[0] > 0) {
+    throw Error(ErrorCode::format,
+                file.string() + ": has no focal length (fl_x); give --intrinsics");
+  }
+  return known.value_or(PinholeCamera{});
 }
 
 }  // namespace
@@ -162,26 +204,20 @@ ImportReport import_transforms(const fs::path& file, const fs::path& out,
   if (!json.is_object() || !json.contains("frames") || !json["frames"].is_array()) {
     fail("is no JSON with a list 'frames'");
   }
-  const JsonCamera said(file, json);
+  const JsonCamera said(file, json, json);
+  said.refuse_models();
   ImportReport report;
   Dropped dropped{report.bad};
   std::vector<RecordedFrame> frames;
   std::set<fs::path> names;
-  std::optional<PinholeCamera> of_frames;
   std::uint64_t number = 0;
   for (const Json& frame : json["frames"]) {
     const std::string where = file.string() + ": frame " + std::to_string(number);
     if (!frame.is_object()) fail("frame " + std::to_string(number) + " is no object");
-    const JsonCamera own(file, frame);
+    JsonCamera(file, json, frame).refuse_models();
+    const JsonCamera own(file, frame, frame);
     std::string image = own.text("depth_file_path");
     if (image.empty()) image = own.text("depth_path");
-    if (own.number("fl_x") || own.number("camera_angle_x")) {
-      const PinholeCamera camera = own.camera();
-      if (of_frames && *of_frames != camera) {
-        fail("frame " + std::to_string(number) + " has another camera; one for all is supported");
-      }
-      of_frames = camera;
-    }
     const fs::path inside = path_inside(image);
     ReadPose pose = json_pose(frame, where);
     if (image.empty()) {
@@ -203,9 +239,16 @@ ImportReport import_transforms(const fs::path& file, const fs::path& out,
   if (config.camera.fx > 0) {
     report.camera = config.camera;
   } else {
-    report.camera = of_frames ? *of_frames : said.camera();
-    scale_to_images(frames, report.camera, report.warnings);
-    if (report.camera.fx == 0) fail("has no focal length (fl_x); give --intrinsics");
+    const std::array<int, 2> size = size_of_images(frames);
+    report.camera = camera_of_frames(file, json, size);
+    if (size[0] > 0) {  // else no frame can be used
+      scale_to_images(size, report.camera, report.warnings);
+      try {
+        check_recorded_camera(report.camera);
+      } catch (const Error& error) {
+        fail(error.what());
+      }
+    }
   }
   require_sensor_for_distortion(report.camera, config);
   const double scale = config.depth_scale.value_or(

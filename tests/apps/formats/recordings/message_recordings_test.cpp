@@ -3,6 +3,8 @@
 
 // `viewgain import` on small recordings of messages that the tests write: encodings, cameras, poses
 // and what is broken.
+#include "apps/formats/recordings/message_recordings.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/formats/recordings/message_writer.hpp"
 #include "apps/program_runner.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/formats/frames.hpp"
@@ -23,112 +24,7 @@
 namespace viewgain {
 namespace {
 
-using test::McapText;
-using Kind = McapText::Kind;
-
-constexpr std::uint32_t kWidth = 48, kHeight = 36;
-constexpr std::size_t kImages = 5;
-constexpr const char* kTopic = "/camera/depth/image_raw";
-constexpr std::array<double, 7> kStill{0.1, 0, 0, 0, 0, 0, 1};
-
-double image_time(std::size_t i) { return 100.05 + 0.1 * static_cast<double>(i); }
-
-std::uint16_t depth_mm(std::size_t i, std::size_t k) {
-  return k == 5 ? std::uint16_t{0} : static_cast<std::uint16_t>(600 + k % kWidth + 20 * i);
-}
-
-// Rows of 16UC1, of so many bytes more than the pixels take.
-std::string rows_mm(std::size_t i, bool is_big_endian = false, std::size_t padding = 0) {
-  std::string rows;
-  for (std::size_t k = 0; k < kWidth * kHeight; ++k) {
-    const std::uint16_t value = depth_mm(i, k);
-    const char low = static_cast<char>(value & 255U), high = static_cast<char>(value >> 8U);
-    rows += is_big_endian ? std::string{high, low} : std::string{low, high};
-    if (k % kWidth == kWidth - 1) rows += std::string(padding, '\x7f');
-  }
-  return rows;
-}
-
-struct Camera {
-  std::string model = "plumb_bob";
-  std::vector<double> d{};
-  std::array<std::uint32_t, 2> size{kWidth, kHeight}, binning{};
-  std::array<std::uint32_t, 4> roi{};  // x, y, height, width
-  double stereo = 0;                   // P's Tx
-};
-
-class MessageRecordings : public test::ProgramTest {
- protected:
-  MessageRecordings() { write_small_sensor(); }
-
-  // The arm's link moves along x at 1 m/s and turns; the optical frame is fixed to it.
-  static void add_transforms(McapText& text, double from = 100, double to = 101) {
-    text.transform("/tf_static", 0, "link", "optical", kStill);
-    for (double t = from; t <= to + 1e-9; t += 0.1) {
-      const double half = 0.05 * (t - 100);
-      text.transform("/tf", t, "base", "link",
-                     {t - 100, 0, 0.5, 0, 0, std::sin(half), std::cos(half)});
-    }
-  }
-  static void add_info(McapText& text, const Camera& camera = {},
-                       const std::string& topic = "/camera/depth/camera_info") {
-    test::MessageFields info = text.fields();
-    info.header(100, "optical").put(camera.size[1]).put(camera.size[0]).text(camera.model);
-    info.put(static_cast<std::uint32_t>(camera.d.size())).doubles(camera.d);
-    info.doubles(std::array<double, 9>{61, 0, 23, 0, 62, 17, 0, 0, 1});
-    info.doubles(std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1});
-    info.doubles(std::array<double, 12>{60, 0, 23.5, camera.stereo, 0, 60, 17.5, 0, 0, 0, 1, 0});
-    for (const std::uint32_t value : camera.binning) info.put(value);
-    for (const std::uint32_t value : camera.roi) info.put(value);
-    info.put(std::uint8_t{0});
-    text.add(topic, "sensor_msgs/msg/CameraInfo", info);
-  }
-  static void add_images(McapText& text, const std::string& topic = kTopic) {
-    for (std::size_t i = 0; i < kImages; ++i) {
-      text.image(topic, image_time(i), "optical", kWidth, kHeight, "16UC1", rows_mm(i), 2 * kWidth);
-    }
-  }
-  static McapText good(Kind kind = Kind::little_cdr) {
-    McapText text(kind);
-    add_transforms(text);
-    add_info(text);
-    add_images(text);
-    return text;
-  }
-
-  static Strings call(Strings more = {}) {
-    return test::joined({"import", "rec.mcap", "--sensor", "small.toml", "--out", "frames"}, more);
-  }
-  [[nodiscard]] json import(const McapText& text, Strings more = {},
-                            const std::string& warning = {}) const {
-    write("rec.mcap", text.bytes());
-    more.emplace_back("--json");
-    const test::ProgramResult result = run(call(more));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(result.err.empty(), warning.empty()) << result.err;
-    EXPECT_NE(result.err.find(warning), std::string::npos) << result.err;
-    return json::parse(result.exit_code == 0 ? result.out : "{}");
-  }
-  void refuse(const McapText& text, const std::string& word, Strings more = {}) const {
-    write("rec.mcap", text.bytes());
-    expect_refused(call(more), word);
-  }
-
-  void expect_frames(const FrameSequence& frames) const {
-    ASSERT_EQ(frames.images.size(), kImages);
-    for (std::size_t i = 0; i < kImages; ++i) {
-      const Pose& pose = frames.poses[i];
-      const double along = image_time(i) - 100, angle = 0.1 * along;
-      EXPECT_NEAR(pose.m[3], along + 0.1 * std::cos(angle), 1e-9) << i;
-      EXPECT_NEAR(pose.m[7], 0.1 * std::sin(angle), 1e-9) << i;
-      EXPECT_NEAR(pose.m[4], std::sin(angle), 1e-9) << i;
-      const DepthFrame frame = load_frame(frames, i);
-      for (std::size_t k = 0; k < frame.depth.size(); ++k) {
-        ASSERT_NEAR(frame.depth[k], 0.001 * depth_mm(i, k), 1e-6) << i << ' ' << k;
-      }
-    }
-  }
-};
+using namespace test;
 
 TEST_F(MessageRecordings, ComeThroughInEveryEncoding) {
   for (const Kind kind : {Kind::little_cdr, Kind::big_cdr, Kind::little_cdr2, Kind::ros1}) {
@@ -304,6 +200,7 @@ TEST_F(MessageRecordings, PosesMayComeFromATopic) {
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.3, 1e-9);
   refuse(text, "/none has no poses", {"--poses", "/none"});
   refuse(text, "--poses", {"--poses", "/pose,0,0"});
+  refuse(text, "names no topic", {"--poses", ",0,0,0.2,0,0,0,1"});
 }
 
 TEST_F(MessageRecordings, NothingIsExtrapolated) {
@@ -319,7 +216,7 @@ TEST_F(MessageRecordings, NothingIsExtrapolated) {
   gap.transform("/tf", 101, "base", "link", {1, 0, 0.5, 0, 0, 0, 1});
   add_info(gap);
   add_images(gap);
-  EXPECT_EQ(import(gap, {}, "3 in gaps between them (--max-time-gap)")["frames"], 2);
+  EXPECT_EQ(import(gap, {}, "4 in gaps between them (--max-time-gap)")["frames"], 1);
   EXPECT_EQ(import(gap, {"--max-time-gap", "1"})["frames"], kImages);
 }
 
@@ -329,7 +226,7 @@ TEST_F(MessageRecordings, WorldsAreTold) {
   text.transform("/tf_static", 0, "room", "marker", {0, 2, 0, 0, 0, 0, 1});
   EXPECT_EQ(import(text)["world"], "room");
   EXPECT_NEAR(open_frames(dir / "frames").poses[0].m[3], 0.25, 1e-3);
-  EXPECT_EQ(import(text, {"--world", "base"})["world"], "base");
+  EXPECT_EQ(import(text, {"--world", "/base"})["world"], "base");
   expect_frames(open_frames(dir / "frames"));
   (void)import(text, {"--world", "marker"});
   EXPECT_NEAR(open_frames(dir / "frames").poses[0].m[7], -2, 1e-3);

@@ -65,7 +65,7 @@ class MessageFields {
   std::string bytes_;
 };
 
-/// An MCAP file without chunks.
+/// An MCAP file.
 class McapText {
  public:
   using Kind = MessageFields::Kind;
@@ -103,6 +103,19 @@ class McapText {
     message.header(time, frame).put(height).put(width).text(encoding);
     message.put(static_cast<std::uint8_t>(is_big_endian ? 1 : 0)).put(step).blob(data);
     add(topic, "sensor_msgs/msg/Image", message);
+  }
+
+  /// Of the records so far.
+  [[nodiscard]] std::size_t size() const { return records_.size(); }
+
+  /// What came behind the first `from` bytes of records becomes a chunk, which declares `missing`
+  /// bytes more than it has.
+  void put_in_chunk(std::size_t from, std::uint64_t missing) {
+    const std::string inner = records_.substr(from);
+    const std::uint64_t size = inner.size();
+    records_.resize(from);
+    record(6, std::string(16, '\0') + number(size + missing) + number(std::uint32_t{0}) + text("") +
+                  number(size) + inner);
   }
 
   [[nodiscard]] std::string bytes(bool is_ended = true) const {

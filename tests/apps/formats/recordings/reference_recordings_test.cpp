@@ -147,15 +147,24 @@ TEST_F(ReferenceRecordings, ThatAreCutAreReadAsFarAsTheyGo) {
 }
 
 TEST_F(ReferenceRecordings, DamagedChunksAreLeftOutAndSaid) {
-  std::string bytes;
-  {
-    fs::copy_file(data("split/arm_9.mcap"), dir / "damaged.mcap");
-    bytes = read("damaged.mcap");
-  }
-  bytes[12000] = static_cast<char>(bytes[12000] ^ 1);
-  write("damaged.mcap", bytes);
-  const test::ProgramResult result = import("damaged.mcap");
+  const auto import_damaged = [&](const std::string& name, std::size_t at) {
+    write("damaged.mcap", "");
+    fs::copy_file(data(name), dir / "damaged.mcap", fs::copy_options::overwrite_existing);
+    std::string bytes = read("damaged.mcap");
+    bytes[at] = static_cast<char>(bytes[at] ^ 1);
+    write("damaged.mcap", bytes);
+    return import("damaged.mcap");
+  };
+  // The only chunk, and a later one of several.
+  test::ProgramResult result = import_damaged("split/arm_9.mcap", 12000);
+  EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.err.find("does not have its checksum"), std::string::npos) << result.err;
+  result = import_damaged("arm_zstd.mcap", 14000);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("left out"), std::string::npos) << result.err;
+  const std::size_t frames = json::parse(result.out)["frames"];
+  EXPECT_GE(frames, kFrames / 3);
+  EXPECT_LT(frames, kFrames);
 }
 
 }  // namespace

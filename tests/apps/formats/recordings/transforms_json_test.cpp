@@ -118,6 +118,36 @@ TEST_F(TransformsJson, IntrinsicsAreScaledToTheDepthImages) {
   EXPECT_NEAR(double(import(scene)["intrinsics"][1]), 60, 1e-9);
 }
 
+TEST_F(TransformsJson, FramesAndTheTopShareTheCamera) {
+  // The focal length by the frames, the rest by the top.
+  json scene = good();
+  scene.erase("fl_x"), scene.erase("fl_y");
+  for (json& frame : scene["frames"]) frame["fl_x"] = 60, frame["fl_y"] = 61;
+  EXPECT_EQ(import(scene)["intrinsics"], (json{60, 61, 23.5, 17.5}));
+  EXPECT_EQ(open_frames(dir / "frames").sensor.camera.distortion[0], 0.1);
+  // A frame's own angle comes before the top's focal length.
+  scene = good();
+  scene.erase("fl_y");
+  for (json& frame : scene["frames"]) frame["camera_angle_x"] = 2 * std::atan(0.3);
+  EXPECT_NEAR(double(import(scene)["intrinsics"][0]), 80, 1e-9);
+  // The other way round: the size and the middle by the frames.
+  scene = good();
+  for (const char* key : {"w", "h", "cx", "cy"}) scene.erase(key);
+  for (json& frame : scene["frames"]) frame["cx"] = 20, frame["w"] = kWidth, frame["h"] = kHeight;
+  EXPECT_EQ(import(scene)["intrinsics"], (json{60, 61, 19.5, 17.5}));
+  scene["frames"][2]["cx"] = 21;
+  refuse(scene, "frame 2 has another camera");
+  // Without a size it is the images'.
+  scene = good();
+  for (const char* key : {"w", "h", "cx", "cy", "fl_x", "fl_y"}) scene.erase(key);
+  scene["camera_angle_x"] = 2 * std::atan(0.4);
+  EXPECT_NEAR(double(import(scene)["intrinsics"][0]), 60, 1e-9);
+  EXPECT_EQ(import(scene)["intrinsics"][2], 23.5);
+  EXPECT_EQ(import(scene)["intrinsics"][3], 17.5);
+  scene["w"] = kWidth;
+  refuse(scene, "has one of w and h");
+}
+
 TEST_F(TransformsJson, OneBadFrameIsOneLess) {
   json scene = good();
   scene["frames"].push_back(frame_of(0));
@@ -135,6 +165,14 @@ TEST_F(TransformsJson, WhatCannotBeReadIsNamed) {
   scene = good();
   scene["camera_model"] = "OPENCV_FISHEYE";
   refuse(scene, "'OPENCV_FISHEYE' is not supported");
+  write("scene/transforms.json", scene.dump());
+  expect_refused(call({"--intrinsics", "60,60,23.5,17.5"}), "'OPENCV_FISHEYE' is not supported");
+  scene.erase("fl_x"), scene.erase("fl_y");
+  for (json& frame : scene["frames"]) frame["fl_x"] = 60;
+  refuse(scene, "'OPENCV_FISHEYE' is not supported");
+  scene = good();
+  scene["frames"][1]["is_fisheye"] = true;
+  refuse(scene, "'is_fisheye' is not supported");
   scene = good();
   scene["k4"] = 0.1;
   refuse(scene, "'k4' is not supported");
@@ -153,6 +191,15 @@ TEST_F(TransformsJson, WhatCannotBeReadIsNamed) {
   refuse({{"frames", json::array()}}, "names no frame");
   write("scene/transforms.json", "{\"frames\": [");
   expect_refused(call(), "is no JSON with a list");
+  const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
+  write("scene/transforms.json", R"({"frames": [], "deep": )" + deep + "}");
+  expect_refused(call(), "is no JSON with a list");
+  for (const auto& [key, value] : {std::pair("fl_x", -60.0), std::pair("cx", 1e9)}) {
+    scene = good();
+    scene[key] = value;
+    write("scene/transforms.json", scene.dump());
+    refuse(scene, "transforms.json: camera: ");
+  }
   write("scene/transforms.json", good().dump());
   expect_refused(call({"--world", "map"}), "--world map: is for recordings of messages");
   fs::remove(dir / "scene/depth/0.png");

@@ -30,8 +30,8 @@ enum class RecordingFormat : std::uint8_t { tum, mcap, rosbag2, rosbag1, transfo
 struct VIEWGAIN_EXPORT ImportConfig {
   /// Focal lengths of 0: as the recording says, else as `sensor`; 0 x 0 px: of the images' size.
   PinholeCamera camera{};
-  /// Largest time between an image and its pose, or the nearer of two transforms [s]; nothing: 0.02
-  /// of TUM's layout, 0.1 of messages.
+  /// Largest time between an image and its pose, or half of that between the two transforms beside
+  /// it [s]; nothing: 0.02 of TUM's layout, 0.1 of messages.
   std::optional<double> max_time_gap{};
   /// Whose noise and range limits sensor.toml is to have; nothing: none is written.
   std::optional<Sensor> sensor{};

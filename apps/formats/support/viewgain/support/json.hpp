@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -38,10 +39,33 @@ using Json = nlohmann::ordered_json;
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Null for a text that is no JSON.
+/// Levels of lists and objects in each other that parse_or_null() takes.
+inline constexpr std::size_t kMostJsonLevels = 1000;
+
+/// Whether brackets outside of strings are nested deeper than kMostJsonLevels.
+[[nodiscard]] inline bool is_too_deep(const std::string& text) {
+  std::size_t levels = 0;
+  bool is_in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') is_in_string = !is_in_string;
+    if (is_in_string) {
+      i += c == '\\' ? 1 : 0;
+    } else if (c == '[' || c == '{') {
+      if (++levels > kMostJsonLevels) return true;
+    } else if ((c == ']' || c == '}') && levels > 0) {
+      --levels;
+    }
+  }
+  return false;
+}
+
+/// Null for a text that is no JSON or that is_too_deep(), since copies of values are recursive.
 [[nodiscard]] inline Json parse_or_null(const std::string& text) {
-  const Json parsed = Json::parse(text, nullptr, false);
-  return parsed.is_discarded() ? Json() : parsed;
+  if (is_too_deep(text)) return {};
+  Json parsed = Json::parse(text, nullptr, false);
+  if (parsed.is_discarded()) return {};
+  return parsed;
 }
 
 [[nodiscard]] inline Json to_json(const Box& box) {
