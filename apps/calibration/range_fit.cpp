@@ -19,9 +19,9 @@ constexpr double kMostSaturated = 0.05;  // of the pixels
 constexpr double kLeastFlat = 0.6;       // of the pixels
 constexpr double kMostRough = 0.02;      // of the depth
 constexpr double kLeastCosine = 0.7;     // of incidence, of a frame's middle
-constexpr std::size_t kReadings = 2000;  // of a frame, about
+constexpr std::size_t kReadings = 8000;  // of a frame, about
 constexpr double kMostTurn = 10;         // between a frame's plane and the wall [deg]
-constexpr double kMostOffsetSigma = 0.001, kMostBend = 0.002, kMostFrameError = 0.004;  // [m]
+constexpr double kMostOffsetSigma = 0.0005, kMostBend = 0.002, kMostFrameError = 0.004;  // [m]
 constexpr int kIterations = 10;
 constexpr double kSmoothness = 0.01;
 
@@ -100,7 +100,8 @@ void RangeFit::add(const DepthFrame& frame, const Pose& T_world_camera, const st
   frames_.push_back(std::move(kept));
 }
 
-// The wall and the error's table, which are fitted together.
+// The wall and the error's table, which are fitted together. The table is over the true range:
+// noise of the measured range would bias it (regression dilution).
 struct RangeFit::Wall {
   Eigen::Vector3d normal;      // world
   double offset = 0;           // normal · p [m]
@@ -108,12 +109,13 @@ struct RangeFit::Wall {
   Eigen::VectorXd errors;      // [m]
 
   // Place in the table and the share of the next entry.
-  [[nodiscard]] std::pair<Eigen::Index, double> place(double range) const {
-    const double at = std::clamp((range - first) / step, 0.0, double(errors.size() - 1) - 1e-9);
+  [[nodiscard]] std::pair<Eigen::Index, double> place(double true_range) const {
+    const double at =
+        std::clamp((true_range - first) / step, 0.0, double(errors.size() - 1) - 1e-9);
     return {static_cast<Eigen::Index>(at), at - std::floor(at)};
   }
-  [[nodiscard]] double error(double range) const {
-    const auto [k, share] = place(range);
+  [[nodiscard]] double error(double true_range) const {
+    const auto [k, share] = place(true_range);
     return (1 - share) * errors[k] + share * errors[k + 1];
   }
   [[nodiscard]] double true_range(const Eigen::Vector3d& center, const Eigen::Vector3d& ray) const {
@@ -174,15 +176,16 @@ RangeFitResult RangeFit::solve() const {
         const double true_range = wall.true_range(frame.center, ray);
         const Eigen::Vector3d point = frame.center + true_range * ray;
         const double cosine = wall.normal.dot(ray);
-        const auto [k, share] = wall.place(range);
-        const double residual = range - true_range - wall.error(range);
+        const auto [k, share] = wall.place(true_range);
+        const double residual = range - true_range - wall.error(true_range);
+        const double slope = 1 + (wall.errors[k + 1] - wall.errors[k]) / wall.step;
         // Of the model, true range and table, by the unknowns.
         const std::array<std::pair<Eigen::Index, double>, 5> parts{
             {{k, 1 - share},
              {k + 1, share},
-             {knots, -side.dot(point) / cosine},
-             {knots + 1, -up.dot(point) / cosine},
-             {knots + 2, 1 / cosine}}};
+             {knots, -slope * side.dot(point) / cosine},
+             {knots + 1, -slope * up.dot(point) / cosine},
+             {knots + 2, slope / cosine}}};
         for (const auto& [i, x] : parts) {
           b[i] += x * residual;
           for (const auto& [j, y] : parts) A(i, j) += x * y;
@@ -217,7 +220,7 @@ RangeFitResult RangeFit::solve() const {
     for (const auto& [ray, range] : frame.readings) {
       const double true_range = wall.true_range(frame.center, ray);
       const Eigen::Vector3d point = frame.center + true_range * ray;
-      const double left = range - true_range - wall.error(range);
+      const double left = range - true_range - wall.error(true_range);
       before[at] += (range - true_range) / count;
       after[at] += left / count;
       const double x = side.dot(point), y = up.dot(point);
@@ -244,8 +247,8 @@ RangeFitResult RangeFit::solve() const {
   if (!(result.offset_sigma < kMostOffsetSigma)) {
     fail_range("an offset of the camera cannot be told from one of the wall (" +
                millimetres(result.offset_sigma) +
-               "); turn the camera by 10 to 30 deg at some "
-               "distances");
+               "); turn the camera by 10 to 30 deg at "
+               "more distances, or take more frames");
   }
   std::sort(result.steps.begin(), result.steps.end(),
             [](const RangeStep& a, const RangeStep& b2) { return a.range < b2.range; });
@@ -253,7 +256,7 @@ RangeFitResult RangeFit::solve() const {
   result.rms_before = before.norm() / root, result.rms_after = after.norm() / root;
   for (Eigen::Index k = 0; k < knots; ++k) {
     result.sensor.range_calibration.table.push_back(
-        {wall.first + wall.step * static_cast<double>(k), wall.errors[k]});
+        {wall.first + wall.step * static_cast<double>(k) + wall.errors[k], wall.errors[k]});
   }
   result.sensor.validate();
   return result;

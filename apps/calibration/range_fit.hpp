@@ -27,7 +27,7 @@ struct VIEWGAIN_EXPORT RangeFitResult {
   Sensor sensor;                        ///< with the table `range_calibration`
   double rms_before = 0;                ///< of the frames' mean errors, without the table [m]
   double rms_after = 0;                 ///< with it [m]
-  double offset_sigma = 0;              ///< standard deviation of an offset of all ranges [m]
+  double offset_sigma = 0;              ///< of an offset of all ranges, from pixel noise alone [m]
   std::size_t distances = 0;            ///< that differ by over 2 %
   std::vector<RangeStep> steps{};       ///< by range
   std::vector<std::string> left_out{};  ///< why which frames were
