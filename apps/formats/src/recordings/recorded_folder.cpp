@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kImportedText = "# files written by viewgain import";
 
-// What an earlier import left in the folder, which a new one may replace.
+// Files of an earlier import. A new import may replace them.
 std::vector<fs::path> imported_files(const fs::path& dir) {
   const std::vector<fs::path> files = frame_files(dir);
   if (files.empty()) return files;

@@ -193,9 +193,10 @@ std::vector<Pose> reachable_hazard_views(const VoxelScene& scene, const ReachReg
     sums.push_back(sum += target.area);
     middle += target.area * target.at;
   }
+  if (targets.empty()) return {};
   middle /= sum;
   std::vector<Pose> views;
-  for (std::size_t i = 0; i < count && sum > 0; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t attempt = 0; attempt < kTries; ++attempt) {
       // Sequences of which any number of members in a row is spread evenly.
       const auto n = static_cast<double>(i + attempt * count + 1);

@@ -37,9 +37,10 @@ inline constexpr std::string_view kReachViews = "reach_hazard";
 
 /// Views (T_world_camera) of the same places from where `reach` lets the camera be, at most
 /// `count`: places in turn by their area, each from 1, 1.6 or 2.5 times `distance` [m] and up to
-/// 75° beside where its faces look to. A view for which 16 tries find no reachable pose is left
-/// out. Deterministic; thread safe if the reach's predicate is. Throws and costs as hazard_views(),
-/// and up to 16 `count` calls of ReachRegion::contains().
+/// 75° beside where its faces look to. A third looks at its place, a third at the mean of all
+/// places, a third between. A view for which 16 tries find no reachable pose is omitted.
+/// Deterministic; thread safe if the reach's predicate is. Throws and costs as hazard_views(), and
+/// up to 16 `count` calls of ReachRegion::contains().
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> reachable_hazard_views(const VoxelScene& scene,
                                                                        const ReachRegion& reach,
                                                                        double distance,

@@ -44,8 +44,8 @@ struct VIEWGAIN_EXPORT ProposerConfig {
   FeasibilityConfig feasibility{};  ///< what is possible, and what is taken
   /// False: every candidate is possible but those that were taken or tried.
   bool check_feasibility = true;
-  /// Where reach is limited, candidates of generations are joined by 500 reachable_hazard_views()
-  /// of this distance [m]; 0: by none.
+  /// If the reach is limited, 1,200 reachable_hazard_views() from this distance [m] are added to
+  /// the candidates of generations; 0: none.
   double distance_in_reach = 0;
 };
 
