@@ -153,6 +153,14 @@ def study_of(source, folder, environment):
     return json.loads(pathlib.Path(folder, "study/results.json").read_text(encoding="utf-8"))
 
 
+def value_of(text):
+    """Of a cell of a CSV file."""
+    try:
+        return int(text) if text.isdigit() else float(text)
+    except ValueError:
+        return text
+
+
 def toml_keys(file):
     """All keys of a TOML file, those of its tables too."""
     return {key for _, key, _ in keys_of(tomllib.loads(pathlib.Path(file).read_text(encoding="utf-8")))}
@@ -188,8 +196,8 @@ def main():
             keys += tables.check(file, section, json.loads(pathlib.Path(folder, file).read_text(encoding="utf-8")))
         keys += tables.check("a study", "Studies", study_of(source, folder, environment))
         with open(f"{folder}/scores.csv", newline="", encoding="utf-8") as scores:
-            columns = dict.fromkeys(next(csv.reader(scores)), 0)
-        keys += tables.check("scores.csv", "score", {"columns": columns})
+            row = next(csv.DictReader(scores))
+        keys += tables.check("scores.csv", "score", {column: value_of(text) for column, text in row.items()})
         for section, file in {"Sensor files": "frames/sensor.toml", "Folders of frames": "frames/frames.toml"}.items():
             found, said = toml_keys(pathlib.Path(folder, file)), set(re.findall(r"(?m)^\| `(\w+)` \|", formats[section]))
             faults += [f"formats.md: {file} has a key `{key}` that is not there" for key in sorted(found - said)]
