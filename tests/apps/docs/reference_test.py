@@ -134,7 +134,8 @@ class Tables:
             if types is None and key not in gains:
                 self.faults.append(f"json.md: {call} has a key `{key}`" + f" in `{holder}`" * bool(holder) + " that is not there")
             elif types and not any(is_of(value, kind, rest) for kind, rest in types):
-                self.faults.append(f"json.md: {call}: `{key}` is {json.dumps(value)[:60]}, which is not {types}")
+                said = " or ".join((kind + rest).strip() for kind, rest in types)
+                self.faults.append(f"json.md: {call}: `{key}` is {json.dumps(value)[:60]}, not {said}")
         return keys
 
     def not_printed(self):
@@ -149,7 +150,7 @@ def study_of(source, folder, environment):
     spec = 'objects = ["meshes/camel.off"]\npolicies = ["gain:paper"]\nseeds = [1]\nsensors = ["sr4000"]\nvoxels = [0.02]\nsizes = [0.35]\nmax_views = 2\n'
     pathlib.Path(folder, "small.toml").write_text(spec, encoding="utf-8")
     subprocess.run([sys.executable, "-m", "viewgain.study", "small.toml", "--out", "study"], cwd=folder, capture_output=True, check=True,
-                   env=environment | {"PYTHONPATH": str(source / "apps/python")})
+                   env=environment | {"PYTHONPATH": str(source / "apps/python"), "PYTHONDONTWRITEBYTECODE": "1"})
     return json.loads(pathlib.Path(folder, "study/results.json").read_text(encoding="utf-8"))
 
 
