@@ -26,7 +26,7 @@ struct Options {
   std::string intrinsics;
   std::optional<double> max_time_gap;
   std::optional<double> depth_scale;
-  std::string world, depth_topic, poses;
+  std::string world, depth_topic, pose_topic;
   std::string mask, confidence;
   std::string out;
 };
@@ -51,19 +51,19 @@ void check(const Options& options, RecordingFormat format) {
   }
   for (const auto& [flag, value] :
        {std::pair("--world", options.world), std::pair("--depth-topic", options.depth_topic),
-        std::pair("--poses", options.poses)}) {
+        std::pair("--pose-topic", options.pose_topic)}) {
     if (value.empty() || has_messages(format)) continue;
     refuse(flag, value, "is for recordings of messages, and SOURCE is of the format " + found);
   }
 }
 
-// Of --poses TOPIC[,tx,ty,tz,qx,qy,qz,qw].
-void parse_poses(const std::string& text, ImportConfig& config) {
+// Of --pose-topic TOPIC[,tx,ty,tz,qx,qy,qz,qw].
+void parse_pose_topic(const std::string& text, ImportConfig& config) {
   const std::size_t comma = text.find(',');
   config.pose_topic = text.substr(0, comma);
-  if (!text.empty() && config.pose_topic.empty()) refuse("--poses", text, "names no topic");
+  if (!text.empty() && config.pose_topic.empty()) refuse("--pose-topic", text, "names no topic");
   if (comma != std::string::npos) {
-    config.T_body_camera = parse_pose("--poses", text.substr(comma + 1));
+    config.T_body_camera = parse_pose("--pose-topic", text.substr(comma + 1));
   }
 }
 
@@ -127,7 +127,7 @@ void import_frames(const Options& options) {
   config.depth_scale = options.depth_scale;
   config.world = options.world;
   config.depth_topic = options.depth_topic;
-  parse_poses(options.poses, config);
+  parse_pose_topic(options.pose_topic, config);
   Progress progress("frame", options.common.quiet);
   config.progress = [&progress](std::size_t done, std::size_t of) { progress.update(done, of); };
   const ImportReport report = import_recording(options.source, options.out, config);
@@ -164,7 +164,7 @@ Command add_import(App& program) {
                   "topic of the depth images (default: the only one)");
   app->add_option("--world", options->world,
                   "tf frame that is the world (default: the topmost parent of the images' frame)");
-  app->add_option("--poses", options->poses,
+  app->add_option("--pose-topic", options->pose_topic,
                   "TOPIC[,tx,ty,tz,qx,qy,qz,qw]: topic of PoseStamped or Odometry to use in place "
                   "of tf, and the camera's pose on its body");
   app->add_option("--max-time-gap", options->max_time_gap,

@@ -107,7 +107,7 @@ class MessageImport {
       throw Error(ErrorCode::format,
                   source_.string() + ": " + message.topic.name + " (" + type +
                       ") has the transforms of all frames, not the poses of one body; leave out "
-                      "--poses, and choose the world by --world");
+                      "--pose-topic, and choose the world by --world");
     }
     std::vector<TransformMessage> transforms;
     try {
@@ -120,10 +120,11 @@ class MessageImport {
       const auto& [header, child, numbers] = transform;
       if (is_chosen && body_frame_.empty()) body_frame_ = child;
       if (is_chosen && body_frame_ != child) {
-        throw Error(ErrorCode::format, of_message(message, "has the poses of several bodies, " +
-                                                               viewgain::quoted(body_frame_) +
-                                                               " and " + viewgain::quoted(child) +
-                                                               "; give a topic of one (--poses)"));
+        throw Error(ErrorCode::format,
+                    of_message(message, "has the poses of several bodies, " +
+                                            viewgain::quoted(body_frame_) + " and " +
+                                            viewgain::quoted(child) +
+                                            "; give a topic of one (--pose-topic)"));
       }
       const bool is_good = is_chosen
                                ? poses_.add(header.frame, kBody, header.stamp, numbers, false)
@@ -191,7 +192,7 @@ class MessageImport {
     Way way;
     if (config_.pose_topic.empty()) {
       if (tree_.empty()) {
-        fail("has no transforms: record /tf and /tf_static, or give a topic by --poses");
+        fail("has no transforms: record /tf and /tf_static, or give a topic by --pose-topic");
       }
       way.moving = tree_.chain(report_.world, frame);
     } else {
@@ -209,9 +210,10 @@ class MessageImport {
       } else if (config_.sensor && config_.sensor->T_flange_camera) {
         way.T_body_camera = *config_.sensor->T_flange_camera;
       } else {
-        fail(config_.pose_topic +
-             " does not say where the camera is on its body; give it behind the topic (--poses "
-             "TOPIC,tx,ty,tz,qx,qy,qz,qw)");
+        fail(
+            config_.pose_topic +
+            " does not say where the camera is on its body; give it behind the topic (--pose-topic "
+            "TOPIC,tx,ty,tz,qx,qy,qz,qw)");
       }
     }
     if (way.moving.empty()) {

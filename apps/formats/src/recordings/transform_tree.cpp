@@ -98,7 +98,7 @@ TransformTree::Chain TransformTree::chain(std::string& world, const std::string&
   }
   if (edges == 0) {
     fail("no transform leads to the frame " + viewgain::quoted(frame) + "; there are " +
-         listed_frames(frames()) + " (--world, --poses)");
+         listed_frames(frames()) + " (--world, --pose-topic)");
   }
   if (edges >= joined.size()) {
     fail("the transforms of " + listed_frames(joined) +

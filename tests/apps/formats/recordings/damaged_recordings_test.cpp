@@ -87,14 +87,16 @@ TEST_F(DamagedRecordings, ImpossibleCamerasAreRefusedWithoutASensorToo) {
 }
 
 TEST_F(DamagedRecordings, PosesOfSeveralBodiesAreRefused) {
-  refuse(good(), "/tf (tf2_msgs/TFMessage) has the transforms of all frames", {"--poses", "/tf"});
+  refuse(good(), "/tf (tf2_msgs/TFMessage) has the transforms of all frames",
+         {"--pose-topic", "/tf"});
   McapText text = good();
   for (const std::string body : {"link", "link", "wheel"}) {
     MessageFields odometry = text.fields();
     odometry.header(100, "odom").text(body).doubles(kStill);
     text.add("/odom", "nav_msgs/msg/Odometry", odometry);
   }
-  refuse(text, "/odom: has the poses of several bodies, 'link' and 'wheel'", {"--poses", "/odom"});
+  refuse(text, "/odom: has the poses of several bodies, 'link' and 'wheel'",
+         {"--pose-topic", "/odom"});
 }
 
 TEST_F(DamagedRecordings, ByteOrderIsJudgedByTheFirstImageWithReadings) {

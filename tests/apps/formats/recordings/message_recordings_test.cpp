@@ -185,22 +185,22 @@ TEST_F(MessageRecordings, PosesMayComeFromATopic) {
   }
   text.transform("/tf_static", 0, "link", "optical", kStill);
   const auto x_of = [&](std::size_t i) { return open_frames(dir / "frames").poses[i].m[3]; };
-  EXPECT_EQ(import(text, {"--poses", "/pose,0,0,0.2,0,0,0,1"})["world"], "map");
+  EXPECT_EQ(import(text, {"--pose-topic", "/pose,0,0,0.2,0,0,0,1"})["world"], "map");
   EXPECT_NEAR(x_of(1), 0.15, 1e-9);
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.2, 1e-9);
-  EXPECT_TRUE(import(text, {"--poses", "/tracker,0,0,0.2,0,0,0,1"})["world"].is_null());
+  EXPECT_TRUE(import(text, {"--pose-topic", "/tracker,0,0,0.2,0,0,0,1"})["world"].is_null());
   EXPECT_NEAR(x_of(4), 0.45, 1e-9);
-  EXPECT_EQ(import(text, {"--poses", "/odom"})["world"], "odom");
+  EXPECT_EQ(import(text, {"--pose-topic", "/odom"})["world"], "odom");
   EXPECT_NEAR(x_of(1), 0.1 + 2 * 0.15, 1e-9);
-  refuse(text, "/pose does not say where the camera is on its body", {"--poses", "/pose"});
+  refuse(text, "/pose does not say where the camera is on its body", {"--pose-topic", "/pose"});
   Sensor mounted = read_sensor_toml(dir / "small.toml");
   mounted.T_flange_camera = Pose(Eigen::Matrix3d::Identity(), {0, 0, 0.3});
   write_sensor_toml(dir / "small.toml", mounted);
-  EXPECT_EQ(import(text, {"--poses", "/pose"})["frames"], kImages);
+  EXPECT_EQ(import(text, {"--pose-topic", "/pose"})["frames"], kImages);
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.3, 1e-9);
-  refuse(text, "/none has no poses", {"--poses", "/none"});
-  refuse(text, "--poses", {"--poses", "/pose,0,0"});
-  refuse(text, "names no topic", {"--poses", ",0,0,0.2,0,0,0,1"});
+  refuse(text, "/none has no poses", {"--pose-topic", "/none"});
+  refuse(text, "--pose-topic", {"--pose-topic", "/pose,0,0"});
+  refuse(text, "names no topic", {"--pose-topic", ",0,0,0.2,0,0,0,1"});
 }
 
 TEST_F(MessageRecordings, NothingIsExtrapolated) {
