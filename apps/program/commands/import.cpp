@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "program/cli/flags/frame_folder.hpp"
@@ -26,7 +28,7 @@ struct Options {
   std::string intrinsics;
   std::optional<double> max_time_gap;
   std::optional<double> depth_scale;
-  std::string world, depth_topic, pose_topic;
+  std::string world, camera_frame, depth_topic, pose_topic;
   std::string mask, confidence;
   std::string out;
 };
@@ -51,20 +53,19 @@ void check(const Options& options, RecordingFormat format) {
   }
   for (const auto& [flag, value] :
        {std::pair("--world", options.world), std::pair("--depth-topic", options.depth_topic),
+        std::pair("--camera-frame", options.camera_frame),
         std::pair("--pose-topic", options.pose_topic)}) {
     if (value.empty() || has_messages(format)) continue;
     refuse(flag, value, "is for recordings of messages, and SOURCE is of the format " + found);
   }
 }
 
-// Of --pose-topic TOPIC[,tx,ty,tz,qx,qy,qz,qw].
-void parse_pose_topic(const std::string& text, ImportConfig& config) {
+// Of NAME[,tx,ty,tz,qx,qy,qz,qw] the name and the pose.
+std::pair<std::string, std::optional<Pose>> parse_mount(const char* flag, const std::string& text) {
   const std::size_t comma = text.find(',');
-  config.pose_topic = text.substr(0, comma);
-  if (!text.empty() && config.pose_topic.empty()) refuse("--pose-topic", text, "names no topic");
-  if (comma != std::string::npos) {
-    config.T_body_camera = parse_pose("--pose-topic", text.substr(comma + 1));
-  }
+  if (comma == std::string::npos) return {text, std::nullopt};
+  if (comma == 0) refuse(flag, text, "has no name before the pose");
+  return {text.substr(0, comma), parse_pose(flag, text.substr(comma + 1))};
 }
 
 // Of the flag; without it of the library's choice.
@@ -127,7 +128,11 @@ void import_frames(const Options& options) {
   config.depth_scale = options.depth_scale;
   config.world = options.world;
   config.depth_topic = options.depth_topic;
-  parse_pose_topic(options.pose_topic, config);
+  std::tie(config.pose_topic, config.T_body_camera) =
+      parse_mount("--pose-topic", options.pose_topic);
+  const auto [frame, T_frame_camera] = parse_mount("--camera-frame", options.camera_frame);
+  config.camera_frame = frame;
+  config.T_frame_camera = T_frame_camera.value_or(Pose());
   Progress progress("frame", options.common.quiet);
   config.progress = [&progress](std::size_t done, std::size_t of) { progress.update(done, of); };
   const ImportReport report = import_recording(options.source, options.out, config);
@@ -164,6 +169,9 @@ Command add_import(App& program) {
                   "topic of the depth images (default: the only one)");
   app->add_option("--world", options->world,
                   "tf frame that is the world (default: the topmost parent of the images' frame)");
+  app->add_option("--camera-frame", options->camera_frame,
+                  "FRAME[,tx,ty,tz,qx,qy,qz,qw]: tf frame to use in place of the images' frame_id, "
+                  "and the camera's pose in it");
   app->add_option("--pose-topic", options->pose_topic,
                   "TOPIC[,tx,ty,tz,qx,qy,qz,qw]: topic of PoseStamped or Odometry to use in place "
                   "of tf, and the camera's pose on its body");

@@ -62,6 +62,10 @@ void check(const fs::path& source, const ImportConfig& config) {
     refuse("the depth scale " + short_text(*config.depth_scale) +
            " must be within 0 and 1 m per unit");
   }
+  if (config.T_body_camera && !config.camera_frame.empty()) {
+    refuse("the camera's place is given twice, in a tf frame and on the body of " +
+           config.pose_topic);
+  }
   if (config.camera == PinholeCamera{}) return;
   PinholeCamera camera = config.camera;
   if (camera.width == 0 && camera.height == 0) camera.width = camera.height = 1;

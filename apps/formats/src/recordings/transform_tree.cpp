@@ -98,7 +98,8 @@ TransformTree::Chain TransformTree::chain(std::string& world, const std::string&
   }
   if (edges == 0) {
     fail("no transform leads to the frame " + viewgain::quoted(frame) + "; there are " +
-         listed_frames(frames()) + " (--world, --pose-topic)");
+         listed_frames(frames()) +
+         "; record /tf_static, too, or give a frame and the camera's pose in it by --camera-frame");
   }
   if (edges >= joined.size()) {
     fail("the transforms of " + listed_frames(joined) +
@@ -150,6 +151,21 @@ TransformTree::Found TransformTree::look_up(const Chain& chain, std::int64_t sta
     T_world_frame = T_world_frame * (is_inverted ? T_parent_child.inverse() : T_parent_child);
   }
   return Found::yes;
+}
+
+std::string TransformTree::largest_gap(const Chain& chain) {
+  std::int64_t largest = -1;
+  std::string text;
+  for (const auto& [edge, is_inverted] : chain) {
+    for (std::size_t i = 1; i < edge->poses.size(); ++i) {
+      const std::int64_t gap = edge->poses[i].stamp - edge->poses[i - 1].stamp;
+      if (gap <= largest) continue;
+      largest = gap;
+      text = short_text(static_cast<double>(gap / 1'000'000) * 1e-3) + " s, from " +
+             viewgain::quoted(edge->parent) + " to " + viewgain::quoted(edge->child);
+    }
+  }
+  return text;
 }
 
 std::array<std::int64_t, 2> TransformTree::span_of(const Chain& chain) {

@@ -25,6 +25,12 @@ class TransformTree {
   bool add(const std::string& parent, const std::string& child, std::int64_t stamp,
            const std::array<double, 7>& numbers, bool is_static);
 
+  /// Takes the transforms of `other` between frames that have none here. False if some have.
+  bool join(TransformTree& other) {
+    edges_.merge(other.edges_);
+    return other.edges_.empty();
+  }
+
   /// Sorts by time; to be called once, before what follows. Warns of clocks that went back.
   void finish(Warnings& warnings);
 
@@ -47,6 +53,9 @@ class TransformTree {
 
   /// The first and last times [ns] that all moving transforms of the chain have.
   static std::array<std::int64_t, 2> span_of(const Chain& chain);
+
+  /// "1 s, from 'map' to 'base'": between two moving transforms of the chain.
+  static std::string largest_gap(const Chain& chain);
 
   struct Stamped {
     std::int64_t stamp = 0;
