@@ -148,9 +148,11 @@ std::string MessageTopics::listed_infos() const {
 bool MessageTopics::is_rectified(const std::string& depth_topic, const CameraInfoMessage& info,
                                  Warnings& warnings) {
   const std::string name = depth_topic.substr(namespace_of(depth_topic).size());
-  const bool is_rectified = name.find("rect") != std::string::npos;
   const bool has_distortion =
       std::any_of(info.d.begin(), info.d.end(), [](double value) { return value != 0; });
+  // Without distortion K is that of rectified images, too; some drivers have no P.
+  const bool is_rectified =
+      name.find("rect") != std::string::npos && (has_distortion || info.p[0] != 0);
   if (!is_rectified && has_distortion && name.find("raw") == std::string::npos) {
     warnings.add("the name of " + depth_topic +
                  " says neither raw nor rect; its images are taken for raw ones, with the "

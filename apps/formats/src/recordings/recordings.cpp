@@ -118,6 +118,9 @@ RecordingFormat recording_format(const fs::path& source) {
                                        found[0].first + " and " + found[1].first + "; name a file");
   }
   if (found.empty()) {
+    for (const std::string& name : names_in(source)) {
+      if (small_ending(name) == ".zstd") (void)file_format(source / name);
+    }
     throw Error(
         ErrorCode::format,
         source.string() + ": holds no recording (depth.txt, transforms.json, .mcap, .db3 or .bag)");

@@ -140,7 +140,7 @@ TEST_F(MessageRecordings, CamerasAreThoseOfTheImages) {
   write("rec.mcap", with({.d = lens}).bytes());
   expect_refused({"import", "rec.mcap", "--out", "frames"}, "give --sensor");
   EXPECT_EQ(import(with({.size = {40, 30}}), {"--intrinsics", "60,60,23.5,17.5"})["width"], 48);
-  refuse(with({.size = {40, 30}}), "5 wrong_size");
+  refuse(with({.size = {40, 30}}), "48x36 pixels, not 40x30 as the camera; give --intrinsics");
   // Without a camera_info there is none, or the sensor's.
   McapText text;
   add_transforms(text);
@@ -410,6 +410,8 @@ TEST_F(MessageRecordings, FlagsAndFilesThatDoNotFitAreRefused) {
   write("whole.db3.zstd", "\x28\xb5\x2f\xfd and more");
   write("empty.db3", "SQLite format 3");
   fs::create_directories(dir / "none");
+  fs::create_directories(dir / "packed");
+  write("packed/rec_0.db3.zstd", "\x28\xb5\x2f\xfd and more");
   const auto import = [](const std::string& source, const Strings& more = {}) {
     return test::joined({"import", source, "--sensor", "small.toml", "--out", "frames"}, more);
   };
@@ -419,6 +421,7 @@ TEST_F(MessageRecordings, FlagsAndFilesThatDoNotFitAreRefused) {
                   {import("rec.mcap", {"--depth-scale", "-1"}), "--depth-scale"},
                   {import("both"), "two kinds, .mcap and .bag"},
                   {import("none"), "holds no recording"},
+                  {import("packed"), "unzstd"},
                   {import("text.mcap"), "is no recording"},
                   {import("old.bag"), "rosbag fix"},
                   {import("whole.db3.zstd"), "unzstd"},
