@@ -192,7 +192,8 @@ void check_not_read(const NamedFile& output, const std::vector<NamedFile>& files
     const bool is_continued = other.option == "--map";
     if (&other == &output || is_continued || !have_a_common_file(output, other)) continue;
     refuse(output.option, output.path.string(),
-           "is, or holds, a file of " + other.option + " " + other.path.string());
+           (other.kind == Kind::folder ? "must not lie in " : "is, or holds, a file of ") +
+               other.option + " " + other.path.string());
   }
 }
 

@@ -107,6 +107,10 @@ void print_summary(const Options& options, RecordingFormat format, const ImportR
   }
   if (!bad.empty()) std::printf("left out: %s\n", counts_text(bad).c_str());
   print_mended(report.orthonormalized);
+  if (!sensor) {
+    std::printf("no sensor.toml without --sensor: model needs a sensor file with %dx%d px\n",
+                camera.width, camera.height);
+  }
   if (!options.mask.empty() || !options.confidence.empty()) {
     std::printf("masks: of %zu frames, %s pixels taken away\n", report.masks,
                 with_commas(report.masked_pixels).c_str());
