@@ -318,9 +318,9 @@ class MessageImport {
     }
     if (camera.width != depth.width || camera.height != depth.height) {
       return drop(FrameVerdict::wrong_size,
-                  "the image has " + size_text(depth.width, depth.height) + " pixels, not " +
+                  "the image has " + size_text(depth.width, depth.height) + " pixels, the camera " +
                       size_text(camera.width, camera.height) +
-                      (config_.camera.fx > 0 ? "" : " as the camera; give --intrinsics"));
+                      (config_.camera.fx > 0 ? "" : "; give --intrinsics"));
     }
     if (!is_wrong_order_) is_wrong_order_ = is_wrong_byte_order(image);
     if (is_wrong_order_.value_or(false)) {

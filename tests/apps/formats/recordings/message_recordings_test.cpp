@@ -140,7 +140,7 @@ TEST_F(MessageRecordings, CamerasAreThoseOfTheImages) {
   write("rec.mcap", with({.d = lens}).bytes());
   expect_refused({"import", "rec.mcap", "--out", "frames"}, "give --sensor");
   EXPECT_EQ(import(with({.size = {40, 30}}), {"--intrinsics", "60,60,23.5,17.5"})["width"], 48);
-  refuse(with({.size = {40, 30}}), "48x36 pixels, not 40x30 as the camera; give --intrinsics");
+  refuse(with({.size = {40, 30}}), "48x36 pixels, the camera 40x30; give --intrinsics");
   // Without a camera_info there is none, or the sensor's.
   McapText text;
   add_transforms(text);
