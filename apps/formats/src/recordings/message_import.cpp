@@ -144,19 +144,10 @@ class MessageImport {
     const auto nearness = [&](const auto& tree) {
       return report_.depth_topic.starts_with(tree.first) ? tree.first.size() + 1 : 0;
     };
-    std::string names;
-    for (const auto& [name, tree] : trees_) names += " " + name + "tf";
-    bool has_own = false;
+    const auto is_farther = [&](const auto& a, const auto& b) { return nearness(a) < nearness(b); };
     while (!trees_.empty()) {
-      const auto next =
-          std::max_element(trees_.begin(), trees_.end(),
-                           [&](const auto& a, const auto& b) { return nearness(a) < nearness(b); });
-      has_own = has_own || nearness(*next) > 0;
-      if (!tree_.join(next->second) && !has_own) {
-        throw Error(ErrorCode::format,
-                    source_.string() + ": transforms of the same frames come from several topics," +
-                        names + ", and none is in the namespace of " + report_.depth_topic);
-      }
+      const auto next = std::max_element(trees_.begin(), trees_.end(), is_farther);
+      tree_.join(next->second, nearness(*next) > 0);
       trees_.erase(next);
     }
   }

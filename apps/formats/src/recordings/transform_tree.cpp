@@ -44,7 +44,7 @@ bool TransformTree::add(const std::string& parent, const std::string& child, std
   }
   const auto [found, is_new] = edges_.try_emplace({child, parent});
   Edge& edge = found->second;
-  if (is_new) edge = {parent, child, is_static, {}};
+  if (is_new) edge.parent = parent, edge.child = child, edge.is_static = is_static;
   // A moving transform takes the place of a static one of the same frames.
   if (edge.is_static && !is_static) edge.poses.clear(), edge.is_static = false;
   if (!edge.is_static && is_static) return true;
@@ -53,6 +53,14 @@ bool TransformTree::add(const std::string& parent, const std::string& child, std
   edge.latest = std::max(edge.latest, stamp);
   edge.poses.push_back({stamp, numbers});
   return true;
+}
+
+void TransformTree::join(TransformTree& other, bool is_near) {
+  for (auto& [key, edge] : other.edges_) {
+    edge.is_near = is_near;
+    const auto [found, is_new] = edges_.try_emplace(key, std::move(edge));
+    if (!is_new && !found->second.is_near) found->second.is_ambiguous = true;
+  }
 }
 
 void TransformTree::finish(Warnings& warnings) {
@@ -117,6 +125,11 @@ TransformTree::Chain TransformTree::chain(std::string& world, const std::string&
   Chain way;
   for (std::string at = world; at != frame;) {
     const auto& [edge, is_down] = reached.at(at);
+    if (edge->is_ambiguous) {
+      fail("the transform from " + viewgain::quoted(edge->parent) + " to " +
+           viewgain::quoted(edge->child) +
+           " comes from several topics, and none is in the namespace of the depth images");
+    }
     way.emplace_back(edge, is_down);
     at = is_down ? edge->parent : edge->child;
   }

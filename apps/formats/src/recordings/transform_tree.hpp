@@ -25,11 +25,9 @@ class TransformTree {
   bool add(const std::string& parent, const std::string& child, std::int64_t stamp,
            const std::array<double, 7>& numbers, bool is_static);
 
-  /// Takes the transforms of `other` between frames that have none here. False if some have.
-  bool join(TransformTree& other) {
-    edges_.merge(other.edges_);
-    return other.edges_.empty();
-  }
+  /// Takes the transforms of `other` between frames that have none here. Those of near topics come
+  /// first; chain() refuses transforms of which several far topics have some.
+  void join(TransformTree& other, bool is_near);
 
   /// Sorts by time; to be called once, before what follows. Warns of clocks that went back.
   void finish(Warnings& warnings);
@@ -63,7 +61,7 @@ class TransformTree {
   };
   struct Edge {
     std::string parent, child;
-    bool is_static = false;
+    bool is_static = false, is_near = true, is_ambiguous = false;
     std::vector<Stamped> poses;       // by time
     std::int64_t went_back = 0;       // the farthest that a stamp was before an earlier one [ns]
     std::int64_t latest = INT64_MIN;  // stamp so far

@@ -258,12 +258,15 @@ TEST_F(MessageRecordings, RobotsHaveTransformsInTheirNamespaces) {
   add_images(text, "/robot/camera/image_raw");
   EXPECT_EQ(import(text, {}, "the intrinsics are those of")["world"], "room");
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[3], 100.15 + 0.2, 1e-9);
-  McapText unclear = text;
-  add_images(unclear, "/image_raw");
-  unclear.transform("/tf", 100, "hall", "room", kStill);
-  EXPECT_EQ(import(unclear, {"--depth-topic", "/robot/camera/image_raw"},
+  add_images(text, "/image_raw");
+  text.transform("/tf_static", 0, "hall", "room", kStill);
+  EXPECT_EQ(import(text, {"--depth-topic", "/robot/camera/image_raw"},
                    "the intrinsics are those of")["world"],
             "hall");
+  refuse(text, "the transform from 'base' to 'link' comes from several topics",
+         {"--depth-topic", "/image_raw"});
+  text.transform("/tf", 100, "base", "link", kStill);
+  refuse(text, "5 after the last one", {"--depth-topic", "/image_raw"});
 }
 
 TEST_F(MessageRecordings, NothingIsExtrapolated) {
