@@ -105,9 +105,10 @@ std::vector<SmoothPixel> smooth_pixels(const PinholeCamera& camera,
 }
 
 // σ_ax of each step, by the model as far as it goes: its ratio between angles, and lateral noise on
-// slants, which is taken off. The median is robust; it is that of χ² of n - 1 degrees.
+// slants, which is taken off: `lateral` times the model's. The median is robust; it is that of χ²
+// of n - 1 degrees.
 std::vector<NoiseStep> steps_of(const std::vector<SmoothPixel>& pixels, const Sensor& sensor,
-                                std::size_t frames) {
+                                std::size_t frames, double lateral) {
   const double chi_median = std::pow(1 - 2 / (9 * static_cast<double>(frames - 1)), 3);
   std::vector<NoiseStep> steps;
   for (std::size_t i = 0; i < pixels.size();) {
@@ -120,7 +121,7 @@ std::vector<NoiseStep> steps_of(const std::vector<SmoothPixel>& pixels, const Se
       const MeasurementSigmas sigma = sensor.noise_sigmas(pixel.range, pixel.cosine);
       const double tangent2 = 1 / (pixel.cosine * pixel.cosine) - 1;
       const double own = sigma.axial * sigma.axial,
-                   slant = sigma.lateral * sigma.lateral * tangent2;
+                   slant = std::pow(lateral * sigma.lateral, 2) * tangent2;
       ratios.push_back(pixel.variance / (own + slant));
       axial += own;
       beside += slant;
@@ -266,9 +267,11 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
   result.sigma_lateral_px = edges.sigma_px;
   result.edge_length = edges.length;
   result.lateral_in_model = set_lateral(result.sensor.noise, edges);
-  // The share of lateral noise on slants depends on what is fitted.
+  // The share of lateral noise on slants depends on what is fitted. A model of 1 px may have more
+  // of it than the camera.
+  const double lateral = result.lateral_in_model ? 1 : edges.sigma_px;
   for (int turn = 0; turn < kTurns; ++turn) {
-    result.steps = steps_of(smooth, result.sensor, depths_.size());
+    result.steps = steps_of(smooth, result.sensor, depths_.size(), lateral);
     if (result.steps.empty() || factor_of(result.steps) < 1e-3) {
       fail("readings of smooth surfaces hardly scatter along the ray, are they filtered?");
     }

@@ -168,7 +168,7 @@ RangeFitResult RangeFit::solve() const {
   double squares = 0;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     A = Eigen::MatrixXd::Zero(size, size);
-    Eigen::VectorXd b = Eigen::VectorXd::Zero(size), row(size);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(size);
     const Eigen::Vector3d side = wall.normal.unitOrthogonal(), up = wall.normal.cross(side);
     squares = 0;
     for (const Frame& frame : frames_) {

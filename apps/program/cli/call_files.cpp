@@ -121,10 +121,7 @@ std::vector<NamedFile> named_files(const App& subcommand) {
     if (option == nullptr) continue;
     for (const std::string& value : option->results()) {
       if (file_option.name == "--sensor" && !is_sensor_file(value)) continue;
-      if (file_option.name == "--poses" &&
-          (is_set_of_poses(value) || subcommand.get_name() == "import")) {
-        continue;
-      }
+      if (file_option.name == "--poses" && is_set_of_poses(value)) continue;
       if (file_option.name == "--hazard" && hazard_file_of(value).empty()) continue;
       if (file_option.name == "--obstacle" && !is_obstacle_file(value)) continue;
       // Of a run it is a switch, and the page a file of --out.
@@ -195,7 +192,8 @@ void check_not_read(const NamedFile& output, const std::vector<NamedFile>& files
     const bool is_continued = other.option == "--map";
     if (&other == &output || is_continued || !have_a_common_file(output, other)) continue;
     refuse(output.option, output.path.string(),
-           "is, or holds, a file of " + other.option + " " + other.path.string());
+           (other.kind == Kind::folder ? "must not lie in " : "is, or holds, a file of ") +
+               other.option + " " + other.path.string());
   }
 }
 

@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "program/cli/flags/frame_folder.hpp"
@@ -26,7 +28,7 @@ struct Options {
   std::string intrinsics;
   std::optional<double> max_time_gap;
   std::optional<double> depth_scale;
-  std::string world, depth_topic, poses;
+  std::string world, camera_frame, depth_topic, pose_topic;
   std::string mask, confidence;
   std::string out;
 };
@@ -51,20 +53,19 @@ void check(const Options& options, RecordingFormat format) {
   }
   for (const auto& [flag, value] :
        {std::pair("--world", options.world), std::pair("--depth-topic", options.depth_topic),
-        std::pair("--poses", options.poses)}) {
+        std::pair("--camera-frame", options.camera_frame),
+        std::pair("--pose-topic", options.pose_topic)}) {
     if (value.empty() || has_messages(format)) continue;
     refuse(flag, value, "is for recordings of messages, and SOURCE is of the format " + found);
   }
 }
 
-// Of --poses TOPIC[,tx,ty,tz,qx,qy,qz,qw].
-void parse_poses(const std::string& text, ImportConfig& config) {
+// Of NAME[,tx,ty,tz,qx,qy,qz,qw] the name and the pose.
+std::pair<std::string, std::optional<Pose>> parse_mount(const char* flag, const std::string& text) {
   const std::size_t comma = text.find(',');
-  config.pose_topic = text.substr(0, comma);
-  if (!text.empty() && config.pose_topic.empty()) refuse("--poses", text, "names no topic");
-  if (comma != std::string::npos) {
-    config.T_body_camera = parse_pose("--poses", text.substr(comma + 1));
-  }
+  if (comma == std::string::npos) return {text, std::nullopt};
+  if (comma == 0) refuse(flag, text, "has no name before the pose");
+  return {text.substr(0, comma), parse_pose(flag, text.substr(comma + 1))};
 }
 
 // Of the flag; without it of the library's choice.
@@ -106,6 +107,10 @@ void print_summary(const Options& options, RecordingFormat format, const ImportR
   }
   if (!bad.empty()) std::printf("left out: %s\n", counts_text(bad).c_str());
   print_mended(report.orthonormalized);
+  if (!sensor) {
+    std::printf("no sensor.toml without --sensor: model needs a sensor file with %dx%d px\n",
+                camera.width, camera.height);
+  }
   if (!options.mask.empty() || !options.confidence.empty()) {
     std::printf("masks: of %zu frames, %s pixels taken away\n", report.masks,
                 with_commas(report.masked_pixels).c_str());
@@ -127,7 +132,11 @@ void import_frames(const Options& options) {
   config.depth_scale = options.depth_scale;
   config.world = options.world;
   config.depth_topic = options.depth_topic;
-  parse_poses(options.poses, config);
+  std::tie(config.pose_topic, config.T_body_camera) =
+      parse_mount("--pose-topic", options.pose_topic);
+  const auto [frame, T_frame_camera] = parse_mount("--camera-frame", options.camera_frame);
+  config.camera_frame = frame;
+  config.T_frame_camera = T_frame_camera.value_or(Pose());
   Progress progress("frame", options.common.quiet);
   config.progress = [&progress](std::size_t done, std::size_t of) { progress.update(done, of); };
   const ImportReport report = import_recording(options.source, options.out, config);
@@ -164,7 +173,10 @@ Command add_import(App& program) {
                   "topic of the depth images (default: the only one)");
   app->add_option("--world", options->world,
                   "tf frame that is the world (default: the topmost parent of the images' frame)");
-  app->add_option("--poses", options->poses,
+  app->add_option("--camera-frame", options->camera_frame,
+                  "FRAME[,tx,ty,tz,qx,qy,qz,qw]: tf frame to use in place of the images' frame_id, "
+                  "and the camera's pose in it");
+  app->add_option("--pose-topic", options->pose_topic,
                   "TOPIC[,tx,ty,tz,qx,qy,qz,qw]: topic of PoseStamped or Odometry to use in place "
                   "of tf, and the camera's pose on its body");
   app->add_option("--max-time-gap", options->max_time_gap,

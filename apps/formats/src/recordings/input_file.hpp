@@ -49,7 +49,11 @@ class InputFile {
 
   void skip(std::uint64_t count) {
     if (count > left()) fail("the file ends early");
-    offset_ += count;
+    seek(offset_ + count);
+  }
+  void seek(std::uint64_t offset) {
+    if (offset > size_) fail("the file ends early");
+    offset_ = offset;
     in_.seekg(static_cast<std::streamoff>(offset_));
   }
 

@@ -39,6 +39,7 @@ class McapReader {
     if (file_.left() < kMcapMagic.size() || file_.read(kMcapMagic.size()) != kMcapMagic) {
       file_.fail_at(0, "is not an MCAP file");
     }
+    read_summary();
     while (read_record()) {
     }
     warn_of_left_out(path_, without_channel_,
@@ -46,6 +47,33 @@ class McapReader {
   }
 
  private:
+  // Schemas and channels, which the summary repeats: their own record may be in a damaged chunk.
+  void read_summary() {
+    constexpr std::size_t kFooter = kMcapHead + 20;  // before the magic bytes at the end
+    const std::uint64_t begin = file_.offset();
+    if (file_.left() < kFooter + kMcapMagic.size()) return;
+    try {
+      file_.seek(begin + file_.left() - kFooter - kMcapMagic.size());
+      ByteReader footer(file_.read(kFooter));
+      const McapRecord last{footer.number<std::uint8_t>()};
+      (void)footer.number<std::uint64_t>();
+      const auto summary = footer.number<std::uint64_t>();
+      for (file_.seek(summary); last == McapRecord::footer && summary > begin;) {
+        ByteReader head(file_.read(kMcapHead));
+        const McapRecord kind{head.number<std::uint8_t>()};
+        const auto length = head.number<std::uint64_t>();
+        if (kind == McapRecord::footer) break;
+        if (kind == McapRecord::schema || kind == McapRecord::channel) {
+          take(kind, file_.read(length));
+        } else {
+          file_.skip(length);
+        }
+      }
+    } catch (const Error&) {  // the summary is damaged, and is seldom needed
+    }
+    file_.seek(begin);
+  }
+
   // False at the end.
   bool read_record() {
     begin_ = file_.offset();

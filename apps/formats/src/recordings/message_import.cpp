@@ -39,23 +39,26 @@ class MessageImport {
   MessageImport(const fs::path& source, const std::vector<fs::path>& files, RecordingFormat format,
                 const ImportConfig& config)
       : source_(source), files_(files), format_(format), config_(config) {
-    if (report_.world.starts_with('/')) report_.world.erase(0, 1);  // as FieldReader::frame() does
+    for (std::string* frame : {&report_.world, &camera_frame_}) {
+      if (frame->starts_with('/')) frame->erase(0, 1);  // as FieldReader::frame() does
+    }
   }
 
   ImportReport run(const fs::path& out) try {
     read_all([this](const Message& message) { note(message); });
-    tree_.finish(warnings_);
-    poses_.finish(warnings_);
     if (bad_transforms_ > 0) {
       warnings_.add(std::to_string(bad_transforms_) +
                     " transforms are not rigid or damaged and are left out");
     }
     report_.depth_topic = topics_.chosen_depth_topic(source_, config_.depth_topic);
+    join_trees();
+    tree_.finish(warnings_);
+    poses_.finish(warnings_);
     const SeenTopic& topic = topics_.all().at(report_.depth_topic);
     choose_camera(topic);
     const bool is_float = topic.encoding == "32FC1";
     scale_ = is_float ? unit_of_floats(topic) : config_.depth_scale.value_or(kMillimetre);
-    (void)way_to(topic.frame);  // known before anything is written
+    warn_of_way(topic.frame, way_to(topic.frame));  // known before anything is written
     RecordedFolder folder(out);
     read_all([&](const Message& message) {
       if (message.topic.name == report_.depth_topic) take(message, topic, folder);
@@ -98,7 +101,7 @@ class MessageImport {
     topics_.note(message);
     const std::string& type = message.topic.type;
     const bool is_chosen = message.topic.name == config_.pose_topic;
-    const bool is_tf = type == kTransformsType || type == kOldTransformsType;
+    const bool is_tf = is_tf_type(type);
     if (message.topic.encoding == MessageEncoding::other || !is_pose_type(type) ||
         (!is_chosen && !is_tf)) {
       return;
@@ -107,7 +110,7 @@ class MessageImport {
       throw Error(ErrorCode::format,
                   source_.string() + ": " + message.topic.name + " (" + type +
                       ") has the transforms of all frames, not the poses of one body; leave out "
-                      "--poses, and choose the world by --world");
+                      "--pose-topic, and choose the world by --world");
     }
     std::vector<TransformMessage> transforms;
     try {
@@ -115,20 +118,37 @@ class MessageImport {
     } catch (const Error&) {
       ++bad_transforms_;
     }
-    const bool is_static = message.topic.name.ends_with("tf_static");
+    const std::string& name = message.topic.name;
+    const bool is_static = name.ends_with("tf_static");
+    TransformTree& tree = trees_[name.substr(0, name.rfind('/') + 1)];
     for (const TransformMessage& transform : transforms) {
       const auto& [header, child, numbers] = transform;
       if (is_chosen && body_frame_.empty()) body_frame_ = child;
       if (is_chosen && body_frame_ != child) {
-        throw Error(ErrorCode::format, of_message(message, "has the poses of several bodies, " +
-                                                               viewgain::quoted(body_frame_) +
-                                                               " and " + viewgain::quoted(child) +
-                                                               "; give a topic of one (--poses)"));
+        throw Error(ErrorCode::format,
+                    of_message(message, "has the poses of several bodies, " +
+                                            viewgain::quoted(body_frame_) + " and " +
+                                            viewgain::quoted(child) +
+                                            "; give a topic of one (--pose-topic)"));
       }
       const bool is_good = is_chosen
                                ? poses_.add(header.frame, kBody, header.stamp, numbers, false)
-                               : tree_.add(header.frame, child, header.stamp, numbers, is_static);
+                               : tree.add(header.frame, child, header.stamp, numbers, is_static);
       bad_transforms_ += is_good ? 0 : 1;
+    }
+  }
+
+  // Robots may have transforms of the same names, each in its own namespace: those of the images'
+  // namespace count, then those around it.
+  void join_trees() {
+    const auto nearness = [&](const auto& tree) {
+      return report_.depth_topic.starts_with(tree.first) ? tree.first.size() + 1 : 0;
+    };
+    const auto is_farther = [&](const auto& a, const auto& b) { return nearness(a) < nearness(b); };
+    while (!trees_.empty()) {
+      const auto next = std::max_element(trees_.begin(), trees_.end(), is_farther);
+      tree_.join(next->second, nearness(*next) > 0);
+      trees_.erase(next);
     }
   }
 
@@ -159,16 +179,20 @@ class MessageImport {
       }
       // Of a stereo pair's second camera, whose frame is the first one's.
       if (is_rectified) {
-        T_frame_camera_.m[3] = -info->p[3] / info->p[0];
-        T_frame_camera_.m[7] = -info->p[7] / info->p[5];
+        T_first_camera_.m[3] = -info->p[3] / info->p[0];
+        T_first_camera_.m[7] = -info->p[7] / info->p[5];
       }
     } else if (config_.sensor) {
       report_.camera = config_.sensor->camera;
       warnings_.add("no camera_info belongs to " + report_.depth_topic +
-                    "; the intrinsics are the sensor's");
+                    ", and the intrinsics are the sensor's; give those of the camera by "
+                    "--intrinsics (camera_info of other images: " +
+                    topics_.listed_infos() + ")");
     } else {
-      throw Error(ErrorCode::format, source_.string() + ": no camera_info belongs to " +
-                                         report_.depth_topic + "; give --intrinsics or --sensor");
+      throw Error(
+          ErrorCode::format,
+          source_.string() + ": no camera_info belongs to " + report_.depth_topic +
+              "; give --intrinsics (camera_info of other images: " + topics_.listed_infos() + ")");
     }
     require_sensor_for_distortion(report_.camera, config_);
   }
@@ -184,14 +208,16 @@ class MessageImport {
   }
 
   // How an image with this frame is found in the world. Throws Error(format).
-  const Way& way_to(const std::string& frame) try {
+  const Way& way_to(const std::string& image_frame) try {
+    const std::string& frame = camera_frame_.empty() ? image_frame : camera_frame_;
     const auto known = ways_.find(frame);
     if (known != ways_.end()) return known->second;
     const auto fail = [](const std::string& what) -> void { throw Error(ErrorCode::format, what); };
     Way way;
     if (config_.pose_topic.empty()) {
       if (tree_.empty()) {
-        fail("has no transforms: record /tf and /tf_static, or give a topic by --poses");
+        fail("has no transforms: record /tf and /tf_static, or give a topic of poses" +
+             topics_.listed_poses() + " by --pose-topic");
       }
       way.moving = tree_.chain(report_.world, frame);
     } else {
@@ -209,9 +235,10 @@ class MessageImport {
       } else if (config_.sensor && config_.sensor->T_flange_camera) {
         way.T_body_camera = *config_.sensor->T_flange_camera;
       } else {
-        fail(config_.pose_topic +
-             " does not say where the camera is on its body; give it behind the topic (--poses "
-             "TOPIC,tx,ty,tz,qx,qy,qz,qw)");
+        fail(
+            config_.pose_topic +
+            " does not say where the camera is on its body; give it behind the topic (--pose-topic "
+            "TOPIC,tx,ty,tz,qx,qy,qz,qw)");
       }
     }
     if (way.moving.empty()) {
@@ -222,6 +249,27 @@ class MessageImport {
     return ways_.emplace(frame, std::move(way)).first->second;
   } catch (const Error& error) {
     throw Error(ErrorCode::format, source_.string() + ": " + error.what());
+  }
+
+  void warn_of_way(const std::string& frame, const Way& way) {
+    if (TransformTree::span_of(way.moving)[0] == INT64_MIN) {
+      warnings_.add(
+          "no transform that leads to the camera moves, so that all images have one pose");
+      if (const std::string poses = topics_.listed_poses(); !poses.empty()) {
+        warnings_.add("topics of poses" + poses + " are not used (--pose-topic)");
+      }
+    }
+    const auto is_optical = [](const std::string& name) {
+      return name.find("optical") != std::string::npos;
+    };
+    const bool is_frame_used = config_.pose_topic.empty() || !way.mount.empty();
+    if (!is_frame_used || !camera_frame_.empty() || is_optical(frame)) return;
+    for (const std::string& name : tree_.frames()) {
+      if (!is_optical(name)) continue;
+      warnings_.add("the images' frame " + viewgain::quoted(frame) +
+                    " is taken for an optical one (x right, y down, z ahead); should it be " +
+                    viewgain::quoted(name) + " (--camera-frame)?");
+    }
   }
 
   // The second pass.
@@ -261,8 +309,9 @@ class MessageImport {
     }
     if (camera.width != depth.width || camera.height != depth.height) {
       return drop(FrameVerdict::wrong_size,
-                  "the image has " + size_text(depth.width, depth.height) + " pixels, not " +
-                      size_text(camera.width, camera.height));
+                  "the image has " + size_text(depth.width, depth.height) + " pixels, the camera " +
+                      size_text(camera.width, camera.height) +
+                      (config_.camera.fx > 0 ? "" : "; give --intrinsics"));
     }
     if (!is_wrong_order_) is_wrong_order_ = is_wrong_byte_order(image);
     if (is_wrong_order_.value_or(false)) {
@@ -293,7 +342,7 @@ class MessageImport {
       if (found == Found::yes && !way.mount.empty()) {
         found = TransformTree::look_up(way.mount, header.stamp, max_gap, T_body_camera);
       }
-      T_world_camera = T_world_camera * T_body_camera * T_frame_camera_;
+      T_world_camera = T_world_camera * T_body_camera * config_.T_frame_camera * T_first_camera_;
     } catch (const Error&) {  // the first image's frame is connected
     }
     if (found == Found::yes) return true;
@@ -312,18 +361,18 @@ class MessageImport {
       if (without_[i] > 0) text += " " + std::to_string(without_[i]) + " " + kWhere[i] + ",";
     }
     text.pop_back();
-    const std::array<std::int64_t, 2> span = TransformTree::span_of(ways_.begin()->second.moving);
+    const TransformTree::Chain& way = ways_.begin()->second.moving;
+    if (without_[2] > 0) text += "; the largest gap is " + TransformTree::largest_gap(way);
+    const std::array<std::int64_t, 2> span = TransformTree::span_of(way);
     if (span[0] > INT64_MIN) {  // else all are static
-      text +=
-          "; transforms are from " + seconds_text(span[0]) + " to " + seconds_text(span[1]) + " s";
+      text += "; transforms are from " + seconds_text(span[0]) + " to " + seconds_text(span[1]) +
+              " s, these images from " + seconds_text(images_from_) + " to " +
+              seconds_text(images_to_) + " s";
     }
     const bool is_apart =
         report_.frames == 0 && without_[2] + without_[3] == 0 &&
         (images_from_ - 10 * kNanoseconds > span[1] || images_to_ + 10 * kNanoseconds < span[0]);
-    if (is_apart) {
-      text += ", images from " + seconds_text(images_from_) + " to " + seconds_text(images_to_) +
-              " s: the camera's clock is not the robot's";
-    }
+    if (is_apart) text += ": the camera's clock is not the robot's";
     if (report_.frames == 0) {
       dropped_.fault = text;
     } else {
@@ -337,13 +386,14 @@ class MessageImport {
   const ImportConfig& config_;
   Warnings warnings_;
   MessageTopics topics_;
+  std::map<std::string, TransformTree> trees_;  // by the topics' namespace
   TransformTree tree_, poses_;
-  std::string body_frame_;
+  std::string body_frame_, camera_frame_ = config_.camera_frame;
   std::size_t bad_transforms_ = 0;
   ImportReport report_{.world = config_.world};
   Dropped dropped_{report_.bad};
   double scale_ = kMillimetre;
-  Pose T_frame_camera_;
+  Pose T_first_camera_;
   std::map<std::string, Way> ways_;     // by the images' frame
   std::uint64_t number_ = 0;            // of the image
   std::optional<bool> is_wrong_order_;  // of bytes, by the first image that tells

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "recordings/depth_image.hpp"
+#include "recordings/recorded_folder.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/text.hpp"
 
@@ -21,11 +22,17 @@ auto calibration_of(const CameraInfoMessage& info) {
   return std::tie(info.width, info.height, info.d, info.k, info.p, info.binning, info.roi);
 }
 
-// "/camera/depth" of "/camera/depth/image_raw/compressedDepth".
-std::string namespace_of(std::string topic) {
+// Of "/camera/depth/image_raw/compressedDepth" the topic before the transport.
+std::string image_topic(std::string topic) {
   constexpr std::string_view kTransport = "/compressedDepth";
   if (topic.ends_with(kTransport)) topic.resize(topic.size() - kTransport.size());
-  return topic.substr(0, std::min(topic.rfind('/'), topic.size()));
+  return topic;
+}
+
+// "/camera/depth" of "/camera/depth/image_raw".
+std::string namespace_of(const std::string& topic) {
+  const std::string name = image_topic(topic);
+  return name.substr(0, std::min(name.rfind('/'), name.size()));
 }
 
 std::string topic_text(const std::string& name, const SeenTopic& topic) {
@@ -77,6 +84,10 @@ std::string MessageTopics::chosen_depth_topic(const std::filesystem::path& sourc
     std::vector<std::string> names, texts;
     for (const auto& [name, topic] : topics_) {
       if (depth_likelihood(topic.encoding) != likelihood) continue;
+      const auto raw = topics_.find(image_topic(name));
+      const bool is_copy = raw != topics_.end() && raw->first != name &&
+                           depth_likelihood(raw->second.encoding) == likelihood;
+      if (is_copy) continue;
       names.push_back(name);
       texts.push_back(topic_text(name, topic));
     }
@@ -115,12 +126,33 @@ const CameraInfoMessage* MessageTopics::info_of(const std::string& depth_topic,
   return &chosen->second.first;
 }
 
+std::string MessageTopics::listed_poses() const {
+  std::vector<std::string> names;
+  for (const auto& [name, topic] : topics_) {
+    if (is_pose_type(topic.type) && !is_tf_type(topic.type)) names.push_back(name);
+  }
+  return names.empty() ? "" : " (" + viewgain::listed(names) + ")";
+}
+
+std::string MessageTopics::listed_infos() const {
+  std::vector<std::string> texts;
+  for (const auto& [name, info] : infos_) {
+    const auto& [header, width, height, model, d, k, r, p, binning, roi] = info.first;
+    texts.push_back(name + " (frame " + viewgain::quoted(header.frame) + ", " +
+                    size_text(width, height) + " px, --intrinsics " + short_text(k[0]) + "," +
+                    short_text(k[4]) + "," + short_text(k[2]) + "," + short_text(k[5]) + ")");
+  }
+  return texts.empty() ? "none" : viewgain::listed(texts);
+}
+
 bool MessageTopics::is_rectified(const std::string& depth_topic, const CameraInfoMessage& info,
                                  Warnings& warnings) {
   const std::string name = depth_topic.substr(namespace_of(depth_topic).size());
-  const bool is_rectified = name.find("rect") != std::string::npos;
   const bool has_distortion =
       std::any_of(info.d.begin(), info.d.end(), [](double value) { return value != 0; });
+  // Without distortion K is that of rectified images, too; some drivers have no P.
+  const bool is_rectified =
+      name.find("rect") != std::string::npos && (has_distortion || info.p[0] != 0);
   if (!is_rectified && has_distortion && name.find("raw") == std::string::npos) {
     warnings.add("the name of " + depth_topic +
                  " says neither raw nor rect; its images are taken for raw ones, with the "

@@ -29,7 +29,8 @@ class MessageTopics {
 
   [[nodiscard]] const std::map<std::string, SeenTopic>& all() const noexcept { return topics_; }
 
-  /// `wanted`, or the only one with depth images where that is empty. Throws Error(format), naming
+  /// `wanted`, or the only one with depth images where that is empty; images that are compressed
+  /// beside their originals do not count. Throws Error(format), naming
   /// the recording and the topics, if there is none or there are several.
   [[nodiscard]] std::string chosen_depth_topic(const std::filesystem::path& source,
                                                const std::string& wanted) const;
@@ -39,6 +40,12 @@ class MessageTopics {
   [[nodiscard]] const CameraInfoMessage* info_of(const std::string& depth_topic,
                                                  const std::string& frame,
                                                  Warnings& warnings) const;
+
+  /// " (/odom, /pose)" of the topics with the poses of one body; empty if there are none.
+  [[nodiscard]] std::string listed_poses() const;
+
+  /// "/calib/camera_info (frame 'lens', 640x480 px, --intrinsics 600,600,319.5,239.5)", or "none".
+  [[nodiscard]] std::string listed_infos() const;
 
   /// By the topic's name, which contains "rect" for rectified images. Warns where it may mislead.
   [[nodiscard]] static bool is_rectified(const std::string& depth_topic,

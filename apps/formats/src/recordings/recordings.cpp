@@ -62,6 +62,10 @@ void check(const fs::path& source, const ImportConfig& config) {
     refuse("the depth scale " + short_text(*config.depth_scale) +
            " must be within 0 and 1 m per unit");
   }
+  if (config.T_body_camera && !config.camera_frame.empty()) {
+    refuse("the camera's place is given twice, in a tf frame and on the body of " +
+           config.pose_topic);
+  }
   if (config.camera == PinholeCamera{}) return;
   PinholeCamera camera = config.camera;
   if (camera.width == 0 && camera.height == 0) camera.width = camera.height = 1;
@@ -114,6 +118,9 @@ RecordingFormat recording_format(const fs::path& source) {
                                        found[0].first + " and " + found[1].first + "; name a file");
   }
   if (found.empty()) {
+    for (const std::string& name : names_in(source)) {
+      if (small_ending(name) == ".zstd") (void)file_format(source / name);
+    }
     throw Error(
         ErrorCode::format,
         source.string() + ": holds no recording (depth.txt, transforms.json, .mcap, .db3 or .bag)");

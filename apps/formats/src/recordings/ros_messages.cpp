@@ -19,8 +19,8 @@ auto read_fields(const Message& message, Parse parse) {
     FieldReader fields(message.bytes, message.topic.encoding);
     return parse(fields);
   } catch (const Error& error) {
-    throw Error(ErrorCode::format,
-                of_message(message, "a damaged " + message.topic.type + ": " + error.what()));
+    throw Error(ErrorCode::format, of_message(message, "cannot be read as " + message.topic.type +
+                                                           ": " + error.what()));
   }
 }
 
@@ -31,7 +31,9 @@ void split_compressed(std::string_view bytes, DepthMessage& depth) {
   depth.inverse = reader.number<std::array<float, 2>>();
   depth.data = reader.bytes(reader.left());
   if (!depth.data.starts_with("\x89PNG")) {
-    throw Error(ErrorCode::format, "compressedDepth other than PNG (such as RVL) is not read");
+    throw Error(ErrorCode::format,
+                "compressedDepth other than PNG (such as RVL) is not read; record the raw images, "
+                "or republish them: `ros2 run image_transport republish compressedDepth raw`");
   }
 }
 
@@ -54,9 +56,9 @@ bool is_image_type(const std::string& type) {
 }
 
 bool is_pose_type(const std::string& type) {
-  return type == kTransformsType || type == kOldTransformsType ||
-         type == "geometry_msgs/TransformStamped" || type == "geometry_msgs/PoseStamped" ||
-         type == "geometry_msgs/PoseWithCovarianceStamped" || type == "nav_msgs/Odometry";
+  return is_tf_type(type) || type == "geometry_msgs/TransformStamped" ||
+         type == "geometry_msgs/PoseStamped" || type == "geometry_msgs/PoseWithCovarianceStamped" ||
+         type == "nav_msgs/Odometry";
 }
 
 DepthMessage read_depth(const Message& message) {
@@ -105,7 +107,7 @@ std::vector<TransformMessage> read_transforms(const Message& message) {
   const std::string& type = message.topic.type;
   return read_fields(message, [&](FieldReader& fields) {
     std::vector<TransformMessage> transforms;
-    if (type == kTransformsType || type == kOldTransformsType) {
+    if (is_tf_type(type)) {
       const auto count = fields.number<std::uint32_t>();
       for (std::uint32_t i = 0; i < count; ++i) transforms.push_back(read_transform(fields));
     } else if (type == "geometry_msgs/TransformStamped") {

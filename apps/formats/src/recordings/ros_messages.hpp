@@ -48,8 +48,10 @@ struct TransformMessage {
 [[nodiscard]] bool is_image_type(const std::string& type);
 /// Whether read_transforms() reads messages of this type.
 [[nodiscard]] bool is_pose_type(const std::string& type);
-inline constexpr const char* kTransformsType = "tf2_msgs/TFMessage";
-inline constexpr const char* kOldTransformsType = "tf/tfMessage";
+/// Whether messages of this type are those of tf.
+[[nodiscard]] inline bool is_tf_type(const std::string& type) {
+  return type == "tf2_msgs/TFMessage" || type == "tf/tfMessage";
+}
 inline constexpr const char* kCameraInfoType = "sensor_msgs/CameraInfo";
 
 // Each throws Error(format), naming file, place and topic, for a message that is not as its type

@@ -44,7 +44,7 @@ bool TransformTree::add(const std::string& parent, const std::string& child, std
   }
   const auto [found, is_new] = edges_.try_emplace({child, parent});
   Edge& edge = found->second;
-  if (is_new) edge = {parent, child, is_static, {}};
+  if (is_new) edge.parent = parent, edge.child = child, edge.is_static = is_static;
   // A moving transform takes the place of a static one of the same frames.
   if (edge.is_static && !is_static) edge.poses.clear(), edge.is_static = false;
   if (!edge.is_static && is_static) return true;
@@ -53,6 +53,14 @@ bool TransformTree::add(const std::string& parent, const std::string& child, std
   edge.latest = std::max(edge.latest, stamp);
   edge.poses.push_back({stamp, numbers});
   return true;
+}
+
+void TransformTree::join(TransformTree& other, bool is_near) {
+  for (auto& [key, edge] : other.edges_) {
+    edge.is_near = is_near;
+    const auto [found, is_new] = edges_.try_emplace(key, std::move(edge));
+    if (!is_new && !found->second.is_near) found->second.is_ambiguous = true;
+  }
 }
 
 void TransformTree::finish(Warnings& warnings) {
@@ -98,7 +106,8 @@ TransformTree::Chain TransformTree::chain(std::string& world, const std::string&
   }
   if (edges == 0) {
     fail("no transform leads to the frame " + viewgain::quoted(frame) + "; there are " +
-         listed_frames(frames()) + " (--world, --poses)");
+         listed_frames(frames()) +
+         "; record /tf_static, too, or give a frame and the camera's pose in it by --camera-frame");
   }
   if (edges >= joined.size()) {
     fail("the transforms of " + listed_frames(joined) +
@@ -116,6 +125,11 @@ TransformTree::Chain TransformTree::chain(std::string& world, const std::string&
   Chain way;
   for (std::string at = world; at != frame;) {
     const auto& [edge, is_down] = reached.at(at);
+    if (edge->is_ambiguous) {
+      fail("the transform from " + viewgain::quoted(edge->parent) + " to " +
+           viewgain::quoted(edge->child) +
+           " comes from several topics, and none is in the namespace of the depth images");
+    }
     way.emplace_back(edge, is_down);
     at = is_down ? edge->parent : edge->child;
   }
@@ -150,6 +164,21 @@ TransformTree::Found TransformTree::look_up(const Chain& chain, std::int64_t sta
     T_world_frame = T_world_frame * (is_inverted ? T_parent_child.inverse() : T_parent_child);
   }
   return Found::yes;
+}
+
+std::string TransformTree::largest_gap(const Chain& chain) {
+  std::int64_t largest = -1;
+  std::string text;
+  for (const auto& [edge, is_inverted] : chain) {
+    for (std::size_t i = 1; i < edge->poses.size(); ++i) {
+      const std::int64_t gap = edge->poses[i].stamp - edge->poses[i - 1].stamp;
+      if (gap <= largest) continue;
+      largest = gap;
+      text = short_text(static_cast<double>(gap / 1'000'000) * 1e-3) + " s, from " +
+             viewgain::quoted(edge->parent) + " to " + viewgain::quoted(edge->child);
+    }
+  }
+  return text;
 }
 
 std::array<std::int64_t, 2> TransformTree::span_of(const Chain& chain) {

@@ -25,6 +25,10 @@ class TransformTree {
   bool add(const std::string& parent, const std::string& child, std::int64_t stamp,
            const std::array<double, 7>& numbers, bool is_static);
 
+  /// Takes the transforms of `other` between frames that have none here. Those of near topics come
+  /// first; chain() refuses transforms of which several far topics have some.
+  void join(TransformTree& other, bool is_near);
+
   /// Sorts by time; to be called once, before what follows. Warns of clocks that went back.
   void finish(Warnings& warnings);
 
@@ -48,13 +52,16 @@ class TransformTree {
   /// The first and last times [ns] that all moving transforms of the chain have.
   static std::array<std::int64_t, 2> span_of(const Chain& chain);
 
+  /// "1 s, from 'map' to 'base'": between two moving transforms of the chain.
+  static std::string largest_gap(const Chain& chain);
+
   struct Stamped {
     std::int64_t stamp = 0;
     std::array<double, 7> numbers{};
   };
   struct Edge {
     std::string parent, child;
-    bool is_static = false;
+    bool is_static = false, is_near = true, is_ambiguous = false;
     std::vector<Stamped> poses;       // by time
     std::int64_t went_back = 0;       // the farthest that a stamp was before an earlier one [ns]
     std::int64_t latest = INT64_MIN;  // stamp so far

@@ -42,6 +42,37 @@ TEST_F(DamagedRecordings, ChunksAreLeftOutAndWhatNeedsThemIsCounted) {
   }
 }
 
+TEST_F(DamagedRecordings, TheSummaryHasTheChannelsOfADamagedChunk) {
+  McapText text(Kind::little_cdr);
+  const std::size_t from = text.size();
+  add_transforms(text, 99, 99.4);
+  add_info(text);
+  text.image(kTopic, 99.1, "optical", kWidth, kHeight, "16UC1", rows_mm(6), 2 * kWidth);
+  text.put_in_chunk(from, 7);
+  text.transform("/tf_static", 0, "link", "optical", kStill);
+  add_transforms(text);
+  add_info(text);
+  add_images(text);
+  refuse(text, "holds no message");
+  const std::string bytes = text.bytes(true, true);
+  write("rec.mcap", bytes);
+  const ProgramResult result = run(call({"--json"}));
+  EXPECT_EQ(json::parse(result.out)["frames"], kImages) << result.err;
+  EXPECT_EQ(result.err.find("without their channel"), std::string::npos) << result.err;
+  expect_frames(open_frames(dir / "frames"));
+  // A summary that is damaged, or said to be elsewhere, is not needed by a good file.
+  const std::string good_bytes = good().bytes(true, true);
+  const std::size_t place = good_bytes.size() - 28;  // of the summary's, in the footer
+  for (std::size_t i = 0; i < 40; ++i) {
+    std::string changed = good_bytes;
+    if (i < 20) changed[place + i % 8] = static_cast<char>(i * 37);
+    if (i >= 20) changed[place - 22 - 9 * i] ^= static_cast<char>(1 + i % 255);
+    write("rec.mcap", changed);
+    const ProgramResult read = run(call({"--json"}));
+    EXPECT_EQ(json::parse(read.out)["frames"], kImages) << i << read.err;
+  }
+}
+
 TEST_F(DamagedRecordings, MessagesOfUnknownConnectionsAndTopicsAreCounted) {
   fs::copy_file(data("tiny_none.bag"), dir / "some.bag");
   std::string bytes = read("some.bag");
@@ -87,14 +118,16 @@ TEST_F(DamagedRecordings, ImpossibleCamerasAreRefusedWithoutASensorToo) {
 }
 
 TEST_F(DamagedRecordings, PosesOfSeveralBodiesAreRefused) {
-  refuse(good(), "/tf (tf2_msgs/TFMessage) has the transforms of all frames", {"--poses", "/tf"});
+  refuse(good(), "/tf (tf2_msgs/TFMessage) has the transforms of all frames",
+         {"--pose-topic", "/tf"});
   McapText text = good();
   for (const std::string body : {"link", "link", "wheel"}) {
     MessageFields odometry = text.fields();
     odometry.header(100, "odom").text(body).doubles(kStill);
     text.add("/odom", "nav_msgs/msg/Odometry", odometry);
   }
-  refuse(text, "/odom: has the poses of several bodies, 'link' and 'wheel'", {"--poses", "/odom"});
+  refuse(text, "/odom: has the poses of several bodies, 'link' and 'wheel'",
+         {"--pose-topic", "/odom"});
 }
 
 TEST_F(DamagedRecordings, ByteOrderIsJudgedByTheFirstImageWithReadings) {
@@ -131,6 +164,7 @@ TEST_F(DamagedRecordings, StaticTransformsHaveNoTimes) {
   add_images(text);
   text.image(kTopic, 100.6, "moon", kWidth, kHeight, "16UC1", rows_mm(0), 2 * kWidth);
   const json report = import(text, {}, "1 in unconnected frames");
+  EXPECT_NE(report.dump().find("all images have one pose"), std::string::npos) << report;
   EXPECT_EQ(report["frames"], kImages);
   EXPECT_EQ(report.dump().find("transforms are from"), std::string::npos) << report;
 }

@@ -140,7 +140,7 @@ TEST_F(MessageRecordings, CamerasAreThoseOfTheImages) {
   write("rec.mcap", with({.d = lens}).bytes());
   expect_refused({"import", "rec.mcap", "--out", "frames"}, "give --sensor");
   EXPECT_EQ(import(with({.size = {40, 30}}), {"--intrinsics", "60,60,23.5,17.5"})["width"], 48);
-  refuse(with({.size = {40, 30}}), "5 wrong_size");
+  refuse(with({.size = {40, 30}}), "48x36 pixels, the camera 40x30; give --intrinsics");
   // Without a camera_info there is none, or the sensor's.
   McapText text;
   add_transforms(text);
@@ -148,6 +148,15 @@ TEST_F(MessageRecordings, CamerasAreThoseOfTheImages) {
   EXPECT_EQ(import(text, {}, "the intrinsics are the sensor's")["intrinsics"],
             (json{60, 60, 23.5, 17.5}));
   expect_refused({"import", "rec.mcap", "--out", "new"}, "no camera_info belongs to");
+  // That of another frame is named, to be given by hand.
+  MessageFields other = text.fields();
+  other.header(100, "lens").put(kHeight).put(kWidth).text("plumb_bob").put(std::uint32_t{0});
+  other.doubles(std::array<double, 9>{61, 0, 23, 0, 62, 17.5, 0, 0, 1});
+  other.doubles(std::array<double, 21>{}).put(std::array<char, 25>{});
+  text.add("/calib/camera_info", "sensor_msgs/msg/CameraInfo", other);
+  write("rec.mcap", text.bytes());
+  expect_refused({"import", "rec.mcap", "--out", "new"},
+                 "/calib/camera_info (frame 'lens', 48x36 px, --intrinsics 61,62,23,17.5)");
 }
 
 TEST_F(MessageRecordings, OneOfSeveralTopicsIsChosen) {
@@ -161,6 +170,15 @@ TEST_F(MessageRecordings, OneOfSeveralTopicsIsChosen) {
   EXPECT_EQ(import(text, {"--depth-topic", "/other/image_raw"},
                    "the intrinsics are those of /camera/depth/camera_info")["frames"],
             kImages);
+  // Where both are recorded, the compressed images are those of the raw topic.
+  McapText twice = good();
+  MessageFields packed = twice.fields();
+  packed.header(100.3, "optical").text("16UC1; compressedDepth png");
+  packed.blob(std::string(12, '\0') + "\x89PNG");
+  const std::string copy = std::string(kTopic) + "/compressedDepth";
+  twice.add(copy, "sensor_msgs/msg/CompressedImage", packed);
+  EXPECT_EQ(import(twice)["depth_topic"], kTopic);
+  refuse(twice, "1 unreadable", {"--depth-topic", copy});
   refuse(text, "has no topic /none (--depth-topic)", {"--depth-topic", "/none"});
   refuse(text, "/tf (tf2_msgs/TFMessage, 11 messages) has no depth images",
          {"--depth-topic", "/tf"});
@@ -185,22 +203,70 @@ TEST_F(MessageRecordings, PosesMayComeFromATopic) {
   }
   text.transform("/tf_static", 0, "link", "optical", kStill);
   const auto x_of = [&](std::size_t i) { return open_frames(dir / "frames").poses[i].m[3]; };
-  EXPECT_EQ(import(text, {"--poses", "/pose,0,0,0.2,0,0,0,1"})["world"], "map");
+  EXPECT_EQ(import(text, {"--pose-topic", "/pose,0,0,0.2,0,0,0,1"})["world"], "map");
   EXPECT_NEAR(x_of(1), 0.15, 1e-9);
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.2, 1e-9);
-  EXPECT_TRUE(import(text, {"--poses", "/tracker,0,0,0.2,0,0,0,1"})["world"].is_null());
+  EXPECT_TRUE(import(text, {"--pose-topic", "/tracker,0,0,0.2,0,0,0,1"})["world"].is_null());
   EXPECT_NEAR(x_of(4), 0.45, 1e-9);
-  EXPECT_EQ(import(text, {"--poses", "/odom"})["world"], "odom");
+  EXPECT_EQ(import(text, {"--pose-topic", "/odom"})["world"], "odom");
   EXPECT_NEAR(x_of(1), 0.1 + 2 * 0.15, 1e-9);
-  refuse(text, "/pose does not say where the camera is on its body", {"--poses", "/pose"});
+  refuse(text, "/pose does not say where the camera is on its body", {"--pose-topic", "/pose"});
   Sensor mounted = read_sensor_toml(dir / "small.toml");
   mounted.T_flange_camera = Pose(Eigen::Matrix3d::Identity(), {0, 0, 0.3});
   write_sensor_toml(dir / "small.toml", mounted);
-  EXPECT_EQ(import(text, {"--poses", "/pose"})["frames"], kImages);
+  EXPECT_EQ(import(text, {"--pose-topic", "/pose"})["frames"], kImages);
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.3, 1e-9);
-  refuse(text, "/none has no poses", {"--poses", "/none"});
-  refuse(text, "--poses", {"--poses", "/pose,0,0"});
-  refuse(text, "names no topic", {"--poses", ",0,0,0.2,0,0,0,1"});
+  refuse(text, "/none has no poses", {"--pose-topic", "/none"});
+  (void)import(text, {}, "topics of poses (/odom, /pose, /tracker) are not used (--pose-topic)");
+  refuse(text, "--pose-topic", {"--pose-topic", "/pose,0,0"});
+  refuse(text, "has no name before the pose", {"--pose-topic", ",0,0,0.2,0,0,0,1"});
+}
+
+TEST_F(MessageRecordings, TheCamerasFrameMayBeGiven) {
+  // The images say the body's frame, x ahead, as simulators do; no transform leads to the optical.
+  McapText text;
+  add_transforms(text);
+  add_info(text);
+  for (std::size_t i = 0; i < kImages; ++i) {
+    text.image(kTopic, image_time(i), "link", kWidth, kHeight, "16UC1", rows_mm(i), 2 * kWidth);
+  }
+  (void)import(text, {}, "should it be 'optical' (--camera-frame)?");
+  (void)import(text, {"--camera-frame", "/optical"});
+  expect_frames(open_frames(dir / "frames"));
+  (void)import(text, {"--camera-frame", "link,0.1,0,0,0,0,0,1"});
+  expect_frames(open_frames(dir / "frames"));
+  (void)import(text, {"--camera-frame", "link,0,0,0,-0.5,0.5,-0.5,0.5"});
+  const Pose pose = open_frames(dir / "frames").poses[0];
+  EXPECT_NEAR(pose.m[2], std::cos(0.005), 1e-9);  // z ahead, which was x
+  EXPECT_NEAR(pose.m[9], -1, 1e-9);               // y down
+  refuse(text, "no transform leads to the frame 'lens'", {"--camera-frame", "lens"});
+  refuse(text, "--camera-frame", {"--camera-frame", "link,0,0"});
+  refuse(text, "the camera's place is given twice",
+         {"--camera-frame", "link", "--pose-topic", "/pose,0,0,0,0,0,0,1"});
+}
+
+TEST_F(MessageRecordings, RobotsHaveTransformsInTheirNamespaces) {
+  McapText text;
+  for (int i = 0; i < 11; ++i) {
+    const double t = 100 + 0.1 * i;
+    text.transform("/other/tf", t, "base", "link", {-7, 0, 0, 0, 0, 0, 1});
+    text.transform("/other/tf", t, "room", "base", kStill);
+    text.transform("/robot/tf", t, "base", "link", {t, 0, 0, 0, 0, 0, 1});
+  }
+  text.transform("/tf_static", 0, "link", "optical", kStill);
+  add_info(text);
+  add_images(text, "/robot/camera/image_raw");
+  EXPECT_EQ(import(text, {}, "the intrinsics are those of")["world"], "room");
+  EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[3], 100.15 + 0.2, 1e-9);
+  add_images(text, "/image_raw");
+  text.transform("/tf_static", 0, "hall", "room", kStill);
+  EXPECT_EQ(import(text, {"--depth-topic", "/robot/camera/image_raw"},
+                   "the intrinsics are those of")["world"],
+            "hall");
+  refuse(text, "the transform from 'base' to 'link' comes from several topics",
+         {"--depth-topic", "/image_raw"});
+  text.transform("/tf", 100, "base", "link", kStill);
+  refuse(text, "5 after the last one", {"--depth-topic", "/image_raw"});
 }
 
 TEST_F(MessageRecordings, NothingIsExtrapolated) {
@@ -216,7 +282,9 @@ TEST_F(MessageRecordings, NothingIsExtrapolated) {
   gap.transform("/tf", 101, "base", "link", {1, 0, 0.5, 0, 0, 0, 1});
   add_info(gap);
   add_images(gap);
-  EXPECT_EQ(import(gap, {}, "4 in gaps between them (--max-time-gap)")["frames"], 1);
+  const json gaps = import(gap, {}, "4 in gaps between them (--max-time-gap)");
+  EXPECT_EQ(gaps["frames"], 1);
+  EXPECT_NE(gaps.dump().find("the largest gap is 0.9 s, from 'base' to 'link'"), std::string::npos);
   EXPECT_EQ(import(gap, {"--max-time-gap", "1"})["frames"], kImages);
 }
 
@@ -345,6 +413,8 @@ TEST_F(MessageRecordings, FlagsAndFilesThatDoNotFitAreRefused) {
   write("whole.db3.zstd", "\x28\xb5\x2f\xfd and more");
   write("empty.db3", "SQLite format 3");
   fs::create_directories(dir / "none");
+  fs::create_directories(dir / "packed");
+  write("packed/rec_0.db3.zstd", "\x28\xb5\x2f\xfd and more");
   const auto import = [](const std::string& source, const Strings& more = {}) {
     return test::joined({"import", source, "--sensor", "small.toml", "--out", "frames"}, more);
   };
@@ -354,6 +424,7 @@ TEST_F(MessageRecordings, FlagsAndFilesThatDoNotFitAreRefused) {
                   {import("rec.mcap", {"--depth-scale", "-1"}), "--depth-scale"},
                   {import("both"), "two kinds, .mcap and .bag"},
                   {import("none"), "holds no recording"},
+                  {import("packed"), "unzstd"},
                   {import("text.mcap"), "is no recording"},
                   {import("old.bag"), "rosbag fix"},
                   {import("whole.db3.zstd"), "unzstd"},

@@ -81,10 +81,12 @@ class McapText {
     if (!channels_.contains(topic)) {
       const auto id = static_cast<std::uint16_t>(channels_.size() + 1);
       channels_[topic] = id;
+      const std::size_t begin = records_.size();
       record(3, number(id) + text(type) + text("ros2msg") + number(std::uint32_t{0}));
       const std::string said = kind_ == Kind::ros1 ? "ros1" : "cdr";
       record(4, number(id) + number(id) + text(topic) + text(encoding.empty() ? said : encoding) +
                     number(std::uint32_t{0}));
+      summary_ += records_.substr(begin);
     }
     record(5, number(channels_[topic]) + std::string(20, '\0') + message.bytes());
   }
@@ -118,10 +120,13 @@ class McapText {
                   number(size) + inner);
   }
 
-  [[nodiscard]] std::string bytes(bool is_ended = true) const {
+  [[nodiscard]] std::string bytes(bool is_ended = true, bool has_summary = false) const {
     const std::string magic("\x89MCAP0\r\n", 8);
     McapText end = *this;
-    if (is_ended) end.record(15, number(std::uint32_t{0})), end.record(2, std::string(20, '\0'));
+    if (is_ended) end.record(15, number(std::uint32_t{0}));
+    const std::uint64_t summary = has_summary ? magic.size() + end.records_.size() : 0;
+    if (has_summary) end.records_ += summary_;
+    if (is_ended) end.record(2, number(summary) + std::string(12, '\0'));
     return magic + end.records_ + (is_ended ? magic : "");
   }
 
@@ -139,7 +144,7 @@ class McapText {
   }
 
   Kind kind_;
-  std::string records_;
+  std::string records_, summary_;
   std::map<std::string, std::uint16_t> channels_;
 };
 

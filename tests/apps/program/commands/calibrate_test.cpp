@@ -132,6 +132,21 @@ TEST_F(CalibrateNoise, OfEachModelIsFound) {
   EXPECT_EQ(cases, 27);
 }
 
+// Stereo has 1 px of noise across the ray, the camera half of that.
+TEST_F(CalibrateNoise, AModelWithMoreLateralNoiseKeepsTheAxialOne) {
+  const StructuredLightNoise truth{.offset = 0,
+                                   .quadratic = 2e-3,
+                                   .vertex = 0,
+                                   .grazing = 0,
+                                   .lateral_px = 0.5,
+                                   .lateral_grazing_px = 0};
+  json report;
+  int cases = 0;
+  expect_axial(calibrated(truth, StereoNoise{}, 1, &report), truth, cases);
+  EXPECT_NEAR(report.at("sigma_lateral_px").get<double>(), 0.5, kClose);
+  EXPECT_EQ(cases, 3);
+}
+
 TEST_F(CalibrateNoise, WhatDoesNotTellTheNoiseIsRefused) {
   simulate("scene.off", {0}, 29, "tof.toml", 1, "on", "few");
   simulate("scene.off", {0, 0.01}, 20, "tof.toml", 1, "on", "moving");

@@ -49,6 +49,9 @@ struct VIEWGAIN_EXPORT ImportConfig {
   /// The camera on that body; nothing: from tf (Odometry, TransformStamped), else the sensor's
   /// T_flange_camera.
   std::optional<Pose> T_body_camera{};
+  /// tf frame that carries the camera; empty: the images' frame_id, which is its optical frame.
+  std::string camera_frame{};
+  Pose T_frame_camera{};  ///< the camera in that frame
   /// Called with the count of frames done and of all.
   std::function<void(std::size_t, std::size_t)> progress{};
 };
