@@ -4,7 +4,6 @@
 // Recordings of messages, read twice: first what there is, all transforms and the camera, then the
 // images, one at a time.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "recordings/importers.hpp"
 #include "recordings/message_topics.hpp"
 #include "recordings/messages.hpp"
+#include "recordings/missing_poses.hpp"
 #include "recordings/ros_messages.hpp"
 #include "recordings/transform_tree.hpp"
 #include "viewgain/core/error.hpp"
@@ -24,15 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kTransformGap = 0.1;  // between an image and the transforms beside it [s]
-constexpr std::int64_t kNanoseconds = 1'000'000'000;
+constexpr double kTransformGap = 0.1;      // between an image and the transforms beside it [s]
 constexpr const char* kBody = "the body";  // of the topic of poses
-
-std::string seconds_text(std::int64_t stamp) {
-  std::string fraction = std::to_string(std::abs(stamp / 1'000'000 % 1000));
-  fraction.insert(0, 3 - fraction.size(), '0');
-  return std::to_string(stamp / kNanoseconds) + '.' + fraction;
-}
 
 class MessageImport {
  public:
@@ -346,33 +339,13 @@ class MessageImport {
     } catch (const Error&) {  // the first image's frame is connected
     }
     if (found == Found::yes) return true;
-    ++without_[static_cast<std::size_t>(found) - 1];
-    images_from_ = std::min(images_from_, header.stamp);
-    images_to_ = std::max(images_to_, header.stamp);
+    missing_.add(found, header.stamp);
     return false;
   }
 
   void say_what_has_no_pose() {
-    if (without_ == std::array<std::size_t, 4>{}) return;
-    constexpr std::array kWhere{"before the first transform", "after the last one",
-                                "in gaps between them (--max-time-gap)", "in unconnected frames"};
-    std::string text = "images without a pose:";
-    for (std::size_t i = 0; i < kWhere.size(); ++i) {
-      if (without_[i] > 0) text += " " + std::to_string(without_[i]) + " " + kWhere[i] + ",";
-    }
-    text.pop_back();
-    const TransformTree::Chain& way = ways_.begin()->second.moving;
-    if (without_[2] > 0) text += "; the largest gap is " + TransformTree::largest_gap(way);
-    const std::array<std::int64_t, 2> span = TransformTree::span_of(way);
-    if (span[0] > INT64_MIN) {  // else all are static
-      text += "; transforms are from " + seconds_text(span[0]) + " to " + seconds_text(span[1]) +
-              " s, these images from " + seconds_text(images_from_) + " to " +
-              seconds_text(images_to_) + " s";
-    }
-    const bool is_apart =
-        report_.frames == 0 && without_[2] + without_[3] == 0 &&
-        (images_from_ - 10 * kNanoseconds > span[1] || images_to_ + 10 * kNanoseconds < span[0]);
-    if (is_apart) text += ": the camera's clock is not the robot's";
+    if (missing_.empty()) return;
+    const std::string text = missing_.text(ways_.begin()->second.moving, report_.frames == 0);
     if (report_.frames == 0) {
       dropped_.fault = text;
     } else {
@@ -398,8 +371,8 @@ class MessageImport {
   std::uint64_t number_ = 0;            // of the image
   std::optional<bool> is_wrong_order_;  // of bytes, by the first image that tells
   std::size_t stamps_back_ = 0;
-  std::int64_t last_stamp_ = INT64_MIN, images_from_ = INT64_MAX, images_to_ = INT64_MIN;
-  std::array<std::size_t, 4> without_{};  // poses: before, after, in gaps, without a chain
+  std::int64_t last_stamp_ = INT64_MIN;
+  MissingPoses missing_;
 };
 
 }  // namespace
