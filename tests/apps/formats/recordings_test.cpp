@@ -295,7 +295,7 @@ TEST_F(Recordings, MasksTakePixelsAway) {
   EXPECT_EQ(load_frame(frames, 1).depth[100], 0.0F);
   EXPECT_GT(load_frame(frames, 1).depth[101], 0.0F);
   EXPECT_GT(load_frame(frames, 0).depth[100], 0.0F);
-  EXPECT_NE(run_well(call({"--mask", "masks"})).find("masks: of 1 frames, 2 pixels"),
+  EXPECT_NE(run_well(call({"--mask", "masks"})).find("masks: 1 frames, 2 pixels"),
             std::string::npos);
 
   // So do confidences under the least: of 0, 1 and 255 the first, or the first two.
@@ -383,7 +383,7 @@ TEST_F(Recordings, FlagsThatDoNotFitAreRefused) {
        {call({"--intrinsics", "60,-60,23.5,17.5"}), "fy"},
        {{"import", "nowhere", "--sensor", "small.toml", "--out", "frames"}, "nowhere"},
        {{"import", "rec", "--format", "bop", "--sensor", "small.toml", "--out", "frames"},
-        "bop is no format; there are auto, tum"},
+        "unknown format bop; valid: auto, tum"},
        {{"import", "rec", "--sensor", "small.toml"}, "--out"}});
 }
 

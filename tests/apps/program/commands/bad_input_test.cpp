@@ -115,7 +115,7 @@ TEST_F(BadInputTest, Scores) {
                   {with({"--gain", "surface", "--hazard", "map.vdb"}), "floats"},
                   {{"score", "map.vdb", "--sensor", "small.toml", "--poses", "sphere:10,0.6",
                     "--gain", "surface", "--hazard", "p.vdb", "--out", "p.vdb"},
-                   "is, or holds, a file of --hazard p.vdb"},
+                   "would overwrite a file of --hazard p.vdb"},
                   {with({"--gain", "surface", "--hazard", "size=0"}), "--hazard size 0"},
                   {with({"--gain", "paper", "--hazard", "1"}), "--gain surface"},
                   {with({"--gain", "surface", "--hazard", "cube.off"}), ".vdb"},

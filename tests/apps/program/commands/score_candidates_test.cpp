@@ -91,7 +91,9 @@ TEST_F(ScoreCandidates, PosesOfAFileThatSeeNothingAreExplained) {
     EXPECT_EQ(away.err,
               "viewgain: warning: poses.txt: 100 % of the poses see no voxel of the map\n");
     if (call == "next") {
-      EXPECT_NE(away.out.find("none of the 40 candidate views has a positive gain"), std::string::npos) << away.out;
+      EXPECT_NE(away.out.find("none of the 40 candidate views has a positive gain"),
+                std::string::npos)
+          << away.out;
     }
   }
 }
@@ -294,9 +296,10 @@ TEST_F(ScoreClassic, RefusesWhatDoesNotGoTogether) {
                              {{"--prior-sigma", "0.1"}, "--prior-sigma"},
                              {{"--hazard", "size=0.1"}, "--hazard"}};
   expect_refused_with(arguments({"--gain", "unknown_count"}), flags);
-  expect_refused_with(arguments({}), {{{"--gain", "paper,unknown_count"}, "paper stands alone"},
-                                      {{"--gain", "unknown_count,unknown_count"}, "twice"},
-                                      {{"--gain", "unknwn_count"}, "unknown_count"}});
+  expect_refused_with(arguments({}),
+                      {{{"--gain", "paper,unknown_count"}, "paper must be given alone"},
+                       {{"--gain", "unknown_count,unknown_count"}, "twice"},
+                       {{"--gain", "unknwn_count"}, "unknown_count"}});
   // A map that remembers no views.
   BeliefGrid blank({0.02, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.02});
   save_vdb(blank, dir / "map.vdb");
