@@ -59,9 +59,9 @@ TEST(SensorPresets, ATableOfRangesHasToLeaveRanges) {
     expect_error(ErrorCode::invalid_argument, part, [&] { sensor.validate(); });
   };
   refused({{1.0, 0.0}, {0.5, 0.0}}, "rise");
-  refused({{0.0, -0.1}}, "no range");
-  refused({{-1.0, -2.0}}, "no range");
-  refused({{0.5, 0.0}, {1.0, 1.0}}, "no range");
+  refused({{0.0, -0.1}}, "not a valid range");
+  refused({{-1.0, -2.0}}, "not a valid range");
+  refused({{0.5, 0.0}, {1.0, 1.0}}, "not a valid range");
   refused({{0.5, std::nan("")}}, "finite");
 }
 

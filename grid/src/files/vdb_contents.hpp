@@ -117,7 +117,7 @@ struct VdbContents {
     const SealCheck seal = check_seal(bytes);
     const VdbOutline outline = outline_of(bytes);
     if (!outline.fault.empty()) fail(outline.fault);
-    if (seal == SealCheck::broken) fail("is corrupt: its checksum does not fit");
+    if (seal == SealCheck::broken) fail("is corrupt: its checksum does not match");
 
     initialize_openvdb();
     try {

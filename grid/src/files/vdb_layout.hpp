@@ -159,7 +159,7 @@ inline constexpr const char* kScaleGridName = "scale";
         !is_by_cells(s, key, scale)) {
       std::ostringstream fault;
       fault << "the leaf of voxel " << box.min()
-            << " has no scale that its states and beliefs have";
+            << " has a scale that differs from those of its states and beliefs";
       return fault.str();
     }
     s.put_scale(key, scale);

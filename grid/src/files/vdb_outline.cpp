@@ -95,7 +95,7 @@ std::size_t size_in(const std::array<Sizes, kCount>& sizes, std::string_view nam
 
 // OpenVDB reads it into a bool as it is.
 void check_bool(char byte) {
-  if (byte != 0 && byte != 1) corrupt("what must be 0 or 1 is " + std::to_string(byte));
+  if (byte != 0 && byte != 1) corrupt("a flag must be 0 or 1, but is " + std::to_string(byte));
 }
 
 void follow_metadata(Reader& reader, std::string& image) {
@@ -187,7 +187,7 @@ class TreeWalk {
   std::size_t node(std::size_t places) {
     const std::string_view children = reader_.take(places / 8), active = reader_.take(places / 8);
     for (std::size_t i = 0; i < children.size(); ++i) {
-      if ((children[i] & active[i]) != 0) corrupt("a child is a tile, too");
+      if ((children[i] & active[i]) != 0) corrupt("a child is also a tile");
     }
     values(places, count_on(active));
     bytes_ += places * ((value_size_ + 7) / 8 * 8) + places / 4 + kNodeHead;
@@ -229,7 +229,7 @@ class TreeWalk {
     if (unpacked != bytes || head.number<std::uint32_t>() != chunk.size()) corrupt(kOtherSize);
   }
 
-  static constexpr const char* kOtherSize = "values are of another size than their node's";
+  static constexpr const char* kOtherSize = "the number of values does not match the node";
 
   Reader& reader_;
   std::uint32_t compression_;
@@ -258,9 +258,9 @@ std::uint64_t follow_file(std::string& image) {
   Reader reader(file, 0);
   if (!file.starts_with(kMagic) || reader.number<std::int64_t>() != 0x56444220) {
     if (file.starts_with("# Octomap OcTree")) {
-      throw Fault("is an OctoMap tree, no OpenVDB file; give it the ending .ot or .bt");
+      throw Fault("is an OctoMap tree, not an OpenVDB file; give it the ending .ot or .bt");
     }
-    throw Fault("is no OpenVDB file; maps are .vdb, or .ot and .bt of OctoMap");
+    throw Fault("is not an OpenVDB file; maps are .vdb, or OctoMap .ot and .bt");
   }
   if (reader.number<std::uint32_t>() < kOldestVersion) {
     throw Fault("has an OpenVDB format that is too old");

@@ -64,7 +64,7 @@ class RateReader {
       const openvdb::Vec3d low = rates_->indexToWorld(active.min().asVec3d());
       const openvdb::Vec3d high = rates_->indexToWorld(active.max().asVec3d());
       mismatch("its rates lie between " + text_of(low) + " and " + text_of(high) +
-               " m, none of them in the map");
+               " m, but none lies in the map");
     }
   }
   [[nodiscard]] static std::string text_of(const openvdb::Vec3d& p) {
@@ -73,7 +73,7 @@ class RateReader {
   [[noreturn]] void mismatch(const std::string& what) const {
     throw Error(ErrorCode::invalid_argument,
                 path_.string() + ": " + what +
-                    ": the transform of hazard rates is to the map's world, in metres");
+                    ": hazard rates must have a transform to the map's world, in metres");
   }
 
   [[nodiscard]] static bool is_index(const openvdb::Vec3d& at) {
@@ -94,7 +94,7 @@ class RateReader {
       if (floats) found = floats, ++count;
     }
     if (count != 1) {
-      fail("has " + std::to_string(count) + " grids of floats and none of them is 'hazard'");
+      fail("has " + std::to_string(count) + " float grids, but none is named 'hazard'");
     }
     return found;
   }

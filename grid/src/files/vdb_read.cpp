@@ -77,14 +77,14 @@ class Loader {
     const auto found = metadata.getMetadata<Metadata>(name);
     if (!found) {
       fail(std::string("has no metadata '") + name + "' of type " + Metadata::staticTypeName() +
-           ": it is no viewgain map");
+           ": it is not a viewgain map");
     }
     return found->value();
   }
 
   [[nodiscard]] std::vector<Pose> poses(const openvdb::MetaMap& metadata, const char* name) const {
     auto result = poses_from_text(value<openvdb::StringMetadata>(metadata, name));
-    if (!result) fail(std::string("metadata '") + name + "' is no list of poses");
+    if (!result) fail(std::string("metadata '") + name + "' is not a list of poses");
     return *std::move(result);
   }
 
@@ -92,7 +92,7 @@ class Loader {
   [[nodiscard]] std::int32_t version_of(const openvdb::MetaMap& metadata) const {
     const auto found = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
     if (found != kVdbLayoutVersion && found != kVdbScaledVersion) {
-      fail("has viewgain_version " + std::to_string(found) + ", this program reads " +
+      fail("has viewgain_version " + std::to_string(found) + ", but this program reads " +
            std::to_string(kVdbLayoutVersion) + " and " + std::to_string(kVdbScaledVersion));
     }
     return found;
@@ -110,7 +110,7 @@ class Loader {
       dims[a] = static_cast<std::int32_t>(count);
     }
     const std::vector<Pose> T_world_grid = poses(metadata, "T_world_grid");
-    if (T_world_grid.size() != 1) fail("metadata 'T_world_grid' is not one pose");
+    if (T_world_grid.size() != 1) fail("metadata 'T_world_grid' is not a single pose");
     try {
       auto storage = std::make_unique<GridStorage>(
           value<openvdb::DoubleMetadata>(metadata, "voxel_size"), T_world_grid.front(),
@@ -142,7 +142,7 @@ class Loader {
       found = openvdb::gridPtrCast<Grid>(grid);
       if (!found) fail("grid '" + name + "' has values of type " + grid->valueType());
     }
-    if (!found) fail("has no grid '" + name + "': it is no viewgain map");
+    if (!found) fail("has no grid '" + name + "': it is not a viewgain map");
     CoordBBox box;
     if (found->tree().evalActiveVoxelBoundingBox(box) &&
         !(s.lattice.contains(to_index(box.min())) && s.lattice.contains(to_index(box.max())))) {
@@ -152,7 +152,7 @@ class Loader {
     for (const Coord& corner : {Coord(0, 0, 0), Coord(1, 0, 0), Coord(0, 1, 0), Coord(0, 0, 1)}) {
       if ((found->indexToWorld(corner) - expected->indexToWorld(corner)).length() >
           1e-6 * s.voxel_size) {
-        fail("grid '" + name + "' has another transform than voxel_size and T_world_grid say");
+        fail("grid '" + name + "' has a transform that contradicts voxel_size and T_world_grid");
       }
     }
     return found->tree();
@@ -171,7 +171,7 @@ class Loader {
     }
     const std::uint8_t code = log_odds_code(log_odds);
     if (std::abs(code_log_odds(code) - log_odds) > 1e-4F) {
-      fail("log_odds " + short_text(log_odds) + where(at) + " is no multiple of 0.05");
+      fail("log_odds " + short_text(log_odds) + where(at) + " is not a multiple of 0.05");
     }
     if (state != state_of(code)) {
       fail("state " + short_text(state) + where(at) + " contradicts log_odds " +
@@ -181,7 +181,7 @@ class Loader {
   }
 
   static constexpr const char* kOtherVoxels =
-      "grids 'state' and 'log_odds' do not know the same voxels";
+      "grids 'state' and 'log_odds' contain different voxels";
 
   void load_states(const VdbContents& contents, GridStorage& s) {
     const auto& log_odds = tree<FloatGrid>(contents, s, "log_odds");
@@ -299,7 +299,7 @@ class Loader {
     }
   }
 
-  static constexpr const char* kOtherBeliefs = "the grids of beliefs do not hold the same voxels";
+  static constexpr const char* kOtherBeliefs = "the grids of beliefs contain different voxels";
 
   /// Where the grids of beliefs are.
   struct BeliefTrees {

@@ -200,9 +200,9 @@ void HazardField::find_distances(const GridSnapshot& snapshot,
                {cells.max.x * edge, cells.max.y * edge, cells.max.z * edge}};
   constexpr std::uint64_t kMostCells = std::uint64_t{1} << 31U;
   if (cells.volume() > kMostCells) {
-    throw Error(ErrorCode::capacity, "hazard: what is known of the surface spreads over " +
+    throw Error(ErrorCode::capacity, "hazard: the known surface spreads over " +
                                          std::to_string(cells.volume()) + " cells, " +
-                                         std::to_string(kMostCells) + " are the most");
+                                         std::to_string(kMostCells) + " is the maximum");
   }
   squared_.assign(cells.volume(), detail::kNoDistance);
   for (const Index3& v : evidence) squared_[cell_of(v)] = 0;

@@ -94,7 +94,7 @@ std::string fault_of_belief(const Belief& belief, double voxel_size) {
       scale.cwiseProduct(factors.solve(scale.cwiseProduct(vector))) / voxel_size;
   const double farthest = offset.cwiseAbs().maxCoeff();
   if (!(farthest <= kFarthest))
-    return has("a place that many voxels off its own: ", short_text(farthest));
+    return has("a point too many voxels away from its voxel: ", short_text(farthest));
   return {};
 }
 

@@ -28,7 +28,7 @@ void check_states(std::span<const std::uint8_t> states) {
       std::find_if(states.begin(), states.end(), [](std::uint8_t s) { return s > 2; });
   if (wrong != states.end()) {
     refuse("state " + std::to_string(*wrong) + " at position " +
-           std::to_string(wrong - states.begin()) + "; valid are 0, 1, 2");
+           std::to_string(wrong - states.begin()) + "; valid values: 0, 1, 2");
   }
 }
 

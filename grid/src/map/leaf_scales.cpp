@@ -256,7 +256,7 @@ std::uint64_t BeliefGrid::resample(const Box& region, int scale) {
   GridStorage& s = *storage_;
   const VoxelBox range = voxels_in(*this, region);
   if (scale < 0 || scale > kMaxScale) {
-    refuse("scale " + std::to_string(scale) + " is not 0 to " + std::to_string(kMaxScale));
+    refuse("scale " + std::to_string(scale) + " must be in 0.." + std::to_string(kMaxScale));
   }
   std::uint64_t changed = 0;
   for (const std::uint64_t key : held_blocks(s)) {

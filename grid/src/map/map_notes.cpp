@@ -51,7 +51,8 @@ void check_notes(const MapNotes& notes) {
   }
   for (const char* name : {kSensorNote, kFramesNote}) {
     if (!notes.others.contains(name)) continue;
-    refuse("a note is named " + viewgain::quoted(name) + ", which MapNotes has a member for");
+    refuse("a note has the name " + viewgain::quoted(name) +
+           ", which is reserved for a member of MapNotes");
   }
 }
 

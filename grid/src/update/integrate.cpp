@@ -255,8 +255,8 @@ class CloudPoints : public Readings {
   void load(std::span<const std::array<double, 3>> points, const Eigen::Vector3d& origin,
             bool tapered, std::optional<double> support_plane, ThreadPool& pool) {
     if (points.size() > std::numeric_limits<std::uint32_t>::max()) {
-      throw Error(ErrorCode::capacity,
-                  "cloud of " + std::to_string(points.size()) + " points, the most is 4294967295");
+      throw Error(ErrorCode::capacity, "cloud of " + std::to_string(points.size()) +
+                                           " points; the maximum is 4294967295");
     }
     origin_ = origin;
     rays_.resize(points.size());

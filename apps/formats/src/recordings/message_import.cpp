@@ -48,7 +48,7 @@ class MessageImport {
     poses_.finish(warnings_);
     if (bad_transforms_ > 0) {
       warnings_.add(std::to_string(bad_transforms_) +
-                    " transforms are not rigid or damaged and are left out");
+                    " transforms are damaged or not rigid and are left out");
     }
     report_.depth_topic = topics_.chosen_depth_topic(source_, config_.depth_topic);
     const SeenTopic& topic = topics_.all().at(report_.depth_topic);
@@ -63,7 +63,7 @@ class MessageImport {
     say_what_has_no_pose();
     if (stamps_back_ > 0) {
       warnings_.add(std::to_string(stamps_back_) +
-                    " images have a stamp before that of an earlier image: the clock was set back, "
+                    " images have a stamp before that of an earlier image; the clock was set back, "
                     "or the recording holds two runs");
     }
     if (report_.frames == 0) dropped_.fail_without_frames(source_);
@@ -106,8 +106,8 @@ class MessageImport {
     if (is_chosen && is_tf) {
       throw Error(ErrorCode::format,
                   source_.string() + ": " + message.topic.name + " (" + type +
-                      ") has the transforms of all frames, not the poses of one body; leave out "
-                      "--poses, and choose the world by --world");
+                      ") holds the transforms of all frames, not the poses of one body; leave out "
+                      "--poses and choose the world with --world");
     }
     std::vector<TransformMessage> transforms;
     try {
@@ -120,10 +120,11 @@ class MessageImport {
       const auto& [header, child, numbers] = transform;
       if (is_chosen && body_frame_.empty()) body_frame_ = child;
       if (is_chosen && body_frame_ != child) {
-        throw Error(ErrorCode::format, of_message(message, "has the poses of several bodies, " +
-                                                               viewgain::quoted(body_frame_) +
-                                                               " and " + viewgain::quoted(child) +
-                                                               "; give a topic of one (--poses)"));
+        throw Error(ErrorCode::format,
+                    of_message(message, "holds the poses of several bodies, " +
+                                            viewgain::quoted(body_frame_) + " and " +
+                                            viewgain::quoted(child) +
+                                            "; give a topic with one body (--poses)"));
       }
       const bool is_good = is_chosen
                                ? poses_.add(header.frame, kBody, header.stamp, numbers, false)
@@ -165,7 +166,7 @@ class MessageImport {
     } else if (config_.sensor) {
       report_.camera = config_.sensor->camera;
       warnings_.add("no camera_info belongs to " + report_.depth_topic +
-                    "; the intrinsics are the sensor's");
+                    "; using the sensor's intrinsics");
     } else {
       throw Error(ErrorCode::format, source_.string() + ": no camera_info belongs to " +
                                          report_.depth_topic + "; give --intrinsics or --sensor");
@@ -191,14 +192,14 @@ class MessageImport {
     Way way;
     if (config_.pose_topic.empty()) {
       if (tree_.empty()) {
-        fail("has no transforms: record /tf and /tf_static, or give a topic by --poses");
+        fail("has no transforms; record /tf and /tf_static, or give a pose topic with --poses");
       }
       way.moving = tree_.chain(report_.world, frame);
     } else {
       if (poses_.empty()) {
         fail(config_.pose_topic +
-             " has no poses (PoseStamped, PoseWithCovarianceStamped, TransformStamped, Odometry); "
-             "topics are " +
+             " holds no poses (PoseStamped, PoseWithCovarianceStamped, TransformStamped, "
+             "Odometry); topics: " +
              topics_.listed());
       }
       way.moving = poses_.chain(report_.world, kBody);
@@ -210,14 +211,14 @@ class MessageImport {
         way.T_body_camera = *config_.sensor->T_flange_camera;
       } else {
         fail(config_.pose_topic +
-             " does not say where the camera is on its body; give it behind the topic (--poses "
+             " does not state the camera's pose on its body; give it after the topic (--poses "
              "TOPIC,tx,ty,tz,qx,qy,qz,qw)");
       }
     }
     if (way.moving.empty()) {
       fail("the frame " + viewgain::quoted(frame) +
-           " of the images has no parent, so that the camera would never move; record the "
-           "transform that leads to it, or choose the world by --world");
+           " of the images has no parent, so the camera would never move; record the transform "
+           "that leads to it, or choose the world with --world");
     }
     return ways_.emplace(frame, std::move(way)).first->second;
   } catch (const Error& error) {
@@ -267,10 +268,9 @@ class MessageImport {
     if (!is_wrong_order_) is_wrong_order_ = is_wrong_byte_order(image);
     if (is_wrong_order_.value_or(false)) {
       is_wrong_order_ = false;  // said once
-      warnings_.add(
-          of_message(message,
-                     "the image would be much smoother with its bytes in the other order; "
-                     "is its is_bigendian wrong?"));
+      warnings_.add(of_message(message,
+                               "the image would be much smoother with its bytes in the other "
+                               "order. Is its is_bigendian wrong?"));
     }
     const GrayImage pixels = gray_image(depth, scale_);
     report_.readings += static_cast<std::uint64_t>(
@@ -321,8 +321,8 @@ class MessageImport {
         report_.frames == 0 && without_[2] + without_[3] == 0 &&
         (images_from_ - 10 * kNanoseconds > span[1] || images_to_ + 10 * kNanoseconds < span[0]);
     if (is_apart) {
-      text += ", images from " + seconds_text(images_from_) + " to " + seconds_text(images_to_) +
-              " s: the camera's clock is not the robot's";
+      text += ", but images from " + seconds_text(images_from_) + " to " +
+              seconds_text(images_to_) + " s; the camera's clock differs from the robot's";
     }
     if (report_.frames == 0) {
       dropped_.fault = text;
@@ -359,8 +359,8 @@ ImportReport import_messages(const fs::path& source, const std::vector<fs::path>
                              const ImportConfig& config) {
   if (!config.masks.empty() || !config.confidences.empty()) {
     refuse(
-        "a recording of messages has no image files that masks belong to; give masks to what "
-        "reads the imported frames");
+        "a recording of messages has no image files for masks to belong to; give the masks to the "
+        "command that reads the imported frames");
   }
   return MessageImport(source, files, format, config).run(out);
 }

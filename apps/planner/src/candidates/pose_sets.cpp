@@ -36,7 +36,7 @@ Eigen::Vector3d direction_from(const Eigen::Vector3d& center, const Pose& pose) 
 // Each pose the farthest, by angle, from the start's and from those before it.
 std::vector<Pose> spread_out(const std::vector<Pose>& poses, const PoseSetRequest& request) {
   if (poses.size() > kMostSpreadOut) {
-    refuse("at most " + std::to_string(kMostSpreadOut) + " poses can be spread out, not " +
+    refuse("at most " + std::to_string(kMostSpreadOut) + " poses can be spread out; found " +
            std::to_string(poses.size()));
   }
   std::vector<double> nearest(poses.size(), -1);  // cosine of the angle to the nearest one taken
@@ -139,7 +139,7 @@ PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request)
   } else if (generator == "sequence") {
     set.poses = sequence_poses(request);
   } else {
-    refuse("generator \"" + std::string(generator) + "\": no such set of poses");
+    refuse("generator \"" + std::string(generator) + "\": unknown set of poses");
   }
   if (request.spread_out) set.poses = spread_out(set.poses, request);
   return set;

@@ -23,7 +23,7 @@ constexpr std::size_t kByStop = 3, kFewPoses = 32;
 
 void refuse_measures(const RankConfig& config) {
   if (config.measure == nullptr && config.run_measure == nullptr) return;
-  refuse("views that go together are chosen by the gain, not by a measure");
+  refuse("views of a set are chosen by the gain, not by a measure");
 }
 
 double least_area_of(const PlanAhead& ahead, double surface_area) {

@@ -182,9 +182,8 @@ struct ViewPlanner::Impl {
     for (const auto& [reason, count] : bad_frames(state.frames)) {
       counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
     }
-    refuse(
-        "no view can be proposed: of no frame so far could anything be used (" + counts +
-        "); poses that are world to camera, other units or another workspace would explain that");
+    refuse("no view can be proposed: no frame so far could be used (" + counts +
+           "). Are the poses world to camera, or are units or workspace wrong?");
   }
 
   // After a choice, which takes the place of an earlier one of the same view.
@@ -272,7 +271,7 @@ AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_wor
 }
 
 AddedView ViewPlanner::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera) {
-  if (is_in_map(verdict)) refuse("a frame that is dropped is not in the map");
+  if (is_in_map(verdict)) refuse("a dropped frame is not in the map");
   MapUpdate nothing;
   nothing.verdict = verdict;
   return impl_->counted(std::move(nothing), T_world_camera);
@@ -311,7 +310,7 @@ std::size_t ViewPlanner::candidate_count() const noexcept {
 
 Ranking ViewPlanner::rank(std::size_t k, const RankConfig& config, const BatchControl& control) {
   if (!impl_->proposal) {
-    refuse("rank: there are no candidates; propose() comes first, after each view anew");
+    refuse("rank: there are no candidates; call propose() after each view, before rank()");
   }
   return impl_->rank(poses_of(impl_->proposal->candidates), k, config, control, &*impl_->proposal);
 }
@@ -350,22 +349,22 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
   const auto note = notes.others.extract(kNote);  // save() writes it anew
   grid.set_notes(std::move(notes));
   if (note.empty()) {
-    throw Error(ErrorCode::format, path.string() + ": is a map without the state of a planner");
+    throw Error(ErrorCode::format, path.string() + ": is a map without a planner's state");
   }
   const BeliefGrid expected(scorer.grid(), sensor);
   if (grid.voxel_size() != expected.voxel_size() || grid.dims() != expected.dims() ||
       grid.min_index() != expected.min_index() || grid.prior_sigma() != expected.prior_sigma() ||
       !(grid.T_world_grid() == expected.T_world_grid())) {
     refuse(path.string() + ": its map, " + layout_text(grid) +
-           ", is laid out otherwise than the configuration says, " + layout_text(expected));
+           ", differs from the configuration, " + layout_text(expected));
   }
   detail::PlannerState state = detail::state_of(path.string() + " (note planner)", note.mapped());
   std::size_t added = state.first_views;
   for (const auto& [verdict, count] : state.frames) added += is_in_map(verdict) ? count : 0;
   if (added != grid.views().size()) {
     refuse(path.string() + ": its map has " + std::to_string(grid.views().size()) +
-           " views, of which its planner added " + std::to_string(added) +
-           ": the map has grown since; begin a new planner");
+           " views, but its planner added " + std::to_string(added) +
+           ": the map has grown since; create a new planner");
   }
   auto impl = std::make_unique<Impl>(ViewScorer(std::move(grid), sensor, scorer, exec), config);
   impl->state = std::move(state);

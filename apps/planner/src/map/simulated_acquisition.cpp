@@ -31,7 +31,7 @@ void check_noise(const PoseSigma& sigma) {
 }  // namespace
 
 Measurements SimulatedAcquisition::acquire(const Pose& T_world_camera, std::size_t view) {
-  if (frames_per_view_ == 0) refuse("frames per view: 0 is not at least 1");
+  if (frames_per_view_ == 0) refuse("frames per view must be at least 1, not 0");
   Measurements measurements{T_world_camera, {}};
   for (std::size_t i = 0; i < frames_per_view_; ++i) {
     measurements.frames.push_back(camera_.acquire(T_world_camera, view * frames_per_view_ + i));

@@ -168,18 +168,18 @@ JointRegistration::Verdict JointRegistration::verdict_of(std::size_t index) cons
   } else if (result.translation > kMaxSigmas * frame.sigma.translation ||
              result.rotation > kMaxSigmas * frame.sigma.rotation) {
     result.reason = "the correction, " + rounded(1e3 * result.translation) + " mm and " +
-                    rounded(result.rotation * 180 / std::numbers::pi) + " deg, is beyond " +
+                    rounded(result.rotation * 180 / std::numbers::pi) + " deg, exceeds " +
                     rounded(kMaxSigmas) + " sigma of the reported pose";
   } else if (found.readings.contradicts(readings)) {
     result.reason = rounded(100 * found.readings.contradiction()) +
-                    " % of the readings lie where " + others_ + " says free";
+                    " % of the readings lie in free space of " + others_;
   } else if (found.surface.contradicts(by_map ? 0 : readings)) {
-    result.reason = "the frame looks past " + rounded(100 * found.surface.contradiction()) +
-                    " % of the surface that " + others_ + " has there";
+    result.reason = "the frame sees past " + rounded(100 * found.surface.contradiction()) +
+                    " % of the surface of " + others_;
   } else if (result.overlap < kMinOverlap || result.pairs < kMinPairs) {
     result.status = RegistrationStatus::too_little_overlap;
     result.reason = std::to_string(result.pairs) + " of " + std::to_string(readings) +
-                    " readings show surface that " + others_ + " has";
+                    " readings show surface of " + others_;
   } else {
     result.status = RegistrationStatus::registered;
   }

@@ -155,7 +155,7 @@ std::string summary_of(const NextViews& next) {
   if (next.candidates == 0 && next.dropped.empty())
     return "no candidates: nothing is left to look at";
   const std::string count = with_commas(next.candidates);
-  std::string text = next.candidates == 0 ? "no candidate view is possible"
+  std::string text = next.candidates == 0 ? "no view is possible"
                      : next.views.empty()
                          ? "none of the " + count + " candidate views has a positive gain"
                          : "best of " + count + " views";
@@ -165,7 +165,7 @@ std::string summary_of(const NextViews& next) {
   }
   if (next.candidates == 0 && next.dropped.contains("collision")) {
     text +=
-        " (the sensor's body would touch voxels not known to be free; check that --workspace "
+        " (the body would touch voxels not known to be free; check that --workspace "
         "includes the camera's positions, and check --body)";
   }
   return text;

@@ -46,7 +46,7 @@ struct BrickIndex {
       if (count > kMostNodes) {
         throw Error(ErrorCode::capacity, "the workspace has more than " +
                                              std::to_string(kMostNodes) +
-                                             " cubes of 128 voxels: too many for this gain");
+                                             " cubes of 128 voxels, the limit of this gain");
       }
     }
     node_entries.assign(count, shared_node(fill));

@@ -108,7 +108,7 @@ TEST_F(BadInputTest, Scores) {
                   {score({"--poses", "sphere:0,0.6"}), "--poses sphere:0,0.6"},
                   {score({"--poses", "bad.txt"}), "2"},
                   {with({"--gain", "best"}), "combined"},
-                  {with({"--criterion", "trace"}), "--criterion trace goes with --gain paper"},
+                  {with({"--criterion", "trace"}), "--criterion trace requires --gain paper"},
                   {with({"--gain", "surface", "--hazard", "-1"}), "--hazard -1"},
                   {with({"--gain", "surface", "--hazard", "rates"}), "--hazard"},
                   {with({"--gain", "surface", "--hazard", "none.VDB"}), "none.VDB"},

@@ -108,7 +108,7 @@ TEST_F(ForeignMaps, EndingsAreLargeOrSmallAndOthersRefused) {
   }
   run_well({"convert", "a.OT", "b.VDB"});
   EXPECT_EQ(run_json({"info", "b.VDB"}).at("occupied"), 1);
-  expect_refused({"convert", "a.vdb", "a.BT"}, "can only be read");
+  expect_refused({"convert", "a.vdb", "a.BT"}, "files are read-only");
   for (const char* name : {"a.txt", "a", "a.vdb2", ".vdb", "a.vdb.gz"}) {
     expect_refused({"convert", "a.vdb", name}, "must end in .vdb or .ot");
   }
@@ -212,10 +212,10 @@ TEST_F(ForeignMaps, WrongUseIsRefused) {
                  "cut.pcd:");
   expect_refused(integrate({"--cloud", "none.ply", "--sensor", "small.toml", "--origin", "0,0,0"}),
                  "none.ply");
-  expect_refused({"info", "cut.ot"}, "the tree is cut");
+  expect_refused({"info", "cut.ot"}, "the tree is truncated");
   expect_refused({"info", "none.bt"}, "none.bt");
-  expect_refused({"convert", "cut.ot", "new.vdb"}, "the tree is cut");
-  expect_refused({"convert", "map.vdb", "new.bt"}, "can only be read");
+  expect_refused({"convert", "cut.ot", "new.vdb"}, "the tree is truncated");
+  expect_refused({"convert", "map.vdb", "new.bt"}, "files are read-only");
   expect_refused({"convert", "map.vdb", "new.ot", "--workspace", "0,0,0,1,1,1"}, "--workspace");
   expect_refused({"convert", "map.vdb", "new.ot", "--prior-sigma", "1"}, "--prior-sigma");
   expect_refused({"convert", "map.vdb"}, "OUT");

@@ -70,7 +70,7 @@ TEST_F(ScoreCandidates, ObstaclesFarFromTheMapAreNamed) {
                                                  {"room_mm.off", true}}) {
     const std::string said = run(arguments({"--obstacle", box})).err;
     EXPECT_EQ(said.find("--obstacle " + box) != std::string::npos, is_far) << said;
-    EXPECT_EQ(said.find("is it in metres?") != std::string::npos, is_far) << said;
+    EXPECT_EQ(said.find("Is it in metres?") != std::string::npos, is_far) << said;
   }
 }
 
@@ -300,10 +300,10 @@ TEST_F(ScoreClassic, RefusesWhatDoesNotGoTogether) {
                       {{{"--gain", "paper,unknown_count"}, "paper must be given alone"},
                        {{"--gain", "unknown_count,unknown_count"}, "twice"},
                        {{"--gain", "unknwn_count"}, "unknown_count"}});
-  // A map that remembers no views.
+  // A map that records no views.
   BeliefGrid blank({0.02, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.02});
   save_vdb(blank, dir / "map.vdb");
-  expect_refused(arguments({"--gain", "proximity_count"}), "remembers no views");
+  expect_refused(arguments({"--gain", "proximity_count"}), "records no views");
 }
 
 }  // namespace

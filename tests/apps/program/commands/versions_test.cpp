@@ -111,9 +111,9 @@ TEST_F(Versions, NewerOnesAreRefused) {
   change("reach.toml", "format = 1", "format = 2");
   expect_refused(
       {{{"score", "state.vdb", "--poses", "sphere:9,0.5", "--sensor", "sensor.toml"},
-        "sensor.toml: line 2: key \"format\" is 2; this library reads files up to format 1"},
+        "sensor.toml: line 2: key \"format\" is 2; this library reads up to format 1"},
        {{"next", "state.vdb", "--generator", "sphere", "--reach", "reach.toml", "--out", "p.txt"},
-        "reach.toml: line 1: key \"format\" is 2; this library reads files up to format 1"}});
+        "reach.toml: line 1: key \"format\" is 2; this library reads up to format 1"}});
 
   change("sensor.toml", "\nformat = 2", "\nformat = 1");
   const BeliefGrid grid = load_vdb(dir / "state.vdb");

@@ -50,7 +50,8 @@ struct OctreeLabels {
 [[nodiscard]] inline OctreeLabels labels_of_octree(double voxel_size, const VoxelBox& workspace,
                                                    const octomap::OcTree& tree, const Box& region) {
   const double V = tree.getResolution();
-  if (std::abs(voxel_size - V) > 1e-9 * V) refuse("the tree's voxels are not the grid's");
+  if (std::abs(voxel_size - V) > 1e-9 * V)
+    refuse("the tree and the grid have different voxel sizes");
   const auto index = [&](double x) {
     return static_cast<std::int32_t>(std::clamp(std::floor(x / V), -32768.0, 32767.0));
   };
