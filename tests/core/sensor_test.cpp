@@ -34,7 +34,7 @@ TEST(SensorPresets, AreAllValid) {
   EXPECT_NO_THROW(Sensor{}.validate());
   EXPECT_EQ(Sensor{}.name, "sr4000");
   expect_error(ErrorCode::invalid_argument,
-               "unknown sensor 'sr3000', valid are sr4000, azure_kinect_nfov, kinect_v1, d435, "
+               "unknown sensor 'sr3000'; valid values: sr4000, azure_kinect_nfov, kinect_v1, d435, "
                "laser_line",
                [] { (void)sensor_preset("sr3000"); });
 }

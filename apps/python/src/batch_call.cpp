@@ -137,10 +137,10 @@ A control that was stopped stays so: make one for each call. Ctrl-C is honoured 
            "progress"_a = py::none())
       .def(
           "stop", [](Control& control) { control.stop.request_stop(); },
-          "Ask the running call to return early, with what it has. Any thread may call it.")
+          "Ask the running call to return early with its results so far. Any thread may call it.")
       .def_property_readonly(
           "stopped", [](const Control& control) { return control.stop.stop_requested(); },
-          "bool: a stop was asked for.")
+          "bool: True if a stop was requested.")
       .def("__repr__", [](const Control& control) {
         return control.stop.stop_requested() ? "BatchControl(stopped)" : "BatchControl()";
       });

@@ -131,7 +131,7 @@ PinholeCamera camera_of_matrix(const py::object& matrix, int width, int height,
     return !(std::abs(value - wanted) <= kExact);
   };
   if (is_off(m[6], 0) || is_off(m[7], 0) || is_off(m[8], 1)) {
-    throw py::value_error("K has a last row that is not 0 0 1");
+    throw py::value_error("K must have the last row 0 0 1");
   }
   if (is_off(m[1], 0) || is_off(m[3], 0)) {
     throw py::value_error("K has skew: K[0, 1] is " + short_text(m[1]) + " and K[1, 0] " +

@@ -35,7 +35,8 @@ FrameSequence read_frames(const py::object& folder, const py::object& sensor,
                           std::optional<double> depth_scale,
                           const std::optional<std::string>& out_of_range) {
   if (out_of_range && *out_of_range != "invalid" && *out_of_range != "carve") {
-    throw py::value_error("out_of_range is \"" + *out_of_range + "\"; valid are carve invalid");
+    throw py::value_error("out_of_range is \"" + *out_of_range +
+                          "\"; valid values: carve, invalid");
   }
   const std::string given = sensor.is_none() ? std::string() : preset_or_file(sensor);
   const std::string path = file_path(folder);
@@ -78,7 +79,7 @@ py::list suspicions(const Given<Sensor>& sensor, const py::sequence& frames) {
   const std::size_t step = std::max<std::size_t>(1, frames.size() / kFrames);
   for (std::size_t i = 0; i < frames.size() && images.size() < kFrames; i += step) {
     const py::sequence frame = frames[i];
-    if (frame.size() < 2) throw py::value_error("frames must be of (depth, T_world_camera)");
+    if (frame.size() < 2) throw py::value_error("each of frames must be (depth, T_world_camera)");
     const Pose pose =
         pose_batch(doubles(frame[1], "T_world_camera", {4, 4}), "T_world_camera", false).poses[0];
     if (!rigid_pose(pose)) continue;  // it is lost
@@ -94,7 +95,7 @@ py::list suspicions(const Given<Sensor>& sensor, const py::sequence& frames) {
 void write_poses(const py::object& path, const py::object& T_world_camera,
                  const py::object& timestamps) {
   const std::vector<Pose> poses = pose_list(T_world_camera, "T_world_camera");
-  if (poses.empty()) throw py::value_error("there is no pose to write");
+  if (poses.empty()) throw py::value_error("poses is empty; give at least one pose");
   const std::string file = writable_file(path);
   std::vector<double> times;
   if (!timestamps.is_none()) {
@@ -198,14 +199,14 @@ frame's pixels; ``poses`` is a copy.)");
   refuse_pickling(type);
   type.def(
           "__len__", [](const FrameSequence& self) { return self.images.size(); },
-          "How many frames there are.\n\nReturns\n-------\nint")
+          "Number of frames.\n\nReturns\n-------\nint")
       .def(
           "__iter__",
           [](const py::object& self) {
             (void)py::cast<const FrameSequence&>(self);  // refuses what was never initialised
             return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
           },
-          "The frames in their order.\n\nReturns\n-------\niterator")
+          "The frames in order.\n\nReturns\n-------\niterator")
       .def("__getitem__", &frame_at, "index"_a,
            R"(Reads a frame.
 
@@ -218,8 +219,9 @@ Returns
 -------
 Frame)")
       .def_readonly("sensor", &FrameSequence::sensor,
-                    "Sensor: with the folder's own intrinsics, where it has them")
-      .def_readonly("depth_scale", &FrameSequence::depth_scale, "float: [m] per unit of the images")
+                    "Sensor: of the frames, with the folder's intrinsics if it has any")
+      .def_readonly("depth_scale", &FrameSequence::depth_scale,
+                    "float: metres per unit of the images")
       .def_property_readonly(
           "poses", [](const FrameSequence& self) { return pose_array(self.poses); },
           "ndarray, (n, 4, 4), float64: T_world_camera")

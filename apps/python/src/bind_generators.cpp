@@ -28,8 +28,8 @@ py::array_t<double> look_at_all(const py::object& eyes, const py::object& target
   const bool one_target = goal.ndim() == 1 && goal.shape(0) == 3;
   if (!one_target &&
       !(goal.ndim() == axes && std::equal(eye.shape(), eye.shape() + axes, goal.shape()))) {
-    throw py::value_error("target must have the shape (3,) or that of eyes, " + shape_text(eye) +
-                          ", not " + shape_text(goal));
+    throw py::value_error("target must have the shape (3,) or the shape of eyes, " +
+                          shape_text(eye) + ", not " + shape_text(goal));
   }
   const Eigen::Vector3d up_vector = vector3(up, "up");
   const auto count = static_cast<std::size_t>(eye.size() / 3);
@@ -64,8 +64,7 @@ ndarray, (n, 4, 4), float64
 
 std::string doc_of(const char* summary, const char* parameters) {
   return std::string(summary) +
-         "\n\nHolds the GIL. Cost: linear in the poses, some 0.15 µs each.\n\n"
-         "Parameters\n----------\n" +
+         "\n\nHolds the GIL. Cost: about 0.15 µs per pose.\n\nParameters\n----------\n" +
          parameters + kCenter + kReturns;
 }
 
@@ -157,7 +156,7 @@ step : float, optional
       },
       "count"_a, "radius"_a, "height"_a, "tilt"_a, py::kw_only(), "start"_a = 0.0,
       "center"_a = kOrigin,
-      doc_of("Views on a circle round the vertical axis, looking down towards it.",
+      doc_of("Views on a circle around the vertical axis, looking down towards it.",
              R"(count : int
 radius : float
     [m]

@@ -23,7 +23,7 @@ Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
   obstacles.boxes = optional_boxes(boxes, "boxes");
   for (const py::handle mesh : meshes) {
     if (!py::isinstance<py::sequence>(mesh) || py::len(mesh) != 2) {
-      throw py::value_error("each of meshes must be a pair (vertices, triangles)");
+      throw py::value_error("each entry of meshes must be a pair (vertices, triangles)");
     }
     const auto pair = py::reinterpret_borrow<py::sequence>(mesh);
     const py::object vertices = pair[0], triangles = pair[1];
@@ -135,13 +135,13 @@ Returns
 VoxelScene)")
       .def_property_readonly(
           "isa", [](const Scene& self) { return std::string(self.scene->isa()); },
-          "str: the instruction set that traces it")
+          "str: instruction set of the tracer")
       .def_property_readonly(
           "primitive_count", [](const Scene& self) { return self.scene->primitive_count(); },
-          "int: blocks of voxels that are not free")
+          "int: number of voxel blocks that are not free")
       .def_property_readonly(
           "bytes", [](const Scene& self) { return self.scene->bytes(); },
-          "int: memory of the scene, without the snapshot and Embree's own")
+          "int: memory of the scene in bytes, without the snapshot and Embree")
       .def("__repr__", [](const Scene& self) {
         const VoxelScene& scene = *self.scene;
         const Index3& dims = scene.snapshot().dims;

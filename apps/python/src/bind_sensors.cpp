@@ -58,7 +58,8 @@ void bind_model(py::module_& module, const char* name, const char* doc,
 }  // namespace
 
 void bind_noise(py::module_& module) {
-  bind_model<ShotNoise>(module, "ShotNoise", R"(Time-of-flight shot noise.
+  bind_model<ShotNoise>(
+      module, "ShotNoise", R"(Time-of-flight shot noise.
 
 ``axial = reference_sigma * (t / reference_range) * sqrt(reference_integration_time /
 integration_time) / sqrt(max(cos, 0.1))``, ``lateral = t / fx``; t is the range along the ray [m].
@@ -73,10 +74,10 @@ modulation_frequency : float
     Of the light [Hz]; 0: ranges are unambiguous.
 min_amplitude : float
     cos / t**2 under which a reading is invalid [1/m**2].)",
-                        {"float: along the ray at the reference [m]", "float: of the reference [m]",
-                         "float: of the reference [s]", "float: [s]",
-                         "float: of the light [Hz]; 0: ranges are unambiguous",
-                         "float: cos / t**2 under which a reading is invalid [1/m**2]"});
+      {"float: sigma along the ray at the reference [m]", "float: reference range [m]",
+       "float: integration time of the reference [s]", "float: integration time [s]",
+       "float: modulation frequency of the light [Hz]; 0: ranges are unambiguous",
+       "float: cos / t**2 below which a reading is invalid [1/m**2]"});
 
   bind_model<StructuredLightNoise>(module, "StructuredLightNoise",
                                    R"(Structured light (Nguyen, Izadi, Lovell, 2012).
@@ -135,7 +136,7 @@ sigma_axial : float
     Along the ray [m].
 sigma_lateral : float
     Across the ray [m].)",
-                            {"float: along the ray [m]", "float: across the ray [m]"});
+                            {"float: sigma along the ray [m]", "float: sigma across the ray [m]"});
 }
 
 namespace {
@@ -161,7 +162,7 @@ std::optional<Sensor::OutOfRange> out_of_range_of(const std::optional<std::strin
   if (!name) return std::nullopt;
   if (*name == "carve") return Sensor::OutOfRange::carve;
   if (*name == "invalid") return Sensor::OutOfRange::invalid;
-  refuse("out_of_range is \"" + *name + "\", not carve or invalid");
+  refuse("out_of_range is \"" + *name + "\"; valid values: carve, invalid");
 }
 
 std::optional<std::string> name_of(const std::optional<Sensor::OutOfRange>& meaning) {
@@ -263,12 +264,13 @@ range_calibration.)");
           [](const Sensor& sensor) {
             return py::make_tuple(sensor.pose_sigma.translation, sensor.pose_sigma.rotation);
           },
-          "(float, float): of the poses of frames [m], [rad]; zeros where they are exact")
+          "(float, float): standard deviations of the poses of frames [m], [rad]; zeros: poses are "
+          "exact")
       .def_readonly("scale_sigma", &Sensor::scale_sigma,
-                    "float: of the factor, less 1, that all ranges are off by; 0: none")
+                    "float: relative sigma of one factor common to all ranges; 0: none")
       .def_property_readonly(
           "out_of_range", [](const Sensor& sensor) { return name_of(sensor.out_of_range); },
-          "str or None: what 65535 says in its depth images, carve or invalid")
+          "str or None: meaning of 65535 in its depth images: carve or invalid")
       .def(
           "corrected",
           [](const Sensor& sensor, const py::object& depth) {
@@ -336,7 +338,7 @@ Returns
 Sensor)");
   module.def(
       "sensor_preset_names", [] { return sensor_preset_names(); },
-      "The names that ``sensor_preset`` takes.\n\nReturns\n-------\nlist of str");
+      "The valid names of ``sensor_preset``.\n\nReturns\n-------\nlist of str");
   module.def(
       "default_prior_sigma",
       [](double voxel_size, const Given<Sensor>& sensor) {

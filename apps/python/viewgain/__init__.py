@@ -35,7 +35,7 @@ if _util.find_spec("viewgain._viewgain") is None:  # a source folder: viewgain.s
     def __getattr__(name):
         if name.startswith("__"):
             raise AttributeError(name)
-        raise ImportError(f"viewgain.{name} needs the extension module, which is not in {__path__[0]}: build it, or install the package")
+        raise ImportError(f"viewgain.{name} needs the extension module, which is not in {__path__[0]}; build it, or install the package")
 
 else:
     from . import _calls, _viewgain

@@ -20,7 +20,7 @@ def _fault(function, args, kwargs):
     for name in kwargs:
         if name not in parameters:
             near = difflib.get_close_matches(name, parameters, 1, 0)
-            return f"there is no argument {name!r}" + "".join(f"; did you mean {one!r}?" for one in near)
+            return f"unknown argument {name!r}" + "".join(f"; did you mean {one!r}?" for one in near)
     if len(args) > len(by_place):
         return f"{len(args)} arguments by position; at most {len(by_place)}, others by keyword"
     given = {**dict(zip((one.arg for one in by_place), args)), **kwargs}

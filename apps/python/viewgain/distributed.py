@@ -113,5 +113,5 @@ def evaluate(client: distributed.Client, map: Union[BeliefGrid, str, os.PathLike
             if progress is not None:
                 progress(done, len(rows))
     if chunks:
-        raise Error(f"{len(rows) - done} of {len(rows)} poses are without a gain: their workers were lost {_ROUNDS} times")
+        raise Error(f"{len(rows) - done} of {len(rows)} poses have no gain: their workers were lost {_ROUNDS} times")
     return gains.reshape(lead)

@@ -216,7 +216,7 @@ def test_generators_and_what_was_tried(sensor, camera, poses):
         inside.propose()
     wrong = make(sensor)
     wrong.add_generator(lambda grid: np.zeros((3, 3)))
-    with pytest.raises(ValueError, match="what the generator returns"):
+    with pytest.raises(ValueError, match="the result of the generator"):
         wrong.propose()
     del inside, wrong
     gc.collect()

@@ -220,7 +220,7 @@ TEST(SurfaceGain, RefusesWhatCannotBeMeant) {
   test::expect_error(ErrorCode::invalid_argument, "support plane", [] {
     (void)VoxelScene::build(slab(1, 2), {{}, HUGE_VAL});
   });
-  test::expect_error(ErrorCode::invalid_argument, "valid are paper, surface, combined",
+  test::expect_error(ErrorCode::invalid_argument, "valid values: paper, surface, combined",
                      [] { (void)parse_gain_model("papers"); });
 }
 

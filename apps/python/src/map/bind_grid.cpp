@@ -211,7 +211,8 @@ Returns
 -------
 BeliefGrid)")
       .def("clone", &clone_of,
-           "A deep copy; beliefs are shared until one is written.\n\nReturns\n-------\nBeliefGrid")
+           "A deep copy. Beliefs are shared until one copy is "
+           "written.\n\nReturns\n-------\nBeliefGrid")
       .def("__copy__", &clone_of)
       .def("__deepcopy__", [](const SharedGrid& grid, const py::dict&) { return clone_of(grid); })
       .def_property_readonly(
@@ -233,7 +234,7 @@ BeliefGrid)")
             const Index3 min = grid.layout().min_index();
             return py::make_tuple(min.x, min.y, min.z);
           },
-          "tuple of 3 int: the lattice's index of the voxel that is (0, 0, 0) in arrays")
+          "tuple of 3 int: lattice index of the voxel (0, 0, 0) of arrays")
       .def_property_readonly(
           "workspace",
           [](const SharedGrid& grid) {
@@ -244,7 +245,7 @@ BeliefGrid)")
       .def_property_readonly(
           "T_world_grid",
           [](const SharedGrid& grid) { return to_array(grid.layout().T_world_grid()); },
-          "ndarray, (4, 4), float64: places the grid's frame in the world")
+          "ndarray, (4, 4), float64: pose of the grid frame in the world")
       .def("states", &states_of, R"(All voxels' states.
 
 Returns
@@ -351,8 +352,8 @@ GridStatistics)")
           [](const SharedGrid& grid) {
             return grid.read([](const BeliefGrid& g) { return g.content_hash(); });
           },
-          "16 hexadecimal digits, the same for equal maps however they came about.\n\n"
-          "Returns\n-------\nstr")
+          "Hash of the map, 16 hexadecimal digits; equal maps have equal "
+          "hashes.\n\nReturns\n-------\nstr")
       .def(
           "__eq__",
           [](const SharedGrid& a, const SharedGrid& b) {

@@ -32,7 +32,7 @@ class TemporaryFolder {
   TemporaryFolder() {
     std::string pattern = (std::filesystem::temp_directory_path() / "viewgain-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) {
-      throw Error(ErrorCode::io, pattern + ": no temporary folder can be made");
+      throw Error(ErrorCode::io, pattern + ": cannot create a temporary folder");
     }
     path_ = pattern;
   }
@@ -69,7 +69,7 @@ std::shared_ptr<SharedGrid> from_bytes(const py::bytes& data) {
     return std::make_shared<SharedGrid>(load_vdb(folder.map()));
   } catch (const Error& error) {
     if (error.code() != ErrorCode::format) throw;
-    throw Error(ErrorCode::format, "these bytes are no map that to_bytes() made");
+    throw Error(ErrorCode::format, "these bytes are not a map from to_bytes()");
   }
 }
 
@@ -92,9 +92,8 @@ void bind_grid_files(GridClass& grid_class) {
           [](const SharedGrid& grid) {
             return grid.read([](const BeliefGrid& g) { return map_sensor(g); });
           },
-          "Sensor or None: that all readings come from; None if they are of several sensors or it "
-          "is "
-          "not known. Kept in files, copies and pickles.")
+          "Sensor or None: the sensor of all readings; None if there are several or it is unknown. "
+          "Kept in files, copies and pickles.")
       .def_property_readonly(
           "frames",
           [](const SharedGrid& grid) {
@@ -103,8 +102,8 @@ void bind_grid_files(GridClass& grid_class) {
               return std::vector<std::string>(frames.begin(), frames.end());
             });
           },
-          "list of str: identities of the frames of folders that are in the map, which "
-          "``viewgain integrate --map`` skips. Kept in files, copies and pickles.");
+          "list of str: identities of the folder frames in the map, which ``viewgain integrate "
+          "--map`` skips. Kept in files, copies and pickles.");
   grid_class
       .def(
           "to_bytes", &bytes_of,
@@ -138,8 +137,8 @@ BeliefGrid)")
               require_prior(prior_sigma, sensor);
             } else if (!workspace.is_none() || prior_sigma || occupied_from) {
               refuse(file +
-                     ": workspace, prior_sigma and occupied_from are for OctoMap's .ot and "
-                     ".bt; a .vdb has its own");
+                     ": workspace, prior_sigma and occupied_from require an OctoMap .ot or .bt; a "
+                     ".vdb has its own");
             }
             if (occupied_from) config.occupied_from = static_cast<float>(*occupied_from);
             config.prior_sigma = prior_sigma;

@@ -68,7 +68,7 @@ ValueError
 IntegrationConfig::Occupancy parse_occupancy(const std::string& name) {
   if (name == "probabilistic") return IntegrationConfig::Occupancy::probabilistic;
   if (name == "literal") return IntegrationConfig::Occupancy::literal;
-  throw py::value_error("occupancy is \"" + name + "\"; valid are probabilistic literal");
+  throw py::value_error("occupancy is \"" + name + "\"; valid values: probabilistic, literal");
 }
 
 py::object to_python(const IntegrationReport& r) {
@@ -245,7 +245,7 @@ IntegrationConfig config_of(const std::string& carve, const std::string& occupan
   if (carve == "lines") {
     config.carve = IntegrationConfig::Carve::lines;
   } else if (carve != "cones") {
-    throw py::value_error("carve is \"" + carve + "\"; valid are cones lines");
+    throw py::value_error("carve is \"" + carve + "\"; valid values: cones, lines");
   }
   config.occupancy = parse_occupancy(occupancy);
   config.support_plane = support_plane;

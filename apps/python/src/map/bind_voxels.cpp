@@ -35,7 +35,7 @@ std::int32_t index_number(double number) {
     return static_cast<std::int32_t>(number);
   }
   std::ostringstream text;
-  text << "voxels holds " << number << "; an index is a whole number of 32 bits";
+  text << "voxels holds " << number << "; an index must be a whole number of 32 bits";
   throw py::value_error(text.str());
 }
 
@@ -98,10 +98,9 @@ void set(SharedGrid& grid, const py::object& voxels, const py::object& log_odds)
   const Shape wanted = leading_shape(array, 1);
   if (!is_one &&
       !std::equal(wanted.begin(), wanted.end(), values.shape(), values.shape() + values.ndim())) {
-    throw py::value_error(
-        "log_odds has the shape " + shape_text(values) +
-        "; it must be one number, or one for each of voxels, which has the shape " +
-        shape_text(array));
+    throw py::value_error("log_odds has the shape " + shape_text(values) +
+                          "; it must be one number, or one per voxel; voxels has the shape " +
+                          shape_text(array));
   }
   std::vector<BeliefGrid::VoxelValue> changes;
   changes.reserve(indices.size());

@@ -127,14 +127,13 @@ Reconstruction reconstruct(
   policy_config.policy = parse_policy(policy);
   if (policy_config.policy == Policy::fibonacci) {
     throw py::value_error(
-        "policy \"fibonacci\" is a set of poses: give them as candidates of policy \"sequence\"");
+        "policy \"fibonacci\" is a set of poses; give them as candidates of policy \"sequence\"");
   }
   const GenerationConfig generation_settings = generation_config(
       sensor, voxel_size, boundary.value_or(is_of_boundaries(policy_config.policy)), candidates,
       reach, policy_config.policy);
   if (!generation_settings.at_boundaries && candidates.is_none()) {
-    throw py::value_error("give candidates: without boundary, policy \"" + policy +
-                          "\" has nothing to choose from");
+    throw py::value_error("policy \"" + policy + "\" requires candidates if there is no boundary");
   }
   policy_config.criterion = map_config.gain.criterion;
   policy_config.model = parse_gain_model(gain);
@@ -178,12 +177,11 @@ void bind_reconstruct(py::module_& module) {
       R"(What ``reconstruct`` came to: its views, why it ended, the surface and the map.)");
   refuse_pickling(type);
   type.def_readonly("reason", &Reconstruction::reason,
-                    "str: why it ended: gain, area, cost, no_candidates, unreachable, idle, "
-                    "promises, max_views, "
-                    "interrupted")
+                    "str: stop reason: gain, area, cost, no_candidates, unreachable, idle, "
+                    "promises, max_views, interrupted")
       .def_readonly("views", &Reconstruction::views, "list of ViewRecord: one per view")
       .def_readonly("grid", &Reconstruction::grid, "viewgain.BeliefGrid: the map")
-      .def_readonly("surface", &Reconstruction::surface, "Surface: of the whole map")
+      .def_readonly("surface", &Reconstruction::surface, "Surface: surface of the whole map")
       .def("__repr__", [](const Reconstruction& r) {
         return "<Reconstruction " + std::to_string(r.views.size()) + " views, ended by " +
                r.reason + ", " + std::to_string(r.surface.triangles.size()) + " triangles>";

@@ -136,8 +136,8 @@ SurfaceMesh surface_of_points(const py::object& positions, const py::object& tow
   if (!toward_free.is_none()) {
     const auto hints = points(toward_free, "toward_free");
     if (hints.size() != where.size()) {
-      throw py::value_error("toward_free has " + std::to_string(hints.size()) + " rows for " +
-                            std::to_string(where.size()) + " points");
+      throw py::value_error("toward_free has " + std::to_string(hints.size()) +
+                            " rows, but there are " + std::to_string(where.size()) + " points");
     }
     for (std::size_t i = 0; i < where.size(); ++i) oriented[i].toward_free = hints[i];
   }
@@ -207,14 +207,15 @@ leaves the GIL, the rest holds it.)");
   refuse_pickling(type);
   type.def_property_readonly(
           "vertices", [](const SurfaceMesh& s) { return to_array_3(s.vertices); },
-          "ndarray, (n, 3), float64: in the surface's frame, of a map the world's [m]")
+          "ndarray, (n, 3), float64: positions in the surface frame (the world frame for a map) "
+          "[m]")
       .def_property_readonly(
           "normals", [](const SurfaceMesh& s) { return to_array_3(s.normals); },
-          "ndarray, (n, 3), float64: unit vectors in the surface's frame, of a map the world's; "
-          "towards free space")
+          "ndarray, (n, 3), float64: unit normals towards free space, in the same frame as the "
+          "vertices")
       .def_property_readonly(
           "triangles", [](const SurfaceMesh& s) { return to_array_3(s.triangles); },
-          "ndarray, (m, 3), uint32: indices of vertices")
+          "ndarray, (m, 3), uint32: vertex indices")
       .def_property_readonly(
           "source", [](const SurfaceMesh& s) { return to_array_1d<std::uint32_t>(s.source); },
           "ndarray, (n,), uint32: the input point of each vertex")

@@ -28,7 +28,7 @@ def _figure(value):
     """A number or null of a record. Raises ValueError for anything else."""
     if value is None or (isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)):
         return value
-    raise ValueError(f"{value!r} is no finite number")
+    raise ValueError(f"{value!r} is not a finite number")
 
 
 def row_of(run, record, max_views):

@@ -86,7 +86,7 @@ def find_program(name: Optional[str] = None) -> str:
                 return str(folder / "bin/viewgain")
     found = shutil.which(name or "viewgain")
     if found is None:
-        raise SpecError(f"there is no program {name or 'viewgain'}; put its folder into PATH, or name it by --program")
+        raise SpecError(f"program {name or 'viewgain'} not found; add its folder to PATH, or give --program")
     return os.path.abspath(found)
 
 
@@ -115,7 +115,7 @@ def make_run(words, title, kept, beside, is_own=False, folder=None, children=Non
             record = json.loads(pathlib.Path(work, "run/run.json").read_text(encoding="utf-8"))
             record["seconds"] = {"total": seconds} if is_own else record["seconds"]
         except FileNotFoundError:
-            raise RunError(f"{title}: {words[0]} left no run.json in the folder that --out names", 2) from None
+            raise RunError(f"{title}: {words[0]} wrote no run.json to the folder of --out", 2) from None
         except (LookupError, TypeError, ValueError) as error:
             raise RunError(f"{title}: run.json of {words[0]}: {type(error).__name__}: {error}", 2) from None
         lines = []
@@ -153,7 +153,7 @@ def _study_folder(out):
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise SpecError(f"--out {out}: another study is at work there; to use several machines, give --scheduler") from None
+            raise SpecError(f"--out {out}: another study is running there; to use several machines, give --scheduler") from None
         except OSError:
             pass  # a file system without locks
         for left in runs.glob(".run-*"):
@@ -210,7 +210,7 @@ def _on_cluster(scheduler, progress):
     except ImportError as error:
         raise SpecError(f"--scheduler needs Dask (Debian: python3-distributed), which cannot be imported: {error}") from error
     if not re.fullmatch(r"(\w+://)?\S+:\d+", scheduler):
-        raise SpecError(f"--scheduler {scheduler}: no address of a scheduler; one is tcp://HOST:8786")
+        raise SpecError(f"--scheduler {scheduler}: not the address of a scheduler, such as tcp://HOST:8786")
     for name in ("asyncio", "distributed", "tornado"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said here
     try:
@@ -223,7 +223,7 @@ def _on_cluster(scheduler, progress):
         try:
             client.wait_for_workers(1, timeout=_WORKERS_WITHIN)
         except (OSError, TimeoutError, distributed.TimeoutError) as error:
-            raise SpecError(f"--scheduler {scheduler}: has no workers; start some by: dask worker {scheduler}") from error
+            raise SpecError(f"--scheduler {scheduler}: has no workers; start some with: dask worker {scheduler}") from error
         futures = []
 
         def submit(*run):
@@ -310,7 +310,7 @@ def _gather(spec, folder, futures, scheduler, rows, progress):
         left = (time.monotonic() - begin) / done * (len(futures) - done)
         progress(f"run {total - len(futures) + done} of {total}: {spec.title(run)}, {seconds:.1f} s; {_time_text(left)} left")
     if failures:
-        raise RunError(f"{len(failures)} of {total} runs failed, the first: {failures[0]}; the same call makes them again", failures[0].code)
+        raise RunError(f"{len(failures)} of {total} runs failed, the first: {failures[0]}; repeat the call to make them again", failures[0].code)
 
 
 def _row_of(spec, run, record, max_views):

@@ -91,7 +91,7 @@ TEST_F(Spelling, TheNearestIsNamed) {
        {{"sensors", "sr400"}, "did you mean sr4000?"},
        {{"simulate", "cube.off", "--sensor", "kinect", "--poses", "orbit:1,6,20", "--out",
          "frames"},
-        "did you mean kinect_v1? (there are sr4000"},
+        "did you mean kinect_v1? (presets: sr4000"},
        {{"score", "map.vdb", "--top"}, "--top: needs a value"},
        {{"simulate", "cube.off", "--out", "--quiet"}, "--out: needs a value"},
        {{"scor", "map.vdb", "--poses", "sphere:3,0.6"}, "did you mean score?"},

@@ -126,7 +126,7 @@ TEST_F(Versions, NewerOnesAreRefused) {
     ADD_FAILURE() << "a newer planner's state was read";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what())
-                  .find("newer.vdb (note planner):1: a planner's state of "
+                  .find("newer.vdb (note planner):1: the planner's state has "
                         "version 5; this library reads versions 2 to 4"),
               std::string::npos)
         << error.what();
