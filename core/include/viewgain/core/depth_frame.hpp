@@ -16,11 +16,10 @@ namespace viewgain {
 /// infinity), kInvalid or kOutOfRange. A value type.
 struct VIEWGAIN_EXPORT DepthFrame {
   static constexpr float kInvalid = 0.0F;  ///< depth [m] of a pixel without information
-  static constexpr float kOutOfRange =
-      std::numeric_limits<float>::infinity();  ///< depth [m] of a pixel that is free up to
-                                               ///< max_range
-  static constexpr float kSaturated =
-      std::numeric_limits<float>::infinity();  ///< amplitude [m⁻²] at full scale: unknown
+  /// Depth [m] of a pixel that is free up to max_range.
+  static constexpr float kOutOfRange = std::numeric_limits<float>::infinity();
+  /// Amplitude [m⁻²] at full scale: unknown.
+  static constexpr float kSaturated = std::numeric_limits<float>::infinity();
 
   int width = 0;             ///< [px]
   int height = 0;            ///< [px]

@@ -97,8 +97,8 @@ class VIEWGAIN_EXPORT DecisionMaking {
   /// The chosen candidate.
   struct Decision {
     std::size_t candidate = 0;  ///< its index
-    double gain =
-        std::numeric_limits<double>::quiet_NaN();  ///< its expected gain [nat, m² for trace]
+    /// Its expected gain [nat, m² for trace].
+    double gain = std::numeric_limits<double>::quiet_NaN();
     /// Expected gain per touched voxel [nat, m² for trace], compared with
     /// PlanningConfig::stop_gain; NaN: the policy has no such gain, and this rule never stops the
     /// run.
@@ -121,8 +121,8 @@ class VIEWGAIN_EXPORT DecisionMaking {
 };
 
 /// Default of PlanningConfig::stop_gain [nat]: about the gain that is left once a further view
-/// cannot double the information of a touched voxel (3/2 ln 2 = 1.04 nat). perf/results/loop.md has
-/// runs with other values.
+/// cannot double the information of a touched voxel (3/2 ln 2 = 1.04 nat); see
+/// perf/results/loop.md.
 inline constexpr double kStopGain = 1.2;  // [nat]
 /// Default for the criterion trace, relative to the gain of the first decision.
 inline constexpr double kStopGainShare = 0.01;
