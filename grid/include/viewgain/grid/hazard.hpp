@@ -25,7 +25,9 @@ class OpenDirections;
 }  // namespace detail
 
 /// Rate at which rays meet the surface in unknown voxels. A rate of 0 means no surface: no ray ends
-/// there. Rates down to 1e-30 /m count; smaller ones are 0 in single precision.
+/// there. In front of a wall seen from behind, surface is expected in the voxels with positive
+/// rates, or nowhere if all are 0. Rates down to 1e-30 /m count; smaller ones are 0 in single
+/// precision.
 struct VIEWGAIN_EXPORT HazardConfig {
   /// Model of the hazard of unknown space: the rate at which a ray meets the surface, as a function
   /// of the location relative to known surface (apps/docs/guide/surface_gain.md). h(d, s, o) =
