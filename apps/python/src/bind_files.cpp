@@ -125,12 +125,12 @@ void bind_toml(py::module_& module) {
           },
           "preset_or_file"_a, R"(A sensor from a .toml file, or a preset by its name.
 
-Runs without the GIL. Cost: one read of a file of some lines, 0.1 ms.
+Runs without the GIL. Cost: 0.1 ms.
 
 Parameters
 ----------
 preset_or_file : str or path-like
-    What ends in .toml is a file, such as ``save`` and the program's ``simulate`` write.
+    A name that ends in .toml is a file, such as those of ``save`` and the program's ``simulate``.
 
 Returns
 -------
@@ -140,9 +140,9 @@ Sensor)")
           [](const Sensor& self, const py::object& path) {
             outside_gil([&, file = writable_file(path)] { write_sensor_toml(file, self); });
           },
-          "path"_a, R"(Writes a .toml file, whole or not at all.
+          "path"_a, R"(Writes a .toml file atomically.
 
-Runs without the GIL. Cost: a file of some lines, 1 ms.
+Runs without the GIL. Cost: 1 ms.
 
 Parameters
 ----------
@@ -156,7 +156,7 @@ path : path-like
           },
           "path"_a, R"(A region from a .toml file: boxes, shells, half-spaces, poses.
 
-Runs without the GIL. Cost: linear in the poses, 1 µs each, and 0.1 ms.
+Runs without the GIL. Cost: 0.1 ms, and 1 µs per pose.
 
 Parameters
 ----------
@@ -171,11 +171,11 @@ ReachRegion)")
             outside_gil([&, file = writable_file(path)] { write_reach_toml(file, self); });
           },
           "path"_a,
-          R"(Writes a .toml file; poses go into NAME.poses.txt beside it, replacing one of that name.
+          R"(Writes a .toml file; poses go to NAME.poses.txt next to it, which replaces an existing one.
 
-A region with a predicate is refused.
+A region with a predicate raises ValueError.
 
-Runs without the GIL. Cost: linear in the poses, 2 µs each, and 1 ms.
+Runs without the GIL. Cost: 1 ms, and 2 µs per pose.
 
 Parameters
 ----------
@@ -186,16 +186,15 @@ path : path-like
 void bind_frames(py::module_& module) {
   auto type = bound_class<FrameSequence>(
       module, "FrameSequence",
-      R"(A folder of depth frames, read one by one. Made by ``read_frames``.
+      R"(A folder of depth frames, read on access. Made by ``read_frames``.
 
-``len(frames)``, ``frames[i]`` and iteration give a ``Frame``, its depth without the error of the sensor's
-range_calibration, its pose not finite where it is lost or missing. ``ViewPlanner.add_frame`` reads and judges
-in one.
+``frames[i]`` and iteration give a ``Frame``: its depth is corrected with the sensor's range_calibration,
+its pose is not finite if it is lost or missing. ``ViewPlanner.add_frame`` reads, checks and adds a frame.
 
 Notes
 -----
-A frame is read when it is asked for, without the GIL; many threads may read at once. Cost: linear in a
-frame's pixels; ``poses`` is a copy.)");
+Reads a frame on access, without the GIL; many threads may read at once. Cost: linear in the pixels of a
+frame; ``poses`` is a copy.)");
   refuse_pickling(type);
   type.def(
           "__len__", [](const FrameSequence& self) { return self.images.size(); },
@@ -213,7 +212,7 @@ frame's pixels; ``poses`` is a copy.)");
 Parameters
 ----------
 index : int
-    From the end if negative.
+    Negative indices count from the end.
 
 Returns
 -------
@@ -236,39 +235,39 @@ Frame)")
              "depth_scale"_a = py::none(), "out_of_range"_a = py::none(),
              R"(Opens a folder of depth frames.
 
-Reads all poses and no image, without the GIL. Cost: linear in the number of frames.
+Reads all poses and no image, without the GIL. Cost: linear in the frames.
 
 Parameters
 ----------
 folder : path-like
-    With frame-NNNNNN.depth.png, 16 bit, and either poses.txt (TUM) and sensor.toml, as the program's
-    ``simulate`` writes it, or frame-NNNNNN.pose.txt and camera-intrinsics.txt, as recordings have it.
-    Its frames.toml says how they are to be read; a UserWarning says what had to be assumed.
+    With frame-NNNNNN.depth.png, 16 bit, and either poses.txt (TUM) and sensor.toml, as from the
+    program's ``simulate``, or frame-NNNNNN.pose.txt and camera-intrinsics.txt, as in recordings. Its
+    frames.toml states how to read them; a UserWarning lists assumptions.
 sensor : str or path-like, optional
-    A preset's name or a .toml file; the folder's own unless given.
+    A preset's name or a .toml file; default: the folder's own.
 depth_scale : float, optional
-    [m] per unit. Default: as frames.toml says, else 1e-4 with poses.txt and 1e-3 with pose files.
+    Metres per unit; default: from frames.toml, else 1e-4 with poses.txt and 1e-3 with pose files.
 out_of_range : {"carve", "invalid"}, optional
-    Meaning of 65535 in a depth image: no surface up to max_range, or no reading. Default: as
-    frames.toml or the sensor's file says, else "carve" with poses.txt and "invalid" with pose files.
+    Meaning of 65535 in a depth image: free up to max_range, or no reading; default: from frames.toml
+    or the sensor's file, else "carve" with poses.txt and "invalid" with pose files.
 
 Returns
 -------
 FrameSequence)");
 
-  module.def(
-      "suspect_frames", &suspicions, "sensor"_a, "frames"_a,
-      R"(What is probably wrong with the units, conventions or intrinsics of frames of one scene.
+  module.def("suspect_frames", &suspicions, "sensor"_a, "frames"_a,
+             R"(Probable mistakes in units, conventions or intrinsics of frames of one scene.
 
-Readings of a dozen of them are looked for in the others, as they are and under each mistake that is often
-made, by other focal lengths, too. Says nothing of frames that do not overlap. Runs without the GIL. Cost: up to 0.7 s.
+Searches for the readings of a dozen frames in the others, as given and under common mistakes, including
+other focal lengths. Ignores frames without overlap. Runs without the GIL. Cost: up to 0.7 s.
 
 Parameters
 ----------
 sensor : Sensor
-    ``frames.sensor`` of what ``read_frames`` opens.
+    For example ``frames.sensor`` of ``read_frames``.
 frames : sequence of frames
-    A FrameSequence, or pairs (depth, T_world_camera) as ``ViewPlanner.add`` takes them, depths in any unit. Frames without a rigid pose are left out.
+    A FrameSequence, or pairs (depth, T_world_camera) as for ``ViewPlanner.add``, with depths in any unit.
+    Frames without a rigid pose are ignored.
 
 Returns
 -------
@@ -285,13 +284,13 @@ void bind_files(py::module_& module) {
       "read_poses", [](const py::object& path) { return pose_array(pose_list_of(path).poses); },
       "path"_a, R"(Poses of a file: TUM text (time tx ty tz qx qy qz qw), or a .npy.
 
-Runs without the GIL. Cost: linear in the poses, 1 µs each.
+Runs without the GIL. Cost: 1 µs per pose.
 
 Parameters
 ----------
 path : path-like
-    A name in .npy: rows with tx, ty, tz, qx, qy, qz, qw and perhaps timestamp, or (n, 4, 4)
-    matrices, float64 or float32. Any other: TUM text.
+    .npy: rows with tx, ty, tz, qx, qy, qz, qw and optionally timestamp, or (n, 4, 4) matrices, float64
+    or float32. Any other name: TUM text.
 
 Returns
 -------
@@ -312,9 +311,9 @@ Returns
 -------
 TimedPoses)");
   module.def("write_poses", &write_poses, "path"_a, "T_world_camera"_a, "timestamps"_a = py::none(),
-             R"(Writes poses as TUM text or .npy, by the name's ending, whole or not at all.
+             R"(Writes poses as TUM text or .npy, according to the name's ending. Atomic.
 
-Runs without the GIL. Cost: linear in the poses, 2 µs each.
+Runs without the GIL. Cost: 2 µs per pose.
 
 Parameters
 ----------
@@ -322,7 +321,7 @@ path : path-like
     Must end in .txt or .tum (TUM text), or .npy (rows with timestamp, tx, ty, tz, qx, qy, qz, qw).
 T_world_camera : array_like, (n, 4, 4)
 timestamps : array_like, (n,), optional
-    [s]; 0, 1, 2, ... unless given.)");
+    [s]; default: 0, 1, 2, ...)");
 }
 
 }  // namespace viewgain::python

@@ -325,7 +325,7 @@ void bind_planner(py::module_& module) {
             }));
           },
           "T_world_camera"_a,
-          R"(Why a pose's gain is what it is on the map as it stands: what becomes of its rays.
+          R"(Where the rays of a pose end on the current map, to explain its gain.
 
 Cost: two traces of the pose.
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of poses, gains and maps, by matplotlib, which is imported when one is drawn.
+"""Pictures of poses, gains and maps with matplotlib, which is imported on the first drawing.
 
 Each function draws into ``axes``, or a new figure's, and returns them. matplotlib's pyplot is for one thread, and takes most of
 the time.
@@ -35,7 +35,7 @@ def _image(axes: Any, image: np.ma.MaskedArray, label: str) -> Any:
 
 def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (0.0, 0.0, 0.0),
           label: str = "expected gain [nat]", axes: Any = None) -> Any:
-    """Values of poses round a centre, by azimuth and elevation; the best is marked. Poses with NaN are left out.
+    """Values of poses around a centre over azimuth and elevation; marks the best. Omits poses with NaN.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (
 
 
 def depth(image: ArrayLike, *, axes: Any = None) -> Any:
-    """A depth image; pixels that are 0, infinite or no number are left white.
+    """A depth image; pixels that are 0, infinite or NaN are white.
 
     Parameters
     ----------
@@ -81,9 +81,9 @@ def depth(image: ArrayLike, *, axes: Any = None) -> Any:
 
 
 def contributions(evaluator: GainEvaluator, T_world_camera: ArrayLike, *, axes: Any = None) -> Any:
-    """Where in a view's image its gain comes from: each ray's share of the voxel in which it ends.
+    """Contribution of each ray of a view's image to its gain: its share of the voxel in which it ends.
 
-    Cost: 4 times that of ``GainEvaluator.evaluate`` for the pose, and a step of Python for each ray.
+    Cost: 4 times ``GainEvaluator.evaluate`` for the pose, and a Python step per ray.
 
     Parameters
     ----------

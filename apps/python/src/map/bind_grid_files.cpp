@@ -107,16 +107,16 @@ void bind_grid_files(GridClass& grid_class) {
   grid_class
       .def(
           "to_bytes", &bytes_of,
-          R"(The map as bytes, for ``from_bytes`` and pickles: those of the file that ``save`` writes.
+          R"(The map as bytes, for ``from_bytes`` and pickles: the contents of the file from ``save``.
 
-Goes through a file in the folder for temporary files. Cost: linear in the blocks of voxels, 0.1 s for
-128**3 voxels with 40,000 occupied ones; ``from_bytes`` takes half of it.
+Uses a temporary file. Cost: linear in the blocks of voxels, 0.1 s for 128**3 voxels with 40,000 occupied
+ones; ``from_bytes`` takes half as long.
 
 Returns
 -------
 bytes)")
       .def_static("from_bytes", &from_bytes, "data"_a,
-                  R"(The map that ``to_bytes`` wrote, equal to it.
+                  R"(The map from the bytes of ``to_bytes``, equal to the original.
 
 Parameters
 ----------
@@ -149,8 +149,8 @@ BeliefGrid)")
           "sensor"_a = py::none(), "occupied_from"_a = py::none(),
           R"(Reads a map: a .vdb of ``save`` or the program viewgain, or OctoMap's .ot or .bt.
 
-Of OctoMap's, states are kept, and the log-odds of a .ot. Cost: linear in the file, 50 ms for 4 MB of a
-.vdb, 20 ms for a tree of 128**3 voxels with 40,000 occupied ones. Runs without the GIL.
+An OctoMap keeps states and, in a .ot, log-odds. Runs without the GIL. Cost: 50 ms for a .vdb of 4 MB,
+20 ms for a tree of 128**3 voxels with 40,000 occupied ones.
 
 Parameters
 ----------
@@ -160,9 +160,9 @@ workspace : array_like, (2, 3), optional
 prior_sigma : float, optional
     OctoMap: standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional
-    OctoMap: as for a new grid; this or prior_sigma is needed.
+    OctoMap: as for a new grid; this or prior_sigma is required.
 occupied_from : float, optional
-    OctoMap: log-odds from which a voxel of a .ot is occupied; 0 unless given.
+    OctoMap: log-odds above which a voxel of a .ot is occupied; default: 0.
 
 Returns
 -------
@@ -174,18 +174,17 @@ BeliefGrid)")
             grid.read([&](const BeliefGrid& g) { return save_map(g, file, {with_covariance}); });
           },
           "path"_a, py::kw_only(), "with_covariance"_a = false,
-          R"(Writes the map as an OpenVDB file, or as an OctoMap .ot, whole or not at all.
+          R"(Writes the map as an OpenVDB file, or as an OctoMap .ot. Atomic.
 
-A .ot has states and log-odds alone, in the world's frame where T_world_grid is a shift by whole voxels,
-else in the grid's own. Cost: linear in the blocks of voxels, 80 ms for 128**3 voxels with 40,000 occupied
-ones, 4 MB.
+A .ot only has states and log-odds, in the world frame if T_world_grid is a shift by whole voxels,
+otherwise in the grid frame. Cost: 80 ms for 128**3 voxels with 40,000 occupied ones, 4 MB.
 
 Parameters
 ----------
 path : path-like
     Must end in .vdb or .ot.
 with_covariance : bool
-    Adds covariances and mean places to a .vdb, for viewers.)");
+    Adds covariances and mean positions to a .vdb, for viewers.)");
 }
 
 }  // namespace viewgain::python

@@ -43,7 +43,7 @@ def _arguments(words):
 
 
 def _check_folder(out, spec):
-    """A study's folder has runs/.lock; another one that holds more than the spec is somebody else's."""
+    """Refuses a folder that has other files than the spec and no runs/.lock of a study."""
     if out.exists() and not out.is_dir():
         raise SpecError(f"--out {out}: is a file; choose a new folder")
     others = [path for path in out.iterdir() if path.resolve() != spec.resolve()] if out.is_dir() else []
