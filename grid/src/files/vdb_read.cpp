@@ -88,7 +88,7 @@ class Loader {
     return *std::move(result);
   }
 
-  /// Of the layout (vdb_layout.hpp).
+  /// Layout of vdb_layout.hpp.
   [[nodiscard]] std::int32_t version_of(const openvdb::MetaMap& metadata) const {
     const auto found = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
     if (found != kVdbLayoutVersion && found != kVdbScaledVersion) {
@@ -210,7 +210,7 @@ class Loader {
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
       const Coord at = tile.getCoord();
-      // The states are a tile too, as large or larger, or a node of the tile's size.
+      // The states are also a tile, at least as large, or a node of the tile's size.
       const auto depth = static_cast<int>(tile.getDepth());
       if (states.getValueDepth(at) > depth) {
         using Upper = FloatTree::RootNodeType::ChildNodeType;
@@ -228,7 +228,7 @@ class Loader {
     }
   }
 
-  /// Calls body(i) for i < count, side by side. Of several errors the first is thrown.
+  /// Calls body(i) for i < count in parallel. Throws the error with the lowest index.
   template <typename Body>
   void for_each_leaf(std::size_t count, const Body& body) {
     constexpr std::size_t kChunk = 64;
@@ -249,7 +249,7 @@ class Loader {
       float known = 0;
       if (!probe(state, states, log_odds, offset, known)) fail(kOtherVoxels);
       const float value = log_odds.getValue(offset);
-      // Of nearly all this is the code; the others are looked at closely.
+      // Nearly all values have this code; the others are checked closely.
       const bool is_within = value >= -2 && value <= 3.5F;
       const auto guess = static_cast<std::uint8_t>(is_within ? 20 * value + 41.5F : 0.0F);
       const bool is_code = code_log_odds(guess) == value && known == state_of(guess);
@@ -258,7 +258,7 @@ class Loader {
     });
   }
 
-  /// What a tree has at a voxel of a leaf of another; `own` is its own leaf there, null if none.
+  /// Value of a tree at a voxel of another tree's leaf; `own` is its leaf there, or null.
   template <typename Tree, typename Leaf>
   [[nodiscard]] static bool probe(const Tree& tree, const typename Tree::LeafNodeType* own,
                                   const Leaf& leaf, unsigned offset,
@@ -267,8 +267,8 @@ class Loader {
                           : tree.probeValue(leaf.offsetToGlobalCoord(offset), value);
   }
 
-  // Looks at the states of a node in a tile of one log-odds, by the node's own tiles: one by one,
-  // the voxels of a few forged bytes would take hours.
+  // Checks the states of a node within a tile of one log-odds by the node's own tiles; single
+  // voxels would take hours for a forged file of a few bytes.
   template <typename Node>
   void check_states(const Node& states, float log_odds) const {
     for (auto it = states.cbeginValueAll(); it; ++it) {
@@ -301,7 +301,7 @@ class Loader {
 
   static constexpr const char* kOtherBeliefs = "the grids of beliefs contain different voxels";
 
-  /// Where the grids of beliefs are.
+  /// The grids of beliefs.
   struct BeliefTrees {
     std::array<const openvdb::Vec3STree*, 3> parts;
     const FloatTree* hits;
@@ -373,7 +373,7 @@ class Loader {
 
   std::filesystem::path path_;
   ThreadPool pool_;
-  const FloatTree* scales_ = nullptr;  ///< of the file's; null if there are none
+  const FloatTree* scales_ = nullptr;  ///< of the file; null if there are none
 };
 
 }  // namespace

@@ -120,7 +120,7 @@ VoxelBox voxels_in(const BeliefGrid& grid, const Box& region) {
     }
   }
   const VoxelBox workspace = VoxelBox::from_dims(grid.min_index(), grid.dims());
-  // The first index i with (i + 1/2) V >= x, kept within what an integer can hold.
+  // First index i with (i + 1/2) V >= x, clamped to the range of an integer.
   const auto first = [&](double x, std::int32_t low, std::int32_t high) {
     return static_cast<std::int32_t>(std::clamp(std::ceil(x / grid.voxel_size() - 0.5),
                                                 static_cast<double>(low),

@@ -12,7 +12,7 @@
 namespace viewgain::detail {
 namespace {
 
-// From how many voxels a pixel covers on a scale is one more: as supereight2 has it (Vespa et al.
+// Number of voxels per pixel from which the next scale is used: as in supereight2 (Vespa et al.
 // 2019; Funk et al. 2021).
 constexpr std::array<double, kMaxScale> kThresholds{1.5, 3, 6};
 

@@ -80,7 +80,7 @@ FrameVerdict verdict_of(const LineReader& reader) {
   return static_cast<FrameVerdict>(found - names.begin());
 }
 
-// What a line is and how many words it has.
+// Keywords of lines and their numbers of words.
 struct Entry {
   std::string_view name;
   std::size_t words;
