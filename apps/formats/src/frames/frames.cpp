@@ -207,7 +207,7 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
   if (frames.depth_scale > 1) {
     throw Error(ErrorCode::format, dir.string() + ": the depth scale " +
                                        short_text(frames.depth_scale) +
-                                       " exceeds 1 m per unit. Is it in units per metre?");
+                                       " is over 1 m per unit. Is it in units per metre?");
   }
   if (sensor.empty() && !has_sensor) {
     refuse(dir.string() + ": has no sensor.toml; give a sensor");

@@ -116,7 +116,7 @@ void warn_of_few_voxels(const BeliefGrid& grid) {
   const int longest = std::max({dims.x, dims.y, dims.z});
   if (longest >= kFew) return;
   std::fprintf(stderr,
-               "viewgain: warning: --voxel %s m gives %d voxel%s along the workspace's longest "
+               "viewgain: warning: --voxel %s m leaves %d voxel%s along the workspace's longest "
                "side; --voxel is in metres, not millimetres\n",
                short_text(grid.voxel_size()).c_str(), longest, longest == 1 ? "" : "s");
 }

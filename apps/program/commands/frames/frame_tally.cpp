@@ -124,7 +124,7 @@ std::string suspicion_of(const FrameFolder& folder) {
 void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum) {
   if (sum.readings > 0 || sum.out_of_range == 0) return;
   std::fprintf(stderr,
-               "viewgain: warning: %s: none of %s points is within the sensor's range. Are they in "
+               "viewgain: warning: %s: none of %s points is in the sensor's range. Are they in "
                "metres?\n",
                cloud.c_str(), with_commas(sum.out_of_range).c_str());
 }
