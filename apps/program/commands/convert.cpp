@@ -88,10 +88,8 @@ Command add_convert(App& program) {
                   "(default: its known voxels)");
   app->add_option("--prior-sigma", options->prior_sigma,
                   "sigma of an unknown voxel of a tree [m] (default: the sensor's, else voxel/2)");
-  app->add_option(
-      "--sensor", options->sensor,
-      std::string("sensor of the readings to be scored, for the prior of a tree's voxels: ") +
-          kSensorHelp);
+  app->add_option("--sensor", options->sensor,
+                  std::string("sensor for the prior of a tree's voxels: ") + kSensorHelp);
   add_help(*app, kLookGroup, "convert map.vdb tree.ot");
   return command_of(app, options, convert);
 }

@@ -153,9 +153,7 @@ Command add_import(App& program) {
                   "format of the recording; auto: detect from its contents")
       ->check(one_of(formats, "format"));
   app->add_option("--sensor", options->sensor,
-                  kSensorHelp +
-                      ": gives the folder its noise and ranges, and its intrinsics if neither "
-                      "--intrinsics nor the recording has them");
+                  kSensorHelp + "; source of noise and ranges, and of missing intrinsics");
   app->add_option("--intrinsics", options->intrinsics,
                   "fx,fy,cx,cy [px] (default: from the recording, else from the sensor)");
   app->add_option("--depth-topic", options->depth_topic,

@@ -312,10 +312,8 @@ Command add_integrate(App& program) {
   app->add_option(
       "--workspace", options->workspace,
       "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels (default: what the frames or clouds see)");
-  app->add_option(
-      "--sensor", options->frames.sensor,
-      kSensorHelp +
-          "; clouds require it and use its noise and ranges (default: FRAMES_DIR/sensor.toml)");
+  app->add_option("--sensor", options->frames.sensor,
+                  kSensorHelp + "; required for clouds (default: FRAMES_DIR/sensor.toml)");
   add_frame_folder_options(*app, options->frames);
   begin_group(*app, "Map");
   app->add_option("--jump-edge-filter", options->jump_edge_filter, kJumpEdgeHelp);
@@ -336,15 +334,14 @@ Command add_integrate(App& program) {
                   "frames that a .vdb already holds are skipped");
   most_need(*app, {"--voxel", "--workspace", "--out", "--map", "--sensor", "--cloud",
                    "--support-plane", "--mask", "--register", "--on-contradiction"});
-  explain_values(
-      *app,
-      "Files in FRAMES_DIR: those of simulate, or for each recorded frame NNNNNN:\n"
-      "  frame-NNNNNN.depth.png      16 bit: depth along z\n"
-      "  frame-NNNNNN.pose.txt       4x4, camera to world [m]\n"
-      "  camera-intrinsics.txt       3x3, optional; overrides the sensor's\n"
-      "  frame-NNNNNN.amplitude.png  16 bit, optional: cos/range^2 [1e-3 m^-2], which\n"
-      "                              gives the incidence angle\n"
-      "A point cloud marks free space on the lines from its sensor's origin to its points.\n");
+  explain_values(*app,
+                 "Files in FRAMES_DIR: those of simulate, or for each recorded frame NNNNNN:\n"
+                 "  frame-NNNNNN.depth.png      16 bit: depth along z\n"
+                 "  frame-NNNNNN.pose.txt       4x4, camera to world [m]\n"
+                 "  camera-intrinsics.txt       3x3, optional; overrides the sensor's\n"
+                 "  frame-NNNNNN.amplitude.png  16 bit, optional: cos/range^2 [1e-3 m^-2], which\n"
+                 "                              gives the incidence angle\n"
+                 "A point cloud marks free space on the lines from its sensor to its points.\n");
   add_help(*app, kMapGroup,
            "integrate frames --voxel 0.005 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out map.vdb");
   return command_of(app, options, [app](const auto& given) { integrate(given, *app); });

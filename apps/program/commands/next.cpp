@@ -139,7 +139,7 @@ Command add_next(App& program) {
   add_next_view_options(*app, o.proposal);
   app->add_option("--top", o.top,
                   "maximum number of views, each with its marginal gain; all: every possible "
-                  "candidate with its own gain, best first (--json: also why others were dropped)");
+                  "candidate with its own gain (--json: also why others were dropped)");
   app->add_option("--out", o.out,
                   "file of camera-to-world poses to write (.txt or .tum: TUM text; .npy), best "
                   "first, or in the order of the plan");

@@ -223,7 +223,7 @@ Command add_simulate(App& program) {
       "  center                moves the bounding box's centre to the origin\n"
       "  x,y,z[,YAW_DEG]       shifts and turns\n"
       "  tx,ty,tz,qx,qy,qz,qw  shifts and turns\n"
-      "  center,x,y,z          moves the centre to x,y,z; also with YAW_DEG or a quaternion\n"
+      "  center,...            first moves the centre to the origin, as in center,x,y,z\n"
       "  The sphere of --background stays where it is.\n");
   add_sensing_options(*app, options->sensing);
   begin_group(*app, "Output");

@@ -55,7 +55,7 @@ inline constexpr const char* kHazardValues =
 [[nodiscard]] Obstacles obstacles_of(const std::vector<std::string>& values);
 
 inline constexpr const char* kObstacleHelp =
-    "known obstacle, world frame [m]: mesh file or box x0,y0,z0,x1,y1,z1; blocks rays and has no "
+    "known obstacle: mesh file or box x0,y0,z0,x1,y1,z1, world frame [m]; blocks rays, has no "
     "gain; may be repeated";
 
 // What is allowed and seldom meant: one line on the error output.

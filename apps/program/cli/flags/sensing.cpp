@@ -67,18 +67,17 @@ void add_sensing_options(App& app, SensingOptions& o) {
   app.add_option("--noise", o.noise,
                  "noise of readings and poses: off, on, plain or flying, scale=E, "
                  "pose=SIGMA_M/SIGMA_DEG, separated by commas (see below)");
-  explain_values(
-      app,
-      "Values of --noise, separated by commas:\n"
-      "  off, on   no noise; or the sensor's Gaussian noise along and across the ray and,\n"
-      "            for sensors with a modulation frequency, flying pixels, which mix\n"
-      "            3x3 rays\n"
-      "  plain     on without flying pixels\n"
-      "  flying    flying pixels only\n"
-      "  scale=E   ranges read 1 + E times the true value\n"
-      "  pose=SIGMA_M/SIGMA_DEG  error of reported poses per axis [m] and per\n"
-      "            rotation-vector component [deg]; the first pose is exact and\n"
-      "            defines the world\n");
+  explain_values(app,
+                 "Values of --noise, separated by commas:\n"
+                 "  off       no noise\n"
+                 "  on        the sensor's Gaussian noise along and across the ray; for sensors\n"
+                 "            with a modulation frequency also flying pixels, which mix 3x3 rays\n"
+                 "  plain     on without flying pixels\n"
+                 "  flying    flying pixels only\n"
+                 "  scale=E   ranges read 1 + E times the true value\n"
+                 "  pose=SIGMA_M/SIGMA_DEG  error of reported poses per axis [m] and per\n"
+                 "            rotation-vector component [deg]; the first pose is exact and\n"
+                 "            defines the world\n");
   app.add_option("--background", o.background,
                  "radius of a sphere around the origin that stands for the room [m]; 0: none");
   add_seed_option(app, o.seed, "seed for the noise of readings and poses");

@@ -87,8 +87,8 @@ void add_options(App& app, ReconstructOptions& o) {
   explain_values(app, kHazardValues);
   begin_group(app, "Gain");
   app.add_option("--criterion", o.criterion,
-                 "criterion of the map's entropy and the paper gain: log_diagonal, log_determinant "
-                 "[nat] or trace [m^2] (trace cannot be used with --gain combined)")
+                 "criterion of entropy and of the paper gain: log_diagonal, log_determinant [nat] "
+                 "or trace [m^2], which cannot be used with --gain combined")
       ->check(one_of(criterion_names(), "criterion"));
   begin_group(app, "Stopping");
   app.add_option("--max-views", o.max_views, "view budget")->check(counted(1, kMaxCount));
@@ -103,7 +103,7 @@ void add_options(App& app, ReconstructOptions& o) {
   begin_group(app, "Obstacles");
   app.add_option("--reach", o.reach, "TOML file of reachable boxes, shells, half-spaces and poses");
   app.add_option("--obstacle", o.obstacles,
-                 std::string(kObstacleHelp) + "; the object's box is centred at the origin")
+                 std::string(kObstacleHelp) + "; the object is centred at the origin")
       ->allow_extra_args(false);
   app.add_option("--body", o.body, kBodyHelp);
   add_sensing_options(app, o.sensing);

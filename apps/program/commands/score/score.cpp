@@ -312,7 +312,7 @@ Command add_score(App& program) {
   begin_group(*app, "Gain");
   app->add_option("--gain", options->gain,
                   "paper (entropy removed) [nat], surface (expected new surface) [m^2] or combined "
-                  "[nat]; or gains of the literature, comma-separated, ranked by the first")
+                  "[nat]; or gains of the literature with commas, ranked by the first")
       ->check(several_of(all_gain_names(), "gain"));
   app->add_option("--hazard", options->hazard, kHazardHelp);
   explain_values(*app, kHazardValues);
