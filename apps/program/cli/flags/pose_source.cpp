@@ -75,12 +75,12 @@ void add_pose_options(App& app, PoseOptions& options) {
       app,
       "Values of --poses; sets of poses look at --center [m, degrees]:\n"
       "  FILE (TUM)          lines with time tx ty tz qx qy qz qw [s, m]\n"
-      "  FILE.npy            rows with tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4) matrices;\n"
-      "                      float64 or float32\n"
+      "  FILE.npy            rows with tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4)\n"
+      "                      matrices; float64 or float32\n"
       "  sphere:N,RADIUS     Fibonacci lattice\n"
       "  dome:N,RADIUS       upper half of the sphere\n"
-      "  rings:N,RADIUS      cylinder and dome rings of the literature; N is 48, 80, 288\n"
-      "                      or 864\n"
+      "  rings:N,RADIUS      cylinder and dome rings of the literature; N: 48, 80, 288 or\n"
+      "                      864\n"
       "  shell:N,RMIN,RMAX   random, from --seed\n"
       "  orbit:N,RADIUS,ELEVATION[,START,STEP]  circle of latitude\n");
   app.add_option("--center", options.center,

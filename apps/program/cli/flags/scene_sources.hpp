@@ -35,7 +35,7 @@ inline constexpr const char* kHazardHelp =
     "[1/m], FILE.vdb or size=L (see below)";
 
 inline constexpr const char* kHazardValues =
-    "Values of --hazard; SIZE can stand before one of the others, as in size=0.3,5:\n"
+    "Values of --hazard; size=L can precede one of the others, as in size=0.3,5:\n"
     "  RATE      one rate for all unknown voxels [1/m]\n"
     "  FILE.vdb  a rate per voxel\n"
     "  size=L    longest side of the object [m] (default: that of its seen part)\n"
