@@ -14,8 +14,8 @@
 namespace viewgain {
 namespace {
 
-constexpr std::uint64_t kLeastHits =
-    3;  // hits of a voxel, or cube of voxels, with evidence of surface
+// Of a voxel, or cube of voxels, with evidence of surface.
+constexpr std::uint64_t kLeastHits = 3;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 // Distance within which surface is not new [pooling lengths]: in rank correlation with the surface
 // that views really show, 1.2 and 1.6 are equal; 2 and more are worse once most is seen.

@@ -92,8 +92,8 @@ struct Lengths {
 struct Face {
   SymmetricMatrix3 information{}, covariance{};
   double hits = 0;
-  double height = 0,
-         square = 0;  ///< Σ hits · h and h², h the belief's mean relative to the seed [voxels]
+  /// Σ hits · h and h², h the belief's mean relative to the seed [voxels].
+  double height = 0, square = 0;
 
   void add(const PlacedBelief& belief, double h) {
     const double weight = belief.hits;

@@ -102,7 +102,7 @@ std::vector<std::uint8_t> well_supported(const std::vector<PooledPoint>& points,
       for (const std::size_t i : numbers) {
         Supporters supporters;
         for (const Columns* columns : near) supporters.add(*columns, points[i], radius, share);
-        // evidence >= share · quartile, without sorting: at most 3/4 of the others may exceed it.
+        // evidence >= share · quartile, without sorting: more than 3/4 of them must not exceed it.
         kept[i] = supporters.below > std::floor(supporters.all * 3 / 4) ? 1 : 0;
       }
     }

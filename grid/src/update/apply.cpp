@@ -19,7 +19,7 @@ namespace {
 struct RegionResult {
   std::vector<std::unique_ptr<CodeLeaf>> leaves;
   std::vector<std::pair<Index3, std::uint8_t>> tiles;
-  std::vector<std::pair<std::uint64_t, int>> scales;  // by key, blocks that were replaced
+  std::vector<std::pair<std::uint64_t, int>> scales;  // by key, of blocks whose scale changed
   ApplyCounts counts;
   bool changed = false;  // for snapshots
 };

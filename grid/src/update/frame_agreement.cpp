@@ -20,20 +20,20 @@ namespace viewgain {
 namespace {
 
 constexpr std::size_t kSamples = 600;     // readings of a frame
-constexpr std::size_t kFewSamples = 300;  // that are sought
+constexpr std::size_t kFewSamples = 300;  // with fewer, more are sought
 constexpr std::size_t kKept = 40'000;     // readings of all frames
 constexpr std::size_t kOthers = 600;      // of these, compared with a frame
 constexpr std::size_t kImages = 64;       // remembered images
 // Relative to range: errors of real cameras and trackers beyond those declared.
 constexpr double kUndeclared = 0.01;
-constexpr double kSigmas = 3;            // share explained by noise
-constexpr double kSteepest = 3;          // slope of a surface to the image plane
+constexpr double kSigmas = 3;            // sigmas explained by noise
+constexpr double kSteepest = 3;          // largest slope of a surface to the image plane
 constexpr int kMostSteps = 12;           // along a ray, on both sides of a reading
-constexpr double kLeastCosine = 0.4;     // limit of the angle of incidence for distances
+constexpr double kLeastCosine = 0.4;     // of the angle of incidence, for measuring distances
 constexpr double kCommon = 0.0035;       // relative to range: largest noise common to all readings
 constexpr double kSameDirection = 0.85;  // least cosine between normals of one surface
-constexpr double kSameSurface =
-    0.03;  // relative to range, in addition to noise; farther readings belong to another surface
+// Relative to range, in addition to noise; farther readings belong to another surface.
+constexpr double kSameSurface = 0.03;
 
 // Equal images from poses that differ by less are not suspicious.
 constexpr double kMoved = 0.005, kTurned = 0.01;  // [m], [rad]
@@ -195,7 +195,7 @@ MeasurementSigmas FrameAgreement::sigmas(double range, const PoseSigma& pose_sig
 }
 
 // Distance of a reading of an earlier frame from the surface that this frame sees there, if that is
-// flat, and its expected value from declared errors: both poses, the scale, and the part of the
+// flat, and the distance that declared errors allow: both poses, the scale, and the part of the
 // noise that all readings can share, which for noisy cameras is less than all of it.
 void FrameAgreement::compare(const DepthFrame& frame, std::size_t u, std::size_t v,
                              const Reading& earlier, const Pose& T_camera_world,

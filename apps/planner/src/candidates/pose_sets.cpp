@@ -12,8 +12,8 @@
 namespace viewgain {
 namespace {
 
-constexpr std::size_t kMostSpreadOut =
-    20'000;  // the time of the ordering grows with the square of their number
+// The time of the ordering grows with the square of their number.
+constexpr std::size_t kMostSpreadOut = 20'000;
 constexpr double kDegree = std::numbers::pi / 180;
 
 std::vector<Pose> sequence_poses(const PoseSetRequest& request) {
@@ -76,7 +76,7 @@ std::vector<ReachRegion::Shell> shells_of(const ReachRegion& reach) {
 // Reachable positions, in equal numbers for each shell if possible.
 std::vector<Pose> poses_in_reach(const std::vector<ReachRegion::Shell>& shells, std::size_t count,
                                  const PoseSetRequest& request) {
-  constexpr std::size_t kMostDrawn = 1'000'000;  // volume of a shell
+  constexpr std::size_t kMostDrawn = 1'000'000;  // poses of one shell
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < shells.size(); ++i) {
     const ReachRegion::Shell& shell = shells[i];

@@ -63,7 +63,7 @@ namespace {
 
 // Columns of radius 1 around points 0.75 to 1 apart: each reading of the map is in about three.
 constexpr double kPointsPerReading = 3;
-constexpr double kPoseSigmas = 5;  // uncertainty of the pose
+constexpr double kPoseSigmas = 5;  // largest error of the pose
 constexpr double kBehind = 10;     // pooling lengths behind the surface that the frame shows
 constexpr double kCube = 10;       // pooling lengths
 

@@ -26,7 +26,7 @@ constexpr double kAlike = 8;
 // Prior of the rims' width. Simulated views want 0 without noise, 0.02 with noise along the ray
 // only, 0.055 with lateral noise too.
 constexpr double kRimSigma = 0.03;
-constexpr double kSettled = 0.3;  // margin of frames that were aligned before, in sigmas
+constexpr double kSettled = 0.3;  // slack of frames that were aligned before, in sigmas
 constexpr double kSearch = 1.5;   // starting points of the search, in sigmas from the reported pose
 constexpr int kMaxIterations = 15;
 constexpr std::size_t kLeastPairs = 20;      // of two frames
@@ -49,7 +49,7 @@ struct JointAlignment::System {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;
   Eigen::VectorXd away;     // from the reported pose
-  double disagreement = 0;  // single neighbours of each frame
+  double disagreement = 0;  // of single neighbours about each frame
 };
 
 Vector6 JointFrame::sigmas() const {

@@ -29,7 +29,7 @@ struct JointFrame {
   double slack = 0;    ///< remaining uncertainty of T, in sigmas
   int iterations = 0;  ///< of the last alignment
 
-  /// The six parts of a difference.
+  /// Sigmas of the six parts of a difference.
   [[nodiscard]] Vector6 sigmas() const;
   /// Resets it to the report.
   void reset();
@@ -49,8 +49,8 @@ class JointAlignment {
 
   /// Moves one frame relative to the trusted ones, or to all that are in, from its current pose.
   void align_one(std::size_t index, bool against_all);
-  /// Moves a frame to the pose, from starting points around the report, where its readings fit the
-  /// trusted ones best.
+  /// Moves a frame to the pose, from starting points around the report, where a few of its readings
+  /// fit the trusted ones best.
   void search_one(std::size_t index);
   /// Moves all frames that are in and not fixed.
   void align_all();
@@ -69,8 +69,8 @@ class JointAlignment {
   [[nodiscard]] bool is_by_map() const { return frames.front().seen.grid != nullptr; }
 
  private:
-  static constexpr double kUsualRimWidth =
-      0.03;  // between the values of simulated views, 0 to 0.055
+  // Between the values of simulated views, 0 to 0.055.
+  static constexpr double kUsualRimWidth = 0.03;
 
   // Selection of readings for one iteration.
   struct Pass {
@@ -94,7 +94,7 @@ class JointAlignment {
   ThreadPool& pool_;
   double widening_ = 1;          // factor for variances from readings, from align_all()
   double scale_ = 1;             // factor for the priors' variances
-  Eigen::MatrixXd information_;  // size of the last move of frames and rims, in the priors' sigmas
+  Eigen::MatrixXd information_;  // from the last move: of frames and rims, in the priors' sigmas
 };
 
 }  // namespace viewgain::detail

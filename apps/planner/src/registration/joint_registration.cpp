@@ -17,8 +17,8 @@ namespace {
 constexpr double kMinOverlap = 0.1;    // minimum of FrameRegistration::overlap
 constexpr std::size_t kMinPairs = 60;  // minimum of FrameRegistration::pairs
 constexpr double kMaxSigmas = 5;       // limit of the correction, relative to the prior
-constexpr double kMaxContradiction =
-    0.2;                       // limit of the contradicting share, except with few readings
+// Limit of the contradicting share, except with few readings.
+constexpr double kMaxContradiction = 0.2;
 constexpr double kMargin = 2;  // lengths
 // A frame that the others do not determine may be off by this many sigmas without contradicting
 // them. With more, frames beside the object would pass for new surface.

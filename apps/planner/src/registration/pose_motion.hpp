@@ -30,7 +30,7 @@ struct Directions {
 /// Variance of the gradients of parts, which have expectation 0 at the right pose, relative to that
 /// of independent residuals.
 struct Overdispersion {
-  /// Mean over determined motions of the variance of their slopes over the information.
+  /// Sum over determined motions of the variance of their slopes over the information.
   double sum = 0;
   int motions = 0;
   [[nodiscard]] double mean() const { return motions > 0 ? sum / motions : 0.0; }

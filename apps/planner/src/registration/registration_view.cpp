@@ -20,7 +20,7 @@ constexpr int kLeastForPlane = 15;
 // Minimum for smoothed readings: those at rims determine lateral motion.
 constexpr int kLeastSmoothed = 12;
 // A window that lacks readings on one side extrapolates: measured variances grow with the third
-// power of the missing share.
+// power of 25 over their number.
 constexpr double kRimPower = 3;
 
 class Surroundings {
