@@ -156,7 +156,7 @@ class VIEWGAIN_EXPORT HazardField {
   [[nodiscard]] double start_rate(Index3 voxel) const {
     return model_.rate(distance(voxel), shape(voxel));
   }
-  [[nodiscard]] const Pooling& pooling() const { return pooling_; }  ///< voxel size of the map
+  [[nodiscard]] const Pooling& pooling() const { return pooling_; }  ///< pooling of the map
   /// Whether surface found in this voxel counts as new: d > 1.2 pooling lengths.
   [[nodiscard]] bool is_new(Index3 voxel) const {
     const std::size_t cell = cell_of(voxel);

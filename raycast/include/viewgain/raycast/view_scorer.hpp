@@ -161,8 +161,7 @@ class VIEWGAIN_EXPORT ViewScorer {
   /// The map. Not a copy: do not read it while add(), set() or forget() runs. Valid until the
   /// scorer is assigned to or destroyed.
   [[nodiscard]] const BeliefGrid& grid() const noexcept;
-  [[nodiscard]] const VoxelBox& voxels()
-      const noexcept;  ///< number of voxels in the workspace, constant
+  [[nodiscard]] const VoxelBox& voxels() const noexcept;      ///< of the workspace, constant
   [[nodiscard]] const Sensor& sensor() const noexcept;        ///< sensor of the frames
   [[nodiscard]] const ScorerConfig& config() const noexcept;  ///< with the map's layout and prior
   [[nodiscard]] const ExecConfig& exec() const noexcept;      ///< as constructed
