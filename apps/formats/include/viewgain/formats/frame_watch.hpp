@@ -49,7 +49,7 @@ struct VIEWGAIN_EXPORT BadFrame {
   /// `changed` also marks one of two images with the same number, and a number of more than 64
   /// bits.
   FrameFault fault{};
-  std::string name{};                    ///< fault of its depth image
+  std::string name{};                    ///< file name of its depth image
   std::optional<Pose> T_world_camera{};  ///< camera pose, if known
 };
 

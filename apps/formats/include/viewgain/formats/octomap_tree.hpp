@@ -38,7 +38,7 @@ namespace viewgain {
 
 /// Labels of a box of voxels, [x][y][z] with z fastest: 0 unknown, 1 free, 2 occupied.
 struct OctreeLabels {
-  VoxelBox box;                      ///< lattice of the grid
+  VoxelBox box;                      ///< on the lattice of the grid
   std::vector<std::uint8_t> labels;  ///< one per voxel of the box
 };
 

@@ -203,7 +203,7 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
   Sensor sensor_;
   PolicyConfig config_;
   ExecConfig exec_;
-  std::optional<GainEvaluator> evaluator_;       ///< scene of the last decision
+  std::optional<GainEvaluator> evaluator_;       ///< for the scene of the last decision
   std::optional<GainEvaluator> area_evaluator_;  ///< evaluator of the surface gain on it
   BoundaryOrder order_;
   std::optional<OracleChoice> oracle_;
