@@ -117,9 +117,9 @@ void bind_control(py::module_& module) {
 Parameters
 ----------
 progress : callable, optional
-    Called with ``(done, total)`` on the calling thread about every 50 ms and at the end; for an empty
-    batch with ``(0, 0)``. A false result other than ``None`` (``False``, ``numpy.False_``, 0) stops the
-    call; an exception stops it too and is raised from it.
+    Called with ``(done, total)`` on the calling thread about every 50 ms and at the end; for an
+    empty batch with ``(0, 0)``. A false result other than ``None`` (``False``, ``numpy.False_``, 0)
+    stops the call; an exception stops it too and is raised from it.
 
 Notes
 -----

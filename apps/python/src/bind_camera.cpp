@@ -63,8 +63,9 @@ num_threads : int
 
 Notes
 -----
-``acquire`` may run in many threads at once and releases the GIL. Cost of a frame: linear in pixels and
-sub_rays**2, 2 ms for 176x144 pixels on two threads; of the constructor: grows with the triangles.)");
+``acquire`` may run in many threads at once and releases the GIL. Cost of a frame: linear in pixels
+and sub_rays**2, 2 ms for 176x144 pixels on two threads; of the constructor: grows with the
+triangles.)");
   refuse_pickling(type);
   type.def(py::init([](const py::object& vertices, const py::object& triangles,
                        const Given<Sensor>& of, double background_radius, bool noise,

@@ -188,9 +188,9 @@ Parameters
 ----------
 scene : VoxelScene
 body_size : array_like, (3,), optional
-    Width, height, depth of the housing, flange frame [m]; default: the sensor's, or an SR4000's. It is
-    centred on the flange's z axis and extends from z = 0 to its depth; without T_flange_camera the
-    camera is in the middle of its front face.
+    Width, height, depth of the housing, flange frame [m]; default: the sensor's, or an SR4000's. It
+    is centred on the flange's z axis and extends from z = 0 to its depth; without T_flange_camera
+    the camera is in the middle of its front face.
 T_flange_camera : array_like, (4, 4), optional
     Mounting of the camera on the flange; default: the sensor's.
 clearance : float
@@ -201,12 +201,13 @@ sensor : Sensor, optional
 max_near_share : float
     Largest share of the rays that end in the map that may end nearer than min_range.
 num_threads : int
-    For arrays of poses; 0: all hardware threads. They call the predicate of ``reach`` one at a time.
+    For arrays of poses; 0: all hardware threads. They call the predicate of ``reach`` one at a
+    time.
 
 Notes
 -----
-Methods may run in many threads at once and release the GIL. Cost: 0.5 to 1 µs per pose; with a sensor
-10 to 50 µs where much is near, for the SR4000's 400 rays.)");
+Methods may run in many threads at once and release the GIL. Cost: 0.5 to 1 µs per pose; with a
+sensor 10 to 50 µs where much is near, for the SR4000's 400 rays.)");
   refuse_pickling(type);
   type.def(py::init([](const Given<Scene>& scene, const py::object& body_size,
                        const py::object& T_flange_camera, double clearance,

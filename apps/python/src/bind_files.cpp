@@ -188,13 +188,14 @@ void bind_frames(py::module_& module) {
       module, "FrameSequence",
       R"(A folder of depth frames, read on access. Made by ``read_frames``.
 
-``frames[i]`` and iteration give a ``Frame``: its depth is corrected with the sensor's range_calibration,
-its pose is not finite if it is lost or missing. ``ViewPlanner.add_frame`` reads, checks and adds a frame.
+``frames[i]`` and iteration give a ``Frame``: its depth is corrected with the sensor's
+range_calibration, its pose is not finite if it is lost or missing. ``ViewPlanner.add_frame`` reads,
+checks and adds a frame.
 
 Notes
 -----
-Reads a frame on access, without the GIL; many threads may read at once. Cost: linear in the pixels of a
-frame; ``poses`` is a copy.)");
+Reads a frame on access, without the GIL; many threads may read at once. Cost: linear in the pixels
+of a frame; ``poses`` is a copy.)");
   refuse_pickling(type);
   type.def(
           "__len__", [](const FrameSequence& self) { return self.images.size(); },
@@ -241,15 +242,15 @@ Parameters
 ----------
 folder : path-like
     With frame-NNNNNN.depth.png, 16 bit, and either poses.txt (TUM) and sensor.toml, as from the
-    program's ``simulate``, or frame-NNNNNN.pose.txt and camera-intrinsics.txt, as in recordings. Its
-    frames.toml states how to read them; a UserWarning lists assumptions.
+    program's ``simulate``, or frame-NNNNNN.pose.txt and camera-intrinsics.txt, as in recordings.
+    Its frames.toml states how to read them; a UserWarning lists assumptions.
 sensor : str or path-like, optional
     A preset's name or a .toml file; default: the folder's own.
 depth_scale : float, optional
     Metres per unit; default: from frames.toml, else 1e-4 with poses.txt and 1e-3 with pose files.
 out_of_range : {"carve", "invalid"}, optional
-    Meaning of 65535 in a depth image: free up to max_range, or no reading; default: from frames.toml
-    or the sensor's file, else "carve" with poses.txt and "invalid" with pose files.
+    Meaning of 65535 in a depth image: free up to max_range, or no reading; default: from
+    frames.toml or the sensor's file, else "carve" with poses.txt and "invalid" with pose files.
 
 Returns
 -------
@@ -258,16 +259,17 @@ FrameSequence)");
   module.def("suspect_frames", &suspicions, "sensor"_a, "frames"_a,
              R"(Probable mistakes in units, conventions or intrinsics of frames of one scene.
 
-Searches for the readings of a dozen frames in the others, as given and under common mistakes, including
-other focal lengths. Ignores frames without overlap. Runs without the GIL. Cost: up to 0.7 s.
+Searches for the readings of a dozen frames in the others, as given and under common mistakes,
+including other focal lengths. Ignores frames without overlap. Runs without the GIL. Cost: up to
+0.7 s.
 
 Parameters
 ----------
 sensor : Sensor
     For example ``frames.sensor`` of ``read_frames``.
 frames : sequence of frames
-    A FrameSequence, or pairs (depth, T_world_camera) as for ``ViewPlanner.add``, with depths in any unit.
-    Frames without a rigid pose are ignored.
+    A FrameSequence, or pairs (depth, T_world_camera) as for ``ViewPlanner.add``, with depths in any
+    unit. Frames without a rigid pose are ignored.
 
 Returns
 -------
@@ -289,8 +291,8 @@ Runs without the GIL. Cost: 1 µs per pose.
 Parameters
 ----------
 path : path-like
-    .npy: rows with tx, ty, tz, qx, qy, qz, qw and optionally timestamp, or (n, 4, 4) matrices, float64
-    or float32. Any other name: TUM text.
+    .npy: rows with tx, ty, tz, qx, qy, qz, qw and optionally timestamp, or (n, 4, 4) matrices,
+    float64 or float32. Any other name: TUM text.
 
 Returns
 -------

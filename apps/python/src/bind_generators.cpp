@@ -110,9 +110,9 @@ stops.
 Parameters
 ----------
 costs : array_like, (k + 1, k)
-    Row i, column j: cost of the path from stop i to stop j in a unit of your choice, such as metres or
-    seconds; last row: from the current pose. At least 0; inf: no path. Ignores the diagonal of the
-    first k rows.
+    Row i, column j: cost of the path from stop i to stop j in a unit of your choice, such as metres
+    or seconds; last row: from the current pose. At least 0; inf: no path. Ignores the diagonal of
+    the first k rows.
 
 Returns
 -------

@@ -87,16 +87,17 @@ support_plane : float, optional
 object_size : float, optional
     Longest side of the object [m], for the surface gain; default: that of its seen part.
 hazard : float, path or array_like, the grid's shape, optional
-    Rate at which a ray meets the surface in unknown voxels [1/m], for the surface gain: constant, from
-    a .vdb file (its float grid "hazard", or the only one), or one per voxel; default: from the
+    Rate at which a ray meets the surface in unknown voxels [1/m], for the surface gain: constant,
+    from a .vdb file (its float grid "hazard", or the only one), or one per voxel; default: from the
     distance to seen surface and the elevation above it.
 num_threads : int
     Threads of the build; 0: all hardware threads.
 
 Notes
 -----
-Releases the GIL while building a scene of at most 2**23 blocks of voxels. Cost: about 0.2 ms per 1,000
-blocks that are not free; some ms more when an evaluator of the surface or combined gain first needs it.
+Releases the GIL while building a scene of at most 2**23 blocks of voxels. Cost: about 0.2 ms per
+1,000 blocks that are not free; some ms more when an evaluator of the surface or combined gain first
+needs it.
 ``update`` is several times faster if little has changed; properties take constant time.)");
   refuse_pickling(type);
   type.def(py::init([](const Given<SharedGrid>& grid, const py::object& boxes,

@@ -82,8 +82,9 @@ min_amplitude : float
   bind_model<StructuredLightNoise>(module, "StructuredLightNoise",
                                    R"(Structured light (Nguyen, Izadi, Lovell, 2012).
 
-``axial = offset + quadratic * (z - vertex)**2``, plus ``grazing / sqrt(z) * theta**2 / (pi/2 -
-theta)**2`` beyond 60 degrees; ``lateral = (lateral_px + lateral_grazing_px * theta / (pi/2 - theta))
+``axial = offset + quadratic * (z - vertex)**2``, plus
+``grazing / sqrt(z) * theta**2 / (pi/2 - theta)**2`` beyond 60 degrees; ``lateral = (lateral_px +
+lateral_grazing_px * theta / (pi/2 - theta))
 * z / fx``; z is the range along the ray [m].
 
 Parameters
@@ -192,22 +193,22 @@ T_flange_camera : array_like, (4, 4), optional
 body_size : sequence of float, (3,), optional
     Width, height, depth of the housing, flange frame [m].
 range_calibration : array_like, (n, 2), optional
-    Systematic error: rows of measured range and measured minus true range [m], by increasing measured
-    range. ``read_frames`` subtracts it.
+    Systematic error: rows of measured range and measured minus true range [m], by increasing
+    measured range. ``read_frames`` subtracts it.
 pose_sigma : sequence of float, (2,), optional
-    Standard deviations of the poses of frames about the camera centre: of the position per axis [m],
-    and per component of the rotation vector [rad]. Maps and gains add it to each reading.
+    Standard deviations of the poses of frames about the camera centre: of the position per axis
+    [m], and per component of the rotation vector [rad]. Maps and gains add it to each reading.
 scale_sigma : float, optional
-    Relative standard deviation of one factor common to all ranges. More readings do not reduce it; see
-    ``BeliefGrid.points``.
+    Relative standard deviation of one factor common to all ranges. More readings do not reduce it;
+    see ``BeliefGrid.points``.
 out_of_range : str, optional
-    Meaning of 65535 in its depth images: carve (free up to max_range) or invalid (no reading); default:
-    from the layout of their folder.
+    Meaning of 65535 in its depth images: carve (free up to max_range) or invalid (no reading);
+    default: from the layout of their folder.
 
 Notes
 -----
-Equal by value; can be pickled. Invalid noise parameters raise ValueError. Holds the GIL. Cost: some µs;
-linear in the rows of range_calibration.)");
+Equal by value; can be pickled. Invalid noise parameters raise ValueError. Holds the GIL. Cost: some
+µs; linear in the rows of range_calibration.)");
   pickle_by_attributes(type, {"camera", "min_range", "max_range", "working_distance", "noise",
                               "name", "T_flange_camera", "body_size", "range_calibration",
                               "pose_sigma", "scale_sigma", "out_of_range"});
@@ -346,8 +347,8 @@ Sensor)");
       "voxel_size"_a, "sensor"_a,
       R"(Default standard deviation of an unknown voxel's position [m].
 
-``max(voxel_size / 2, 2 * axial sigma at the working distance)``, so that unknown space is never more
-certain than one reading.
+``max(voxel_size / 2, 2 * axial sigma at the working distance)``, so that unknown space is never
+more certain than one reading.
 
 Parameters
 ----------

@@ -132,9 +132,9 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 ndarray, (n,), structured
-    voxel (int32, 3; on the lattice, subtract the grid's ``min_index`` for arrays), state, rays that end
-    in it, expected_rays (surface and combined gains: the sum of their probabilities), gain in the unit
-    of ``evaluate``. Largest gain first; the gains add up to that of the view.)")
+    voxel (int32, 3; on the lattice, subtract the grid's ``min_index`` for arrays), state, rays that
+    end in it, expected_rays (surface and combined gains: the sum of their probabilities), gain in
+    the unit of ``evaluate``. Largest gain first; the gains add up to that of the view.)")
       .def("outcomes", &outcomes, "T_world_camera"_a,
            R"(Where a view's rays end, to explain its gain. Cost: twice ``trace``.
 
@@ -159,15 +159,15 @@ T_world_camera : array_like, (..., 4, 4)
 measure : callable
     Takes T_world_camera (4, 4) and the hits of a view, a structured array (n,) with one row per ray
     that ends in a voxel: voxel (int32, 3), state, readings (that ended in the voxel), information
-    (float32, 6: xx yy zz xy xz yz [1/m**2]), ray (pixel number, row-major, strided), range along the
-    ray [m], direction (unit, world frame). Returns a float. Its exceptions pass through.
+    (float32, 6: xx yy zz xy xz yz [1/m**2]), ray (pixel number, row-major, strided), range along
+    the ray [m], direction (unit, world frame). Returns a float. Its exceptions pass through.
 control : BatchControl, optional
 
 Returns
 -------
 ndarray, (...), float64
-    Results of measure; NaN for invalid poses and 0 for cameras in an occupied voxel, without a call. A
-    single pose gives a scalar.)");
+    Results of measure; NaN for invalid poses and 0 for cameras in an occupied voxel, without a
+    call. A single pose gives a scalar.)");
 }
 
 }  // namespace viewgain::python

@@ -9,8 +9,8 @@ namespace viewgain::python {
 inline constexpr const char* kPlannerDoc =
     R"(Next-best views step by step, for a robot's program: frames in, views out.
 
-``add`` a frame, ``propose`` candidates, ``rank`` them and ask ``should_stop``. Then move, report the
-result with ``tried``, and ``add`` the next frame.
+``add`` a frame, ``propose`` candidates, ``rank`` them and ask ``should_stop``. Then move, report
+the result with ``tried``, and ``add`` the next frame.
 
 Parameters
 ----------
@@ -18,8 +18,8 @@ sensor : Sensor
 voxel_size : float
     [m]
 workspace : array_like, (2, 3)
-    Lowest and highest corner of the mapped space, grid frame [m]. Start it at the table, because the
-    space below stays unknown.
+    Lowest and highest corner of the mapped space, grid frame [m]. Start it at the table, because
+    the space below stays unknown.
 T_world_grid : array_like, (4, 4), optional
     Pose of the grid frame in the world; default: identity.
 prior_sigma : float, optional
@@ -27,12 +27,13 @@ prior_sigma : float, optional
 support_plane : float, optional
     Height z of the table [m]. Its readings mark free space but do not hit.
 boxes : array_like, (n, 2, 3), optional
-    Known obstacles: lowest and highest corners, world frame [m]. They block rays and the body; their
-    readings mark free space but do not hit.
+    Known obstacles: lowest and highest corners, world frame [m]. They block rays and the body;
+    their readings mark free space but do not hit.
 meshes : iterable of (vertices, triangles), optional
     Obstacles as triangles: (n, 3), world frame [m], and (m, 3) indices.
 gain : {"combined", "surface", "paper"}
-    Gain that ranks views: expected new surface and refinement, expected new surface, or entropy removed.
+    Gain that ranks views: expected new surface and refinement, expected new surface, or entropy
+    removed.
 criterion : {"log_diagonal", "log_determinant", "trace"}
     Criterion of gain "paper" and of entropies; "trace" cannot be used with gain "combined".
 object_size : float, optional
@@ -48,21 +49,22 @@ jump_edges : bool
 check_feasibility : bool
     False: accepts all candidates except those taken or tried.
 max_views, idle_views : int
-    Stop after this many views; after this many in a row that changed entropy and unknown voxels by less
-    than 0.1 % (0: never).
+    Stop after this many views; after this many in a row that changed entropy and unknown voxels by
+    less than 0.1 % (0: never).
 broken_promises : int
-    Stop after this many views in a row, taken at the best pose of the last ranking, that brought less
-    than a fifth of the predicted new surface (with gain "paper": entropy); 0: never.
+    Stop after this many views in a row, taken at the best pose of the last ranking, that brought
+    less than a fifth of the predicted new surface (with gain "paper": entropy); 0: never.
 plan, take : int
-    Number of views to plan together, in a short order, and number of them to take before replanning, at
-    most ``plan``; 1, 1: one at a time. ``rank`` returns the plan; ``propose`` returns its remaining views
-    that are still possible and promise enough, with the generator "plan".
+    Number of views to plan together, in a short order, and number of them to take before
+    replanning, at most ``plan``; 1, 1: one at a time. ``rank`` returns the plan; ``propose``
+    returns its remaining views that are still possible and promise enough, with the generator
+    "plan".
 stop_gain : float, optional
-    With gain "paper": stop when the best candidate's gain per touched voxel is below this [nat, m**2 for
-    trace]. Default: 1.2; for trace 0.01 of the first ranking's.
+    With gain "paper": stop when the best candidate's gain per touched voxel is below this [nat,
+    m**2 for trace]. Default: 1.2; for trace 0.01 of the first ranking's.
 stop_area : float, optional
-    With gain "surface" and "combined": stop when the expected new surface of all candidates is below this
-    share of the surface so far, mean of three rankings; 0: never. Default: 0.004.
+    With gain "surface" and "combined": stop when the expected new surface of all candidates is
+    below this share of the surface so far, mean of three rankings; 0: never. Default: 0.004.
 coarsest : int
     As in ``FrameIntegrator``.
 fine : array_like, (n, 2, 3), optional
@@ -79,9 +81,9 @@ num_threads : int
 Notes
 -----
 One call at a time: a concurrent call raises RuntimeError. Calls release the GIL, except while your
-generators and the predicate of ``reach`` run. Cost: a new planner takes some ms, one with a state as
-``BeliefGrid.load``; methods take some microseconds unless they state otherwise; ``grid`` is a copy,
-0.3 ms for 128**3 voxels.)";
+generators and the predicate of ``reach`` run. Cost: a new planner takes some ms, one with a state
+as ``BeliefGrid.load``; methods take some microseconds unless they state otherwise; ``grid`` is a
+copy, 0.3 ms for 128**3 voxels.)";
 
 inline constexpr const char* kLoadDoc =
     R"(A planner that continues after ``save``, bit for bit.
@@ -90,19 +92,21 @@ Parameters
 ----------
 path : path-like
 sensor, **settings
-    Those of the constructor, as before; only the map's layout is checked. Add candidates and propose
-    again. ``max_views``, ``idle_views`` and ``broken_promises`` apply at once: a planner that had stopped
-    can continue with larger values.
+    Those of the constructor, as before; only the map's layout is checked. Add candidates and
+    propose again. ``max_views``, ``idle_views`` and ``broken_promises`` apply at once: a planner
+    that had stopped can continue with larger values.
 
 Returns
 -------
 ViewPlanner)";
 
 inline constexpr const char* kSaveDoc =
-    R"(Writes the state, a map with notes, atomically. Cost: ``BeliefGrid.save``, and linear in the tried poses.
+    R"(Writes the state, a map with notes, atomically.
 
-Omits the settings, poses, generators and the last proposal. ``BeliefGrid.load`` and the program read the
-map.
+Cost: ``BeliefGrid.save``, and linear in the tried poses.
+
+Omits the settings, poses, generators and the last proposal. ``BeliefGrid.load`` and the program
+read the map.
 
 Parameters
 ----------
@@ -126,18 +130,19 @@ Parameters
 ----------
 generator : callable
     Takes a copy of the map, a BeliefGrid with the views so far, and returns poses (n, 4, 4). Its
-    exceptions pass through. It must not call or reference the planner: the two would never be released.
+    exceptions pass through. It must not call or reference the planner: the two would never be
+    released.
 name : str
     Name of the generator in ``propose``.)";
 
 inline constexpr const char* kAddDoc =
     R"(Integrates a frame; invalidates the last proposal.
 
-Warns (UserWarning) if hardly any reading lies in the workspace, but most would under another convention
-of poses or depths.
+Warns (UserWarning) if hardly any reading lies in the workspace, but most would under another
+convention of poses or depths.
 
-Cost: grows with the pixels and the crossed voxels: 12 ms for 176x144 pixels and voxels of 5 mm on two
-threads.
+Cost: grows with the pixels and the crossed voxels: 12 ms for 176x144 pixels and voxels of 5 mm on
+two threads.
 
 Parameters
 ----------
@@ -145,21 +150,23 @@ depth : array_like, (height, width), floating point
     Along the optical axis [m]; 0, NaN or masked: no reading, inf: free up to max_range.
 T_world_camera : array_like, (4, 4)
 pose_sigma : array_like, (2,), optional
-    Uncertainty of this pose in addition to the sensor's pose_sigma [m], [rad]; after ``register_frame``
-    use its pose_sigma.
+    Uncertainty of this pose in addition to the sensor's pose_sigma [m], [rad]; after
+    ``register_frame`` use its pose_sigma.
 amplitude : array_like, (height, width), optional
     [1/m**2]
 
 Returns
 -------
 AddedView
-    new_area is perpendicular to the rays, like the expected area; oblique surface is larger. verdict gives
-    the outcome: a frame that cannot be used, for example because its pose is not rigid, leaves the map
-    unchanged and counts as a view that brought nothing. After Error from building the scene, the frame
-    is in the map.)";
+    new_area is perpendicular to the rays, like the expected area; oblique surface is larger.
+    verdict gives the outcome: a frame that cannot be used, for example because its pose is not
+    rigid, leaves the map unchanged and counts as a view that brought nothing. After Error from
+    building the scene, the frame is in the map.)";
 
 inline constexpr const char* kAddFrameDoc =
-    R"(Reads a frame of a folder and adds it, or counts why it cannot be used. Cost: reading, and ``add``.
+    R"(Reads a frame of a folder and adds it, or counts why it cannot be used.
+
+Cost: reading, and ``add``.
 
 Parameters
 ----------
@@ -182,8 +189,8 @@ Returns
 FrameConsistency)";
 
 inline constexpr const char* kDropDoc =
-    R"(Records a view that failed before there was a frame, or whose frame is left out. Cost: one pass over the
-map.
+    R"(Records a view that failed before there was a frame, or whose frame is left out. Cost: one
+pass over the map.
 
 It counts as a view that brought nothing; its pose is not proposed again.
 
@@ -202,9 +209,9 @@ inline constexpr const char* kRegisterFrameDoc =
     R"(Estimates the camera pose from the frame and the map. Changes nothing.
 
 Minimises the distances of the frame's readings from the map's points along the surface normals
-(Gauss-Newton), with the reported pose as prior. Add a frame that is "registered" at the estimated pose,
-one with "too_little_overlap" as reported, and leave out one that is "refused": it contradicts the map, or
-would move by more than five sigmas. Cost: about 100 to 300 ms per frame.
+(Gauss-Newton), with the reported pose as prior. Add a frame that is "registered" at the estimated
+pose, one with "too_little_overlap" as reported, and leave out one that is "refused": it contradicts
+the map, or would move by more than five sigmas. Cost: about 100 to 300 ms per frame.
 
 Parameters
 ----------
@@ -226,8 +233,8 @@ FrameRegistration)";
 inline constexpr const char* kProposeDoc =
     R"(The candidates that are currently possible.
 
-Exceptions of generators and of the predicate of ``reach`` pass through. Cost: 4 µs per candidate, and the
-generators.
+Exceptions of generators and of the predicate of ``reach`` pass through. Cost: 4 µs per candidate,
+and the generators.
 
 Returns
 -------
@@ -236,33 +243,33 @@ Proposal)";
 inline constexpr const char* kRankDoc =
     R"(The k best candidates of the proposal since the last view, or of any poses.
 
-Cost per candidate: 2 ms in two stages, 20 ms with exact, with gain "combined" for 176x144 pixels and a map
-of 128**3 voxels that is mostly unknown. Warns (UserWarning) if most of the given poses do not see the
-map.
+Cost per candidate: 2 ms in two stages, 20 ms with exact, with gain "combined" for 176x144 pixels
+and a map of 128**3 voxels that is mostly unknown. Warns (UserWarning) if most of the given poses do
+not see the map.
 
 Parameters
 ----------
 k : int
 poses : array_like, (n, 4, 4), optional
-    T_world_camera to rank instead of the proposal, without a check of feasibility. Omits invalid ones.
-    Does not affect ``should_stop``.
+    T_world_camera to rank instead of the proposal, without a check of feasibility. Omits invalid
+    ones. Does not affect ``should_stop``.
 costs : array_like, (n,), optional
     Costs to subtract from the gains, in their unit.
 cost_per_metre : float
-    Cost of the straight path from ``current_pose``, in the gain's unit per metre. The combined gain of new
-    surface is proportional to 1 / voxel**2; scale this cost accordingly.
+    Cost of the straight path from ``current_pose``, in the gain's unit per metre. The combined gain
+    of new surface is proportional to 1 / voxel**2; scale this cost accordingly.
 current_pose : array_like, (4, 4), optional
-    Current camera pose, T_world_camera; only its centre is used. Default: the pose of the last frame,
-    usable or not, or of a later ``tried`` that was reached. Plans start there too.
+    Current camera pose, T_world_camera; only its centre is used. Default: the pose of the last
+    frame, usable or not, or of a later ``tried`` that was reached. Plans start there too.
 together : bool
     Ranks views by their marginal gain, so that no two show the same; cannot be used with measure.
 exact : bool
-    Scores all in full. Default: in two stages (``GainEvaluator.race``), except with gain "paper". With
-    together the first view is found so; the others are chosen among a few poses, at least 32, with a
-    quarter of their rays.
+    Scores all in full. Default: in two stages (``GainEvaluator.race``), except with gain "paper".
+    With together the first view is found so; the others are chosen among a few poses, at least 32,
+    with a quarter of their rays.
 measure : callable, optional
-    Custom gain that replaces the planner's, as in ``GainEvaluator.evaluate_own``; gain and area are then
-    NaN.
+    Custom gain that replaces the planner's, as in ``GainEvaluator.evaluate_own``; gain and area are
+    then NaN.
 control : BatchControl, optional
 
 Returns
@@ -287,7 +294,7 @@ inline constexpr const char* kShouldStopDoc =
 Returns
 -------
 str or None
-    After ``add`` max_views, idle or promises; after ``propose`` no_candidates or unreachable; after ``rank``
-    of the proposal gain, area or, with costs, cost (no view is worth its cost).)";
+    After ``add`` max_views, idle or promises; after ``propose`` no_candidates or unreachable; after
+    ``rank`` of the proposal gain, area or, with costs, cost (no view is worth its cost).)";
 
 }  // namespace viewgain::python

@@ -9,8 +9,8 @@ namespace viewgain::python {
 inline constexpr const char* kScorerDoc =
     R"(Depth frames or labelled voxels in, gains of camera poses out.
 
-Keeps a map, its scene and its evaluator in step: ``add`` frames, or ``set`` labels; then ``evaluate``
-poses, or ask for the ``best``.
+Keeps a map, its scene and its evaluator in step: ``add`` frames, or ``set`` labels; then
+``evaluate`` poses, or ask for the ``best``.
 
 Parameters
 ----------
@@ -45,8 +45,8 @@ refinement_weight : float, optional
 object_size : float, optional
     Longest side of the object [m]; default: that of its seen part.
 body_size : array_like, (3,), optional
-    Width, height, depth of the camera's housing, flange frame [m]; default: the sensor's. With a body,
-    ``best`` omits poses where it has no room.
+    Width, height, depth of the camera's housing, flange frame [m]; default: the sensor's. With a
+    body, ``best`` omits poses where it has no room.
 clearance : float
     Margin around the body [m].
 jump_edges : bool
@@ -58,8 +58,8 @@ fine : array_like, (n, 2, 3), optional
 finest : int
     As in ``FrameIntegrator``.
 map : BeliefGrid or path-like, optional
-    A map to continue, which is copied, or its file: a .vdb of ``save`` or another map, or an OctoMap .ot or
-    .bt. It has its own voxel_size, workspace and T_world_grid.
+    A map to continue, which is copied, or its file: a .vdb of ``save`` or another map, or an
+    OctoMap .ot or .bt. It has its own voxel_size, workspace and T_world_grid.
 tracer : {"automatic", "embree", "sweep"}
     Tracer, as in ``GainEvaluator``. Does not affect results.
 num_threads : int
@@ -67,11 +67,11 @@ num_threads : int
 
 Notes
 -----
-``evaluate``, ``best``, ``scene`` and ``evaluator`` may run in any thread at any time, even while the map
-changes: they use the map before or after that change. ``save``, ``consistency`` and ``grid`` wait for a
-change that is running. The GIL is released. Pickles hold settings and map, but not the frames that
-``consistency`` compares. Cost of a change: the change of the map, and some milliseconds
-for the scene.)";
+``evaluate``, ``best``, ``scene`` and ``evaluator`` may run in any thread at any time, even while
+the map changes: they use the map before or after that change. ``save``, ``consistency`` and
+``grid`` wait for a change that is running. The GIL is released. Pickles hold settings and map, but
+not the frames that ``consistency`` compares. Cost of a change: the change of the map, and some
+milliseconds for the scene.)";
 
 inline constexpr const char* kScorerAddDoc = R"(Adds a depth frame to the map.
 
@@ -157,8 +157,8 @@ control : BatchControl, optional
 Returns
 -------
 BestViews
-    Best first; fewer than k if fewer poses have a gain. A gain of 0 means that the view would show nothing
-    new.)";
+    Best first; fewer than k if fewer poses have a gain. A gain of 0 means that the view would show
+    nothing new.)";
 
 inline constexpr const char* kScorerConsistencyDoc =
     R"(Agreement of the frames added so far.

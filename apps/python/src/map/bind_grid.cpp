@@ -145,17 +145,17 @@ void bind_grid(py::module_& module) {
       module, "BeliefGrid",
       R"(The state of a workspace, voxel by voxel.
 
-Voxel (i, j, k) is [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid frame. A new grid is
-unknown everywhere and takes little memory. Grids are equal if their ``content_hash()`` is, and can be
-pickled.
+Voxel (i, j, k) is [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid frame. A new grid
+is unknown everywhere and takes little memory. Grids are equal if their ``content_hash()`` is, and
+can be pickled.
 
 Parameters
 ----------
 voxel_size : float
     [m]
 workspace : array_like, (2, 3)
-    Lowest and highest corner, grid frame [m]; extended to whole voxels, at most 65,536 along an axis and
-    2**40 in total.
+    Lowest and highest corner, grid frame [m]; extended to whole voxels, at most 65,536 along an
+    axis and 2**40 in total.
 prior_sigma : float, optional
     Standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional
@@ -166,9 +166,9 @@ T_world_grid : array_like, (4, 4), optional
 
 Notes
 -----
-Methods release the GIL. Python threads may share a grid: many read it at once, one changes it, and they
-wait for each other. Cost: linear in the returned or changed voxels, some ms for 128**3 voxels with
-40,000 occupied ones; properties take constant time.)");
+Methods release the GIL. Python threads may share a grid: many read it at once, one changes it, and
+they wait for each other. Cost: linear in the returned or changed voxels, some ms for 128**3 voxels
+with 40,000 occupied ones; properties take constant time.)");
   bind_grid_files(grid_class);
   bind_voxels(grid_class);
   grid_class
@@ -192,9 +192,9 @@ wait for each other. Cost: linear in the returned or changed voxels, some ms for
 Parameters
 ----------
 labels : array_like, (nx, ny, nz), whole numbers
-    0 unknown, 1 free, 2 occupied. C-contiguous uint8 is read in place, other integers and nested lists
-    are converted once. Masked entries of a masked array are unknown; bools raise ValueError, because
-    they have no unknown state.
+    0 unknown, 1 free, 2 occupied. C-contiguous uint8 is read in place, other integers and nested
+    lists are converted once. Masked entries of a masked array are unknown; bools raise ValueError,
+    because they have no unknown state.
 voxel_size : float
     [m]
 origin : array_like, (3,)
@@ -254,8 +254,8 @@ ndarray, (nx, ny, nz), uint8
       .def("update_box", &update_box, "first"_a, "labels"_a,
            R"(Sets the voxels of a box from labels, for planners with their own growing map.
 
-Voxels that already have the state keep log-odds and belief; others lose their belief. Cost: linear in
-the labels.
+Voxels that already have the state keep log-odds and belief; others lose their belief. Cost: linear
+in the labels.
 
 Parameters
 ----------
@@ -306,8 +306,9 @@ rates are made to decrease with distance. Ones until ``FrameIntegrator.calibrate
 Returns
 -------
 ndarray, (n,), structured
-    voxel (int32, 3; on the lattice, subtract ``min_index`` for arrays), hits (a count), information (float32, 6:
-    xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3 [1/m], about the voxel's centre).)")
+    voxel (int32, 3; on the lattice, subtract ``min_index`` for arrays), hits (a count), information
+    (float32, 6: xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3 [1/m], about the
+    voxel's centre).)")
       .def("points", &points_of, py::kw_only(), "min_hits"_a = 2, "scale_sigma"_a = 0.0,
            "num_threads"_a = 0,
            R"(The surface points of the map.

@@ -109,8 +109,8 @@ void bind_grid_files(GridClass& grid_class) {
           "to_bytes", &bytes_of,
           R"(The map as bytes, for ``from_bytes`` and pickles: the contents of the file from ``save``.
 
-Uses a temporary file. Cost: linear in the blocks of voxels, 0.1 s for 128**3 voxels with 40,000 occupied
-ones; ``from_bytes`` takes half as long.
+Uses a temporary file. Cost: linear in the blocks of voxels, 0.1 s for 128**3 voxels with 40,000
+occupied ones; ``from_bytes`` takes half as long.
 
 Returns
 -------
@@ -149,14 +149,15 @@ BeliefGrid)")
           "sensor"_a = py::none(), "occupied_from"_a = py::none(),
           R"(Reads a map: a .vdb of ``save`` or the program viewgain, or OctoMap's .ot or .bt.
 
-An OctoMap keeps states and, in a .ot, log-odds. Runs without the GIL. Cost: 50 ms for a .vdb of 4 MB,
-20 ms for a tree of 128**3 voxels with 40,000 occupied ones.
+An OctoMap keeps states and, in a .ot, log-odds. Runs without the GIL. Cost: 50 ms for a .vdb of
+4 MB, 20 ms for a tree of 128**3 voxels with 40,000 occupied ones.
 
 Parameters
 ----------
 path : path-like
 workspace : array_like, (2, 3), optional
-    OctoMap: lowest and highest corner [m], in the tree's frame; default: the box of its known voxels.
+    OctoMap: lowest and highest corner [m], in the tree's frame; default: the box of its known
+    voxels.
 prior_sigma : float, optional
     OctoMap: standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional

@@ -62,8 +62,8 @@ IntegrationReport
 Raises
 ------
 ValueError
-    Also if all readings, or 19 in 20 unequal ones, are beyond 10 times max_range, as in millimetres. The
-    grid then does not change.)";
+    Also if all readings, or 19 in 20 unequal ones, are beyond 10 times max_range, as in
+    millimetres. The grid then does not change.)";
 
 IntegrationConfig::Occupancy parse_occupancy(const std::string& name) {
   if (name == "probabilistic") return IntegrationConfig::Occupancy::probabilistic;
@@ -153,9 +153,9 @@ py::object load(const py::object& path) {
 void bind_cloud(py::module_& module) {
   const std::string doc = std::string(R"(Puts point clouds of one sensor into a belief grid.
 
-Each point is a reading along the line from the sensor's origin: it marks the voxels on the line as free
-and hits the voxel that contains the point, with the sensor's noise at that range and frontal incidence.
-All points of a call are one frame.
+Each point is a reading along the line from the sensor's origin: it marks the voxels on the line as
+free and hits the voxel that contains the point, with the sensor's noise at that range and frontal
+incidence. All points of a call are one frame.
 
 Parameters
 ----------
@@ -165,8 +165,8 @@ sensor : Sensor
                           kIntegratorNotes;
   const std::string integrate_doc = std::string(R"(Updates the grid by one cloud.
 
-Cost: grows with the points and the voxels on their lines: 25 ms for 25,000 points and voxels of 5 mm on
-two threads.
+Cost: grows with the points and the voxels on their lines: 25 ms for 25,000 points and voxels of
+5 mm on two threads.
 
 Parameters
 ----------
@@ -289,22 +289,22 @@ carve : {"cones", "lines"}
                           kIntegratorNotes;
   const std::string integrate_doc = std::string(R"(Updates the grid by one frame.
 
-Cost: grows with the pixels and the crossed voxels: 4 ms for 176x144 pixels and voxels of 5 mm on two
-threads.
+Cost: grows with the pixels and the crossed voxels: 4 ms for 176x144 pixels and voxels of 5 mm on
+two threads.
 
 Parameters
 ----------
 grid : BeliefGrid
 depth : array_like, (height, width), floating point
-    Along the optical axis (z, not range) [m]. 0, negative, NaN or masked: ignored; inf: free up to the
-    sensor's max_range.
+    Along the optical axis (z, not range) [m]. 0, negative, NaN or masked: ignored; inf: free up to
+    the sensor's max_range.
 T_world_camera : array_like, (4, 4)
     Rotations that deviate by up to 1e-3 are orthonormalised.
 pose_sigma : array_like, (2,), optional
     Uncertainty of this pose in addition to the sensor's pose_sigma [m], [rad].
 amplitude : array_like, (height, width), floating point, optional
-    cos / range**2 [1/m**2], which gives the angle of incidence; default: from the depth, also where it
-    is inf (saturated). NaN or masked: the least information.
+    cos / range**2 [1/m**2], which gives the angle of incidence; default: from the depth, also where
+    it is inf (saturated). NaN or masked: the least information.
 
 )") + kIntegrateReturns;
   auto type = bound_class<Integrator>(module, "FrameIntegrator", doc.c_str());
@@ -329,8 +329,8 @@ amplitude : array_like, (height, width), floating point, optional
            "T_world_camera"_a,
            R"(Counts how often a frame meets the surface in unknown space, before its integration.
 
-Surface and combined gains of the grid's later scenes use the counts. Has no effect while no surface is
-known, or if the scene's hazard was given. Cost: about 5 ms for 176x144 pixels.
+Surface and combined gains of the grid's later scenes use the counts. Has no effect while no surface
+is known, or if the scene's hazard was given. Cost: about 5 ms for 176x144 pixels.
 
 Parameters
 ----------

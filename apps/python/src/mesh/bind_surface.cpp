@@ -97,8 +97,8 @@ void bind_boundary(py::module_& module) {
              "rolls"_a = py::none(),
              R"(Views past the open boundaries of a surface, with the reasons.
 
-Runs without the GIL. Cost: grows with the boundary's edges and the views, 3 ms for a surface of 19,000
-vertices and 12 views.
+Runs without the GIL. Cost: grows with the boundary's edges and the views, 3 ms for a surface of
+19,000 vertices and 12 views.
 
 Parameters
 ----------
@@ -121,9 +121,9 @@ Returns
 -------
 BoundaryCandidates
     Check them with ``FeasibilityChecker``. Fields of reasons: boundary_class (index into
-    ``BOUNDARY_CLASS_NAMES``), run (of boundary edges), run_length [m], patch, target (the extrapolated
-    point, 3, world [m]), distance from it [m], tilt, roll [rad], nominal (neither tilted nor rolled, at
-    the first distance).)");
+    ``BOUNDARY_CLASS_NAMES``), run (of boundary edges), run_length [m], patch, target (the
+    extrapolated point, 3, world [m]), distance from it [m], tilt, roll [rad], nominal (neither
+    tilted nor rolled, at the first distance).)");
 }
 
 namespace {
@@ -198,12 +198,13 @@ void bind_surface(py::module_& module) {
       R"(An open, oriented triangle surface. Made by ``reconstruct_surface``,
 ``surface_of_grid`` and ``reconstruct``.
 
-Faces are counter-clockwise seen from free space. Lengths are in metres, in the frame of the points (the
-world frame for a map). Surfaces are equal by value.
+Faces are counter-clockwise seen from free space. Lengths are in metres, in the frame of the points
+(the world frame for a map). Surfaces are equal by value.
 
 Notes
 -----
-Cost: each property is a copy, 30 µs for 20,000 vertices. ``save`` releases the GIL, the rest holds it.)");
+Cost: each property is a copy, 30 µs for 20,000 vertices. ``save`` releases the GIL, the rest holds
+it.)");
   refuse_pickling(type);
   type.def_property_readonly(
           "vertices", [](const SurfaceMesh& s) { return to_array_3(s.vertices); },
@@ -291,8 +292,8 @@ Surface
              "num_threads"_a = 0,
              R"(The surface through ``grid.points(min_hits=min_hits)``.
 
-Runs without the GIL; other threads may read the grid meanwhile, but not write it. Cost: 0.7 s for 40,000
-occupied voxels on two threads.
+Runs without the GIL; other threads may read the grid meanwhile, but not write it. Cost: 0.7 s for
+40,000 occupied voxels on two threads.
 
 Parameters
 ----------

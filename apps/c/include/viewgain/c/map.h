@@ -45,9 +45,8 @@ typedef struct vg_sensor {
   double pose_sigma[2]; /* standard deviations of the poses of frames: [m], [rad]; 0: exact */
   double scale_sigma;   /* relative sigma of one factor common to all ranges; 0: none */
 } vg_sensor;
-VG_API void vg_sensor_init(
-    vg_sensor* sensor,
-    size_t struct_size); /* sets everything to 0, which is not yet a valid sensor */
+/* Sets everything to 0, which is not yet a valid sensor. */
+VG_API void vg_sensor_init(vg_sensor* sensor, size_t struct_size);
 
 /* Fills a sensor after vg_sensor_init with a preset, such as "sr4000"; the message for an invalid
    name lists them. */
@@ -123,9 +122,9 @@ typedef struct vg_grid_info {
   uint64_t views;                   /* number of integrated frames */
   uint64_t bytes;                   /* memory */
   double entropy_removed;           /* progress of the map, with log_diagonal [nat] */
-  double hazard_factors[8];         /* statistics of frames for the hazard of unknown space, one per
-                                       distance class, nearest first, before rates are made to decrease with
-                                       distance: vg_calibrate_hazard() */
+  /* Factors of the hazard of unknown space from the statistics of frames (vg_calibrate_hazard()),
+     one per distance class, nearest first, before rates are made to decrease with distance. */
+  double hazard_factors[8];
 } vg_grid_info;
 /* Prepares `info` for the call below. */
 VG_API void vg_grid_info_init(vg_grid_info* info, size_t struct_size);
