@@ -103,10 +103,8 @@ ViewPlanner)";
 inline constexpr const char* kSaveDoc =
     R"(Writes the state, a map with notes, atomically.
 
-Cost: ``BeliefGrid.save``, and linear in the tried poses.
-
 Omits the settings, poses, generators and the last proposal. ``BeliefGrid.load`` and the program
-read the map.
+read the map. Cost: ``BeliefGrid.save``, and linear in the tried poses.
 
 Parameters
 ----------
