@@ -17,9 +17,9 @@ namespace viewgain::detail {
 /// By BlockLattice::key. Blocks are immutable: snapshots and clones share them.
 using BeliefMap = std::unordered_map<std::uint64_t, std::shared_ptr<const BeliefBlock>>;
 
-/// The grid's own.
+/// Belief blocks of the grid.
 [[nodiscard]] const BeliefMap& beliefs_of(const BeliefGrid& grid);
-/// Of the block with this key.
+/// Scale of the block with this key.
 [[nodiscard]] int scale_of(const BeliefGrid& grid, std::uint64_t key);
 [[nodiscard]] bool has_scales(const BeliefGrid& grid);  ///< nonzero scales
 /// Whether the block stores anything by cells: a leaf, an occupied tile or beliefs.

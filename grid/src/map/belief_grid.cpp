@@ -330,7 +330,7 @@ void fill_cube(BeliefGrid& grid, Index3 origin, std::int32_t size, std::uint8_t 
   } else {
     s.forget_snapshots();  // a mark per region of a large cube would cost more than it saves
   }
-  // Whole blocks, of large cubes whole nodes, round the part in the workspace.
+  // The part in the workspace, extended to whole blocks or, for large cubes, whole nodes.
   const std::int32_t unit = may_be_tile(code) && size > kNodeSize ? kNodeSize : kBlockSize;
   const VoxelBox part = clipped(s.lattice, origin, size);
   const auto down = [&](std::int32_t v) { return v & ~(unit - 1); };

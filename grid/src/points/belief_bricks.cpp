@@ -210,7 +210,7 @@ Eigen::Vector3d BrickNeighborhood::free_side(const Eigen::Vector3d& position) co
            1}}.intersection(bricks_->workspace_cells());
   const auto end_of = [](std::int32_t v, std::int32_t max) { return std::min(max, (v | 7) + 1); };
   Index3 sum{0, 0, 0};
-  // By what lies in one layer of one block.
+  // Layer by layer of each block.
   for (std::int32_t x = near.min.x; x < near.max.x; ++x) {
     for (std::int32_t y0 = near.min.y; y0 < near.max.y; y0 = end_of(y0, near.max.y)) {
       for (std::int32_t z0 = near.min.z; z0 < near.max.z; z0 = end_of(z0, near.max.z)) {
