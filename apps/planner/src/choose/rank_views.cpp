@@ -132,7 +132,7 @@ std::vector<double> view_costs(std::span<const Pose> poses, const RankConfig& co
   if (costs.size() != poses.size()) return costs;  // best() rejects them
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Vector3d to = poses[i].translation() - *here;
-    const double way = std::hypot(to.x(), to.y(), to.z());  // finite however far it is
+    const double way = std::hypot(to.x(), to.y(), to.z());  // finite at any distance
     // An invalid pose is omitted regardless of its path.
     if (std::isfinite(way)) costs[i] += config.cost_per_metre * way;
   }
