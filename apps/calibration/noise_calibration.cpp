@@ -219,7 +219,7 @@ void NoiseCalibration::add(const DepthFrame& frame) {
   const PinholeCamera& camera = sensor_.camera;
   if (frame.width != camera.width || frame.height != camera.height ||
       frame.depth.size() != camera.ray_table().size()) {
-    fail("a frame has not the size of its sensor");
+    fail("a frame differs in size from its sensor");
   }
   depths_.push_back(frame.depth);
 }
@@ -244,12 +244,12 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
   const double sigma = std::sqrt(detail::median(std::move(variances)));
   result.moving_share = static_cast<double>(moving) / readings;
   if (result.moving_share > kMayMove) {
-    fail("the scene or the camera moves, " + percent(result.moving_share) +
+    fail("the scene or the camera moves: " + percent(result.moving_share) +
          " of the pixels change with time");
   }
   if (!(sigma * sigma > unit_ * unit_ / 12)) {
     fail("readings scatter by no more than their rounding to " + short_text(unit_) +
-         " m, are they filtered?");
+         " m. Are they filtered?");
   }
   const auto smooth = smooth_pixels(sensor_.camera, rays, pixels, sigma, unit_);
   if (smooth.size() < kLeastSmooth) {
@@ -258,9 +258,9 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
   }
   const auto edges = detail::edge_scatter(sensor_.camera, depths_, rays, pixels, sigma);
   if (edges.length < kLeastEdge) {
-    fail("too few jumps of depth for sigma_lateral, " + short_text(std::round(edges.length)) +
+    fail("too few depth edges for sigma_lateral: " + short_text(std::round(edges.length)) +
          " px of straight edges where " + short_text(kLeastEdge) +
-         " are needed; put a box before a wall");
+         " are required; put a box in front of a wall");
   }
 
   result.sensor = sensor_;
@@ -273,7 +273,7 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
   for (int turn = 0; turn < kTurns; ++turn) {
     result.steps = steps_of(smooth, result.sensor, depths_.size(), lateral);
     if (result.steps.empty() || factor_of(result.steps) < 1e-3) {
-      fail("readings of smooth surfaces hardly scatter along the ray, are they filtered?");
+      fail("readings of smooth surfaces hardly scatter along the ray. Are they filtered?");
     }
     std::visit(AxialFit{result.steps}, result.sensor.noise);
   }

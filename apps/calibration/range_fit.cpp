@@ -40,7 +40,7 @@ RangeFit::RangeFit(const Sensor& sensor) : sensor_(sensor) {
 }
 
 void RangeFit::add(const DepthFrame& frame, const Pose& T_world_camera, const std::string& name) {
-  if (frame.depth.size() != rays_.size()) refuse(name + ": has another size than the sensor");
+  if (frame.depth.size() != rays_.size()) refuse(name + ": has a different size from the sensor");
   const auto saturated =
       std::count(frame.amplitude.begin(), frame.amplitude.end(), DepthFrame::kSaturated);
   if (static_cast<double>(saturated) > kMostSaturated * static_cast<double>(rays_.size())) {
@@ -84,7 +84,7 @@ void RangeFit::add(const DepthFrame& frame, const Pose& T_world_camera, const st
   if (cosine < kLeastCosine) {
     left_out_.push_back(name + ": the wall is seen at " +
                         short_text(std::round(std::acos(cosine) * 180 / std::numbers::pi)) +
-                        " deg, over 45");
+                        " deg, more than 45");
     return;
   }
   const Eigen::Matrix3d R = T_world_camera.rotation();
@@ -140,8 +140,9 @@ RangeFitResult RangeFit::solve() const {
     last = distance;
   }
   if (result.distances < kLeastDistances) {
-    fail_range("frames at " + std::to_string(result.distances) + " distances, and " +
-               std::to_string(kLeastDistances) + " are needed that differ by over 2 %" + named);
+    fail_range("frames at " + std::to_string(result.distances) + " distances; " +
+               std::to_string(kLeastDistances) +
+               " distances that differ by more than 2 % are required" + named);
   }
   Wall wall;
   wall.normal = Eigen::Vector3d::Zero();
@@ -151,7 +152,7 @@ RangeFitResult RangeFit::solve() const {
   for (const Frame& frame : frames_) {
     const double turn = std::acos(std::min(1.0, wall.normal.dot(frame.normal_world)));
     if (turn * 180 / std::numbers::pi > kMostTurn) {
-      fail_range(frame.name + " sees another wall than the others, or its pose is wrong");
+      fail_range(frame.name + " shows a different wall from the others, or its pose is wrong");
     }
     offsets.push_back(frame.plane_offset);
   }
@@ -238,14 +239,14 @@ RangeFitResult RangeFit::solve() const {
   Eigen::Index worst = 0;
   if (after.cwiseAbs().maxCoeff(&worst) > kMostFrameError) {
     fail_range(frames_[static_cast<std::size_t>(worst)].name + " is " + millimetres(after[worst]) +
-               " off the wall of the others: its pose is wrong, or the wall has moved");
+               " from the wall of the others: its pose is wrong, or the wall has moved");
   }
   Eigen::VectorXd all = Eigen::VectorXd::Zero(size);
   all.head(knots).setConstant(1.0 / static_cast<double>(knots));
   const double variance = squares / static_cast<double>(ranges.size());
   result.offset_sigma = std::sqrt(variance * std::max(0.0, all.dot(A.ldlt().solve(all))));
   if (!(result.offset_sigma < kMostOffsetSigma)) {
-    fail_range("an offset of the camera cannot be told from one of the wall (" +
+    fail_range("an offset of the camera cannot be distinguished from one of the wall (" +
                millimetres(result.offset_sigma) +
                "); turn the camera by 10 to 30 deg at "
                "more distances, or take more frames");

@@ -127,7 +127,7 @@ int guarded_run(int argc, char** argv) {
     leave(report("out of memory", kInternalError));
   } catch (const std::system_error& error) {
     const bool of_thread = error.code() == std::errc::resource_unavailable_try_again;
-    const std::string what = of_thread ? "no thread can be started" : "internal error";
+    const std::string what = of_thread ? "cannot start a thread" : "internal error";
     leave(report(what + ": " + error.what(), kInternalError));
   } catch (const std::exception& error) {
     return report(std::string("internal error: ") + error.what(), kInternalError);

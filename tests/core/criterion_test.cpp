@@ -126,7 +126,7 @@ TEST(CriterionNames, RoundTripAndListTheValidOnes) {
     EXPECT_EQ(parse_criterion(criterion_name(c)), c);
   }
   expect_error(ErrorCode::invalid_argument,
-               "unknown criterion 'entropy', valid are log_diagonal, log_determinant, trace",
+               "unknown criterion 'entropy'; valid values: log_diagonal, log_determinant, trace",
                [] { (void)parse_criterion("entropy"); });
   expect_error(ErrorCode::invalid_argument, "''", [] { (void)parse_criterion(""); });
 }

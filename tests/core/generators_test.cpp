@@ -257,7 +257,7 @@ TEST(Generators, RefuseWhatMakesNoSense) {
   expect_error(code, "radius", [] { (void)shell_poses(3, 0, 1, 1); });
   expect_error(code, "smaller radius", [] { (void)shell_poses(3, 2, 1, 1); });
   expect_error(code, "number of poses is 0", [] { (void)shell_poses(0, 1, 2, 1); });
-  expect_error(ErrorCode::capacity, "most possible", [] { (void)sphere_poses(200'000'000, 1); });
+  expect_error(ErrorCode::capacity, "the maximum is", [] { (void)sphere_poses(200'000'000, 1); });
 }
 
 }  // namespace

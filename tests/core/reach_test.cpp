@@ -146,7 +146,9 @@ TEST(Reach, RefusesWhatMakesNoSense) {
   refuse("shell 0 is inside out", [](ReachRegion& r) { r.shells = {{{0, 0, 0}, 2, 1}}; });
   refuse("shell 0 has the radius -", [](ReachRegion& r) { r.shells = {{{0, 0, 0}, -2, 1}}; });
   refuse("shell 0 is not finite", [&](ReachRegion& r) { r.shells = {{{0, nan, 0}, 0, 1}}; });
-  refuse("half-space 0 has the normal 0", [](ReachRegion& r) { r.half_spaces = {{{0, 0, 0}, 1}}; });
+  refuse("half-space 0 has a normal of length 0", [](ReachRegion& r) {
+    r.half_spaces = {{{0, 0, 0}, 1}};
+  });
   refuse("half-space 0 is not finite", [&](ReachRegion& r) { r.half_spaces = {{{0, 0, 1}, nan}}; });
   refuse("pose 0", [&](ReachRegion& r) { r.poses = {at(nan, 0, 0)}; });
   refuse("tolerance's distance", [](ReachRegion& r) { r.tolerance.distance = -1; });

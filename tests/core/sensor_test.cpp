@@ -34,7 +34,7 @@ TEST(SensorPresets, AreAllValid) {
   EXPECT_NO_THROW(Sensor{}.validate());
   EXPECT_EQ(Sensor{}.name, "sr4000");
   expect_error(ErrorCode::invalid_argument,
-               "unknown sensor 'sr3000', valid are sr4000, azure_kinect_nfov, kinect_v1, d435, "
+               "unknown sensor 'sr3000'; valid values: sr4000, azure_kinect_nfov, kinect_v1, d435, "
                "laser_line",
                [] { (void)sensor_preset("sr3000"); });
 }
@@ -59,9 +59,9 @@ TEST(SensorPresets, ATableOfRangesHasToLeaveRanges) {
     expect_error(ErrorCode::invalid_argument, part, [&] { sensor.validate(); });
   };
   refused({{1.0, 0.0}, {0.5, 0.0}}, "rise");
-  refused({{0.0, -0.1}}, "no range");
-  refused({{-1.0, -2.0}}, "no range");
-  refused({{0.5, 0.0}, {1.0, 1.0}}, "no range");
+  refused({{0.0, -0.1}}, "not a valid range");
+  refused({{-1.0, -2.0}}, "not a valid range");
+  refused({{0.5, 0.0}, {1.0, 1.0}}, "not a valid range");
   refused({{0.5, std::nan("")}}, "finite");
 }
 

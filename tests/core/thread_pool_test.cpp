@@ -333,7 +333,7 @@ TEST(Isa, AWishTheCpuLacksGivesTheBestItHas) {
 
 TEST(Isa, AnUnknownNameListsTheValidOnes) {
   const test::ScopedIsa environment("mmx");
-  test::expect_error(ErrorCode::invalid_argument, "'mmx'; valid are avx512, avx2, sse4",
+  test::expect_error(ErrorCode::invalid_argument, "'mmx'; valid values: avx512, avx2, sse4",
                      [] { (void)select_isa(); });
 }
 

@@ -40,7 +40,7 @@ Pose rigid_pose_of(const double* matrix) {
   if (!has_lowest_row(matrix)) {
     std::ostringstream text;
     text << "the lowest row of a pose is " << matrix[12] << ' ' << matrix[13] << ' ' << matrix[14]
-         << ' ' << matrix[15] << "; it must be 0 0 0 1 (matrices are given row by row)";
+         << ' ' << matrix[15] << "; it must be 0 0 0 1 (matrices are row-major)";
     refuse(text.str());
   }
   return pose_of(matrix);

@@ -222,8 +222,8 @@ vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_c
         const std::vector<VoxelContribution> own = evaluator->evaluator.contributions(pose);
         if (own.empty() &&
             evaluator->evaluator.evaluate(pose).status == ViewGain::Status::bad_pose) {
-          refuse("the pose is off from a rigid transform by " +
-                 short_text(orthonormality_error(pose)) + "; 1e-3 is allowed");
+          refuse("the pose deviates from a rigid transform by " +
+                 short_text(orthonormality_error(pose)) + "; the tolerance is 1e-3");
         }
         *found = own.size();
         const std::span<const VoxelContribution> wanted(own.data(), std::min(capacity, own.size()));

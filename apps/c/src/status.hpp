@@ -64,7 +64,8 @@ template <typename Struct>
 void require_size(std::size_t size, const std::string& name) {
   if (size == sizeof(Struct)) return;
   refuse("the size of " + name + " is " + std::to_string(size) +
-         " bytes; in this library, " VIEWGAIN_VERSION ", it is " + std::to_string(sizeof(Struct)));
+         " bytes, but in this library " VIEWGAIN_VERSION ", it is " +
+         std::to_string(sizeof(Struct)));
 }
 
 /// A struct that the caller has initialised, or for the library to fill.

@@ -51,7 +51,7 @@ void read_kinds(const LineReader& line, std::vector<Field>& fields) {
     } else if (word == "U") {
       fields[i].type.kind = Kind::unsigned_integer;
     } else {
-      line.fail("TYPE " + quoted(word) + " is none of F, I, U");
+      line.fail("TYPE " + quoted(word) + " is not F, I or U");
     }
   }
 }
@@ -64,7 +64,7 @@ Pose read_viewpoint(const LineReader& line) {
   // Drivers that know no rotation write zeros.
   if (q.squaredNorm() == 0) q.setIdentity();
   if (!(std::abs(q.norm() - 1) <= kMendableNorm)) {
-    line.fail("VIEWPOINT's quaternion has the norm " + short_text(q.norm()) + ", not 1");
+    line.fail("VIEWPOINT's quaternion must have norm 1, not " + short_text(q.norm()));
   }
   return {q.normalized().toRotationMatrix(), Eigen::Vector3d(v[0], v[1], v[2])};
 }
@@ -84,9 +84,9 @@ void lay_out(const LineReader& line, Header& header) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto is_axis = [&](const Field& f) { return f.name == kNames[axis]; };
     const auto found = std::find_if(header.fields.begin(), header.fields.end(), is_axis);
-    if (found == header.fields.end()) line.fail("there is no field " + quoted(kNames[axis]));
+    if (found == header.fields.end()) line.fail("missing field " + quoted(kNames[axis]));
     if (std::any_of(found + 1, header.fields.end(), is_axis)) {
-      line.fail("the field " + quoted(kNames[axis]) + " stands there twice");
+      line.fail("the field " + quoted(kNames[axis]) + " is declared twice");
     }
     if (found->count != 1) line.fail("field " + quoted(kNames[axis]) + " must have COUNT 1");
     header.xyz[axis] = static_cast<std::size_t>(found - header.fields.begin());
@@ -101,19 +101,19 @@ Header read_header(LineReader& line) {
   constexpr std::size_t kMostFields = 1000;
   constexpr std::size_t kMostCount = 100000;
   while (header.data == Data::none) {
-    if (!line.next()) line.fail("the header is cut: it has no line DATA");
+    if (!line.next()) line.fail("the header is truncated: it has no line DATA");
     const auto& words = line.words();
     if (words.empty() || words[0].front() == '#' || words[0] == "VERSION") continue;
     const auto each_field = [&](auto&& read) {
       if (header.fields.empty()) line.fail("FIELDS must come first");
       if (words.size() != header.fields.size() + 1) {
-        line.fail(std::string(words[0]) + " needs a word for each of the " +
+        line.fail(std::string(words[0]) + " needs one word for each of the " +
                   std::to_string(header.fields.size()) + " fields");
       }
       for (std::size_t i = 0; i < header.fields.size(); ++i) read(header.fields[i], i + 1);
     };
     if (words[0] == "FIELDS" || words[0] == "COLUMNS") {
-      if (!header.fields.empty()) line.fail("FIELDS stands there twice");
+      if (!header.fields.empty()) line.fail("FIELDS is declared twice");
       if (words.size() < 2 || words.size() > kMostFields) line.fail("FIELDS needs 1 to 999 names");
       for (std::size_t i = 1; i < words.size(); ++i) header.fields.push_back({words[i], {}});
     } else if (words[0] == "SIZE") {
@@ -140,8 +140,7 @@ Header read_header(LineReader& line) {
       header.data = data == "ascii" ? Data::ascii : data == "binary" ? Data::binary : Data::none;
       if (header.data == Data::none) {
         line.fail("DATA " + quoted(data) +
-                  " is none of ascii, binary; pcl_convert_pcd_ascii_binary"
-                  " writes these");
+                  " is not ascii or binary; convert the file with pcl_convert_pcd_ascii_binary");
       }
     } else {
       line.fail("the header's word " + quoted(words[0]) + " is unknown");
@@ -153,7 +152,7 @@ Header read_header(LineReader& line) {
   if (height != 0 && width > kMostPoints / height) line.fail("WIDTH x HEIGHT is too large");
   if (!has_points) header.points = width * height;
   if (has_width && header.points != width * height) {
-    line.fail("POINTS " + std::to_string(header.points) + " is not WIDTH x HEIGHT");
+    line.fail("POINTS " + std::to_string(header.points) + " differs from WIDTH x HEIGHT");
   }
   lay_out(line, header);
   return header;
@@ -168,7 +167,7 @@ void read_ascii(LineReader& line, const Header& header,
     }
     if (line.words().empty() || line.words()[0].front() == '#') continue;
     if (line.words().size() != header.point_words) {
-      line.fail("a point has " + std::to_string(header.point_words) + " words, here are " +
+      line.fail("a point has " + std::to_string(header.point_words) + " words; found " +
                 std::to_string(line.words().size()));
     }
     auto& point = points.emplace_back();
@@ -176,7 +175,7 @@ void read_ascii(LineReader& line, const Header& header,
   }
   while (line.next()) {
     if (line.words().empty() || line.words()[0].front() == '#') continue;
-    line.fail("the file goes on behind its last point");
+    line.fail("the file continues after its last point");
   }
 }
 
@@ -187,8 +186,8 @@ void read_binary(const LineReader& line, const Header& header,
   if (header.points * header.point_bytes > data.size()) {
     throw Error(ErrorCode::format, line.name() + ": " + std::to_string(header.points) +
                                        " points of " + std::to_string(header.point_bytes) +
-                                       " bytes are said, " + std::to_string(data.size()) +
-                                       " bytes are there");
+                                       " bytes are declared, but " + std::to_string(data.size()) +
+                                       " bytes are present");
   }
   points.resize(header.points);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -217,7 +216,7 @@ PointCloud parse_ply(std::string_view bytes, const std::string& name) {
   const auto& elements = file.elements();
   const auto vertices = std::find_if(elements.begin(), elements.end(),
                                      [](const PlyElement& e) { return e.name == "vertex"; });
-  if (vertices == elements.end()) file.fail("there is no element \"vertex\"");
+  if (vertices == elements.end()) file.fail("the element \"vertex\" is missing");
   constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
   std::array<std::size_t, 3> xyz{};
   for (std::size_t a = 0; a < 3; ++a) {

@@ -56,7 +56,7 @@ std::optional<Sensor> map_sensor(const BeliefGrid& grid) {
 
 void check_map_name(const std::filesystem::path& path) {
   if (small_ending(path) == ".bt") {
-    refuse(path.string() + ": .bt files can only be read; write a .ot file instead");
+    refuse(path.string() + ": .bt files are read-only; write a .ot file instead");
   }
   require_ending(path, "a map to write", {".vdb", ".ot"});
 }

@@ -29,7 +29,7 @@ void write_ply(const std::filesystem::path& path, const PlyArrays& arrays) {
   };
   const auto check_count = [&](std::size_t count, const char* what) {
     if (count == 0 || count == points.size()) return;
-    refuse(std::to_string(points.size()) + " points but " + std::to_string(count) + " " + what);
+    refuse(std::to_string(points.size()) + " points, but " + std::to_string(count) + " " + what);
   };
   check_count(normals.size(), "normals");
   check_count(sigma.size(), "sigmas");

@@ -88,7 +88,7 @@ ReachRegion read_reach_toml(const std::filesystem::path& path) {
   if (reader.find("poses") != nullptr) {
     region.poses = load_poses(path.parent_path() / reader.text("poses")).poses;
     // No poses at all would mean that every pose is in reach.
-    if (region.poses.empty()) reader.fail("poses", "names a file without poses");
+    if (region.poses.empty()) reader.fail("poses", "refers to a file without poses");
   }
   if (reader.find("tolerance") != nullptr) {
     region.tolerance = read_tolerance(reader.table("tolerance"));
@@ -112,8 +112,9 @@ void write_reach_toml(const std::filesystem::path& path, const ReachRegion& regi
   poses.replace_extension(".poses.txt");
   if (!region.poses.empty()) {
     if (is_special_file(path)) {
-      refuse(path.string() +
-             ": a region with poses needs a regular file: the poses are written beside it");
+      refuse(
+          path.string() +
+          ": a region with poses needs a regular file; its poses are written to a file next to it");
     }
     root.insert("poses", poses.filename().string());
   }

@@ -25,7 +25,7 @@ PinholeCamera read_camera(TableReader reader) {
   camera.width = reader.whole_number("width");
   camera.height = reader.whole_number("height");
   if (static_cast<std::int64_t>(camera.width) * camera.height > kMostPixels) {
-    reader.fail("width", "times height is over " + std::to_string(kMostPixels) + " pixels");
+    reader.fail("width", "times height exceeds " + std::to_string(kMostPixels) + " pixels");
   }
   camera.fx = reader.number("fx");
   camera.fy = reader.number("fy");
@@ -45,8 +45,9 @@ NoiseModel read_noise(TableReader reader) {
       std::find_if(kNoiseModels.begin(), kNoiseModels.end(),
                    [&](const NoiseModel& one) { return noise_model_name(one) == model; });
   if (known == kNoiseModels.end()) {
-    reader.fail("model", "is \"" + model +
-                             "\", not one of shot, structured_light, stereo, quadratic, constant");
+    reader.fail(
+        "model",
+        "is \"" + model + "\"; valid values: shot, structured_light, stereo, quadratic, constant");
   }
   NoiseModel noise = *known;
   for_each_parameter(noise, [&](double& value, const auto& field) {
@@ -72,7 +73,7 @@ Pose read_mounting(const TableReader& reader, const toml::node& node) {
     }
   }
   const double error = orthonormality_error(pose);
-  if (!(error <= kMendable)) reader.fail(kKey, "is no rigid transform");
+  if (!(error <= kMendable)) reader.fail(kKey, "is not a rigid transform");
   return error > kExact ? orthonormalized(pose) : pose;
 }
 
@@ -120,7 +121,7 @@ Sensor sensor_of(const toml::table& root, const std::string& file) {
   if (reader.find("out_of_range") != nullptr) {
     const std::string meaning = reader.text("out_of_range");
     if (meaning != "carve" && meaning != "invalid") {
-      reader.fail("out_of_range", "is \"" + meaning + "\", not carve or invalid");
+      reader.fail("out_of_range", "is \"" + meaning + "\"; valid values: carve, invalid");
     }
     sensor.out_of_range =
         meaning == "carve" ? Sensor::OutOfRange::carve : Sensor::OutOfRange::invalid;
@@ -163,8 +164,8 @@ Sensor load_sensor(const std::string& preset_or_file) {
   if (is_sensor_file(preset_or_file)) return read_sensor_toml(preset_or_file);
   const std::vector<std::string>& names = sensor_preset_names();
   if (std::find(names.begin(), names.end(), preset_or_file) == names.end()) {
-    refuse("sensor \"" + preset_or_file + "\": no such preset, and no .toml file" +
-           did_you_mean(preset_or_file, names) + " (there are " + listed(names) + ")");
+    refuse("sensor \"" + preset_or_file + "\": no such preset and not a .toml file" +
+           did_you_mean(preset_or_file, names) + " (presets: " + listed(names) + ")");
   }
   return sensor_preset(preset_or_file);
 }

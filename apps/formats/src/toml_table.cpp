@@ -68,7 +68,7 @@ int TableReader::whole_number(std::string_view key) {
 void TableReader::check_format() {
   if (find("format") == nullptr || whole_number("format") <= kTomlFormat) return;
   fail("format", "is " + std::to_string(whole_number("format")) +
-                     "; this library reads files up to format " + std::to_string(kTomlFormat));
+                     "; this library reads up to format " + std::to_string(kTomlFormat));
 }
 
 std::string TableReader::text(std::string_view key) {

@@ -82,12 +82,12 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 void check_gains(const std::vector<ClassicGain>& gains) {
-  if (gains.empty()) refuse("no classic gain is asked for");
+  if (gains.empty()) refuse("no classic gain is requested");
   for (std::size_t i = 0; i < gains.size(); ++i) {
     if (std::find(gains.begin(), gains.begin() + static_cast<std::ptrdiff_t>(i), gains[i]) !=
         gains.begin() + static_cast<std::ptrdiff_t>(i)) {
       std::string text("the classic gain ");
-      refuse(text.append(classic_gain_name(gains[i])).append(" is asked for twice"));
+      refuse(text.append(classic_gain_name(gains[i])).append(" is requested twice"));
     }
   }
 }
@@ -103,15 +103,15 @@ const ClassicConfig& checked(const ClassicConfig& config) {
 
 std::shared_ptr<const ClassicMap> checked(std::shared_ptr<const ClassicMap> map,
                                           const ClassicConfig& config) {
-  if (!map) refuse("the classic gains have no map");
+  if (!map) refuse("the classic gains need a map");
   const OcclusionKnown known = ClassicAccess::data(*map).occlusion;
   for (const ClassicGain gain : config.gains) {
     if (!needs_occlusion(gain) || known == OcclusionKnown::yes) continue;
     std::string text(classic_gain_name(gain));
-    text.append(" needs to know what earlier views have left behind surfaces: ");
+    text.append(" needs to know what earlier views left behind surfaces, but ");
     refuse(text.append(known == OcclusionKnown::no_views
-                           ? "the map remembers no views"
-                           : "the sensor that the map's readings came from is not given"));
+                           ? "the map records no views"
+                           : "the sensor of the map's readings is not given"));
   }
   return map;
 }
@@ -259,11 +259,11 @@ std::size_t ClassicGainEvaluator::evaluate(std::span<const Pose> T_world_camera,
                                            const BatchControl& control) const {
   const std::size_t poses = T_world_camera.size(), gains = config().gains.size();
   if (results.size() != poses * gains) {
-    refuse(std::to_string(poses) + " poses of " + std::to_string(gains) + " gains but room for " +
+    refuse(std::to_string(poses) + " poses of " + std::to_string(gains) + " gains, but room for " +
            std::to_string(results.size()) + " results");
   }
   if (!statuses.empty() && statuses.size() != poses) {
-    refuse(std::to_string(poses) + " poses but room for " + std::to_string(statuses.size()) +
+    refuse(std::to_string(poses) + " poses, but room for " + std::to_string(statuses.size()) +
            " statuses");
   }
   std::fill(results.begin(), results.end(), kNaN);

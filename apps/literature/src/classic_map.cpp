@@ -23,11 +23,11 @@ constexpr double kMostDepth = 140;  // [voxels]
 
 void check(const VoxelScene* scene, const BeliefGrid& grid,
            const std::optional<Acquisition>& acquisition) {
-  if (scene == nullptr) refuse("the classic gains have no scene");
+  if (scene == nullptr) refuse("the classic gains need a scene");
   const GridSnapshot& snapshot = scene->snapshot();
   if (!(snapshot.min_index == grid.min_index() && snapshot.dims == grid.dims() &&
         snapshot.voxel_size == grid.voxel_size() && snapshot.T_world_grid == grid.T_world_grid())) {
-    refuse("the scene is not of this map: their workspaces differ");
+    refuse("the scene does not belong to this map: their workspaces differ");
   }
   if (!acquisition) return;
   acquisition->sensor.validate();

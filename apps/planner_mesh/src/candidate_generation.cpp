@@ -28,7 +28,7 @@ EstimatorConfig default_estimator(double spacing) {
   if (!(spacing > 0) || !std::isfinite(spacing)) {
     throw Error(
         ErrorCode::invalid_argument,
-        "the spacing of a surface's points must be positive, not " + short_text(spacing) + " m");
+        "the spacing of surface points must be positive, not " + short_text(spacing) + " m");
   }
   constexpr double kDegree = std::numbers::pi / 180;
   EstimatorConfig config;

@@ -44,7 +44,7 @@ const double kLeastCosine = std::cos(72.0 * std::numbers::pi / 180);
 
 const KnownObject& checked(const KnownObject& object) {
   if (!object.mesh || !object.truth) {
-    refuse("policy \"oracle\" needs the object's mesh, which only a simulation knows");
+    refuse("policy \"oracle\" requires the object's mesh, which only a simulation has");
   }
   return object;
 }
@@ -201,10 +201,10 @@ void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                     std::optional<double> stop_gain, std::optional<double> stop_area) {
   const bool by_gain = policy.policy == Policy::gain && policy.registered.empty();
   if (!by_gain && stop_area.value_or(0) > 0) {
-    refuse("stop_area goes with policy gain by the gains surface and combined");
+    refuse("stop_area requires policy gain with the gain surface or combined");
   }
   if (!by_gain && stop_gain.value_or(0) > 0) {
-    refuse("stop_gain goes with policy gain by the gain paper");
+    refuse("stop_gain requires policy gain with the gain paper");
   }
   // A policy without a gain per voxel never asks for the rule of the paper's.
   set_stop_rules(planning, by_gain ? policy.model : GainModel::paper, policy.criterion, stop_gain,
@@ -222,7 +222,7 @@ PolicyDecision::PolicyDecision(const SurfaceModel& model, CandidateGeneration& g
       order_(0.5 * generation.config().boundary.estimator.patch_length) {
   config.ahead.check();
   if (config.ahead.is_on() && !is_by_gain()) {
-    refuse("views are planned ahead by policy gain by the gains paper, surface and combined");
+    refuse("planning ahead requires policy gain with the gain paper, surface or combined");
   }
   if (config.policy == Policy::oracle) oracle_.emplace(model, sensor, config.object, exec);
   if (config.policy == Policy::gain && !config.registered.empty()) {

@@ -76,10 +76,9 @@ ModelProgress SurfaceModel::update(const Measurements& measurements) {
   const bool first = grid().views().empty();
   const MapUpdate update = scorer_.add(measurements);
   if (first && update.counts.readings_inside == 0) {
-    throw Error(
-        ErrorCode::invalid_argument,
-        "the first view has no reading in the workspace: the start pose looks away from it, "
-        "is out of range, or something known hides it");
+    throw Error(ErrorCode::invalid_argument,
+                "the first view has no reading in the workspace: the start pose looks away from "
+                "it, is out of range, or a known obstacle hides it");
   }
   if (!is_in_map(update.verdict)) tried_.push_back(measurements.T_world_camera);
   return progress_after(update);

@@ -108,7 +108,7 @@ Stage set_stage(const StageConfig& config, const ExecConfig& exec) {
   if (config.support_plane) {
     stage.workspace.min[2] = std::max(stage.workspace.min[2], *config.support_plane);
     if (!(stage.workspace.min[2] < stage.workspace.max[2])) {
-      refuse("the workspace lies under the support plane at " + short_text(*config.support_plane) +
+      refuse("the workspace lies below the support plane at " + short_text(*config.support_plane) +
              " m");
     }
   }
@@ -188,7 +188,7 @@ QualityFigures quality_figures(const GroundTruth& truth, const SurfaceMesh& surf
                                std::span<const FusedPoint> points, double tolerance,
                                std::span<const std::uint8_t> visible) {
   if (visible.size() != truth.samples().size()) {
-    refuse(std::to_string(truth.samples().size()) + " samples but " +
+    refuse(std::to_string(truth.samples().size()) + " samples, but " +
            std::to_string(visible.size()) + " marks");
   }
   const PointArrays arrays = arrays_of(points);

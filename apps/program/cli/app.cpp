@@ -31,7 +31,7 @@ CLI::Validator several_of(const std::vector<std::string>& names, const char* wha
           shown(names)};
 }
 
-CLI::Validator on_or_off() { return one_of({"on", "off"}, "position of a switch"); }
+CLI::Validator on_or_off() { return one_of({"on", "off"}, "value"); }
 
 CLI::Validator counted(std::size_t least, std::size_t most) {
   return CLI::Range(least, most, "count");

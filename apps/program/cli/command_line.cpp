@@ -38,13 +38,13 @@ std::string fault_of_flag(const App& called, const std::string& flag) {
   std::vector<std::string> flags;
   for (const Option* option : options_of_call(called)) {
     const std::string name = option->get_name();
-    if (flag == name) return flag + ": stands after the subcommand, " + called.get_name();
+    if (flag == name) return flag + ": must follow the subcommand " + called.get_name();
     if (option->nonpositional()) flags.push_back(name);
     if (flag == "--" + CLI::detail::to_lower(name)) {  // a positional's
-      return flag + ": " + name + " is positional; give it without a flag";
+      return flag + ": " + name + " is positional; give it without the flag";
     }
   }
-  return flag + ": no such flag of " + called.get_name() + did_you_mean(flag, flags);
+  return flag + ": unknown flag for " + called.get_name() + did_you_mean(flag, flags);
 }
 
 bool is_flag(const std::string& word) {
@@ -73,7 +73,7 @@ std::string fault_of_extras(const App& program, const CLI::ParseError& error) {
   }
   const bool is_of_words = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
   if (extras.empty() || !is_of_words) return {};
-  return extras.front() + ": " + called.front()->get_name() + " takes no more words";
+  return extras.front() + ": " + called.front()->get_name() + " takes no further arguments";
 }
 
 // A flag in the place of a flag's value: a value that begins so is given as --flag=--value.
@@ -115,7 +115,8 @@ std::string fault_of_folder(const App& called) {
         std::filesystem::exists(map_in(path), ignored)) {
       continue;
     }
-    return path.string() + ": is a folder without a map; frames become a map by viewgain model " +
+    return path.string() +
+           ": the folder holds no map; to make one from frames, run viewgain model " +
            path.string() + " --voxel V --out RUN";
   }
   return {};
@@ -123,13 +124,13 @@ std::string fault_of_folder(const App& called) {
 
 std::unique_ptr<App> make_program(CommonOptions& common) {
   auto program = std::make_unique<App>(
-      "viewgain scores camera poses by expected information gain: simulate or read depth frames, "
-      "integrate them into a voxel map, score candidate views against it. Units: m, rad, s, nat, "
-      "unless said otherwise.",
+      "viewgain scores camera poses by expected information gain. It simulates or reads depth "
+      "frames, integrates them into a voxel map and scores candidate views against it. Units are "
+      "m, rad, s and nat unless stated otherwise.",
       "viewgain");
   program->formatter(std::make_shared<HelpFormatter>());
-  program->set_help_flag("-h", "the options that most calls need");
-  program->set_help_all_flag("--help", "all options");
+  program->set_help_flag("-h", "print the most common options");
+  program->set_help_all_flag("--help", "print all options");
   program->require_subcommand(1);
   program->fallthrough();
   program->option_defaults()->always_capture_default();
@@ -138,8 +139,8 @@ std::unique_ptr<App> make_program(CommonOptions& common) {
                             "print the version");
   program
       ->set_config("--config", "",
-                   "TOML file of flags, with flag names without -- and positionals (mesh, map) as "
-                   "keys; the command line takes precedence")
+                   "TOML file of flags: keys are flag names without -- and positionals (mesh, "
+                   "map); the command line takes precedence")
       ->type_name("FILE");
   program->config_formatter(std::make_shared<FlagFile>(*program));
   return program;

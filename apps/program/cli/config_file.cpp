@@ -82,7 +82,7 @@ std::string word_of(const TableReader& reader, const std::string& key, const tom
   const toml::array* list = node.as_array();
   if (list == nullptr || list->empty() ||
       std::any_of(list->begin(), list->end(), [](const auto& part) { return part.is_array(); })) {
-    reader.fail(key, "must be a text, a number, or a list of these");
+    reader.fail(key, "must be a string, a number, or a list of these");
   }
   std::string words;
   for (const toml::node& part : *list) {
@@ -104,7 +104,7 @@ Words values_of(const TableReader& reader, const std::string& key, const toml::n
     return {word_of(reader, key, node, kind_of(option), usual == "on" || usual == "off")};
   }
   if (list == nullptr) {
-    reader.fail(key, "must be a list, with an element for each " + option.get_name());
+    reader.fail(key, "must be a list with one element for each " + option.get_name());
   }
   Words values;
   for (const toml::node& part : *list) {
@@ -202,7 +202,7 @@ std::vector<CLI::ConfigItem> FlagFile::from_config(std::istream& in) const {
   for (const auto& [key, node] : file) {
     const std::string gone = successor_of("--" + std::string(key.str()));
     const Option* known = called.front()->get_option_no_throw("--" + std::string(key.str()));
-    if (!gone.empty() && known == nullptr) reader.fail(key.str(), "is of a flag: " + gone);
+    if (!gone.empty() && known == nullptr) reader.fail(key.str(), "is of a removed flag: " + gone);
   }
   reader.refuse_unknown_keys();
   return given;
@@ -214,7 +214,7 @@ std::string FlagFile::to_config(const App* app, bool, bool, std::string) const {
 
 std::string config_text(const App& subcommand, const Words& left_out) {
   std::string text =
-      "# viewgain " + subcommand.get_name() + " --config FILE; what is behind a # is the default\n";
+      "# viewgain " + subcommand.get_name() + " --config FILE; values after # are the defaults\n";
   for (const Option* option : settable_options(subcommand)) {
     const std::string key = key_of(*option);
     if (std::find(left_out.begin(), left_out.end(), key) != left_out.end()) continue;
@@ -224,7 +224,7 @@ std::string config_text(const App& subcommand, const Words& left_out) {
     } else if (const std::string value = value_of(*option); is_utf8(value)) {
       text += key + " = " + value + "\n";
     } else {
-      text += "# not UTF-8, to be given on the command line: " + key + "\n";
+      text += "# not UTF-8; give it on the command line: " + key + "\n";
     }
   }
   return text;

@@ -97,6 +97,10 @@ std::string subcommands_of(const App& program) {
 
 void begin_group(App& app, const char* head) { app.option_defaults()->group(head); }
 
+void explain_values(App& app, const std::string& text) {
+  app.footer(app.get_footer() + text + "\n");
+}
+
 void most_need(App& app, const std::vector<const char*>& names) {
   for (const char* name : names) app.get_option(name)->group(kMostNeed);
 }
@@ -131,7 +135,8 @@ std::string HelpFormatter::make_help(const App* app, std::string, CLI::AppFormat
     text += shows_all ? "\nviewgain --help lists the global options.\n"
                       : "\nMore options: viewgain " + app->get_name() + " --help\n";
   }
-  return text + "\n" + continued(app->get_footer());
+  const std::string footer = app->get_footer();
+  return text + "\n" + continued(shows_all ? footer : footer.substr(footer.find("Example")));
 }
 
 }  // namespace viewgain::app

@@ -15,6 +15,10 @@ void begin_group(App& app, const char* head);
 /// Puts these options into the group that -h shows alone: what most calls need, ten at most.
 void most_need(App& app, const std::vector<const char*>& names);
 
+/// --help ends with this text about the values of an option, before the examples. Its lines have at
+/// most 80 columns.
+void explain_values(App& app, const std::string& text);
+
 /// -h shows the positionals and most_need(), --help all options in their groups, both in lines of
 /// at most 80 columns.
 class HelpFormatter : public CLI::Formatter {

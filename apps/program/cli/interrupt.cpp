@@ -25,8 +25,7 @@ bool ended = false;
 
 // Not how long it is: the kernel raises the limit with each signal.
 void say_that_time_is_up(const char* what_follows) {
-  std::fprintf(stderr, "viewgain: the limit on processor time is reached (ulimit -t)%s\n",
-               what_follows);
+  std::fprintf(stderr, "viewgain: processor time limit reached (ulimit -t)%s\n", what_follows);
 }
 
 // Whether the signal was only a wish to stop. That of the processor's time comes again each second
@@ -35,7 +34,7 @@ bool asks_for_a_stop(int signal) {
   const std::lock_guard lock(mutex);
   if (guarded != nullptr && signal != SIGQUIT) {
     const bool is_first = guarded->request_stop();
-    if (signal == SIGXCPU && is_first) say_that_time_is_up("; the call stops after this step");
+    if (signal == SIGXCPU && is_first) say_that_time_is_up("; the command stops after this step");
     if (is_first || signal == SIGXCPU) return true;
   }
   ended = true;

@@ -39,21 +39,21 @@ constexpr std::array kSuccessors{
     Successor{"--elevation", "--viewer AZIMUTH,ELEVATION"},
     Successor{"--min-range", "min_range in a sensor's file"},
     Successor{"--max-range", "max_range in a sensor's file"},
-    Successor{"--amplitude", "a sensor with shot noise, for which they are written"},
-    Successor{"--overlap", "EstimatorConfig::overlap of the library"},
-    Successor{"--region-depth", "EstimatorConfig::region_depth of the library"},
-    Successor{"--refine", "ScorerConfig::refine of the library"},
-    Successor{"--carve", "ScorerConfig::carve of the library"},
-    Successor{"--occupancy", "ScorerConfig::occupancy of the library"},
-    Successor{"--calibrate-hazard", "ScorerConfig::learn_hazard of the library"},
+    Successor{"--amplitude", "a sensor with shot noise, for which amplitudes are written"},
+    Successor{"--overlap", "EstimatorConfig::overlap in the library"},
+    Successor{"--region-depth", "EstimatorConfig::region_depth in the library"},
+    Successor{"--refine", "ScorerConfig::refine in the library"},
+    Successor{"--carve", "ScorerConfig::carve in the library"},
+    Successor{"--occupancy", "ScorerConfig::occupancy in the library"},
+    Successor{"--calibrate-hazard", "ScorerConfig::learn_hazard in the library"},
     Successor{"--what", "viewgain render MAP KIND"},
     Successor{"--hash", "viewgain info MAP --json"},
     Successor{"--region", "--workspace BOX"},
     Successor{"--recenter", "--place center"},
     Successor{"--object-size", "--hazard size=L"},
     Successor{"--with-covariance", "viewgain convert MAP OUT.vdb"},
-    Successor{"--stride", "GainConfig::pixel_stride of the library"},
-    Successor{"--refinement-weight", "GainConfig::refinement_weight of the library"}};
+    Successor{"--stride", "GainConfig::pixel_stride in the library"},
+    Successor{"--refinement-weight", "GainConfig::refinement_weight in the library"}};
 
 }  // namespace
 

@@ -45,7 +45,7 @@ std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc{} || end != word.data() + word.size()) {
-      refuse(flag, text, std::string("\"").append(word).append("\" is no number"));
+      refuse(flag, text, std::string("\"").append(word).append("\" is not a number"));
     }
     if (!std::isfinite(value)) refuse(flag, text, "numbers must be finite");
     numbers.push_back(value);
@@ -54,7 +54,7 @@ std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
     refuse(flag, text,
            "needs " + std::to_string(min_count) +
                (min_count == max_count ? "" : " to " + std::to_string(max_count)) +
-               " numbers separated by commas, has " + std::to_string(numbers.size()));
+               " numbers separated by commas, found " + std::to_string(numbers.size()));
   }
   return numbers;
 }
@@ -62,7 +62,7 @@ std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
 std::size_t parse_count(std::string_view flag, double value) {
   constexpr double kMaxCount = 1e7;
   if (!(value >= 0 && value <= kMaxCount && value == std::floor(value))) {
-    refuse(flag, short_text(value), "the count must be a whole number from 0 to 10000000");
+    refuse(flag, short_text(value), "must be a whole number from 0 to 10000000");
   }
   return static_cast<std::size_t>(value);
 }
@@ -71,7 +71,7 @@ Box box_of(std::string_view flag, const std::vector<double>& numbers) {
   const Box box{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(box.min[k] < box.max[k])) {
-      refuse(flag, describe(box), "the box is inside out or has no extent");
+      refuse(flag, describe(box), "the box is inside out or empty");
     }
   }
   return box;
@@ -93,7 +93,7 @@ Pose parse_pose(std::string_view flag, std::string_view text) {
   const std::vector<double> n = parse_numbers(flag, text, 7, 7);
   const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
   if (!(std::abs(q.norm() - 1) < 1e-2)) {
-    refuse(flag, text, "the quaternion qx,qy,qz,qw has the norm " + short_text(q.norm()));
+    refuse(flag, text, "the quaternion qx,qy,qz,qw must have norm 1, not " + short_text(q.norm()));
   }
   return {q.normalized().toRotationMatrix(), Eigen::Vector3d(n[0], n[1], n[2])};
 }
@@ -107,9 +107,8 @@ std::string fault_of_name(const std::string& value, const std::vector<std::strin
                           const char* what) {
   if (std::find(names.begin(), names.end(), value) != names.end()) return {};
   const std::string nearest = did_you_mean(value, names);
-  const std::string there = names.size() == 1 ? "here is " : "here are ";
-  return value + " is no " + what + (nearest.empty() ? "; t" : nearest + " T") + there +
-         listed(names);
+  return "unknown " + std::string(what) + " " + value +
+         (nearest.empty() ? "; valid: " : nearest + " Valid: ") + listed(names);
 }
 
 std::vector<std::string> names_in(std::string_view text) {
@@ -186,7 +185,7 @@ std::string counts_text(const std::map<std::string, std::size_t>& counts) {
 
 void print_mended(std::size_t poses) {
   if (poses == 0) return;
-  std::printf("rotations that were off and were orthonormalised: %zu\n", poses);
+  std::printf("rotations orthonormalised: %zu\n", poses);
 }
 
 void check_finite(std::string_view flag, double value) {

@@ -43,8 +43,8 @@ using viewgain::refuse;
 /// x,y,z [m]. Throws Error(invalid_argument) naming the flag.
 [[nodiscard]] Eigen::Vector3d parse_point(std::string_view flag, std::string_view text);
 
-/// What is wrong with a value that is to be one of the names: "surfce is no gain; did you mean
-/// surface? There are paper, surface, combined"; empty: nothing.
+/// The error text for a value that must be one of the names: "unknown gain surfce; did you mean
+/// surface? Valid: paper, surface, combined". Empty if nothing is wrong.
 [[nodiscard]] std::string fault_of_name(const std::string& value,
                                         const std::vector<std::string>& names, const char* what);
 

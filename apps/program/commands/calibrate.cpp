@@ -120,16 +120,16 @@ void calibrate_range(const Options& options) {
                 {"seconds", watch.seconds()}});
     return;
   }
-  std::printf("%zu frames at %zu distances: error %.2f mm RMS, %.2f mm with the table\n",
+  std::printf("%zu frames at %zu distances: range error %.2f mm RMS, %.2f mm after calibration\n",
               counts.used - result.left_out.size(), result.distances, 1e3 * result.rms_before,
               1e3 * result.rms_after);
   if (!counts.bad.empty()) std::printf("left out: %s\n", counts_text(counts.bad).c_str());
-  std::printf("%s: %s with this range_calibration\n", options.out.c_str(),
+  std::printf("%s: sensor %s with this range_calibration\n", options.out.c_str(),
               result.sensor.name.c_str());
 }
 
 void calibrate(const Options& options) {
-  if (options.noise == options.range) refuse("give one of --noise and --range");
+  if (options.noise == options.range) refuse("give either --noise or --range");
   if (options.range) return calibrate_range(options);
   const Stopwatch watch;
   const FrameSequence frames = opened_frames(options, &open_depth_images);
@@ -167,11 +167,11 @@ void calibrate(const Options& options) {
     std::printf("%10.3f %10s %16.3f %12.3f\n", step.range, with_commas(step.pixels).c_str(),
                 1e3 * step.sigma_axial, 1e3 * step.fitted_axial);
   }
-  std::printf("%zu frames (%s); across the ray %.3f px, by %.0f px of edges%s\n", used,
+  std::printf("%zu frames (%s); lateral sigma %.3f px, from %.0f px of edges%s\n", used,
               result.sensor.name.c_str(), result.sigma_lateral_px, result.edge_length,
-              result.lateral_in_model ? "" : "; its model always has 1 px");
+              result.lateral_in_model ? "" : "; the noise model fixes it at 1 px");
   if (!bad.empty()) std::printf("left out: %s\n", counts_text(bad).c_str());
-  std::printf("%s: %s with this noise\n", options.out.c_str(), result.sensor.name.c_str());
+  std::printf("%s: sensor %s with this noise\n", options.out.c_str(), result.sensor.name.c_str());
 }
 
 }  // namespace
@@ -180,17 +180,18 @@ Command add_calibrate(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "calibrate",
-      "Measures a depth camera and writes a sensor file. --noise: how readings scatter, from 30 "
-      "frames or more of a static scene from one pose. --range: by how much ranges are off, from "
-      "frames of one flat wall at 8 distances or more with poses.");
+      "Measure a depth camera and write a sensor file. --noise measures the scatter of readings, "
+      "from at least 30 frames of a static scene from one pose. --range measures the error of "
+      "ranges, from frames with poses of one flat wall at 8 distances or more.");
   app->add_option("FRAMES_DIR", options->frames, "folder of frames")->required();
   app->add_flag("--noise", options->noise,
-                "measure sigma_ax and sigma_lat, in the sensor's own noise model; the scene needs "
-                "edges before a wall, poses need not be there");
+                "measure sigma_ax and sigma_lat in the sensor's noise model; requires edges in "
+                "front of a wall, but no poses");
   app->add_flag("--range", options->range,
-                "measure the table range_calibration; some views should be turned by 10 to 30 deg");
-  app->add_option("--sensor", options->sensor,
-                  kSensorHelp + "; default: FRAMES_DIR/sensor.toml. The measured part is replaced");
+                "measure range_calibration; turn the camera by 10 to 30 deg in some views");
+  app->add_option(
+      "--sensor", options->sensor,
+      kSensorHelp + "; the measured part is replaced (default: FRAMES_DIR/sensor.toml)");
   app->add_option("--depth-scale", options->depth_scale,
                   "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
                   "poses.txt, 1e-3 with pose files)");

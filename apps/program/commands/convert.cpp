@@ -29,7 +29,7 @@ void check(const Options& options) {
     app::refuse(flag + " with " + file + ": " + why);
   };
   if (!is_octomap(options.in)) {
-    constexpr const char* kWhy = "the map has its own; the flag is for .ot and .bt";
+    constexpr const char* kWhy = "a .vdb map has its own; the flag is for .ot and .bt";
     if (!options.workspace.empty()) refuse("--workspace", options.in, kWhy);
     if (options.prior_sigma) refuse("--prior-sigma", options.in, kWhy);
     if (!options.sensor.empty()) refuse("--sensor", options.in, kWhy);
@@ -64,7 +64,7 @@ void convert(const Options& options) {
   }
   print_map(grid, statistics);
   if (lost.beliefs > 0 || lost.views > 0) {
-    std::printf("not in a tree: the beliefs of %s voxels, %s views%s\n",
+    std::printf("lost in the tree: beliefs of %s voxels, %s views%s\n",
                 with_commas(lost.beliefs).c_str(), with_commas(lost.views).c_str(),
                 lost.hazard_counters ? ", hazard counters" : "");
   }
@@ -77,20 +77,19 @@ Command add_convert(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "convert",
-      "Convert a map between .vdb, OctoMap's .ot and .bt (.bt read only). Trees hold states and "
-      "log-odds (.bt: states only), but no beliefs, prior or views. A map frame that is a shift by "
-      "whole voxels moves the tree; other frames are lost, which is said. A .vdb also gets "
-      "covariances and positions for viewers.");
+      "Convert a map between .vdb and OctoMap's .ot and .bt (.bt is read only). An OctoMap tree "
+      "holds states and log-odds (.bt: states only), but no beliefs, prior or views. If the map's "
+      "frame is a shift by whole voxels, the tree is shifted; any other frame is lost with a "
+      "warning. A .vdb also gets covariances and positions for viewers.");
   app->add_option("IN", options->in, kMapHelp)->required();
   app->add_option("OUT", options->out, "map to write (.vdb or .ot)")->required();
   app->add_option("--workspace", options->workspace,
-                  "x0,y0,z0,x1,y1,z1: the part of a tree to take [m], grown to whole voxels; "
-                  "default: its known voxels");
+                  "x0,y0,z0,x1,y1,z1: part of a tree to convert [m], grown to whole voxels "
+                  "(default: its known voxels)");
   app->add_option("--prior-sigma", options->prior_sigma,
-                  "sigma of an unknown voxel of a tree [m]; default: the sensor's, else voxel/2");
+                  "sigma of an unknown voxel of a tree [m] (default: the sensor's, else voxel/2)");
   app->add_option("--sensor", options->sensor,
-                  std::string("whose readings will be scored, for the prior of a tree's voxels: ") +
-                      kSensorHelp);
+                  std::string("sensor for the prior of a tree's voxels: ") + kSensorHelp);
   add_help(*app, kLookGroup, "convert map.vdb tree.ot");
   return command_of(app, options, convert);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "program/cli/flags/frame_folder.hpp"
+#include "program/cli/help.hpp"
 #include "program/cli/progress.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
@@ -43,20 +44,19 @@ bool has_messages(RecordingFormat format) {
 void check(const Options& options, RecordingFormat format) {
   const std::string& found = kFormats.at(static_cast<std::size_t>(format));
   if (options.format != "auto" && options.format != found) {
-    refuse("--format", options.format, "SOURCE " + options.source + " is of the format " + found);
+    refuse("--format", options.format, "SOURCE " + options.source + " has format " + found);
   }
   if (options.max_time_gap) check_at_least_0("--max-time-gap", *options.max_time_gap);
   if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
   if (format == RecordingFormat::tum && options.intrinsics.empty() && options.sensor.empty()) {
-    refuse(
-        "--intrinsics or --sensor is needed: a recording in TUM's layout does not say its camera");
+    refuse("a recording in TUM's layout does not state its camera; give --intrinsics or --sensor");
   }
   for (const auto& [flag, value] :
        {std::pair("--world", options.world), std::pair("--depth-topic", options.depth_topic),
         std::pair("--camera-frame", options.camera_frame),
         std::pair("--pose-topic", options.pose_topic)}) {
     if (value.empty() || has_messages(format)) continue;
-    refuse(flag, value, "is for recordings of messages, and SOURCE is of the format " + found);
+    refuse(flag, value, "is only for recordings of messages; SOURCE has format " + found);
   }
 }
 
@@ -64,7 +64,7 @@ void check(const Options& options, RecordingFormat format) {
 std::pair<std::string, std::optional<Pose>> parse_mount(const char* flag, const std::string& text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string::npos) return {text, std::nullopt};
-  if (comma == 0) refuse(flag, text, "has no name before the pose");
+  if (comma == 0) refuse(flag, text, "expected a name before the pose");
   return {text.substr(0, comma), parse_pose(flag, text.substr(comma + 1))};
 }
 
@@ -102,7 +102,7 @@ void print_summary(const Options& options, RecordingFormat format, const ImportR
   std::printf("%zu frames of %dx%d px, %s readings: %s\n", report.frames, camera.width,
               camera.height, with_commas(report.readings).c_str(), options.out.c_str());
   if (has_messages(format)) {
-    std::printf("depths of %s, poses in %s\n", printable(report.depth_topic).c_str(),
+    std::printf("depth images from %s, poses in %s\n", printable(report.depth_topic).c_str(),
                 printable(report.world).c_str());
   }
   if (!bad.empty()) std::printf("left out: %s\n", counts_text(bad).c_str());
@@ -112,7 +112,7 @@ void print_summary(const Options& options, RecordingFormat format, const ImportR
                 camera.width, camera.height);
   }
   if (!options.mask.empty() || !options.confidence.empty()) {
-    std::printf("masks: of %zu frames, %s pixels taken away\n", report.masks,
+    std::printf("masks: %zu frames, %s pixels masked out\n", report.masks,
                 with_commas(report.masked_pixels).c_str());
   }
 }
@@ -153,42 +153,44 @@ Command add_import(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "import",
-      "A recording as a folder of frames that integrate and model read: MCAP, rosbag2 (.db3) or "
-      "ROS 1 (.bag) with depth images and tf, transforms.json of nerfstudio or instant-ngp with "
-      "depth images, or TUM's layout (depth.txt, groundtruth.txt, images in 1/5000 m). Frames that "
-      "cannot be used are left out and counted by reason: no_pose, lost_pose, unreadable, "
-      "wrong_size.");
-  app->add_option("SOURCE", options->source, "file of the recording, or its folder")->required();
+      "Turn a recording into a folder of frames for integrate and model. Frames that cannot be "
+      "used are left out and counted by reason: no_pose, lost_pose, unreadable, wrong_size.");
+  app->add_option("SOURCE", options->source, "file or folder of the recording")->required();
   std::vector<std::string> formats{"auto"};
   formats.insert(formats.end(), kFormats.begin(), kFormats.end());
-  app->add_option("--format", options->format, "format of the recording; auto: from its contents")
+  app->add_option("--format", options->format,
+                  "format of the recording; auto: detect from its contents")
       ->check(one_of(formats, "format"));
   app->add_option("--sensor", options->sensor,
-                  kSensorHelp +
-                      ", whose noise and ranges the folder is to say; its intrinsics, too, if "
-                      "neither --intrinsics nor the recording has them");
+                  kSensorHelp + "; source of noise and ranges, and of missing intrinsics");
   app->add_option("--intrinsics", options->intrinsics,
-                  "fx,fy,cx,cy [px] (default: the recording's, else the sensor's)");
+                  "fx,fy,cx,cy [px] (default: from the recording, else from the sensor)");
   app->add_option("--depth-topic", options->depth_topic,
                   "topic of the depth images (default: the only one)");
-  app->add_option("--world", options->world,
-                  "tf frame that is the world (default: the topmost parent of the images' frame)");
+  app->add_option(
+      "--world", options->world,
+      "tf frame to use as the world (default: the topmost parent of the images' frame)");
   app->add_option("--camera-frame", options->camera_frame,
-                  "FRAME[,tx,ty,tz,qx,qy,qz,qw]: tf frame to use in place of the images' frame_id, "
+                  "FRAME[,tx,ty,tz,qx,qy,qz,qw]: tf frame to use instead of the images' frame_id, "
                   "and the camera's pose in it");
   app->add_option("--pose-topic", options->pose_topic,
-                  "TOPIC[,tx,ty,tz,qx,qy,qz,qw]: topic of PoseStamped or Odometry to use in place "
-                  "of tf, and the camera's pose on its body");
+                  "TOPIC[,tx,ty,tz,qx,qy,qz,qw]: PoseStamped or Odometry topic to use instead of "
+                  "tf, and the camera's pose on its body");
   app->add_option("--max-time-gap", options->max_time_gap,
-                  "half of the largest time between the two transforms beside an image "
-                  "(default: 0.1), in TUM's layout the largest to its pose (0.02) [s]");
-  app->add_option("--depth-scale", options->depth_scale,
-                  "metres per unit of 16-bit depth images (default: the recording's, 1e-3)");
-  add_mask_options(*app, options->mask, options->confidence);
+                  "largest time from an image to its pose [s]; for tf, half the largest gap "
+                  "between the two transforms (default: 0.1; TUM's layout: 0.02)");
   app->add_option(
-         "--out", options->out,
-         "folder to write; files that import has left in it are replaced, others are refused")
+      "--depth-scale", options->depth_scale,
+      "metres per unit of 16-bit depth images (default: from the recording, else 1e-3)");
+  add_mask_options(*app, options->mask, options->confidence);
+  app->add_option("--out", options->out,
+                  "folder to write; files of an earlier import are replaced, others are refused")
       ->required();
+  explain_values(*app,
+                 "Formats of recordings:\n"
+                 "  MCAP, rosbag2 (.db3), ROS 1 (.bag)  depth images and tf\n"
+                 "  transforms.json  nerfstudio or instant-ngp, with depth images\n"
+                 "  TUM              depth.txt, groundtruth.txt, images in 1/5000 m\n");
   add_help(*app, kMapGroup, "import scene --sensor kinect_v1 --out imported");
   return command_of(app, options, import_frames);
 }

@@ -32,7 +32,7 @@ std::optional<Region> region_of(const Options& options, const BeliefGrid& grid,
   const Box box = parse_box("--workspace", options.region);
   const BeliefGrid::Statistics s = grid.statistics(box, criterion);
   if (s.unknown + s.free + s.occupied == 0) {
-    refuse("--workspace " + options.region + ": holds no voxel of the map");
+    refuse("--workspace " + options.region + ": contains no voxel of the map");
   }
   return Region{box, s, grid.mean_sigma(box)};
 }
@@ -131,14 +131,13 @@ void info(const Options& options) {
 Command add_info(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
-      "info", "What a map holds: dimensions, voxel states, memory, entropy removed, views.");
+      "info", "Print what a map holds: dimensions, voxel states, memory, entropy removed, views.");
   app->add_option("MAP", options->map, kMapHelp)->required();
   app->add_option("--criterion", options->criterion,
-                  "of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
+                  "criterion of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
       ->check(one_of(criterion_names(), "criterion"));
-  app->add_option(
-      "--workspace", options->region,
-      "x0,y0,z0,x1,y1,z1: box for which to report also how well it is known, grid frame [m]");
+  app->add_option("--workspace", options->region,
+                  "x0,y0,z0,x1,y1,z1: box to report separately, grid frame [m]");
   add_help(*app, kLookGroup, "info map.vdb --criterion trace");
   return command_of(app, options, info);
 }

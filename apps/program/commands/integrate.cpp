@@ -35,7 +35,7 @@ std::optional<double> scale_of(const ReadingSource& source) {
 }
 
 BeliefGrid new_map(ReadingSource& source, const Options& options) {
-  if (!options.voxel) refuse("--voxel is needed unless --map is given");
+  if (!options.voxel) refuse("--voxel is required without --map");
   check_positive("--voxel", *options.voxel);
   GridConfig config;
   config.voxel_size = *options.voxel;
@@ -57,7 +57,7 @@ BeliefGrid continued_map(const Sensor& sensor, const Options& options) {
   warn_of_other_sensor(options.map, grid, sensor);
   const auto conflict = [&options](const std::string& flag, const std::string& given,
                                    const std::string& stored) {
-    refuse(flag + " " + given + " conflicts with " + options.map + ", which has " + stored);
+    refuse(flag + " " + given + " conflicts with " + options.map + ", whose value is " + stored);
   };
   if (options.voxel && *options.voxel != grid.voxel_size()) {
     check_positive("--voxel", *options.voxel);
@@ -194,21 +194,20 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
     std::printf("%s\n", registration_text(registration_counts(totals.registrations)).c_str());
   }
   if (totals.skipped > 0) {
-    std::printf("skipped, since the map has them already: %zu\n", totals.skipped);
+    std::printf("skipped, already in the map: %zu\n", totals.skipped);
   }
   std::printf("%s", masked_text(options.frames, totals.masked_pixels).c_str());
   if (options.jump_edge_filter != "off") {
     std::printf("flying pixels removed: %s\n", with_commas(totals.jump_edge_removed).c_str());
   }
   if (options.support_plane) {
-    std::printf("readings of the support plane: %s\n",
+    std::printf("readings on the support plane: %s\n",
                 with_commas(totals.sum.plane_readings).c_str());
   }
   print_mended(source.orthonormalized());
-  std::printf("%.2f s in all", seconds);
+  std::printf("%.2f s in total", seconds);
   if (frame_seconds) {
-    std::printf("; into the map: %.1f ms per %s (median)", 1e3 * *frame_seconds,
-                part_name(options));
+    std::printf("; integration: %.1f ms per %s (median)", 1e3 * *frame_seconds, part_name(options));
   }
   std::printf("\n");
   std::printf("%s: hash %s\n", options.out.c_str(), grid.content_hash().c_str());
@@ -222,15 +221,15 @@ void check_flags(const Options& options, const App& app) {
     }
   };
   if (options.frames.folder.empty() == options.clouds.empty()) {
-    app::refuse("needs either FRAMES_DIR or --cloud");
+    app::refuse("give either FRAMES_DIR or --cloud");
   }
   if (options.clouds.empty()) {
-    refuse({"--origin", "--poses"}, "is for clouds (--cloud)");
+    refuse({"--origin", "--poses"}, "requires --cloud");
   } else {
     refuse({"--depth-scale", "--mask", "--confidence", "--out-of-range", "--jump-edge-filter",
             "--obstacle", "--register"},
-           "is for depth frames; clouds carve along lines");
-    if (!options.poses.empty()) refuse({"--origin"}, "and --poses exclude each other");
+           "cannot be used with --cloud");
+    if (!options.poses.empty()) refuse({"--origin"}, "cannot be used with --poses");
   }
 }
 
@@ -255,8 +254,8 @@ void refuse_empty(const Options& options, const ReadingSource& source, const Tot
   }
   if (sum.readings > 0 && sum.readings_inside + sum.plane_readings == 0) {
     std::fprintf(stderr,
-                 "viewgain: warning: %s: none of %s readings lies in the workspace, they carve "
-                 "alone: are --poses and --workspace right?\n",
+                 "viewgain: warning: %s: none of %s readings lies in the workspace; they only mark "
+                 "free space. Are --poses and --workspace right?\n",
                  options.clouds.front().c_str(), with_commas(sum.readings).c_str());
   }
 }
@@ -293,53 +292,56 @@ void integrate(const Options& options, const App& app) {
 
 Command add_integrate(App& program) {
   auto options = std::make_shared<Options>();
-  App* app = program.add_subcommand(
-      "integrate",
-      "Depth frames or point clouds into a voxel map. FRAMES_DIR holds what simulate writes, or "
-      "recorded frames: "
-      "frame-NNNNNN.depth.png + frame-NNNNNN.pose.txt (4x4, camera to world, m) + "
-      "camera-intrinsics.txt (3x3, overrides the sensor's). Incidence comes from "
-      "frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2) where there is one. Clouds "
-      "are .pcd or .ply files with x, y, z [m]; "
-      "each carves the lines from its sensor's origin to its points.");
-  app->add_option("FRAMES_DIR", options->frames.folder, "folder of frames");
+  App* app = program.add_subcommand("integrate",
+                                    "Integrate depth frames or point clouds into a voxel map.");
+  app->add_option("FRAMES_DIR", options->frames.folder,
+                  "folder of frames that simulate wrote, or recorded frames (see below)");
   begin_group(*app, "Point clouds");
-  app->add_option("--cloud", options->clouds, "a point cloud instead; may be repeated")
+  app->add_option(
+         "--cloud", options->clouds,
+         "point cloud (.pcd or .ply; x, y, z [m]) to integrate instead of frames; may be repeated")
       ->allow_extra_args(false);
   app->add_option("--origin", options->origin,
-                  "x,y,z of the sensor [m], for clouds in world coordinates; or viewpoint: from "
-                  "each .pcd's VIEWPOINT");
+                  "x,y,z of the sensor [m], for clouds in world coordinates; viewpoint: from the "
+                  "VIEWPOINT of each .pcd");
   app->add_option("--poses", options->poses,
-                  "TUM file, line i for cloud i, sensor to world; the points are then in the "
+                  "TUM file of sensor-to-world poses, line i for cloud i; points are then in the "
                   "sensor's frame and VIEWPOINT is ignored");
   begin_group(*app, "Map");
-  app->add_option("--voxel", options->voxel, "voxel size [m]; needed unless --map is given");
+  app->add_option("--voxel", options->voxel, "voxel size [m]; required without --map");
   app->add_option(
       "--workspace", options->workspace,
-      "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels; default: what frames or clouds see");
+      "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels (default: what the frames or clouds see)");
   app->add_option("--sensor", options->frames.sensor,
-                  kSensorHelp +
-                      "; default: FRAMES_DIR/sensor.toml; required for clouds, which use its noise "
-                      "and ranges");
+                  kSensorHelp + "; required for clouds (default: FRAMES_DIR/sensor.toml)");
   add_frame_folder_options(*app, options->frames);
   begin_group(*app, "Map");
   app->add_option("--jump-edge-filter", options->jump_edge_filter, kJumpEdgeHelp);
   add_scale_options(*app, options->scales);
   begin_group(*app, "Map");
-  app->add_option("--support-plane", options->support_plane,
-                  "height z of the table [m]: its readings carve but do not hit; default: none");
+  app->add_option(
+      "--support-plane", options->support_plane,
+      "height z of the table [m]: its readings mark free space, but not surface (default: none)");
   app->add_option("--prior-sigma", options->prior_sigma,
-                  "sigma of an unknown voxel [m]; default: max(voxel/2, twice the sensor's axial "
-                  "sigma at its working distance)");
+                  "sigma of an unknown voxel [m] (default: the larger of voxel/2 and twice the "
+                  "sensor's axial sigma at its working distance)");
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
   add_registration_option(*app, options->registration);
   begin_group(*app, "Map");
-  app->add_option("--out", options->out, "map to write (.vdb, or OctoMap's .ot)")->required();
+  app->add_option("--out", options->out, "map to write (.vdb, or OctoMap .ot)")->required();
   app->add_option("--map", options->map,
-                  "map to continue (.vdb, .ot, .bt); its voxel size, workspace and prior hold, and "
-                  "frames that a .vdb has already, by name and content, are skipped");
+                  "map to continue (.vdb, .ot, .bt), with its voxel size, workspace and prior; "
+                  "frames that a .vdb already holds are skipped");
   most_need(*app, {"--voxel", "--workspace", "--out", "--map", "--sensor", "--cloud",
                    "--support-plane", "--mask", "--register", "--on-contradiction"});
+  explain_values(*app,
+                 "Files in FRAMES_DIR: those of simulate, or for each recorded frame NNNNNN:\n"
+                 "  frame-NNNNNN.depth.png      16 bit: depth along z\n"
+                 "  frame-NNNNNN.pose.txt       4x4, camera to world [m]\n"
+                 "  camera-intrinsics.txt       3x3, optional; overrides the sensor's\n"
+                 "  frame-NNNNNN.amplitude.png  16 bit, optional: cos/range^2 [1e-3 m^-2], which\n"
+                 "                              gives the incidence angle\n"
+                 "A point cloud marks free space on the lines from its sensor to its points.\n");
   add_help(*app, kMapGroup,
            "integrate frames --voxel 0.005 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out map.vdb");
   return command_of(app, options, [app](const auto& given) { integrate(given, *app); });

@@ -40,8 +40,8 @@ inline void print_map(const BeliefGrid& grid, const BeliefGrid::Statistics& stat
 inline void warn_of_lost_frame(const LostInTree& lost, const std::string& path) {
   if (!lost.T_world_grid) return;
   std::fprintf(stderr,
-               "viewgain: warning: %s: the tree is in the map's own frame: T_world_grid, which is "
-               "no shift by whole voxels within a tree's space, is lost\n",
+               "viewgain: warning: %s: the tree is in the map's own frame. T_world_grid is lost, "
+               "since it is not a shift by whole voxels within the space of a tree\n",
                path.c_str());
 }
 

@@ -61,7 +61,7 @@ void put_all(Json& json, const NextViews& views, const Proposal& proposal,
 std::optional<std::size_t> parse_top(const std::string& text) {
   if (text == "all") return std::nullopt;
   const std::size_t count = parse_count("--top", parse_numbers("--top", text, 1, 1)[0]);
-  if (count < 1) refuse("--top 0: needs a count or all");
+  if (count < 1) refuse("--top 0: expected a count of at least 1, or all");
   return count;
 }
 
@@ -131,24 +131,21 @@ Command add_next(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "next",
-      "Where the camera should look next: the best views for a map, each with its gain and why it "
-      "was proposed. The list is empty if no reachable view has a gain.");
+      "Propose the next-best views for a map, each with its gain and the reason for it. The list "
+      "is empty if no reachable view has a positive gain.");
   Options& o = *options;
   app->add_option("MAP", o.map, kMapHelp)->required();
   app->add_option("--sensor", o.sensor, kMapSensorHelp);
   add_next_view_options(*app, o.proposal);
-  app->add_option(
-      "--top", o.top,
-      "maximum number of views to propose, each with its marginal gain; all: every possible "
-      "candidate with its own gain, best first, and with --json why the others were dropped");
-  app->add_option(
-      "--out", o.out,
-      "file of camera-to-world poses to write (.txt or .tum: TUM text; .npy), best first, or in "
-      "the plan's order");
-  app->add_flag(
-      "--explain", o.explain,
-      "print where each view's rays go: unknown space, known surface, out of the map, ...; if no "
-      "view has a gain, the same for up to 32 candidates together (cannot be used with --top all)");
+  app->add_option("--top", o.top,
+                  "maximum number of views, each with its marginal gain; all: every possible "
+                  "candidate with its own gain (--json: also why others were dropped)");
+  app->add_option("--out", o.out,
+                  "file of camera-to-world poses to write (.txt or .tum: TUM text; .npy), best "
+                  "first, or in the order of the plan");
+  app->add_flag("--explain", o.explain,
+                "print where the rays of each view end; if no view has a gain, those of up to 32 "
+                "candidates together (cannot be used with --top all)");
   most_need(*app, {"--top", "--out", "--sensor", "--generator", "--poses", "--gain", "--reach",
                    "--obstacle", "--plan", "--explain"});
   add_help(*app, kViewsGroup, "next map.vdb --sensor sr4000 --top 3 --out next.txt");

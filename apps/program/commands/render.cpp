@@ -88,8 +88,8 @@ void render(const Options& options) {
     return print_json(json);
   }
   if (sigmas) {
-    std::printf("sigma along the surface's normal: from dark, %.4g m, to bright, %.4g m\n",
-                (*sigmas)[0], (*sigmas)[1]);
+    std::printf("sigma along the surface normal: dark %.4g m, bright %.4g m\n", (*sigmas)[0],
+                (*sigmas)[1]);
   }
   std::printf("%s: %d x %d px\n", options.out.c_str(), image.width, image.height);
 }
@@ -98,16 +98,18 @@ void render(const Options& options) {
 
 Command add_render(App& program) {
   auto options = std::make_shared<Options>();
-  App* app = program.add_subcommand(
-      "render", "A picture of a map or of a run's folder, for papers and talks (PNG).");
+  App* app =
+      program.add_subcommand("render", "Draw a picture of a map or of a run's folder (PNG).");
   Options& o = *options;
   app->add_option("MAP", o.map, kMapHelp)->required();
   auto* what =
-      app->add_option("KIND", o.what, "map (its voxels), surface or sigma (how well it is known)")
+      app->add_option(
+             "KIND", o.what,
+             "what to draw: map (voxels), surface, or sigma (standard deviation of the surface)")
           ->required();
   what->check(one_of({"map", "surface", "sigma"}, "kind of picture"));
   app->add_option("--viewer", o.viewer,
-                  "AZIMUTH,ELEVATION[,WIDTH]: viewing direction, azimuth from +x to +y [deg]; "
+                  "AZIMUTH,ELEVATION[,WIDTH]: viewing direction [deg], azimuth from +x to +y; "
                   "picture width [px], 64..8192 (default: 1280)");
   app->add_option("--out", o.out, "PNG file to write")->required();
   add_help(*app, kLookGroup, "render run sigma --out sigma.png");

@@ -95,7 +95,7 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
   if (std::none_of(poses.begin(), poses.end(),
                    [&](const Pose& pose) { return sees_mesh(scene, sensor, rays, pose); })) {
-    refuse(options.mesh + ": no pose has the mesh in view and in range, which lies in " +
+    refuse(options.mesh + ": no pose has the mesh in view and in range; the mesh lies in " +
            describe(bounds_of(scene.mesh())) + " m (--size, --place)");
   }
 }
@@ -105,15 +105,15 @@ void warn_of_place(const Options& options, const Box& box, const Sensor& sensor)
   constexpr double kTooLarge = 10;  // times what the sensor sees
   if (const double side = longest_side(box); side > kTooLarge * sensor.max_range) {
     std::fprintf(stderr,
-                 "viewgain: warning: %s is %s m long, the sensor sees to %s m: is it in metres? "
-                 "(--size)\n",
+                 "viewgain: warning: %s is %s m long, but the sensor's range ends at %s m. Is it "
+                 "in metres? (--size)\n",
                  options.mesh.c_str(), short_text(side).c_str(),
                  short_text(sensor.max_range).c_str());
   }
   const std::optional<double>& plane = options.sensing.support_plane;
   if (!plane || !(box.max[2] - *plane <= 0.501 * (box.max[2] - box.min[2]))) return;
   std::fprintf(stderr,
-               "viewgain: warning: %s lies in %s m, half of it or more under the support plane at "
+               "viewgain: warning: %s lies in %s m, half of it or more below the support plane at "
                "%s m (--place)\n",
                options.mesh.c_str(), describe(box).c_str(), short_text(*plane).c_str());
 }
@@ -204,38 +204,46 @@ void simulate(const Options& options) {
 
 Command add_simulate(App& program) {
   auto options = std::make_shared<Options>();
-  App* app = program.add_subcommand(
-      "simulate",
-      "Depth frames of a mesh: frame-NNNNNN.depth.png (16 bit, depth along z in units of 0.1 mm, "
-      "or larger units for sensors that see beyond 6.5534 m; 0 invalid, 65535 out of range), "
-      "frame-NNNNNN.amplitude.png (16 bit, cos/range^2 in 1e-3 m^-2, 65535 unknown), poses.txt "
-      "(TUM, reported poses; the first number is the frame's), sensor.toml, frames.toml.");
+  App* app = program.add_subcommand("simulate", "Simulate depth frames of a mesh.");
   app->add_option("MESH", options->mesh, "OFF, OBJ, STL or PLY file")->required();
   add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kSensorHelp)->required();
   begin_group(*app, "Mesh");
   app->add_option("--size", options->size,
-                  "scale the mesh so that its bounding box's longest side is this [m]; default: "
-                  "the file's own size, in metres");
-  app->add_option("--up", options->up, "axis of the mesh that is turned to +z")
+                  "scale the mesh to this longest side of its bounding box [m] (default: the "
+                  "file's size, in metres)");
+  app->add_option("--up", options->up, "axis of the mesh to turn to +z")
       ->check(one_of({"x", "y", "z"}, "axis"));
-  app->add_option(
-      "--place", options->place,
-      "center: the bounding box's centre comes to the origin; or x,y,z[,YAW_DEG] or "
-      "tx,ty,tz,qx,qy,qz,qw: mesh to world, after --size and --up [m, degrees round +z]; or both, "
-      "as center,x,y,z; default: where it is. A room round it stays where it "
-      "was (--background)");
+  app->add_option("--place", options->place,
+                  "mesh-to-world placement after --size and --up: center, x,y,z[,YAW_DEG], "
+                  "tx,ty,tz,qx,qy,qz,qw or center,x,y,z (default: as it is; see below)");
+  explain_values(
+      *app,
+      "Values of --place, mesh to world [m, degrees around +z]:\n"
+      "  center                moves the bounding box's centre to the origin\n"
+      "  x,y,z[,YAW_DEG]       shifts and turns\n"
+      "  tx,ty,tz,qx,qy,qz,qw  shifts and turns\n"
+      "  center,...            first moves the centre to the origin, as in center,x,y,z\n"
+      "  The sphere of --background stays where it is.\n");
   add_sensing_options(*app, options->sensing);
   begin_group(*app, "Output");
-  app->add_option("--frames-per-view", options->frames_per_view,
-                  "frames from each pose, numbered on; poses.txt repeats the pose")
-      ->check(counted(1, 1000));
   app->add_option(
-         "--out", options->out,
-         "folder to write; frames that simulate has left in it are replaced, others are refused")
+         "--frames-per-view", options->frames_per_view,
+         "number of frames from each pose, numbered consecutively; poses.txt repeats the pose")
+      ->check(counted(1, 1000));
+  app->add_option("--out", options->out,
+                  "folder to write; frames of an earlier simulate are replaced, others are refused")
       ->required();
   most_need(*app, {"--sensor", "--out", "--size", "--place", "--up", "--noise", "--support-plane",
                    "--background"});
+  explain_values(*app,
+                 "Files in OUT, for frame NNNNNN:\n"
+                 "  frame-NNNNNN.depth.png      16 bit: depth along z in units of 0.1 mm, larger\n"
+                 "                              if the sensor sees beyond 6.5534 m; 0 invalid,\n"
+                 "                              65535 out of range\n"
+                 "  frame-NNNNNN.amplitude.png  16 bit: cos/range^2 [1e-3 m^-2]; 65535 unknown\n"
+                 "  poses.txt                   TUM: reported poses, numbered like the frames\n"
+                 "  sensor.toml, frames.toml    sensor and units\n");
   add_help(*app, kMapGroup,
            "simulate mesh.off --size 0.35 --place center --poses orbit:3,0.6,27 --sensor sr4000 "
            "--out frames");

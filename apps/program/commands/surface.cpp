@@ -14,6 +14,7 @@
 #include "program/cli/flags/scene_sources.hpp"
 #include "program/cli/values.hpp"
 #include "program/commands/commands.hpp"
+#include "program/commands/consistency_text.hpp"
 #include "program/commands/reconstruct/run_outputs.hpp"
 #include "viewgain/formats/map_file.hpp"
 #include "viewgain/grid/fused_points.hpp"
@@ -40,10 +41,10 @@ struct Options {
 };
 
 void check(const Options& options, const App& app) {
-  if (options.out.empty() && options.points.empty()) refuse("needs --out or --points");
+  if (options.out.empty() && options.points.empty()) refuse("give --out or --points");
   for (const char* flag : {"--size", "--place", "--up"}) {
     if (app.count(flag) > 0 && options.truth.empty()) {
-      refuse(std::string(flag) + " goes with --truth");
+      refuse(std::string(flag) + " requires --truth");
     }
   }
   if (options.size) check_positive("--size", *options.size);
@@ -90,20 +91,21 @@ QualityFigures figures_of(const SurfaceScene& mesh, const BeliefGrid& map,
 
 void print(const QualityFigures& figures, double voxel_size) {
   const double tolerance = 1e3 * covered_within(voxel_size);  // [mm]
-  std::printf("of the truth %.2f %% within %g mm, %.2f %% within 2.5 mm", 100 * figures.coverage,
-              tolerance, 100 * figures.coverage_2_5mm);
+  std::printf("coverage of the reference mesh: %.2f %% within %g mm, %.2f %% within 2.5 mm",
+              100 * figures.coverage, tolerance, 100 * figures.coverage_2_5mm);
   if (!std::isnan(figures.coverage_visible)) {
     std::printf(
-        "; of what the map's views have in sight %.2f %% within %g mm (%.2f %% by points, "
-        "%.2f %% by triangles)",
+        "; of the part that the map's views see: %.2f %% within %g mm (points %.2f %%, triangles "
+        "%.2f %%)",
         100 * figures.coverage_visible, tolerance, 100 * figures.coverage_points,
         100 * figures.coverage_triangles);
   }
-  std::printf("\nsurface off by %.2f mm (RMS), %.2f mm (95 %%); points by %.2f mm, %.2f mm\n",
-              1e3 * figures.surface_error.rms, 1e3 * figures.surface_error.p95,
-              1e3 * figures.points_error.rms, 1e3 * figures.points_error.p95);
-  std::printf("consistency of the sigmas %.2f (1 if honest), %zu points more than 10 mm off\n",
-              figures.consistency.mean_clipped, figures.consistency.outliers);
+  std::printf(
+      "\nerror: surface RMS %.2f mm, 95 %% below %.2f mm; points RMS %.2f mm, 95 %% below %.2f "
+      "mm\n",
+      1e3 * figures.surface_error.rms, 1e3 * figures.surface_error.p95,
+      1e3 * figures.points_error.rms, 1e3 * figures.points_error.p95);
+  std::printf("%s", consistency_text(figures.consistency).c_str());
 }
 
 // A truth that lies elsewhere than the map, or is much larger.
@@ -116,11 +118,10 @@ void warn_of_place(const Options& options, const TriangleMesh& truth, const Beli
     is_inside = is_inside && middle >= map.min[a] && middle <= map.max[a];
   }
   if (is_inside) return;
-  std::fprintf(
-      stderr,
-      "viewgain: warning: %s lies in %s m, the map in %s m: is it where the object was, in "
-      "metres? (--size, --place, --up)\n",
-      options.truth.c_str(), describe(box).c_str(), describe(map).c_str());
+  std::fprintf(stderr,
+               "viewgain: warning: %s lies in %s m, the map in %s m. Is it placed where the object "
+               "was, in metres? (--size, --place, --up)\n",
+               options.truth.c_str(), describe(box).c_str(), describe(map).c_str());
 }
 
 void surface(const Options& options, const App& app) {
@@ -131,7 +132,7 @@ void surface(const Options& options, const App& app) {
   const BeliefGrid map = load_map(options.map, nullptr, {}, exec);
   const std::vector<FusedPoint> points =
       fused_points(map, {.scale_sigma = scale_sigma_of(map)}, exec);
-  if (points.empty()) refuse(options.map + ": no voxel has readings that make a surface");
+  if (points.empty()) refuse(options.map + ": no voxel has readings that form a surface");
   const SurfaceMesh surface = surface_of(points, exec);
   std::optional<QualityFigures> figures;
   if (truth) {
@@ -175,21 +176,20 @@ Command add_surface(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "surface",
-      "The surface in a map and the points that it goes through, as PLY: each vertex with normal "
-      "and sigma along it [m]. With --truth, how far they are from a mesh.");
+      "Write the surface in a map and its points as PLY; each vertex has a normal and the sigma "
+      "along it [m]. With --truth, measure their distance from a reference mesh.");
   app->add_option("MAP", options->map, kMapHelp)->required();
   app->add_option("--out", options->out, "surface to write (.ply)");
   app->add_option("--points", options->points, "points to write (.ply)");
-  app->add_option(
-      "--truth", options->truth,
-      "mesh (off, obj, stl, ply) that the surface is held against, in the world's frame");
+  app->add_option("--truth", options->truth,
+                  "reference mesh (OFF, OBJ, STL, PLY) in the world frame");
   app->add_option("--size", options->size,
-                  "longest side that the truth is scaled to [m]; default: as it is");
+                  "scale the reference mesh to this longest side [m] (default: as it is)");
   app->add_option("--place", options->place,
-                  "center: the middle of the truth's bounding box becomes the origin; default: as "
-                  "it is")
-      ->check(one_of({"center"}, "place"));
-  app->add_option("--up", options->up, "axis of the truth that is turned to +z")
+                  "center: move the centre of the reference mesh's bounding box to the origin "
+                  "(default: as it is)")
+      ->check(one_of({"center"}, "value"));
+  app->add_option("--up", options->up, "axis of the reference mesh to turn to +z")
       ->check(one_of({"x", "y", "z"}, "axis"));
   add_help(*app, kLookGroup, "surface map.vdb --out surface.ply --points points.ply");
   return command_of(app, options, [app](const auto& given) { surface(given, *app); });

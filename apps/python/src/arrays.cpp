@@ -225,7 +225,7 @@ py::object scalar_or_array(const py::array& array) {
 std::size_t frame_index(std::size_t frames, py::ssize_t index) {
   const auto count = static_cast<py::ssize_t>(frames);
   if (index < 0) index += count;
-  if (index < 0 || index >= count) throw py::index_error("there is no such frame");
+  if (index < 0 || index >= count) throw py::index_error("frame index out of range");
   return static_cast<std::size_t>(index);
 }
 
@@ -262,8 +262,8 @@ py::array any_labels(const py::object& labels) {
       any_array(is_masked_array(labels) ? labels.attr("filled")(0) : labels, wanted);
   if (any.dtype().kind() == 'b') {
     throw py::value_error(
-        "labels is of bools, which say two of the three states: numpy.where(labels, 2, 1) makes "
-        "True occupied and False free");
+        "labels are bools, which distinguish only two of the three states; numpy.where(labels, 2, "
+        "1) makes True occupied and False free");
   }
   if ((any.dtype().kind() != 'u' && any.dtype().kind() != 'i') || any.ndim() != 3) {
     throw py::value_error(std::string(wanted) + ", not " +

@@ -112,19 +112,18 @@ void run_batch(Control* control, const std::function<void(const BatchControl&)>&
 }
 
 void bind_control(py::module_& module) {
-  auto type = bound_class<Control>(module, "BatchControl", R"(Watches or ends a long call.
+  auto type = bound_class<Control>(module, "BatchControl", R"(Observes or stops a long call.
 
 Parameters
 ----------
 progress : callable, optional
-    Called with ``(done, total)`` on the calling thread, about every 50 ms, whether or not more is
-    done, and at the end; for an empty batch with ``(0, 0)``. If it returns something false other than ``None`` (``False``,
-    ``numpy.False_``, 0) the call stops; an exception that it raises stops the call and is raised
-    from there.
+    Called with ``(done, total)`` on the calling thread about every 50 ms and at the end; for an
+    empty batch with ``(0, 0)``. A false result other than ``None`` (``False``, ``numpy.False_``, 0)
+    stops the call; an exception stops it too and is raised from it.
 
 Notes
 -----
-A control that was stopped stays so: make one for each call. Ctrl-C is honoured with or without one.)");
+A stopped control stays stopped: make a new one for each call. Ctrl-C works with or without one.)");
   refuse_pickling(type);
   type.def(py::init([](py::object progress) {
              if (!progress.is_none() && PyCallable_Check(progress.ptr()) == 0) {
@@ -137,10 +136,10 @@ A control that was stopped stays so: make one for each call. Ctrl-C is honoured 
            "progress"_a = py::none())
       .def(
           "stop", [](Control& control) { control.stop.request_stop(); },
-          "Ask the running call to return early, with what it has. Any thread may call it.")
+          "Ask the running call to return early with its results so far. Any thread may call it.")
       .def_property_readonly(
           "stopped", [](const Control& control) { return control.stop.stop_requested(); },
-          "bool: a stop was asked for.")
+          "bool: True if a stop was requested.")
       .def("__repr__", [](const Control& control) {
         return control.stop.stop_requested() ? "BatchControl(stopped)" : "BatchControl()";
       });

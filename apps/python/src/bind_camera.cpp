@@ -45,26 +45,27 @@ triangles : array_like, (m, 3)
     Indices.
 sensor : Sensor
 background_radius : float
-    Of a diffuse sphere round the origin that stands for the room [m]; 0: none.
+    Radius of a diffuse sphere around the origin that stands for the room [m]; 0: none.
 noise : bool
-    Gaussian noise along the ray and of the amplitude, by the sensor's model.
+    Gaussian noise along the ray and of the amplitude, from the sensor's model.
 lateral_noise : bool
-    Readings are of places beside their rays, by the model's lateral sigma.
+    Displaces readings across their rays with the model's lateral sigma.
 scale_error : float
-    Ranges read 1 + scale_error times what they are.
+    Ranges read 1 + scale_error times the true value.
 sub_rays : int
-    A pixel is sub_rays**2 rays, 1 to 16; their returns mix for sensors with a modulation frequency.
+    Rays per pixel and side, 1 to 16; returns mix for sensors with a modulation frequency.
 seed : int
-    Of the noise.
+    Seed of the noise.
 support_plane : float, optional
-    Height z of a diffuse table without end [m].
+    Height z of an infinite diffuse table [m].
 num_threads : int
     0: all hardware threads.
 
 Notes
 -----
-``acquire`` may run in many threads at once and leaves the GIL. Cost: grows with the triangles when it is
-made; a frame is linear in pixels and sub_rays**2, 2 ms for 176x144 pixels on two threads.)");
+``acquire`` may run in many threads at once and releases the GIL. Cost of a frame: linear in pixels
+and sub_rays**2, 2 ms for 176x144 pixels on two threads; of the constructor: grows with the
+triangles.)");
   refuse_pickling(type);
   type.def(py::init([](const py::object& vertices, const py::object& triangles,
                        const Given<Sensor>& of, double background_radius, bool noise,
@@ -100,13 +101,13 @@ made; a frame is linear in pixels and sub_rays**2, 2 ms for 176x144 pixels on tw
                          image_array(frame.amplitude, frame.height, frame.width));
           },
           "T_world_camera"_a, "frame_index"_a = 0,
-          R"(The frame seen from a pose. Equal seed, index and pose give equal frames.
+          R"(The frame from a pose. Equal seed, index and pose give equal frames.
 
 Parameters
 ----------
 T_world_camera : array_like, (4, 4)
 frame_index : int
-    Picks the noise.
+    Selects the noise.
 
 Returns
 -------
@@ -131,7 +132,7 @@ PinholeCamera camera_of_matrix(const py::object& matrix, int width, int height,
     return !(std::abs(value - wanted) <= kExact);
   };
   if (is_off(m[6], 0) || is_off(m[7], 0) || is_off(m[8], 1)) {
-    throw py::value_error("K has a last row that is not 0 0 1");
+    throw py::value_error("K must have the last row 0 0 1");
   }
   if (is_off(m[1], 0) || is_off(m[3], 0)) {
     throw py::value_error("K has skew: K[0, 1] is " + short_text(m[1]) + " and K[1, 0] " +
@@ -165,7 +166,7 @@ fx, fy : float
 cx, cy : float
     Principal point [px].
 distortion : sequence of float, (5,), optional
-    The coefficients k1 k2 p1 p2 k3, without a unit.)");
+    The coefficients k1 k2 p1 p2 k3.)");
   pickle_by_attributes(type, {"width", "height", "fx", "fy", "cx", "cy", "distortion"});
   type.def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
                        const std::array<double, 5>& distortion) {
@@ -177,16 +178,16 @@ distortion : sequence of float, (5,), optional
            "distortion"_a = std::array<double, 5>{})
       .def_static("from_matrix", &camera_of_matrix, "K"_a, "width"_a, "height"_a, py::kw_only(),
                   "distortion"_a = std::array<double, 5>{},
-                  R"(A camera from its intrinsic matrix, as OpenCV and ROS have it.
+                  R"(A camera from its intrinsic matrix, as in OpenCV and ROS.
 
 Parameters
 ----------
 K : array_like, (3, 3)
-    Rows fx 0 cx, 0 fy cy, 0 0 1 [px], of the camera's image, to 1e-9; skew is refused.
+    Rows fx 0 cx, 0 fy cy, 0 0 1 [px], to 1e-9; skew raises ValueError.
 width, height : int
     [px]
 distortion : sequence of float, (5,), optional
-    The coefficients k1 k2 p1 p2 k3, without a unit.
+    The coefficients k1 k2 p1 p2 k3.
 
 Returns
 -------
@@ -211,15 +212,15 @@ PinholeCamera)")
             for (const Eigen::Vector3d& ray : table) out = std::copy_n(ray.data(), 3, out);
             return rays;
           },
-          R"(Directions (x, y, 1) of all pixel centres, camera frame, distortion undone.
+          R"(Directions (x, y, 1) of all pixel centres, camera frame, without distortion.
 
-Cost: linear in the pixels, some 15 ns each, with distortion 0.3 µs.
+Cost: about 15 ns per pixel, with distortion 0.3 µs.
 
 Returns
 -------
 ndarray, (height, width, 3), float64
-    In the camera's frame, without a unit: times a depth [m] they are points. NaN where the
-    distortion model has no solution.)")
+    Camera frame; multiplied with a depth [m] they are points. NaN where the distortion model has no
+    solution.)")
       .def(
           "project",
           [](const PinholeCamera& camera, const py::object& points_camera) {
@@ -238,7 +239,7 @@ ndarray, (height, width, 3), float64
           },
           "points"_a, R"(Pixel coordinates of points in the camera frame.
 
-Cost: linear in the points, some 10 ns each.
+Cost: about 10 ns per point.
 
 Parameters
 ----------

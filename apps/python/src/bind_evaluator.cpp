@@ -61,7 +61,7 @@ GainConfig gain_config(const std::string& gain, const std::string& criterion, in
   GainConfig config;
   config.model = parse_gain_model(gain);
   if (config.model != GainModel::combined && refinement_weight) {
-    throw py::value_error("refinement_weight goes with gain \"combined\"");
+    throw py::value_error("refinement_weight requires gain \"combined\"");
   }
   config.refinement_weight = refinement_weight.value_or(config.refinement_weight);
   config.posterior_entropy = posterior_entropy;
@@ -72,7 +72,7 @@ GainConfig gain_config(const std::string& gain, const std::string& criterion, in
   config.max_range = max_range;
   for (const py::handle entry : weights) {
     if (!py::isinstance<py::sequence>(entry) || py::len(entry) != 2) {
-      throw py::value_error("each of weights must be a pair (box, weight)");
+      throw py::value_error("each entry of weights must be a pair (box, weight)");
     }
     const auto pair = py::reinterpret_borrow<py::sequence>(entry);
     const py::object region = pair[0], weight = pair[1];
@@ -203,7 +203,7 @@ WayCost way_of(const py::object& way, std::size_t poses) {
     std::size_t count = 0;
     WayCost table = way_table(way, "way", count);
     if (count == poses) return table;
-    throw py::value_error("way is a table of " + std::to_string(count) + " stops for " +
+    throw py::value_error("way is a table of " + std::to_string(count) + " stops, but there are " +
                           std::to_string(poses) + " poses");
   }
   const auto number = [](std::size_t stop) {
@@ -268,10 +268,10 @@ void bind_evaluator(py::module_& module) {
   bind_rows();
   module.def(
       "criterion_names", [] { return criterion_names(); },
-      "The names that ``criterion`` takes.\n\nReturns\n-------\nlist of str");
+      "The valid values of ``criterion``.\n\nReturns\n-------\nlist of str");
   module.def(
       "gain_model_names", [] { return gain_model_names(); },
-      "The names that ``gain`` takes.\n\nReturns\n-------\nlist of str");
+      "The valid values of ``gain``.\n\nReturns\n-------\nlist of str");
   module.attr("DEFAULT_GAIN") = gain_model_name(kDefaultGain);
   py::list statuses;
   for (const ViewGain::Status status :
@@ -312,10 +312,10 @@ void bind_evaluator(py::module_& module) {
            "control"_a = py::none(), kApproximateDoc)
       .def_property_readonly(
           "rays_per_pose", [](const Evaluator& self) { return self.evaluator.rays_per_pose(); },
-          "int: one for each pixel of every pixel_stride-th row")
+          "int: one per pixel of every pixel_stride-th row")
       .def_property_readonly(
           "num_threads", [](const Evaluator& self) { return self.evaluator.num_threads(); },
-          "int: that a batch runs on")
+          "int: number of threads of a batch")
       .def_property_readonly(
           "prior_sigma", [](const Evaluator& self) { return self.evaluator.prior_sigma(); },
           "float: standard deviation of an unknown voxel [m]")
@@ -327,7 +327,7 @@ void bind_evaluator(py::module_& module) {
           "str")
       .def_readonly("criterion", &Evaluator::criterion, "str")
       .def_readonly("pixel_stride", &Evaluator::pixel_stride, "int")
-      .def_readonly("scene", &Evaluator::scene, "VoxelScene: that it was made with")
+      .def_readonly("scene", &Evaluator::scene, "VoxelScene: the scene it was made with")
       .def_readonly("sensor", &Evaluator::sensor, "Sensor")
       .def("__repr__", [](const Evaluator& self) {
         std::ostringstream text;

@@ -87,12 +87,12 @@ py::dict keywords_of(const py::object& self) {
 
 void bind_reach(py::module_& module) {
   const ReachRegion::Tolerance tolerance;
-  auto type = bound_class<ReachRegion>(module, "ReachRegion",
-                                       R"(Where a robot can put the camera, world frame.
+  auto type =
+      bound_class<ReachRegion>(module, "ReachRegion",
+                               R"(Region of camera poses that a robot can reach, world frame.
 
-A pose is reachable if its centre lies in at least one of the boxes (where there are any), in at least
-one of the shells (where there are any) and in every half-space, if it is among the poses (where there
-are any), and if the predicate says so.
+A pose is reachable if all conditions that are present hold: its centre lies in one of the boxes, in
+one of the shells and in all half-spaces; it is one of the poses; and the predicate returns true.
 
 Parameters
 ----------
@@ -101,19 +101,18 @@ boxes : array_like, (n, 2, 3), optional
 shells : array_like, (n, 5), optional
     Centre x y z, smallest and largest radius, world [m].
 half_spaces : array_like, (n, 4), optional
-    Normal, without a unit, and offset [m], world: normal . p >= offset.
+    Normal and offset [m], world: normal . p >= offset.
 poses : array_like, (n, 4, 4), optional
     T_world_camera.
 distance, angle : float
-    When two poses are the same one [m], [rad].
+    Tolerance for two poses to be the same [m], [rad].
 predicate : callable, optional
-    Given T_world_camera (4, 4), returns a truth value. What it raises passes through.
+    Takes T_world_camera (4, 4) and returns a truth value. Its exceptions pass through.
 
 Notes
 -----
-Regions without a predicate are equal by value and can be pickled; one with a predicate is equal to
-itself alone. Holds the GIL, but not for files. Cost: linear in the parts, and in the poses that are asked
-about: some 10 ns for each of both.)");
+Regions without a predicate are equal by value and can be pickled; one with a predicate only equals
+itself. Holds the GIL, except for files. Cost: about 10 ns per part and pose.)");
   pickle_as_call(type, &keywords_of);
   type.def(py::init(&region_of), py::kw_only(), "boxes"_a = py::none(), "shells"_a = py::none(),
            "half_spaces"_a = py::none(), "poses"_a = py::none(), "distance"_a = tolerance.distance,
@@ -129,7 +128,7 @@ about: some 10 ns for each of both.)");
             }
             return scalar_or_array(inside);
           },
-          "T_world_camera"_a, R"(Which poses are reachable. A bad pose is not.
+          "T_world_camera"_a, R"(Whether poses are reachable; invalid poses are not.
 
 Parameters
 ----------
@@ -179,34 +178,36 @@ void bind_feasibility(py::module_& module) {
 
   const FeasibilityConfig defaults;
   auto type = bound_class<FeasibilityChecker>(module, "FeasibilityChecker",
-                                              R"(Says which camera poses are possible in a scene.
+                                              R"(Checks which camera poses are possible in a scene.
 
-The sensor's housing, a box, must not overlap voxels that are not free, obstacles or the scene's support plane;
-the pose must be reachable and not taken already. Outside the workspace nothing is known to block.
-What follows the scene goes by keyword.
+The sensor's housing, a box, must not overlap voxels that are not free, obstacles or the scene's
+support plane; the pose must be reachable and not taken yet. Space outside the workspace counts as
+free. Arguments after the scene are keyword-only.
 
 Parameters
 ----------
 scene : VoxelScene
 body_size : array_like, (3,), optional
-    Width, height, depth of the housing, flange frame [m]; default: the sensor's, or an SR4000's. It is centred on the flange's z axis and reaches from
-    z = 0 to its depth; without T_flange_camera the camera is the middle of its front face.
+    Width, height, depth of the housing, flange frame [m]; default: the sensor's, or an SR4000's. It
+    is centred on the flange's z axis and extends from z = 0 to its depth; without T_flange_camera
+    the camera is in the middle of its front face.
 T_flange_camera : array_like, (4, 4), optional
-    Where the camera is mounted on the flange; default: the sensor's.
+    Mounting of the camera on the flange; default: the sensor's.
 clearance : float
-    The body is grown by this on each side [m].
+    Margin around the body on each side [m].
 reach : ReachRegion, optional
 sensor : Sensor, optional
-    With it, views are too near where much of the image would show what is nearer than its min_range.
+    If given, rejects views where much of the image would be nearer than its min_range.
 max_near_share : float
-    Of the rays that end in the map, the largest share that may end nearer than min_range.
+    Largest share of the rays that end in the map that may end nearer than min_range.
 num_threads : int
-    For arrays of poses; 0: all hardware threads. They ask the predicate of ``reach`` one at a time.
+    For arrays of poses; 0: all hardware threads. They call the predicate of ``reach`` one at a
+    time.
 
 Notes
 -----
-Methods may run in many threads at once and leave the GIL while they work. Cost: linear in the poses,
-0.5 to 1 µs each; with a sensor 10 to 50 µs where much is near and it has the SR4000's 400 rays.)");
+Methods may run in many threads at once and release the GIL. Cost: 0.5 to 1 µs per pose; with a
+sensor 10 to 50 µs where much is near, for the SR4000's 400 rays.)");
   refuse_pickling(type);
   type.def(py::init([](const Given<Scene>& scene, const py::object& body_size,
                        const py::object& T_flange_camera, double clearance,
@@ -239,14 +240,14 @@ Methods may run in many threads at once and leave the GIL while they work. Cost:
             const WithoutGil without_gil;
             return self.with_scene(scene->scene);
           },
-          "scene"_a, R"(The same checker of another scene, for following a map as it grows.
+          "scene"_a, R"(A checker for another scene, to follow a growing map.
 
-This one stays as it is. Cost: some microseconds.
+This checker does not change. Cost: some microseconds.
 
 Parameters
 ----------
 scene : VoxelScene
-    Such as ``VoxelScene.update`` returns.
+    For example from ``VoxelScene.update``.
 
 Returns
 -------
@@ -262,7 +263,7 @@ FeasibilityChecker)")
             }
             return scalar_or_array(good);
           },
-          "T_world_camera"_a, "taken"_a = py::none(), R"(Which poses are possible.
+          "T_world_camera"_a, "taken"_a = py::none(), R"(Whether poses are possible.
 
 Parameters
 ----------
@@ -281,7 +282,7 @@ ndarray, (...), bool
             return scalar_or_array(codes_of(self, T_world_camera, taken));
           },
           "T_world_camera"_a, "taken"_a = py::none(),
-          R"(Why poses are not possible: the first reason that applies.
+          R"(Why poses are impossible: the first reason that applies.
 
 Parameters
 ----------

@@ -35,7 +35,8 @@ FrameSequence read_frames(const py::object& folder, const py::object& sensor,
                           std::optional<double> depth_scale,
                           const std::optional<std::string>& out_of_range) {
   if (out_of_range && *out_of_range != "invalid" && *out_of_range != "carve") {
-    throw py::value_error("out_of_range is \"" + *out_of_range + "\"; valid are carve invalid");
+    throw py::value_error("out_of_range is \"" + *out_of_range +
+                          "\"; valid values: carve, invalid");
   }
   const std::string given = sensor.is_none() ? std::string() : preset_or_file(sensor);
   const std::string path = file_path(folder);
@@ -78,7 +79,7 @@ py::list suspicions(const Given<Sensor>& sensor, const py::sequence& frames) {
   const std::size_t step = std::max<std::size_t>(1, frames.size() / kFrames);
   for (std::size_t i = 0; i < frames.size() && images.size() < kFrames; i += step) {
     const py::sequence frame = frames[i];
-    if (frame.size() < 2) throw py::value_error("frames must be of (depth, T_world_camera)");
+    if (frame.size() < 2) throw py::value_error("each of frames must be (depth, T_world_camera)");
     const Pose pose =
         pose_batch(doubles(frame[1], "T_world_camera", {4, 4}), "T_world_camera", false).poses[0];
     if (!rigid_pose(pose)) continue;  // it is lost
@@ -94,7 +95,7 @@ py::list suspicions(const Given<Sensor>& sensor, const py::sequence& frames) {
 void write_poses(const py::object& path, const py::object& T_world_camera,
                  const py::object& timestamps) {
   const std::vector<Pose> poses = pose_list(T_world_camera, "T_world_camera");
-  if (poses.empty()) throw py::value_error("there is no pose to write");
+  if (poses.empty()) throw py::value_error("poses is empty; give at least one pose");
   const std::string file = writable_file(path);
   std::vector<double> times;
   if (!timestamps.is_none()) {
@@ -124,12 +125,12 @@ void bind_toml(py::module_& module) {
           },
           "preset_or_file"_a, R"(A sensor from a .toml file, or a preset by its name.
 
-Runs without the GIL. Cost: one read of a file of some lines, 0.1 ms.
+Runs without the GIL. Cost: 0.1 ms.
 
 Parameters
 ----------
 preset_or_file : str or path-like
-    What ends in .toml is a file, such as ``save`` and the program's ``simulate`` write.
+    A name that ends in .toml is a file, such as those of ``save`` and the program's ``simulate``.
 
 Returns
 -------
@@ -139,9 +140,9 @@ Sensor)")
           [](const Sensor& self, const py::object& path) {
             outside_gil([&, file = writable_file(path)] { write_sensor_toml(file, self); });
           },
-          "path"_a, R"(Writes a .toml file, whole or not at all.
+          "path"_a, R"(Writes a .toml file atomically.
 
-Runs without the GIL. Cost: a file of some lines, 1 ms.
+Runs without the GIL. Cost: 1 ms.
 
 Parameters
 ----------
@@ -155,7 +156,7 @@ path : path-like
           },
           "path"_a, R"(A region from a .toml file: boxes, shells, half-spaces, poses.
 
-Runs without the GIL. Cost: linear in the poses, 1 µs each, and 0.1 ms.
+Runs without the GIL. Cost: 0.1 ms, and 1 µs per pose.
 
 Parameters
 ----------
@@ -170,11 +171,11 @@ ReachRegion)")
             outside_gil([&, file = writable_file(path)] { write_reach_toml(file, self); });
           },
           "path"_a,
-          R"(Writes a .toml file; poses go into NAME.poses.txt beside it, replacing one of that name.
+          R"(Writes a .toml file; poses go to NAME.poses.txt next to it, which replaces an existing one.
 
-A region with a predicate is refused.
+A region with a predicate raises ValueError.
 
-Runs without the GIL. Cost: linear in the poses, 2 µs each, and 1 ms.
+Runs without the GIL. Cost: 1 ms, and 2 µs per pose.
 
 Parameters
 ----------
@@ -185,41 +186,42 @@ path : path-like
 void bind_frames(py::module_& module) {
   auto type = bound_class<FrameSequence>(
       module, "FrameSequence",
-      R"(A folder of depth frames, read one by one. Made by ``read_frames``.
+      R"(A folder of depth frames, read on access. Made by ``read_frames``.
 
-``len(frames)``, ``frames[i]`` and iteration give a ``Frame``, its depth without the error of the sensor's
-range_calibration, its pose not finite where it is lost or missing. ``ViewPlanner.add_frame`` reads and judges
-in one.
+``frames[i]`` and iteration give a ``Frame``: its depth is corrected with the sensor's
+range_calibration, its pose is not finite if it is lost or missing. ``ViewPlanner.add_frame`` reads,
+checks and adds a frame.
 
 Notes
 -----
-A frame is read when it is asked for, without the GIL; many threads may read at once. Cost: linear in a
-frame's pixels; ``poses`` is a copy.)");
+Reads a frame on access, without the GIL; many threads may read at once. Cost: linear in the pixels
+of a frame; ``poses`` is a copy.)");
   refuse_pickling(type);
   type.def(
           "__len__", [](const FrameSequence& self) { return self.images.size(); },
-          "How many frames there are.\n\nReturns\n-------\nint")
+          "Number of frames.\n\nReturns\n-------\nint")
       .def(
           "__iter__",
           [](const py::object& self) {
             (void)py::cast<const FrameSequence&>(self);  // refuses what was never initialised
             return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
           },
-          "The frames in their order.\n\nReturns\n-------\niterator")
+          "The frames in order.\n\nReturns\n-------\niterator")
       .def("__getitem__", &frame_at, "index"_a,
            R"(Reads a frame.
 
 Parameters
 ----------
 index : int
-    From the end if negative.
+    Negative indices count from the end.
 
 Returns
 -------
 Frame)")
       .def_readonly("sensor", &FrameSequence::sensor,
-                    "Sensor: with the folder's own intrinsics, where it has them")
-      .def_readonly("depth_scale", &FrameSequence::depth_scale, "float: [m] per unit of the images")
+                    "Sensor: of the frames, with the folder's intrinsics if it has any")
+      .def_readonly("depth_scale", &FrameSequence::depth_scale,
+                    "float: metres per unit of the images")
       .def_property_readonly(
           "poses", [](const FrameSequence& self) { return pose_array(self.poses); },
           "ndarray, (n, 4, 4), float64: T_world_camera")
@@ -234,39 +236,40 @@ Frame)")
              "depth_scale"_a = py::none(), "out_of_range"_a = py::none(),
              R"(Opens a folder of depth frames.
 
-Reads all poses and no image, without the GIL. Cost: linear in the number of frames.
+Reads all poses and no image, without the GIL. Cost: linear in the frames.
 
 Parameters
 ----------
 folder : path-like
-    With frame-NNNNNN.depth.png, 16 bit, and either poses.txt (TUM) and sensor.toml, as the program's
-    ``simulate`` writes it, or frame-NNNNNN.pose.txt and camera-intrinsics.txt, as recordings have it.
-    Its frames.toml says how they are to be read; a UserWarning says what had to be assumed.
+    With frame-NNNNNN.depth.png, 16 bit, and either poses.txt (TUM) and sensor.toml, as from the
+    program's ``simulate``, or frame-NNNNNN.pose.txt and camera-intrinsics.txt, as in recordings.
+    Its frames.toml states how to read them; a UserWarning lists assumptions.
 sensor : str or path-like, optional
-    A preset's name or a .toml file; the folder's own unless given.
+    A preset's name or a .toml file; default: the folder's own.
 depth_scale : float, optional
-    [m] per unit. Default: as frames.toml says, else 1e-4 with poses.txt and 1e-3 with pose files.
+    Metres per unit; default: from frames.toml, else 1e-4 with poses.txt and 1e-3 with pose files.
 out_of_range : {"carve", "invalid"}, optional
-    Meaning of 65535 in a depth image: no surface up to max_range, or no reading. Default: as
-    frames.toml or the sensor's file says, else "carve" with poses.txt and "invalid" with pose files.
+    Meaning of 65535 in a depth image: free up to max_range, or no reading; default: from
+    frames.toml or the sensor's file, else "carve" with poses.txt and "invalid" with pose files.
 
 Returns
 -------
 FrameSequence)");
 
-  module.def(
-      "suspect_frames", &suspicions, "sensor"_a, "frames"_a,
-      R"(What is probably wrong with the units, conventions or intrinsics of frames of one scene.
+  module.def("suspect_frames", &suspicions, "sensor"_a, "frames"_a,
+             R"(Probable mistakes in units, conventions or intrinsics of frames of one scene.
 
-Readings of a dozen of them are looked for in the others, as they are and under each mistake that is often
-made, by other focal lengths, too. Says nothing of frames that do not overlap. Runs without the GIL. Cost: up to 0.7 s.
+Searches for the readings of a dozen frames in the others, as given and under common mistakes,
+including other focal lengths. Ignores frames without overlap. Runs without the GIL. Cost: up to
+0.7 s.
 
 Parameters
 ----------
 sensor : Sensor
-    ``frames.sensor`` of what ``read_frames`` opens.
+    For example ``frames.sensor`` of ``read_frames``.
 frames : sequence of frames
-    A FrameSequence, or pairs (depth, T_world_camera) as ``ViewPlanner.add`` takes them, depths in any unit. Frames without a rigid pose are left out.
+    A FrameSequence, or pairs (depth, T_world_camera) as for ``ViewPlanner.add``, with depths in any
+    unit. Frames without a rigid pose are ignored.
 
 Returns
 -------
@@ -283,13 +286,13 @@ void bind_files(py::module_& module) {
       "read_poses", [](const py::object& path) { return pose_array(pose_list_of(path).poses); },
       "path"_a, R"(Poses of a file: TUM text (time tx ty tz qx qy qz qw), or a .npy.
 
-Runs without the GIL. Cost: linear in the poses, 1 µs each.
+Runs without the GIL. Cost: 1 µs per pose.
 
 Parameters
 ----------
 path : path-like
-    A name in .npy: rows with tx, ty, tz, qx, qy, qz, qw and perhaps timestamp, or (n, 4, 4)
-    matrices, float64 or float32. Any other: TUM text.
+    .npy: rows with tx, ty, tz, qx, qy, qz, qw and optionally timestamp, or (n, 4, 4) matrices,
+    float64 or float32. Any other name: TUM text.
 
 Returns
 -------
@@ -310,9 +313,9 @@ Returns
 -------
 TimedPoses)");
   module.def("write_poses", &write_poses, "path"_a, "T_world_camera"_a, "timestamps"_a = py::none(),
-             R"(Writes poses as TUM text or .npy, by the name's ending, whole or not at all.
+             R"(Writes poses as TUM text or .npy, according to the name's ending. Atomic.
 
-Runs without the GIL. Cost: linear in the poses, 2 µs each.
+Runs without the GIL. Cost: 2 µs per pose.
 
 Parameters
 ----------
@@ -320,7 +323,7 @@ path : path-like
     Must end in .txt or .tum (TUM text), or .npy (rows with timestamp, tx, ty, tz, qx, qy, qz, qw).
 T_world_camera : array_like, (n, 4, 4)
 timestamps : array_like, (n,), optional
-    [s]; 0, 1, 2, ... unless given.)");
+    [s]; default: 0, 1, 2, ...)");
 }
 
 }  // namespace viewgain::python

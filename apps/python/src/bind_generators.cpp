@@ -28,8 +28,8 @@ py::array_t<double> look_at_all(const py::object& eyes, const py::object& target
   const bool one_target = goal.ndim() == 1 && goal.shape(0) == 3;
   if (!one_target &&
       !(goal.ndim() == axes && std::equal(eye.shape(), eye.shape() + axes, goal.shape()))) {
-    throw py::value_error("target must have the shape (3,) or that of eyes, " + shape_text(eye) +
-                          ", not " + shape_text(goal));
+    throw py::value_error("target must have the shape (3,) or the shape of eyes, " +
+                          shape_text(eye) + ", not " + shape_text(goal));
   }
   const Eigen::Vector3d up_vector = vector3(up, "up");
   const auto count = static_cast<std::size_t>(eye.size() / 3);
@@ -60,12 +60,11 @@ constexpr const char* kReturns = R"(
 Returns
 -------
 ndarray, (n, 4, 4), float64
-    T_world_camera, as many as were asked for: 1 to 100 million.)";
+    T_world_camera, count of them: 1 to 100 million.)";
 
 std::string doc_of(const char* summary, const char* parameters) {
   return std::string(summary) +
-         "\n\nHolds the GIL. Cost: linear in the poses, some 0.15 µs each.\n\n"
-         "Parameters\n----------\n" +
+         "\n\nHolds the GIL. Cost: about 0.15 µs per pose.\n\nParameters\n----------\n" +
          parameters + kCenter + kReturns;
 }
 
@@ -87,40 +86,40 @@ void bind_generators(py::module_& module) {
   module.def("look_at", &look_at_all, "eyes"_a, "target"_a, "up"_a = std::array<double, 3>{0, 0, 1},
              R"(Poses of cameras that look at a point.
 
-Holds the GIL. Cost: linear in the eyes, some 0.1 µs each.
+Holds the GIL. Cost: about 0.1 µs per eye.
 
 Parameters
 ----------
 eyes : array_like, (..., 3)
     Camera centres, world frame [m].
 target : array_like, (3,) or the shape of eyes
-    What each optical axis passes through, world frame [m].
+    Point on each optical axis, world frame [m].
 up : array_like, (3,)
-    The image's up is as near to this as it can be: a direction in the world, without a unit.
+    Direction in the world, of any length, that image up approximates.
 
 Returns
 -------
 ndarray, (..., 4, 4), float64
     T_world_camera.)");
   module.def("order_stops", &order_stops_of, "costs"_a,
-             R"(The order of k stops in which the way through all of them costs least.
+             R"(The order of k stops with the cheapest path through all of them.
 
-Exact up to 12 stops; beyond, pieces are turned and moved for as long as that costs less. The same
-costs give the same order. Holds the GIL. Cost: about 1 ms for 12 stops.
+Exact up to 12 stops, a local optimum beyond. Deterministic. Holds the GIL. Cost: about 1 ms for 12
+stops.
 
 Parameters
 ----------
 costs : array_like, (k + 1, k)
-    Row i, column j: of the way from stop i to stop j, in a unit of your own, say metres or seconds
-    of an arm; the last row is of the ways from where the camera is. At least 0; inf: no way. The
-    diagonal of the first k rows is not read.
+    Row i, column j: cost of the path from stop i to stop j in a unit of your choice, such as metres
+    or seconds; last row: from the current pose. At least 0; inf: no path. Ignores the diagonal of
+    the first k rows.
 
 Returns
 -------
 stops : ndarray, (k,), int64
-    All of them in their order; none where no order was found that avoids infinite ways.
+    All stops in order; empty if no order without infinite costs was found.
 cost : float
-    Of the way; then inf.)");
+    Total cost; inf if no order was found.)");
   def_lattice<sphere_poses>(
       module, "sphere_poses",
       "Fibonacci lattice on a sphere, looking at its centre, image up = world up.");
@@ -143,9 +142,9 @@ radius : float
 elevation : float
     [rad]
 start : float
-    Azimuth of the first [rad].
+    Azimuth of the first pose [rad].
 step : float, optional
-    From one to the next [rad]; 2 pi / count unless given.
+    Azimuth step [rad]; default: 2 pi / count.
 )")
           .c_str());
   module.def(
@@ -157,16 +156,16 @@ step : float, optional
       },
       "count"_a, "radius"_a, "height"_a, "tilt"_a, py::kw_only(), "start"_a = 0.0,
       "center"_a = kOrigin,
-      doc_of("Views on a circle round the vertical axis, looking down towards it.",
+      doc_of("Views on a circle around the vertical axis, looking down towards it.",
              R"(count : int
 radius : float
     [m]
 height : float
     Above the centre [m].
 tilt : float
-    By how much they look down [rad].
+    Downward tilt [rad].
 start : float
-    Azimuth of the first [rad].
+    Azimuth of the first pose [rad].
 )")
           .c_str());
   module.def(
@@ -195,7 +194,7 @@ radius : float
 min_radius, max_radius : float
     [m]
 seed : int
-    The same poses for the same one, more of them if more are asked for.
+    A larger count with the same seed appends poses.
 )")
           .c_str());
 }

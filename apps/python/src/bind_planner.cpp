@@ -149,7 +149,7 @@ py::object drop(Planner& self, const std::string& verdict, const py::object& T_w
   const auto& names = kFrameVerdictNames;
   const auto found = std::find(names.begin(), names.end(), verdict);
   if (found == names.end()) {
-    throw py::value_error("verdict is \"" + verdict + "\"; there is none of this name");
+    throw py::value_error("verdict is \"" + verdict + "\", which is not a verdict");
   }
   std::optional<Pose> pose;
   if (!T_world_camera.is_none()) pose = loose_pose(T_world_camera);
@@ -300,7 +300,7 @@ void bind_planner(py::module_& module) {
               return counts;
             });
           },
-          "dict: how many frames had each verdict so far, by its name; no entry: none")
+          "dict: number of frames so far by verdict; verdicts without frames are missing")
       .def(
           "consistency",
           [](Planner& self) {
@@ -325,7 +325,7 @@ void bind_planner(py::module_& module) {
             }));
           },
           "T_world_camera"_a,
-          R"(Why a pose's gain is what it is on the map as it stands: what becomes of its rays.
+          R"(Where the rays of a pose end on the current map, to explain its gain.
 
 Cost: two traces of the pose.
 
@@ -360,14 +360,13 @@ RayOutcomes)")
               return std::make_shared<SharedGrid>(planner.scorer().grid().clone());
             });
           },
-          "BeliefGrid: a copy of the map as it is; what is changed in it does not reach the "
-          "planner")
+          "BeliefGrid: a copy of the map; changes to it do not affect the planner")
       .def_property_readonly(
           "seconds",
           [](Planner& self) {
             return self.use([](ViewPlanner& planner) { return planner.seconds(); });
           },
-          "dict: what the steps since the last add took, it included [s]: integrate, snapshot, "
+          "dict: seconds per step since the last add, including it: integrate, snapshot, "
           "candidates, score")
       .def("__repr__", [](const Planner& self) { return self.text(); });
 }

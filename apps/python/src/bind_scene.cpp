@@ -23,7 +23,7 @@ Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
   obstacles.boxes = optional_boxes(boxes, "boxes");
   for (const py::handle mesh : meshes) {
     if (!py::isinstance<py::sequence>(mesh) || py::len(mesh) != 2) {
-      throw py::value_error("each of meshes must be a pair (vertices, triangles)");
+      throw py::value_error("each entry of meshes must be a pair (vertices, triangles)");
     }
     const auto pair = py::reinterpret_borrow<py::sequence>(mesh);
     const py::object vertices = pair[0], triangles = pair[1];
@@ -70,33 +70,35 @@ HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_si
 
 void bind_scene(py::module_& module) {
   auto type = bound_class<Scene>(module, "VoxelScene",
-                                 R"(An immutable snapshot of a grid, to be traced.
+                                 R"(An immutable snapshot of a grid for ray tracing.
 
-The grid may change or go afterwards. May be shared by any number of evaluators and threads.
+The grid may change or go afterwards. Any number of evaluators and threads may share a scene.
 
 Parameters
 ----------
 grid : BeliefGrid
 boxes : array_like, (n, 2, 3), optional
-    Known obstacles, which block rays and gain nothing: lowest and highest corners, world frame [m].
+    Known obstacles, which block rays and have no gain: lowest and highest corners, world frame [m].
 meshes : iterable of (vertices, triangles), optional
-    The same as triangles: (n, 3), world frame [m], and (m, 3) indices.
+    Obstacles as triangles: (n, 3), world frame [m], and (m, 3) indices.
 support_plane : float, optional
-    Height z of a table without end [m]. Bodies stay above it; rays of the gains "surface" and "combined" end there.
+    Height z of an infinite table [m]. Bodies stay above it; it ends rays of the gains "surface" and
+    "combined".
 object_size : float, optional
-    Longest side of the object [m], for the surface gain; that of what is seen unless given.
+    Longest side of the object [m], for the surface gain; default: that of its seen part.
 hazard : float, path or array_like, the grid's shape, optional
-    Rate at which a ray in unknown voxels meets the surface [1/m], for the surface gain: the same
-    everywhere, from a .vdb file (its grid of floats "hazard", or the only one), or one for each
-    voxel; by distance from and elevation over what is seen unless given.
+    Rate at which a ray meets the surface in unknown voxels [1/m], for the surface gain: constant,
+    from a .vdb file (its float grid "hazard", or the only one), or one per voxel; default: from the
+    distance to seen surface and the elevation above it.
 num_threads : int
-    Of the build; 0: all hardware threads.
+    Threads of the build; 0: all hardware threads.
 
 Notes
 -----
-The GIL is left while a scene is made, of at most 2**23 blocks of voxels. Cost: linear in the blocks of voxels that are not free, about
-0.2 ms per 1,000; by the surface and the combined gain some ms more when an evaluator first asks.
-``update`` is several times faster where little has changed; properties take constant time.)");
+Releases the GIL while building a scene of at most 2**23 blocks of voxels. Cost: about 0.2 ms per
+1,000 blocks that are not free; some ms more when an evaluator of the surface or combined gain first
+needs it.
+``update`` is several times faster if little has changed; properties take constant time.)");
   refuse_pickling(type);
   type.def(py::init([](const Given<SharedGrid>& grid, const py::object& boxes,
                        const py::iterable& meshes, std::optional<double> support_plane,
@@ -119,29 +121,29 @@ The GIL is left while a scene is made, of at most 2**23 blocks of voxels. Cost: 
             });
           },
           "grid"_a, py::kw_only(), "num_threads"_a = 0,
-          R"(The scene of what the grid is now, with the same surroundings; this one stays as it is.
+          R"(The scene of the current grid with the same surroundings; this scene does not change.
 
-What has not changed since is taken over: regions of 32**3 voxels.
+Copies regions of 32**3 voxels that are unchanged.
 
 Parameters
 ----------
 grid : BeliefGrid
-    The scene's, or any other.
+    The scene's grid, or any other.
 num_threads : int
-    Of the build; 0: all hardware threads.
+    Threads of the build; 0: all hardware threads.
 
 Returns
 -------
 VoxelScene)")
       .def_property_readonly(
           "isa", [](const Scene& self) { return std::string(self.scene->isa()); },
-          "str: the instruction set that traces it")
+          "str: instruction set of the tracer")
       .def_property_readonly(
           "primitive_count", [](const Scene& self) { return self.scene->primitive_count(); },
-          "int: blocks of voxels that are not free")
+          "int: number of voxel blocks that are not free")
       .def_property_readonly(
           "bytes", [](const Scene& self) { return self.scene->bytes(); },
-          "int: memory of the scene, without the snapshot and Embree's own")
+          "int: memory of the scene in bytes, without the snapshot and Embree")
       .def("__repr__", [](const Scene& self) {
         const VoxelScene& scene = *self.scene;
         const Index3& dims = scene.snapshot().dims;

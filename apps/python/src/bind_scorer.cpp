@@ -75,7 +75,7 @@ std::unique_ptr<Scorer> make_scorer(
   config.voxel_size = voxel_size.value_or(config.voxel_size);
   if (!map.is_none() && (voxel_size || !workspace.is_none() || !T_world_grid.is_none())) {
     throw py::value_error(
-        "map brings its own voxel_size, workspace and T_world_grid; leave yours out");
+        "voxel_size, workspace and T_world_grid cannot be used with map, which has its own");
   }
   if (!workspace.is_none()) config.workspace = box(workspace, "workspace");
   config.T_world_grid = optional_pose(T_world_grid, "T_world_grid").value_or(Pose());
@@ -99,7 +99,7 @@ std::unique_ptr<Scorer> make_scorer(
       py::isinstance<SharedGrid>(map) ? &map.cast<const SharedGrid&>() : nullptr;
   const std::string file = map.is_none() || grid != nullptr ? "" : readable_file(map);
   if (prior_sigma && !map.is_none() && (grid != nullptr || !is_octomap(file))) {
-    throw py::value_error("map brings its own prior_sigma; leave yours out");
+    throw py::value_error("prior_sigma cannot be used with map, which has its own");
   }
   std::optional<BeliefGrid> copy;
   if (grid != nullptr) copy = grid->read([](const BeliefGrid& g) { return g.clone(); });
@@ -251,9 +251,10 @@ void bind_scorer(py::module_& module) {
           "path"_a, kScorerSaveDoc)
       .def_property_readonly(
           "scene", [](const Scorer& self) { return Scene{self.get().scene()}; },
-          "VoxelScene: the current one; it stays as it is")
-      .def_property_readonly("evaluator", &evaluator_of,
-                             "GainEvaluator: of the current scene, with which it stays as it is")
+          "VoxelScene: the current scene; later frames do not change it")
+      .def_property_readonly(
+          "evaluator", &evaluator_of,
+          "GainEvaluator: evaluator of the current scene; later frames do not change it")
       .def_property_readonly(
           "grid",
           [](const Scorer& self) {

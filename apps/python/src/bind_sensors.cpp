@@ -58,7 +58,8 @@ void bind_model(py::module_& module, const char* name, const char* doc,
 }  // namespace
 
 void bind_noise(py::module_& module) {
-  bind_model<ShotNoise>(module, "ShotNoise", R"(Time-of-flight shot noise.
+  bind_model<ShotNoise>(
+      module, "ShotNoise", R"(Time-of-flight shot noise.
 
 ``axial = reference_sigma * (t / reference_range) * sqrt(reference_integration_time /
 integration_time) / sqrt(max(cos, 0.1))``, ``lateral = t / fx``; t is the range along the ray [m].
@@ -70,20 +71,21 @@ reference_sigma, reference_range : float
 reference_integration_time, integration_time : float
     [s]
 modulation_frequency : float
-    Of the light [Hz]; 0: ranges are unambiguous.
+    Modulation frequency of the light [Hz]; 0: ranges are unambiguous.
 min_amplitude : float
-    cos / t**2 under which a reading is invalid [1/m**2].)",
-                        {"float: along the ray at the reference [m]", "float: of the reference [m]",
-                         "float: of the reference [s]", "float: [s]",
-                         "float: of the light [Hz]; 0: ranges are unambiguous",
-                         "float: cos / t**2 under which a reading is invalid [1/m**2]"});
+    cos / t**2 below which a reading is invalid [1/m**2].)",
+      {"float: sigma along the ray at the reference [m]", "float: reference range [m]",
+       "float: integration time of the reference [s]", "float: integration time [s]",
+       "float: modulation frequency of the light [Hz]; 0: ranges are unambiguous",
+       "float: cos / t**2 below which a reading is invalid [1/m**2]"});
 
   bind_model<StructuredLightNoise>(module, "StructuredLightNoise",
                                    R"(Structured light (Nguyen, Izadi, Lovell, 2012).
 
-``axial = offset + quadratic * (z - vertex)**2``, plus ``grazing / sqrt(z) * theta**2 / (pi/2 -
-theta)**2`` beyond 60 degrees; ``lateral = (lateral_px + lateral_grazing_px * theta / (pi/2 - theta))
-* z / fx``; z is taken as the range along the ray [m].
+``axial = offset + quadratic * (z - vertex)**2``, plus
+``grazing / sqrt(z) * theta**2 / (pi/2 - theta)**2`` beyond 60 degrees; ``lateral = (lateral_px +
+lateral_grazing_px * theta / (pi/2 - theta))
+* z / fx``; z is the range along the ray [m].
 
 Parameters
 ----------
@@ -107,7 +109,7 @@ Parameters
 subpixel : float
     Matching error [px].
 focal : float
-    Focal length [px]; 0 stands for the camera's fx.
+    Focal length [px]; 0: the camera's fx.
 baseline : float
     [m])",
       {"float: matching error [px]", "float: [px]", "float: [m]"});
@@ -127,7 +129,7 @@ linear : float
       {"float: [m]", "float: [1/m]", "float: [1]"});
 
   bind_model<ConstantNoise>(module, "ConstantNoise",
-                            R"(The same everywhere; equal sigmas make an isotropic sensor.
+                            R"(Constant sigmas; equal ones make an isotropic sensor.
 
 Parameters
 ----------
@@ -135,7 +137,7 @@ sigma_axial : float
     Along the ray [m].
 sigma_lateral : float
     Across the ray [m].)",
-                            {"float: along the ray [m]", "float: across the ray [m]"});
+                            {"float: sigma along the ray [m]", "float: sigma across the ray [m]"});
 }
 
 namespace {
@@ -161,7 +163,7 @@ std::optional<Sensor::OutOfRange> out_of_range_of(const std::optional<std::strin
   if (!name) return std::nullopt;
   if (*name == "carve") return Sensor::OutOfRange::carve;
   if (*name == "invalid") return Sensor::OutOfRange::invalid;
-  refuse("out_of_range is \"" + *name + "\", not carve or invalid");
+  refuse("out_of_range is \"" + *name + "\"; valid values: carve, invalid");
 }
 
 std::optional<std::string> name_of(const std::optional<Sensor::OutOfRange>& meaning) {
@@ -174,7 +176,7 @@ std::optional<std::string> name_of(const std::optional<Sensor::OutOfRange>& mean
 void bind_sensors(py::module_& module) {
   auto type = bound_class<Sensor>(
       module, "Sensor",
-      R"(A depth camera: intrinsics, range limits, noise. Immutable. All parameters go by keyword.
+      R"(A depth camera: intrinsics, range limits, noise. Immutable. All parameters are keyword-only.
 
 Parameters
 ----------
@@ -182,32 +184,31 @@ camera : PinholeCamera
 min_range, max_range : float
     Along the ray [m].
 working_distance : float
-    Where it is meant to be used [m].
+    Intended distance [m].
 noise : ShotNoise or StructuredLightNoise or StereoNoise or QuadraticNoise or ConstantNoise
 name : str, optional
     For reports.
 T_flange_camera : array_like, (4, 4), optional
-    Mounting on the robot's flange: from the camera's frame to the flange's.
+    Mounting on the robot's flange: from the camera frame to the flange frame.
 body_size : sequence of float, (3,), optional
     Width, height, depth of the housing, flange frame [m].
 range_calibration : array_like, (n, 2), optional
-    Rows of measured range and measured minus true range [m], measured ranges rising: the systematic
-    error. ``read_frames`` takes it away.
+    Systematic error: rows of measured range and measured minus true range [m], by increasing
+    measured range. ``read_frames`` subtracts it.
 pose_sigma : sequence of float, (2,), optional
-    How far the poses that frames come with may be off, standard deviations about the camera's
-    centre: of its position in each axis [m], of each component of the rotation vector [rad]. Maps
-    and gains count it into each reading.
+    Standard deviations of the poses of frames about the camera centre: of the position per axis
+    [m], and per component of the rotation vector [rad]. Maps and gains add it to each reading.
 scale_sigma : float, optional
-    Standard deviation of the factor, less 1, that all ranges are off by. No number of readings makes
-    a point surer of it: ``BeliefGrid.points``.
+    Relative standard deviation of one factor common to all ranges. More readings do not reduce it;
+    see ``BeliefGrid.points``.
 out_of_range : str, optional
-    What the value 65535 says in its depth images: carve (nothing up to max_range) or invalid (no
-    reading); default: as the layout of their folder has it.
+    Meaning of 65535 in its depth images: carve (free up to max_range) or invalid (no reading);
+    default: from the layout of their folder.
 
 Notes
 -----
-Equal by value; can be pickled. Refuses parameters of the noise that are out of their bounds. Holds the GIL. Cost: some µs; linear in the rows of
-range_calibration.)");
+Equal by value; can be pickled. Invalid noise parameters raise ValueError. Holds the GIL. Cost: some
+µs; linear in the rows of range_calibration.)");
   pickle_by_attributes(type, {"camera", "min_range", "max_range", "working_distance", "noise",
                               "name", "T_flange_camera", "body_size", "range_calibration",
                               "pose_sigma", "scale_sigma", "out_of_range"});
@@ -263,12 +264,13 @@ range_calibration.)");
           [](const Sensor& sensor) {
             return py::make_tuple(sensor.pose_sigma.translation, sensor.pose_sigma.rotation);
           },
-          "(float, float): of the poses of frames [m], [rad]; zeros where they are exact")
+          "(float, float): standard deviations of the poses of frames [m], [rad]; zeros: poses are "
+          "exact")
       .def_readonly("scale_sigma", &Sensor::scale_sigma,
-                    "float: of the factor, less 1, that all ranges are off by; 0: none")
+                    "float: relative sigma of one factor common to all ranges; 0: none")
       .def_property_readonly(
           "out_of_range", [](const Sensor& sensor) { return name_of(sensor.out_of_range); },
-          "str or None: what 65535 says in its depth images, carve or invalid")
+          "str or None: meaning of 65535 in its depth images: carve or invalid")
       .def(
           "corrected",
           [](const Sensor& sensor, const py::object& depth) {
@@ -277,19 +279,19 @@ range_calibration.)");
             return image_array(frame.depth, frame.height, frame.width);
           },
           "depth"_a,
-          R"(A depth image without the error of range_calibration, as ``read_frames`` gives them.
+          R"(A depth image corrected with range_calibration, as from ``read_frames``.
 
-Cost: linear in the pixels, 30 ns each, with distortion 0.5 µs.
+Cost: 30 ns per pixel, with distortion 0.5 µs.
 
 Parameters
 ----------
 depth : array_like, (height, width)
-    Along the optical axis [m], as the camera gives it.
+    Along the optical axis [m], as from the camera.
 
 Returns
 -------
 ndarray, (height, width), float32
-    Along the optical axis [m]; 0 where nothing is known.)")
+    Along the optical axis [m]; 0 where there is no reading.)")
       .def(
           "sigmas",
           [](const Sensor& sensor, double t, double cos_incidence) {
@@ -302,7 +304,7 @@ ndarray, (height, width), float32
 Parameters
 ----------
 t : float
-    [m], >= 0; that it lies in the sensor's limits is not checked.
+    [m], >= 0; not limited to the sensor's range.
 cos_incidence : float
     Cosine of the angle between ray and surface normal; 1: frontal.
 
@@ -336,17 +338,17 @@ Returns
 Sensor)");
   module.def(
       "sensor_preset_names", [] { return sensor_preset_names(); },
-      "The names that ``sensor_preset`` takes.\n\nReturns\n-------\nlist of str");
+      "The valid names of ``sensor_preset``.\n\nReturns\n-------\nlist of str");
   module.def(
       "default_prior_sigma",
       [](double voxel_size, const Given<Sensor>& sensor) {
         return default_prior_sigma(voxel_size, *sensor);
       },
       "voxel_size"_a, "sensor"_a,
-      R"(Standard deviation of an unknown voxel's position, when the map does not say [m].
+      R"(Default standard deviation of an unknown voxel's position [m].
 
-``max(voxel_size / 2, 2 * axial sigma at the working distance)``: unknown is never surer than one
-reading.
+``max(voxel_size / 2, 2 * axial sigma at the working distance)``, so that unknown space is never
+more certain than one reading.
 
 Parameters
 ----------

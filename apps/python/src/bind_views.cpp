@@ -95,7 +95,7 @@ void bind_views(py::module_& module, py::class_<Evaluator>& evaluator) {
   module.attr("HIT_KIND_NAMES") = py::make_tuple("none", "unknown", "occupied", "obstacle");
   evaluator
       .def("trace", &trace_array, "T_world_camera"_a,
-           R"(Where the rays of a view end. Cost: linear in the rays, 0.7 ms for 176x144 pixels.
+           R"(Where the rays of a view end. Cost: 0.7 ms for 176x144 pixels.
 
 Parameters
 ----------
@@ -104,13 +104,13 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 ndarray, (height', width'), structured
-    One a ray, image size divided by the stride, rounded up: kind (index into ``HIT_KIND_NAMES``),
+    One per ray, image size divided by the stride, rounded up: kind (index into ``HIT_KIND_NAMES``),
     voxel (int32, 3; on the lattice), range along the ray [m], inf: nothing.)")
-      .def("depth", &depth, "T_world_camera"_a,
-           R"(The depth image of a view of the map: of the first voxel on each ray that is not free.
+      .def(
+          "depth", &depth, "T_world_camera"_a,
+          R"(The depth image of a view of the map: each ray ends in the first voxel that is not free.
 
-One that is unknown ends a ray as well. Cost: that of ``trace``, with distortion its undoing for every
-pixel.
+Unknown voxels end rays too. Cost: as ``trace``, and with distortion its removal per pixel.
 
 Parameters
 ----------
@@ -121,9 +121,9 @@ Returns
 ndarray, (height', width'), float32
     Along the optical axis [m], inf: nothing; size as for ``trace``.)")
       .def("contributions", &contributions, "T_world_camera"_a,
-           R"(Why a view is good: what each voxel adds to its gain.
+           R"(Explains a gain: the contribution of each voxel.
 
-On the calling thread alone. Cost: 3 times that of ``evaluate`` for this pose.
+Runs on the calling thread. Cost: 3 times ``evaluate`` for this pose.
 
 Parameters
 ----------
@@ -132,12 +132,11 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 ndarray, (n,), structured
-    voxel (int32, 3; on the lattice, minus the grid's ``min_index`` for arrays), state, rays that end
-    in it, expected_rays (by the surface and the combined gain: the sum of their chances to end there),
-    gain, in the unit of ``evaluate``. Largest gain first; the gains add up to that of the view.)")
-      .def(
-          "outcomes", &outcomes, "T_world_camera"_a,
-          R"(Why a view's gain is what it is: what becomes of its rays. Cost: twice that of ``trace``.
+    voxel (int32, 3; on the lattice, subtract the grid's ``min_index`` for arrays), state, rays that
+    end in it, expected_rays (surface and combined gains: the sum of their probabilities), gain in
+    the unit of ``evaluate``. Largest gain first; the gains add up to that of the view.)")
+      .def("outcomes", &outcomes, "T_world_camera"_a,
+           R"(Where a view's rays end, to explain its gain. Cost: twice ``trace``.
 
 Parameters
 ----------
@@ -146,29 +145,29 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 RayOutcomes
-    Counts that add up to its ``rays``.)")
+    The counts add up to its ``rays``.)")
       .def("evaluate_own", &evaluate_own, "T_world_camera"_a, "measure"_a, py::kw_only(),
            "control"_a = py::none(),
-           R"(A gain of your own: a number for what a view would see.
+           R"(A custom gain: computes a number from the rays of a view.
 
-Slow: the function is called for one view after the other, under the GIL; the C++ interface
-ViewMeasure is the fast way. Cost: 1.4 times that of ``evaluate``, and the function's for each pose.
+Slow: calls the function for one view after the other, with the GIL; C++'s ViewMeasure is faster.
+Cost: 1.4 times ``evaluate``, and one call of the function per pose.
 
 Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)
 measure : callable
-    Given T_world_camera (4, 4) and the hits of a view, a structured array (n,) with a row for each
-    ray that ends in a voxel: voxel (int32, 3), state, readings (that ended in the voxel), information
-    (float32, 6: xx yy zz xy xz yz [1/m**2]), ray (pixel number, row by row, strided), range along
-    the ray [m], direction (unit, world frame). Returns a float. What it raises passes through.
+    Takes T_world_camera (4, 4) and the hits of a view, a structured array (n,) with one row per ray
+    that ends in a voxel: voxel (int32, 3), state, readings (that ended in the voxel), information
+    (float32, 6: xx yy zz xy xz yz [1/m**2]), ray (pixel number, row-major, strided), range along
+    the ray [m], direction (unit, world frame). Returns a float. Its exceptions pass through.
 control : BatchControl, optional
 
 Returns
 -------
 ndarray, (...), float64
-    What measure returns, in its unit; NaN for bad poses, 0 for cameras in an occupied voxel; neither is asked about. A single pose gives
-    a scalar.)");
+    Results of measure; NaN for invalid poses and 0 for cameras in an occupied voxel, without a
+    call. A single pose gives a scalar.)");
 }
 
 }  // namespace viewgain::python

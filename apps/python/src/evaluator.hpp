@@ -108,7 +108,7 @@ class PythonMeasure : public ViewMeasure {
       }
       return row;
     });
-    return number(call_(to_array(T_world_camera), rows), "what measure returns");
+    return number(call_(to_array(T_world_camera), rows), "the result of measure");
   }
 
   PythonCall call_;
@@ -124,7 +124,7 @@ class PythonMeasure : public ViewMeasure {
 [[nodiscard]] inline std::vector<double> costs_or_none(const py::object& costs) {
   if (costs.is_none()) return {};
   const Doubles given = doubles(costs, "costs", {-1});
-  if (given.size() == 0) throw py::value_error("costs is empty: one a pose is needed");
+  if (given.size() == 0) throw py::value_error("costs is empty; one cost per pose is required");
   return {given.data(), given.data() + given.size()};
 }
 

@@ -47,22 +47,23 @@ inline constexpr ArgumentWords kWords{"the argument", ""};
 template <>
 inline constexpr ArgumentWords kWords<SharedGrid>{
     "grid",
-    "; BeliefGrid.from_labels makes one of an array of states, BeliefGrid.load reads a file"};
+    "; make one from an array of states with BeliefGrid.from_labels, or from a file with "
+    "BeliefGrid.load"};
 template <>
 inline constexpr ArgumentWords kWords<FrameSequence>{"frames",
-                                                     "; read_frames opens a folder of them"};
+                                                     "; open a folder of them with read_frames"};
 template <>
 inline constexpr ArgumentWords kWords<Scene>{"scene",
-                                             "; VoxelScene(grid) makes one of a BeliefGrid"};
+                                             "; make one from a BeliefGrid with VoxelScene(grid)"};
 template <>
 inline constexpr ArgumentWords kWords<Sensor>{
-    "sensor", "; sensor_preset(name) and Sensor.load(path) give one"};
+    "sensor", "; get one with sensor_preset(name) or Sensor.load(path)"};
 template <>
 inline constexpr ArgumentWords kWords<PinholeCamera>{
-    "camera", "; PinholeCamera.from_matrix makes one of an intrinsic matrix"};
+    "camera", "; make one from an intrinsic matrix with PinholeCamera.from_matrix"};
 template <>
-inline constexpr ArgumentWords kWords<Control>{"control",
-                                               "; BatchControl(progress) makes one of a function"};
+inline constexpr ArgumentWords kWords<Control>{
+    "control", "; make one from a function with BatchControl(progress)"};
 template <>
 inline constexpr ArgumentWords kWords<ReachRegion>{"reach", ""};
 template <>

@@ -48,12 +48,12 @@ void leave_at_exit() {
 }
 
 void bind_errors(py::module_& module) {
-  error_type = PyErr_NewExceptionWithDoc(
-      "viewgain.Error",
-      "A file's contents are wrong, a data structure is too small for what is asked, or Embree or "
-      "OpenVDB\nreported a failure. Wrong arguments raise ValueError, files that cannot be read or "
-      "written OSError.",
-      PyExc_RuntimeError, nullptr);
+  error_type =
+      PyErr_NewExceptionWithDoc("viewgain.Error",
+                                "A file has wrong contents, a data structure is too small, or "
+                                "Embree or OpenVDB failed.\nWrong arguments raise ValueError; "
+                                "files that cannot be read or written raise OSError.",
+                                PyExc_RuntimeError, nullptr);
   if (error_type == nullptr) throw py::error_already_set();
   module.attr("Error") = py::handle(error_type);
   py::register_exception_translator([](std::exception_ptr thrown) {
@@ -72,7 +72,7 @@ void bind_errors(py::module_& module) {
 
 PYBIND11_MODULE(_viewgain, module) {
   using namespace viewgain::python;
-  module.doc() = "The C++ part of viewgain; import viewgain instead.";
+  module.doc() = "The C++ part of viewgain. Import viewgain instead.";
   module.attr("__version__") = VIEWGAIN_PYTHON_VERSION;
   // Classes and functions are of the package that users import: so say reprs, help and pickles.
   const pybind11::object name = module.attr("__name__");

@@ -33,7 +33,7 @@ class Planner {
   template <typename F>
   auto use(const F& f) {
     if (busy_.exchange(true)) {
-      throw std::runtime_error("ViewPlanner: one call at a time; another one is at work");
+      throw std::runtime_error("ViewPlanner: another call is running; use one call at a time");
     }
     const Free free{busy_};
     return f(planner_);
@@ -68,7 +68,7 @@ class PythonGeneration : public ViewpointGeneration {
   Proposal generate(const Pose&) override {
     const auto grid = std::make_shared<SharedGrid>(scorer_.grid().clone());
     const std::vector<Pose> poses =
-        with_gil([&] { return pose_list(call_(grid), "what the generator returns"); });
+        with_gil([&] { return pose_list(call_(grid), "the result of the generator"); });
     Proposal proposal;
     for (std::size_t i = 0; i < poses.size(); ++i) {
       proposal.candidates.push_back({poses[i], name_, std::nullopt, i});

@@ -64,7 +64,7 @@ std::string fault_of(const Pose& pose, std::span<const double> m) {
   }
   const double error = orthonormality_error(pose);
   if (!(error <= kRigid)) {
-    return "has a rotation that is off by " + short_text(error) +
+    return "has a rotation that deviates by " + short_text(error) +
            " from orthonormal and right-handed";
   }
   return {};

@@ -9,28 +9,28 @@ namespace viewgain::python {
 inline constexpr const char* kScorerDoc =
     R"(Depth frames or labelled voxels in, gains of camera poses out.
 
-Keeps a map, its scene and its evaluator in step: ``add`` frames, or ``set`` labels; then ``evaluate``
-poses, or ask for the ``best``.
+Keeps a map, its scene and its evaluator in step: ``add`` frames, or ``set`` labels; then
+``evaluate`` poses, or ask for the ``best``.
 
 Parameters
 ----------
 sensor : Sensor
 voxel_size : float, optional
-    [m]; 0.005 unless given.
+    [m]; default: 0.005.
 workspace : array_like, (2, 3), optional
-    Lowest and highest corner of what is mapped, the grid's frame [m]; default: half a metre round the
+    Lowest and highest corner of the mapped space, grid frame [m]; default: -0.25 to 0.25 around the
     origin.
 T_world_grid : array_like, (4, 4), optional
-    Places the grid's frame in the world; identity unless given.
+    Pose of the grid frame in the world; default: identity.
 prior_sigma : float, optional
     Standard deviation of the surface in an unknown voxel [m]; default: ``default_prior_sigma``.
 support_plane : float, optional
     Height z of the table [m]. Readings of it carve free space, but never make a voxel occupied.
 boxes : array_like, (n, 2, 3), optional
-    Known obstacles: lowest and highest corners, world frame [m]. Rays and bodies stop at them; readings
-    of them only carve.
+    Known obstacles: lowest and highest corners, world frame [m]. They block rays and bodies; their
+    readings only mark free space.
 meshes : iterable of (vertices, triangles), optional
-    The same as triangles: (n, 3), world frame [m], and (m, 3) indices.
+    Obstacles as triangles: (n, 3), world frame [m], and (m, 3) indices.
 gain : {"combined", "surface", "paper"}
     "combined": expected new surface, and refinement of known surface [nat]. "surface": expected new
     surface [m**2]. "paper": entropy removed [nat].
@@ -43,12 +43,12 @@ weights : iterable of (box, weight)
 refinement_weight : float, optional
     As in ``GainEvaluator``.
 object_size : float, optional
-    Longest side of the object [m]; that of what is seen unless given.
+    Longest side of the object [m]; default: that of its seen part.
 body_size : array_like, (3,), optional
-    Width, height, depth of the camera's housing, flange frame [m]; the sensor's unless given. With a
-    body ``best`` leaves out poses where it has no room.
+    Width, height, depth of the camera's housing, flange frame [m]; default: the sensor's. With a
+    body, ``best`` omits poses where it has no room.
 clearance : float
-    Round the body [m].
+    Margin around the body [m].
 jump_edges : bool
     Remove flying pixels.
 coarsest : int
@@ -58,24 +58,24 @@ fine : array_like, (n, 2, 3), optional
 finest : int
     As in ``FrameIntegrator``.
 map : BeliefGrid or path-like, optional
-    A map to continue from, which is copied, or its file: a .vdb of ``save`` or another map, or OctoMap's .ot or
-    .bt. It brings its own voxel_size, workspace and T_world_grid.
+    A map to continue, which is copied, or its file: a .vdb of ``save`` or another map, or an
+    OctoMap .ot or .bt. It has its own voxel_size, workspace and T_world_grid.
 tracer : {"automatic", "embree", "sweep"}
-    How rays meet voxels, as in ``GainEvaluator``. Never changes a result.
+    Tracer, as in ``GainEvaluator``. Does not affect results.
 num_threads : int
-    0: all hardware threads. Never changes a result.
+    0: all hardware threads. Does not affect results.
 
 Notes
 -----
-``evaluate``, ``best``, ``scene`` and ``evaluator`` may run in any thread at any time, even while the map
-changes: they use the map before or after that change. ``save``, ``consistency`` and ``grid`` wait for a
-change that is running. The GIL is released. Pickles hold settings and map, but not the frames that
-``consistency`` compares. Cost of a change: the change of the map, and some milliseconds
-for the scene.)";
+``evaluate``, ``best``, ``scene`` and ``evaluator`` may run in any thread at any time, even while
+the map changes: they use the map before or after that change. ``save``, ``consistency`` and
+``grid`` wait for a change that is running. The GIL is released. Pickles hold settings and map, but
+not the frames that ``consistency`` compares. Cost of a change: the change of the map, and some
+milliseconds for the scene.)";
 
 inline constexpr const char* kScorerAddDoc = R"(Adds a depth frame to the map.
 
-Removes flying pixels, marks known obstacles and lets the hazard of unknown space learn.
+Removes flying pixels, marks known obstacles and updates the hazard of unknown space.
 
 Parameters
 ----------
@@ -83,18 +83,18 @@ depth : array_like, (height, width), floating point
     As in ``FrameIntegrator.integrate``.
 T_world_camera : array_like, (4, 4)
 pose_sigma : array_like, (2,), optional
-    What this pose may be off beside the sensor's own pose_sigma [m], [rad].
+    Uncertainty of this pose in addition to the sensor's pose_sigma [m], [rad].
 amplitude : array_like, (height, width), floating point, optional
     As in ``FrameIntegrator.integrate``.
 
 Returns
 -------
 MapUpdate
-    Its verdict says whether the frame could be used.)";
+    Its verdict states whether the frame could be used.)";
 
 inline constexpr const char* kScorerSetDoc = R"(Labels a box of voxels.
 
-Labelled voxels have no refinement. Cost: a pass over the labels, and the scene's update.
+Labelled voxels have no refinement. Cost: one pass over the labels, and the scene's update.
 
 Parameters
 ----------
@@ -106,20 +106,20 @@ labels : array_like, (nx, ny, nz), whole numbers
 Returns
 -------
 int
-    How many voxels changed.)";
+    Number of changed voxels.)";
 
 inline constexpr const char* kScorerForgetDoc =
-    R"(Makes the voxels of a region unknown again: for what has moved.
+    R"(Resets the voxels of a region to unknown, for moved objects.
 
 Parameters
 ----------
 region : array_like, (2, 3)
-    Lowest and highest corner, the grid's frame [m]; may be infinite.
+    Lowest and highest corner, grid frame [m]; may be infinite.
 
 Returns
 -------
 int
-    How many voxels were known.)";
+    Number of voxels that were known.)";
 
 inline constexpr const char* kScorerEvaluateDoc = R"(The gain of each pose on the current map.
 
@@ -129,53 +129,53 @@ Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)
 measure : callable, optional
-    A gain of your own, as in ``GainEvaluator.evaluate_own``.
+    Custom gain, as in ``GainEvaluator.evaluate_own``.
 strict : bool
-    Raise for a bad pose.
+    Raise ValueError for an invalid pose.
 control : BatchControl, optional
 
 Returns
 -------
 ndarray, (...), float64
-    NaN for a bad pose.)";
+    NaN for an invalid pose.)";
 
 inline constexpr const char* kScorerBestDoc =
-    R"(The k best poses, very probably, in two stages: as ``GainEvaluator.race``.
+    R"(The k best poses with high probability, in two stages: as ``GainEvaluator.race``.
 
-With a body, infeasible poses are left out: no room for the body, or over 20 % of the view too near.
+With a body, omits infeasible poses: no room for the body, or over 20 % of the view too near.
 
 Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)
 k : int
 costs : array_like, (n,), optional
-    Subtracted from the gains, in their unit.
+    Costs to subtract from the gains, in their unit.
 deadline : float, optional
-    Time limit of the call [s]; none unless given.
+    Time limit of the call [s]; default: none.
 control : BatchControl, optional
 
 Returns
 -------
 BestViews
-    Best first; fewer than k where fewer poses have a gain. A gain of 0 says that the view would show
+    Best first; fewer than k if fewer poses have a gain. A gain of 0 means that the view would show
     nothing new.)";
 
 inline constexpr const char* kScorerConsistencyDoc =
-    R"(Whether the frames added so far fit one another.
+    R"(Agreement of the frames added so far.
 
-Cost: 50 ms, 0.5 s if they do not.
+Cost: 50 ms, 0.5 s if they disagree.
 
 Returns
 -------
 FrameConsistency)";
 
 inline constexpr const char* kScorerLoadDoc =
-    R"(A scorer that continues from a file, as with ``map``.
+    R"(A scorer that continues a file, as with ``map``.
 
 Parameters
 ----------
 path : path-like
-    A .vdb of ``save`` or another map, or OctoMap's .ot or .bt.
+    A .vdb of ``save`` or another map, or an OctoMap .ot or .bt.
 *args, **settings
     As for the class: the sensor, and settings other than the map's layout.
 
@@ -184,7 +184,7 @@ Returns
 ViewScorer)";
 
 inline constexpr const char* kScorerSaveDoc =
-    R"(Writes the map as a .vdb file, whole or not at all; ``load`` continues from it.
+    R"(Writes the map as a .vdb file, atomically; ``load`` continues it.
 
 Parameters
 ----------

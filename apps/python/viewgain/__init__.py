@@ -12,15 +12,15 @@
 >>> best = scorer.best(poses, 3).indices                        # best first
 
 Frames and units: a pose is ``T_world_camera``, a 4x4 matrix that maps points of the camera's optical
-frame (x right, y down, z forward) to the world; 3x4 matrices and rows of tx ty tz qx qy qz qw are taken, too, as float32 or
-float64 in any order of memory. Lengths are metres, gains nats. Surfaces and the whole
-reconstruction loop are in ``viewgain.mesh``, which is GPL-3.0-or-later. ``viewgain.plot`` draws, by matplotlib.
+frame (x right, y down, z forward) to the world. 3x4 matrices and rows of tx ty tz qx qy qz qw work too, as float32 or
+float64 in any memory order. Lengths are in metres, gains in nats. Surfaces and the whole reconstruction loop are in
+``viewgain.mesh``, which is GPL-3.0-or-later. ``viewgain.plot`` draws with matplotlib.
 
-Errors: ``ValueError`` names an argument of another shape, without real numbers, masked or out of its bounds, and a bad pose
-where one must be good; ``TypeError`` one of another class or that cannot be called, and where an object of the right one
-comes from. ``OSError`` (``FileNotFoundError``) names a file that cannot be opened or written, ``viewgain.Error`` one that is
-damaged or of another kind, and what a data structure cannot hold. What a function of yours raises passes through. Docstrings
-say what is raised beside that.
+Errors: ``ValueError`` names an argument of the wrong shape, without real numbers, masked or out of bounds, and an invalid pose
+where a valid one is required. ``TypeError`` names an argument of the wrong class or that is not callable, and how to get an
+object of the right class. ``OSError`` (``FileNotFoundError``) names a file that cannot be opened or written; ``viewgain.Error``
+names one that is damaged or of another kind, and sizes that a data structure does not support. Exceptions of your functions
+pass through. Docstrings list further exceptions.
 """
 
 import importlib.util as _util
@@ -35,7 +35,7 @@ if _util.find_spec("viewgain._viewgain") is None:  # a source folder: viewgain.s
     def __getattr__(name):
         if name.startswith("__"):
             raise AttributeError(name)
-        raise ImportError(f"viewgain.{name} needs the extension module, which is not in {__path__[0]}: build it, or install the package")
+        raise ImportError(f"viewgain.{name} needs the extension module, which is not in {__path__[0]}; build it, or install the package")
 
 else:
     from . import _calls, _viewgain

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""A wrong call gets one line. pybind11 answers it with all of the signature and all of the arguments."""
+"""One-line messages for wrong calls, instead of pybind11's list of all signatures and arguments."""
 import ast
 import difflib
 import functools
@@ -12,7 +12,7 @@ _MADE_OF = {"int": "__index__", "float": "__float__", "bool": "__bool__", "str":
 
 
 def _fault(function, args, kwargs):
-    """What is wrong with a call without self, if that can be said shortly."""
+    """The fault of a call without self, if a short message can state it."""
     head = function.__doc__.partition("\n")[0].rpartition(" -> ")[0]  # pybind11 begins docstrings with the signature
     found = ast.parse(f"def {head}: ...").body[0].args
     by_place = [one for one in found.args if one.arg != "self"]
@@ -20,7 +20,7 @@ def _fault(function, args, kwargs):
     for name in kwargs:
         if name not in parameters:
             near = difflib.get_close_matches(name, parameters, 1, 0)
-            return f"there is no argument {name!r}" + "".join(f"; did you mean {one!r}?" for one in near)
+            return f"unknown argument {name!r}" + "".join(f"; did you mean {one!r}?" for one in near)
     if len(args) > len(by_place):
         return f"{len(args)} arguments by position; at most {len(by_place)}, others by keyword"
     given = {**dict(zip((one.arg for one in by_place), args)), **kwargs}
@@ -52,7 +52,7 @@ def _explained(function, name, method):
 
 
 def explain(module):
-    """Of an extension module: its functions and the methods of its classes."""
+    """Wraps the functions of an extension module and the methods of its classes."""
     for name, one in list(vars(module).items()):
         if isinstance(one, types.BuiltinFunctionType):
             setattr(module, name, _explained(one, name, False))

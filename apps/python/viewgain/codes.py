@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""The codes in arrays by name. Each is an int, so that it compares with what arrays hold."""
+"""Names of the codes in arrays. Each is an int, so it compares equal to array values."""
 from enum import IntEnum
 
 from ._viewgain import HIT_KIND_NAMES, INFEASIBILITY_NAMES, VIEW_STATUS_NAMES
 
 
 class VoxelState(IntEnum):
-    """What is known of a voxel: ``BeliefGrid.states()``, labels, ``contributions()["state"]``."""
+    """State of a voxel: ``BeliefGrid.states()``, labels, ``contributions()["state"]``."""
 
     __module__ = "viewgain"
 
@@ -25,4 +25,4 @@ ViewStatus, ViewStatus.__doc__ = _enumeration(
 HitKind, HitKind.__doc__ = _enumeration(
     "HitKind", HIT_KIND_NAMES, 'What a ray ends in: ``trace()["kind"]``.')
 Infeasibility, Infeasibility.__doc__ = _enumeration(
-    "Infeasibility", INFEASIBILITY_NAMES, "Why a pose is impossible: ``FeasibilityChecker.reasons()``; NONE: it is not.")
+    "Infeasibility", INFEASIBILITY_NAMES, "Why a pose is impossible: ``FeasibilityChecker.reasons()``; NONE: it is possible.")

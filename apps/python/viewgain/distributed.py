@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Scores poses on many machines, by Dask (Debian: python3-distributed). The workers need this package.
+"""Scores poses on many machines with Dask (Debian: python3-distributed). The workers need this package.
 
 >>> import distributed, viewgain, viewgain.distributed                     # doctest: +SKIP
 >>> with distributed.Client("tcp://scheduler:8786") as client:
@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._viewgain import BeliefGrid, Error, Sensor, ViewScorer
 
-_ROUNDS = 4  # of giving out what was lost with workers
+_ROUNDS = 4  # attempts for chunks lost with their workers
 _LOST = (distributed.scheduler.KilledWorker, concurrent.futures.CancelledError, distributed.comm.CommClosedError)
 
 
@@ -27,7 +27,7 @@ def _evaluate(scorer: ViewScorer, poses: NDArray[np.float64], measure: Any) -> N
 
 
 def _rows(poses: ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
-    """The poses in a list, and the leading shape."""
+    """The poses as a list, and the leading shape."""
     array = np.asarray(poses, np.float64)
     pose = array.shape[-1:] if array.shape[-1:] == (7,) else array.shape[-2:]
     if pose not in ((7,), (3, 4), (4, 4)):
@@ -37,7 +37,7 @@ def _rows(poses: ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
 
 
 def _answers(client: distributed.Client, scorer: ViewScorer, chunks: dict[int, NDArray[np.float64]], measure: Any):
-    """Number and gains of each chunk as it is done; the map goes to each worker once. What was lost with workers is left out."""
+    """Number and gains of each finished chunk; sends the map to each worker once. Omits chunks lost with their workers."""
     try:
         (shared,) = client.scatter([scorer], broadcast=True, hash=False)
     except (TimeoutError, distributed.TimeoutError) as error:
@@ -113,5 +113,5 @@ def evaluate(client: distributed.Client, map: Union[BeliefGrid, str, os.PathLike
             if progress is not None:
                 progress(done, len(rows))
     if chunks:
-        raise Error(f"{len(rows) - done} of {len(rows)} poses are without a gain: their workers were lost {_ROUNDS} times")
+        raise Error(f"{len(rows) - done} of {len(rows)} poses have no gain: their workers were lost {_ROUNDS} times")
     return gains.reshape(lead)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of poses, gains and maps, by matplotlib, which is imported when one is drawn.
+"""Pictures of poses, gains and maps with matplotlib, which is imported on the first drawing.
 
 Each function draws into ``axes``, or a new figure's, and returns them. matplotlib's pyplot is for one thread, and takes most of
 the time.
@@ -35,7 +35,7 @@ def _image(axes: Any, image: np.ma.MaskedArray, label: str) -> Any:
 
 def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (0.0, 0.0, 0.0),
           label: str = "expected gain [nat]", axes: Any = None) -> Any:
-    """Values of poses round a centre, by azimuth and elevation; the best is marked. Poses with NaN are left out.
+    """Values of poses around a centre over azimuth and elevation; marks the best. Omits poses with NaN.
 
     Parameters
     ----------
@@ -49,10 +49,10 @@ def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (
     """
     poses, numbers = np.asarray(T_world_camera, float), np.asarray(values, float)
     if poses.ndim != 3 or poses.shape[1:] != (4, 4) or numbers.shape != poses.shape[:1]:
-        raise ValueError(f"values of the shape {numbers.shape} for poses of the shape {poses.shape}: not one a pose")
+        raise ValueError(f"values of the shape {numbers.shape} for poses of the shape {poses.shape}; expected one value per pose")
     known = np.isfinite(numbers)
     if not known.any():
-        raise ValueError("no value is a number")
+        raise ValueError("all values are NaN")
     x, y, z = (poses[known, :3, 3] - np.asarray(center, float)).T
     azimuth, elevation = np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
     axes = _axes_of(axes)
@@ -67,7 +67,7 @@ def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (
 
 
 def depth(image: ArrayLike, *, axes: Any = None) -> Any:
-    """A depth image; pixels that are 0, infinite or no number are left white.
+    """A depth image; pixels that are 0, infinite or NaN are white.
 
     Parameters
     ----------
@@ -76,14 +76,14 @@ def depth(image: ArrayLike, *, axes: Any = None) -> Any:
     """
     pixels = np.asarray(image, float)
     if pixels.ndim != 2:
-        raise ValueError(f"a depth image has two dimensions, this one the shape {pixels.shape}")
+        raise ValueError(f"a depth image must have two dimensions, not the shape {pixels.shape}")
     return _image(axes, np.ma.masked_where(~np.isfinite(pixels) | (pixels <= 0), pixels), "depth [m]")
 
 
 def contributions(evaluator: GainEvaluator, T_world_camera: ArrayLike, *, axes: Any = None) -> Any:
-    """Where in a view's image its gain comes from: each ray's share of the voxel in which it ends.
+    """Contribution of each ray of a view's image to its gain: its share of the voxel in which it ends.
 
-    Cost: 4 times that of ``GainEvaluator.evaluate`` for the pose, and a step of Python for each ray.
+    Cost: 4 times ``GainEvaluator.evaluate`` for the pose, and a Python step per ray.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def contributions(evaluator: GainEvaluator, T_world_camera: ArrayLike, *, axes: 
     T_world_camera : array_like, (4, 4)
     """
     if evaluator.gain != "paper":
-        raise ValueError(f"contributions by the gain {evaluator.gain!r}: only by 'paper' a ray ends in one voxel")
+        raise ValueError(f"contributions require the gain 'paper', not {evaluator.gain!r}: only its rays each end in one voxel")
     hits = evaluator.trace(T_world_camera)
     shares = {tuple(row["voxel"]): row["gain"] / row["rays"] for row in evaluator.contributions(T_world_camera)}
     kinds, voxels = hits["kind"].ravel(), hits["voxel"].reshape(-1, 3)

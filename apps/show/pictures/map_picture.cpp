@@ -75,7 +75,7 @@ RgbImage map_picture(const GridSnapshot& snapshot, const Viewer& viewer, const E
 
 RgbImage score_picture(const GainEvaluator& evaluator, const Sensor& sensor,
                        const Pose& T_world_camera, const ExecConfig& exec) {
-  if (!is_rigid(T_world_camera)) refuse("the pose to draw is no rigid transform");
+  if (!is_rigid(T_world_camera)) refuse("the pose to draw is not a rigid transform");
   const GridSnapshot& snapshot = evaluator.scene().snapshot();
   const std::vector<RayHit> hits = evaluator.trace(T_world_camera);
   const auto workspace = workspace_corners(snapshot);

@@ -134,7 +134,7 @@ double share_of(double sigma, const std::array<double, 2>& range) {
 
 RgbImage view_picture(const ViewPicture& picture, const ExecConfig& exec) {
   if (!is_rigid(picture.T_world_camera) || (picture.chosen && !is_rigid(*picture.chosen))) {
-    refuse("a view to draw is no rigid transform");
+    refuse("a view to draw is not a rigid transform");
   }
   const GridSnapshot& snapshot = picture.evaluator.scene().snapshot();
   const auto workspace = workspace_corners(snapshot);
@@ -210,7 +210,7 @@ void write_amplitude_picture(const std::filesystem::path& path, const DepthFrame
   const auto rows = static_cast<std::size_t>(std::max(frame.height, 0));
   if (frame.amplitude.empty() || frame.amplitude.size() != columns * rows) {
     refuse(path.string() + ": the frame has " + std::to_string(frame.amplitude.size()) +
-           " amplitudes for " + std::to_string(columns) + "x" + std::to_string(rows) + " pixels");
+           " amplitudes, but " + std::to_string(columns) + "x" + std::to_string(rows) + " pixels");
   }
   std::vector<float> sorted;
   for (const float a : frame.amplitude) {

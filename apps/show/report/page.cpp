@@ -32,8 +32,8 @@ std::string_view built_page() {
 void check_report_page(std::string_view flag) {
   if (!built_page().empty()) return;
   refuse(std::string(flag) +
-         ": this program has no report page, because npm was missing or its registry out "
-         "of reach when it was built (install nodejs and npm, configure and build again)");
+         ": this program was built without the report page, because npm or its registry was not "
+         "available; install nodejs and npm, configure and build again");
 }
 
 std::string report_page(const Json& data, std::string_view page) {

@@ -26,7 +26,7 @@ class Costs {
         if (from == to) continue;
         const double value = cost(from == count ? kTourStart : from, to);
         if (!(value >= 0)) {
-          refuse("the way from " + (from == count ? "the start" : std::to_string(from)) + " to " +
+          refuse("the path from " + (from == count ? "the start" : std::to_string(from)) + " to " +
                  std::to_string(to) + " costs " + std::to_string(value));
         }
         costs_[from * count + to] = value;

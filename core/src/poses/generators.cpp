@@ -21,8 +21,7 @@ void check(const char* what, std::size_t count, double radius, const Eigen::Vect
   if (count == 0) refuse(name + ": the number of poses is 0");
   if (count > kMaxPoses) {
     throw Error(ErrorCode::capacity, name + ": " + std::to_string(count) +
-                                         " poses, the most possible is " +
-                                         std::to_string(kMaxPoses));
+                                         " poses; the maximum is " + std::to_string(kMaxPoses));
   }
   if (!(std::isfinite(radius) && radius > 0)) {
     refuse(name + ": the radius must be positive and finite, not " + short_text(radius));
@@ -180,7 +179,7 @@ std::vector<Pose> literature_ring_poses(std::size_t total, double radius,
       for (const double r : {0.4, 0.6, 0.8}) append_pattern(of_288, r, radius / 0.5, center, poses);
       break;
     default:
-      refuse("rings: no set of " + std::to_string(total) + " poses, there are 48, 80, 288 and 864");
+      refuse("rings: no set of " + std::to_string(total) + " poses; valid: 48, 80, 288 and 864");
   }
   return poses;
 }
@@ -190,7 +189,7 @@ std::vector<Pose> shell_poses(std::size_t count, double min_radius, double max_r
   check("shell", count, min_radius, center);
   check("shell", count, max_radius, center);
   if (min_radius > max_radius) {
-    refuse("shell: the smaller radius " + short_text(min_radius) + " is over the larger one, " +
+    refuse("shell: the smaller radius " + short_text(min_radius) + " exceeds the larger one, " +
            short_text(max_radius));
   }
   PortableRandom random(seed);

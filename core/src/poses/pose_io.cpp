@@ -81,8 +81,7 @@ Pose tum_line_pose(const LineReader& line, bool* orthonormalized) {
 PoseList read_tum(const fs::path& path) {
   const std::string contents = file_bytes(path, kMaxFileSize);
   if (contents.starts_with("\x93NUMPY")) {
-    throw Error(ErrorCode::format,
-                path.string() + ": is an array of numpy's; its name must end in .npy");
+    throw Error(ErrorCode::format, path.string() + ": is a numpy array; its name must end in .npy");
   }
   LineReader line(path.string(), contents);
   PoseList list;
@@ -93,7 +92,7 @@ PoseList read_tum(const fs::path& path) {
     list.timestamps.push_back(line.number(0));
     list.orthonormalized += mended ? 1 : 0;
   }
-  if (list.poses.empty()) throw Error(ErrorCode::format, path.string() + ": holds no pose");
+  if (list.poses.empty()) throw Error(ErrorCode::format, path.string() + ": contains no pose");
   return list;
 }
 
@@ -106,7 +105,7 @@ void write_tum(const fs::path& path, std::span<const Pose> poses) {
 void check_writable(const fs::path& path, std::span<const Pose> poses,
                     std::span<const double> timestamps) {
   if (timestamps.size() != poses.size()) {
-    refuse(path.string() + ": " + std::to_string(poses.size()) + " poses but " +
+    refuse(path.string() + ": " + std::to_string(poses.size()) + " poses, but " +
            std::to_string(timestamps.size()) + " timestamps");
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -73,7 +73,7 @@ void ReachRegion::validate() const {
         !std::isfinite(shell.max_radius)) {
       fail("shell", i, "is not finite");
     }
-    if (shell.min_radius < 0) fail("shell", i, "has the radius " + short_text(shell.min_radius));
+    if (shell.min_radius < 0) fail("shell", i, "has radius " + short_text(shell.min_radius));
     if (shell.min_radius > shell.max_radius) {
       fail("shell", i,
            "is inside out: " + short_text(shell.min_radius) + " > " + short_text(shell.max_radius));
@@ -84,10 +84,10 @@ void ReachRegion::validate() const {
     if (!half_space.normal.allFinite() || !std::isfinite(half_space.offset)) {
       fail("half-space", i, "is not finite");
     }
-    if (half_space.normal.isZero(0)) fail("half-space", i, "has the normal 0");
+    if (half_space.normal.isZero(0)) fail("half-space", i, "has a normal of length 0");
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!std::isfinite(orthonormality_error(poses[i]))) fail("pose", i, "is no rigid transform");
+    if (!std::isfinite(orthonormality_error(poses[i]))) fail("pose", i, "is not a rigid transform");
   }
   for (const auto& [name, value] :
        {std::pair("distance", tolerance.distance), std::pair("angle", tolerance.angle)}) {

@@ -15,8 +15,8 @@ void check_frame_size(const DepthFrame& frame, const PinholeCamera& camera) {
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   if (frame.width != camera.width || frame.height != camera.height ||
       frame.depth.size() != pixels) {
-    refuse("depth frame is " + std::to_string(frame.width) + " x " + std::to_string(frame.height) +
-           " px with " + std::to_string(frame.depth.size()) + " values, the sensor has " +
+    refuse("depth frame has " + std::to_string(frame.width) + " x " + std::to_string(frame.height) +
+           " px with " + std::to_string(frame.depth.size()) + " values, but the sensor has " +
            std::to_string(camera.width) + " x " + std::to_string(camera.height));
   }
   if (!frame.amplitude.empty() && frame.amplitude.size() != pixels) {

@@ -22,7 +22,7 @@ void RangeCalibration::validate() const {
              " is not finite: " + short_text(measured) + ", " + short_text(error));
     }
     if (i > 0 && !(measured > table[i - 1][0])) {
-      refuse("range calibration: measured ranges must rise, but " + short_text(measured) +
+      refuse("range calibration: measured ranges must increase, but " + short_text(measured) +
              " m follows " + short_text(table[i - 1][0]) + " m");
     }
   }

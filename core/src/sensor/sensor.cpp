@@ -69,8 +69,8 @@ void Sensor::validate() const {
     fail("min_range must be finite and not negative, not " + short_text(min_range));
   }
   if (!(std::isfinite(max_range) && max_range > min_range)) {
-    fail("max_range must be finite and over min_range, " + short_text(min_range) + " m, not " +
-         short_text(max_range) + " (lengths are in metres)");
+    fail("max_range must be finite and larger than min_range, " + short_text(min_range) +
+         " m, not " + short_text(max_range) + " (lengths are in metres)");
   }
   if (!(working_distance > 0 && working_distance >= min_range && working_distance <= max_range)) {
     fail("working_distance must be positive and within min_range and max_range, " +
@@ -87,7 +87,7 @@ void Sensor::validate() const {
   const double least = range_of_least_sigma(*this);
   if (!(noise_sigmas(least).axial > 0)) {
     refuse("noise: sigma along the ray is 0 at a range of " + short_text(least) +
-           " m; a reading there would be exact: offset, linear or quadratic must be positive");
+           " m, which would make a reading exact; offset, linear or quadratic must be positive");
   }
   if (T_flange_camera && !rigid_pose(*T_flange_camera)) {
     fail("T_flange_camera is not a rigid transform");
@@ -110,8 +110,8 @@ void Sensor::validate() const {
   range_calibration.validate();
   for (const auto& [measured, error] : range_calibration.table) {
     if (measured > 0 && measured > error) continue;
-    fail("range_calibration: a measured range of " + short_text(measured) + " m less an error of " +
-         short_text(error) + " m is no range");
+    fail("range_calibration: a measured range of " + short_text(measured) +
+         " m minus an error of " + short_text(error) + " m is not a valid range");
   }
 }
 

@@ -51,16 +51,17 @@ std::string sensor_toml(const Sensor& sensor) {
   }
   if (sensor.pose_sigma != PoseSigma{}) {
     text << "pose_sigma_rad = [" << toml_float(sensor.pose_sigma.translation) << ", "
-         << toml_float(sensor.pose_sigma.rotation) << "]  # of the poses of frames [m], [rad]\n";
+         << toml_float(sensor.pose_sigma.rotation)
+         << "]  # standard deviations of the poses of frames [m], [rad]\n";
   }
   if (sensor.scale_sigma > 0) {
     text << "scale_sigma = " << toml_float(sensor.scale_sigma)
-         << "  # of one factor, that all ranges are off by\n";
+         << "  # relative sigma of one factor common to all ranges\n";
   }
   if (sensor.out_of_range) {
     text << "out_of_range = "
          << (sensor.out_of_range == Sensor::OutOfRange::carve ? "\"carve\"" : "\"invalid\"")
-         << "  # what 65535 says in depth images\n";
+         << "  # meaning of 65535 in depth images\n";
   }
   const PinholeCamera& camera = sensor.camera;
   text << "\n[camera]  # pixel (0,0) has its centre at (0,0); [px]\n"
@@ -79,8 +80,8 @@ std::string sensor_toml(const Sensor& sensor) {
     text << field.name << " = " << toml_float(value) << "\n";
   });
   if (!sensor.range_calibration.table.empty()) {
-    text << "\n[range_calibration]  # subtracted from readings; linear between, held at the ends; "
-            "[m]\n";
+    text << "\n[range_calibration]  # subtracted from readings; linear in between, constant "
+            "beyond; [m]\n";
     write_column(text, "measured", sensor.range_calibration, 0);
     write_column(text, "error", sensor.range_calibration, 1);
   }

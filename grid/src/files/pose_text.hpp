@@ -11,10 +11,10 @@
 
 namespace viewgain::detail {
 
-/// Poses as text: twelve numbers [R | t] row by row for each, shortest digits that read back the
-/// same double, one pose a line.
+/// Poses as text: one per line, twelve numbers [R | t] row-major, with the shortest digits that
+/// read back exactly.
 [[nodiscard]] std::string poses_to_text(const std::vector<Pose>& poses);
-/// Nothing if the text is anything else.
+/// Empty for any other text.
 [[nodiscard]] std::optional<std::vector<Pose>> poses_from_text(std::string_view text);
 
 }  // namespace viewgain::detail

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
+// OpenVDB keeps state in its templates; with hidden visibility each library would have a copy
+// (grid/README.md).
 #pragma GCC visibility push(default)
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -30,7 +31,7 @@
 
 namespace viewgain::detail {
 
-/// Reads bytes that several threads share.
+/// A stream buffer over bytes that several threads share.
 class BytesBuffer : public std::streambuf {
  public:
   explicit BytesBuffer(std::string_view bytes) {
@@ -52,7 +53,7 @@ class BytesBuffer : public std::streambuf {
   }
 };
 
-/// Reads the image of a .vdb file, its grids side by side where it says where they are.
+/// Reads the image of a .vdb file; reads its grids in parallel if it states their positions.
 class ImageReader : public openvdb::io::Archive {
  public:
   void read(std::string_view bytes, openvdb::MetaMap& metadata, openvdb::GridPtrVec& grids,
@@ -90,9 +91,9 @@ class ImageReader : public openvdb::io::Archive {
   }
 
  private:
-  // OpenVDB takes from the stream what the head says of all that follows.
+  // OpenVDB stores in the stream what the header says about the rest of the file.
   void begin(std::istream& stream) {
-    // It does not look whether a read came short.
+    // OpenVDB does not check for short reads.
     stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
     readHeader(stream);
     setFormatVersion(stream);
@@ -101,14 +102,14 @@ class ImageReader : public openvdb::io::Archive {
   }
 };
 
-/// What a .vdb file holds. Its trees are taken down by the threads of the pool, which outlives it.
+/// Contents of a .vdb file. The threads of the pool, which outlives it, destroy its trees.
 struct VdbContents {
   openvdb::MetaMap metadata;
   openvdb::GridPtrVec grids;
 
-  /// Reads the grids side by side. Throws Error(io) if the file cannot be opened, Error(format),
-  /// naming it and what is wrong, if it is truncated, corrupt or no .vdb file, Error(capacity) if
-  /// it does not fit into memory.
+  /// Reads the grids in parallel. Throws Error(io) if the file cannot be opened, Error(format) with
+  /// the file and the fault if it is truncated, corrupt or not a .vdb file, Error(capacity) if it
+  /// does not fit into memory.
   VdbContents(const std::filesystem::path& path, ThreadPool& pool) : VdbContents(pool) {
     const auto fail = [&path](const std::string& what, ErrorCode code = ErrorCode::format) {
       throw Error(code, path.string() + ": " + what);
@@ -117,11 +118,11 @@ struct VdbContents {
     const SealCheck seal = check_seal(bytes);
     const VdbOutline outline = outline_of(bytes);
     if (!outline.fault.empty()) fail(outline.fault);
-    if (seal == SealCheck::broken) fail("is corrupt: its checksum does not fit");
+    if (seal == SealCheck::broken) fail("is corrupt: its checksum does not match");
 
     initialize_openvdb();
     try {
-      // Blosc does not look whether it got the memory that it asks for.
+      // Blosc does not check its allocations.
       const auto threads = static_cast<std::size_t>(pool.num_threads());
       check_room(outline.tree_bytes + threads * kBloscBytes);
       ImageReader().read(bytes, metadata, grids, pool);
@@ -150,12 +151,12 @@ struct VdbContents {
  private:
   static constexpr std::size_t kBloscBytes = std::size_t{2} << 20U;  // of a node and its blocks
 
-  // Complete, so that the grids are taken down if reading throws.
+  // Complete before reading, so that an exception destroys the grids.
   explicit VdbContents(ThreadPool& pool) : pool_(pool) {}
 
   template <typename Grid>
   static void take_down_a(openvdb::GridBase& grid) {
-    // Not isType(), which makes texts of the types.
+    // Not isType(), which builds the names of the types.
     const bool is_one = grid.constBaseTree().type() == Grid::TreeType::treeType();
     if (is_one) take_down(static_cast<Grid&>(grid).tree());
   }

@@ -10,7 +10,8 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/solid_voxels.hpp"
 
-// OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
+// OpenVDB keeps state in its templates; with hidden visibility each library would have a copy
+// (grid/README.md).
 #pragma GCC visibility push(default)
 #include <openvdb/openvdb.h>
 #pragma GCC visibility pop
@@ -24,24 +25,24 @@
 #include "map/grid_layout.hpp"
 #include "map/grid_storage.hpp"
 
-// What the writer and the reader of map files share.
+// Definitions shared by the writer and the reader of map files.
 namespace viewgain::detail {
 
-// The version of the layout; files of another are refused. `state` and `hits` are floats, since
-// OpenVDB's Python module knows Float, Bool and Vec3S alone. A float holds whole numbers up to
-// 2^24. Where a voxel has more hits, `hits` is rounded and `hits_rest`, a grid that is there only
-// then, says what is to be added.
+// Version of the layout; other versions are refused. `state` and `hits` are floats, because
+// OpenVDB's Python module only supports Float, Bool and Vec3S. A float holds whole numbers up to
+// 2^24; if a voxel has more hits, `hits` is rounded, and the additional grid `hits_rest` holds the
+// difference.
 inline constexpr std::int32_t kVdbLayoutVersion = 2;
-// Of maps that have a leaf whose scale is not 0 (vdb_scales.hpp).
+// Version of maps with a leaf whose scale is not 0 (vdb_scales.hpp).
 inline constexpr std::int32_t kVdbScaledVersion = 3;
 
-/// The grid of rates in a file of save_hazard_vdb().
+/// Name of the grid of rates in a file of save_hazard_vdb().
 inline constexpr const char* kHazardGridName = "hazard";
 
-/// What the names of notes begin with (MapNotes).
+/// Prefix of the names of notes (MapNotes).
 inline const std::string kNotePrefix = "note_";
 
-/// Names of the metadata with the hazard counters of a class; maps without counters have none.
+/// Metadata names of a class's hazard counters; missing in maps without counters.
 [[nodiscard]] inline std::string expected_name(std::size_t k) {
   return "hazard_expected_" + std::to_string(k);
 }
@@ -55,7 +56,8 @@ inline void initialize_openvdb() {
 }
 
 [[nodiscard]] inline openvdb::math::Transform::Ptr make_transform(const GridStorage& s) {
-  // OpenVDB multiplies row vectors: rows are the images of the index axes, the last the origin's.
+  // OpenVDB multiplies row vectors: rows are the images of the index axes, the last row is the
+  // image of the origin.
   const Eigen::Matrix3d scaled = s.T_world_grid.rotation() * s.voxel_size;
   const Eigen::Vector3d origin = s.T_world_grid * Eigen::Vector3d::Constant(0.5 * s.voxel_size);
   openvdb::Mat4R m = openvdb::Mat4R::identity();
@@ -79,7 +81,7 @@ inline void initialize_openvdb() {
   return notes;
 }
 
-/// The map's notes. Throws Error(format), naming the file, for ones that no map has.
+/// The map's notes. Throws Error(format) with the file for invalid ones.
 [[nodiscard]] inline MapNotes map_notes(const openvdb::MetaMap& metadata,
                                         const std::filesystem::path& path) {
   try {
@@ -89,12 +91,12 @@ inline void initialize_openvdb() {
   }
 }
 
-/// The hazard counters of a file; value(name) reads an Int64Metadata. Throws as it does, and
-/// Error(invalid_argument) for a count that is out of bounds.
+/// Hazard counters of a file; value(name) reads an Int64Metadata. Throws as value(), and
+/// Error(invalid_argument) for a count out of bounds.
 template <typename Value>
 [[nodiscard]] HazardCounters read_counters(const openvdb::MetaMap& metadata, Value&& value) {
   HazardCounters counters;
-  if (metadata[expected_name(0)] == nullptr) return counters;  // a map without
+  if (metadata[expected_name(0)] == nullptr) return counters;  // a map without counters
   for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
     counters.classes[k] = {value(expected_name(k)), value(met_name(k))};
   }
@@ -102,8 +104,8 @@ template <typename Value>
   return counters;
 }
 
-/// The grid of a file with the scales of leaves, each in all of its leaf's voxels of the workspace;
-/// there only if one is not 0. Beliefs stand at the lowest voxels of their cells.
+/// Name of the grid with the scales of leaves, stored in all of a leaf's voxels of the workspace;
+/// present only if one is not 0. Beliefs are stored at the lowest voxels of their cells.
 inline constexpr const char* kScaleGridName = "scale";
 
 /// The voxels of a block that belong to the workspace.
@@ -112,7 +114,7 @@ inline constexpr const char* kScaleGridName = "scale";
   return {to_coord(part.min), to_coord(part.max).offsetBy(-1)};
 }
 
-/// Is each cell of the block of one code, with beliefs at lowest voxels alone?
+/// Whether each cell of the block has a single code, and beliefs only at lowest voxels.
 [[nodiscard]] inline bool is_by_cells(const GridStorage& s, std::uint64_t key, int scale) {
   const Index3 origin = s.lattice.origin(key);
   bool result = true;
@@ -127,8 +129,8 @@ inline constexpr const char* kScaleGridName = "scale";
   return result;
 }
 
-/// Puts an occupied tile of a file that is, by the file's scales, one cell; false if it is more. It
-/// counts as eight voxels, a leaf as 512.
+/// Inserts an occupied tile of a file that is one cell according to the file's scales; false if it
+/// is larger. Counts as eight voxels, a leaf as 512.
 [[nodiscard]] inline bool put_cell(const openvdb::FloatTree& scales, const openvdb::CoordBBox& box,
                                    std::uint8_t code, SolidVoxels& solid, GridStorage& s) {
   float scale = 0;
@@ -139,8 +141,8 @@ inline constexpr const char* kScaleGridName = "scale";
   return true;
 }
 
-/// Takes the scales of a file over into a map that has its states and beliefs. Returns what is
-/// wrong with them, empty if nothing is.
+/// Copies the scales of a file to a map that has its states and beliefs. Returns the fault, or
+/// empty.
 [[nodiscard]] inline std::string take_scales(const openvdb::FloatTree& tree, GridStorage& s) {
   for (const std::uint64_t key : held_blocks(s)) {
     const Index3 origin = s.lattice.origin(key);
@@ -159,13 +161,13 @@ inline constexpr const char* kScaleGridName = "scale";
         !is_by_cells(s, key, scale)) {
       std::ostringstream fault;
       fault << "the leaf of voxel " << box.min()
-            << " has no scale that its states and beliefs have";
+            << " has a scale that differs from those of its states and beliefs";
       return fault.str();
     }
     s.put_scale(key, scale);
     s.fold_cell(key);
     if (const BeliefBlock* block = s.find_beliefs(key)) {
-      const_cast<BeliefBlock*>(block)->scale = static_cast<std::uint8_t>(scale);  // nobody else's
+      const_cast<BeliefBlock*>(block)->scale = static_cast<std::uint8_t>(scale);  // not shared
     }
   }
   return {};

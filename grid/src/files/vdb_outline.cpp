@@ -14,12 +14,12 @@
 namespace viewgain::detail {
 namespace {
 
-constexpr std::string_view kMagic = " BDV";  // then four zeros
-// Node masks are compressed from here on, as in all files since OpenVDB 1.0's release.
+constexpr std::string_view kMagic = " BDV";  // followed by four zeros
+// Node masks are compressed from this version on, in all files since OpenVDB 1.0.
 constexpr std::uint32_t kOldestVersion = 222;
 constexpr std::size_t kUuidSize = 36;
 
-// What is wrong with the file.
+// A fault of the file.
 struct Fault : std::exception {
   std::string of_file;
   explicit Fault(std::string what) : of_file(std::move(what)) {}
@@ -53,7 +53,7 @@ class Reader {
 
 using Sizes = std::pair<std::string_view, std::size_t>;
 
-// Of OpenVDB's types of metadata, which reads so many bytes whatever the file says.
+// Sizes of OpenVDB's metadata types; it reads this many bytes regardless of the file.
 constexpr std::array<Sizes, 16> kMetadata{{{"bool", 1},
                                            {"int32", 4},
                                            {"int64", 8},
@@ -82,9 +82,9 @@ constexpr std::array<Sizes, 7> kMaps{{{"AffineMap", 128},
 constexpr std::string_view kFrustum = "NonlinearFrustumMap";
 constexpr std::size_t kFrustumSize = 64;  // and a map
 
-// Of trees, the size of a value.
+// Sizes of tree values.
 constexpr std::array<Sizes, 2> kTrees{{{"Tree_float_5_4_3", 4}, {"Tree_vec3s_5_4_3", 12}}};
-constexpr std::string_view kHalf = "_HalfFloat";  // behind a tree's name
+constexpr std::string_view kHalf = "_HalfFloat";  // suffix of a tree's name
 
 template <std::size_t kCount>
 std::size_t size_in(const std::array<Sizes, kCount>& sizes, std::string_view name) {
@@ -93,9 +93,9 @@ std::size_t size_in(const std::array<Sizes, kCount>& sizes, std::string_view nam
   return found == sizes.end() ? 0 : found->second;
 }
 
-// OpenVDB reads it into a bool as it is.
+// OpenVDB reads it into a bool unchecked.
 void check_bool(char byte) {
-  if (byte != 0 && byte != 1) corrupt("what must be 0 or 1 is " + std::to_string(byte));
+  if (byte != 0 && byte != 1) corrupt("a flag must be 0 or 1, but is " + std::to_string(byte));
 }
 
 void follow_metadata(Reader& reader, std::string& image) {
@@ -108,7 +108,7 @@ void follow_metadata(Reader& reader, std::string& image) {
       corrupt("metadata '" + std::string(name) + "' of type " + std::string(type) + " has " +
               std::to_string(size) + " bytes");
     }
-    // Its reader trusts what it finds; loading is not delayed.
+    // Its reader trusts the contents; delayed loading is disabled.
     if (type == kDelayedLoad) image[type_end - type.size()] = '~';
     const std::string_view value = reader.take(size);
     if (type == "bool") check_bool(value.front());
@@ -136,7 +136,7 @@ std::size_t count_on(std::string_view mask) {
   return count;
 }
 
-// A tree of nodes of 32^3, 16^3 and 8^3: first all masks and tiles, then the leaves' values.
+// A tree of nodes of 32^3, 16^3 and 8^3: first all masks and tiles, then the values of leaves.
 class TreeWalk {
  public:
   TreeWalk(Reader& reader, std::uint32_t compression, std::size_t value_size, bool is_half)
@@ -146,7 +146,7 @@ class TreeWalk {
         stored_size_(is_half ? value_size / 2 : value_size),
         is_half_(is_half) {}
 
-  // Returns how many bytes the tree takes in memory, at most.
+  // Returns the maximum memory of the tree in bytes.
   std::uint64_t follow() {
     (void)reader_.number<std::int32_t>();  // buffers
     (void)reader_.take(value_size_);       // background
@@ -154,7 +154,7 @@ class TreeWalk {
     bytes_ = kTreeHead + kRootEntry * (std::uint64_t{tiles} + children);
     for (std::uint32_t i = 0; i < tiles; ++i) {
       (void)reader_.take(3 * sizeof(std::int32_t) + value_size_);
-      check_bool(reader_.number<char>());  // is it active?
+      check_bool(reader_.number<char>());  // active flag
     }
     std::set<std::array<std::int32_t, 3>> origins;
     std::size_t leaves = 0;
@@ -180,21 +180,21 @@ class TreeWalk {
  private:
   static constexpr std::size_t kLeafMask = 64;
   static constexpr std::size_t kTreeHead = 4096, kRootEntry = 128;
-  static constexpr std::size_t kNodeHead = 256;  // its masks of leaf size, allocator's words
+  static constexpr std::size_t kNodeHead = 256;  // masks of leaf size, allocator overhead
   enum : std::uint32_t { kZip = 1, kActive = 2, kBlosc = 4 };
 
-  // Returns how many children it has.
+  // Returns the number of children.
   std::size_t node(std::size_t places) {
     const std::string_view children = reader_.take(places / 8), active = reader_.take(places / 8);
     for (std::size_t i = 0; i < children.size(); ++i) {
-      if ((children[i] & active[i]) != 0) corrupt("a child is a tile, too");
+      if ((children[i] & active[i]) != 0) corrupt("a child is also a tile");
     }
     values(places, count_on(active));
     bytes_ += places * ((value_size_ + 7) / 8 * 8) + places / 4 + kNodeHead;
     return count_on(children);
   }
 
-  // What is stored of so many values: what the inactive ones are, then the others.
+  // Stored form of a number of values: a code for the inactive ones, then the others.
   void values(std::size_t all, std::size_t active) {
     enum : signed char { kOneInactive = 2, kMask = 3, kMaskAndOne = 4, kMaskAndTwo = 5, kAll = 6 };
     const auto kind = reader_.number<signed char>();
@@ -212,14 +212,14 @@ class TreeWalk {
     if (packed > 0) {
       const std::string_view chunk = reader_.take(static_cast<std::uint64_t>(packed));
       if ((compression_ & kBlosc) != 0) check_blosc(chunk, bytes);
-    } else if (0 - static_cast<std::uint64_t>(packed) == bytes) {  // not packed
+    } else if (0 - static_cast<std::uint64_t>(packed) == bytes) {  // uncompressed
       (void)reader_.take(bytes);
     } else {
       corrupt(kOtherSize);
     }
   }
 
-  // Blosc takes it from the chunk's head how large the chunk is.
+  // Blosc reads the size of the chunk from the chunk's header.
   static void check_blosc(std::string_view chunk, std::size_t bytes) {
     constexpr std::size_t kHead = 16;
     if (chunk.size() < kHead) corrupt(kOtherSize);
@@ -229,7 +229,7 @@ class TreeWalk {
     if (unpacked != bytes || head.number<std::uint32_t>() != chunk.size()) corrupt(kOtherSize);
   }
 
-  static constexpr const char* kOtherSize = "values are of another size than their node's";
+  static constexpr const char* kOtherSize = "the number of values does not match the node";
 
   Reader& reader_;
   std::uint32_t compression_;
@@ -242,7 +242,7 @@ std::string_view without_half(std::string_view type) {
   return type.ends_with(kHalf) ? type.substr(0, type.size() - kHalf.size()) : type;
 }
 
-// Returns how many bytes its tree takes in memory.
+// Returns the memory of its tree in bytes.
 std::uint64_t follow_grid(Reader& reader, std::string& image, std::string_view type,
                           bool is_instance) {
   const auto compression = reader.number<std::uint32_t>();
@@ -258,9 +258,9 @@ std::uint64_t follow_file(std::string& image) {
   Reader reader(file, 0);
   if (!file.starts_with(kMagic) || reader.number<std::int64_t>() != 0x56444220) {
     if (file.starts_with("# Octomap OcTree")) {
-      throw Fault("is an OctoMap tree, no OpenVDB file; give it the ending .ot or .bt");
+      throw Fault("is an OctoMap tree, not an OpenVDB file; give it the ending .ot or .bt");
     }
-    throw Fault("is no OpenVDB file; maps are .vdb, or .ot and .bt of OctoMap");
+    throw Fault("is not an OpenVDB file; maps are .vdb, or OctoMap .ot and .bt");
   }
   if (reader.number<std::uint32_t>() < kOldestVersion) {
     throw Fault("has an OpenVDB format that is too old");

@@ -8,21 +8,21 @@
 
 namespace viewgain::detail {
 
-/// What a file is, before it is read.
+/// Properties of a file, known before reading it.
 struct VdbOutline {
-  std::string fault;             ///< empty if there is none
-  std::uint64_t tree_bytes = 0;  ///< at most, of the trees in memory
+  std::string fault;             ///< empty if there is no fault
+  std::uint64_t tree_bytes = 0;  ///< maximum memory of the trees
 };
 
-/// Follows an OpenVDB file as OpenVDB's reader will, and says what is wrong with it.
-/// That reader neither notices a read that came short nor cleans up after an exception, and takes
-/// what memory a size in the file asks for. After this no size is larger than what there is of the
-/// file: its trees take some fifty times its bytes at most. Grids of other types than is_followed()
-/// are passed over, by their positions. What delays loading becomes metadata of a type that OpenVDB
-/// does not know, which it only copies. Costs a look at every mask of the trees.
+/// Parses an OpenVDB file as OpenVDB's reader would, and reports faults. That reader does not check
+/// for short reads, leaks on exceptions, and allocates any size stated in the file. After this
+/// check no size exceeds the rest of the file, so trees take at most about fifty times its bytes.
+/// Skips grids of other types than is_followed() by their positions. Changes the metadata for
+/// delayed loading to a type unknown to OpenVDB, which only copies it. Cost: one pass over the
+/// masks of the trees.
 [[nodiscard]] VdbOutline outline_of(std::string& image);
 
-/// Grids of this type have been followed, others must not be read.
+/// Whether grids of this type are checked; others must not be read.
 [[nodiscard]] bool is_followed(std::string_view grid_type);
 
 }  // namespace viewgain::detail

@@ -18,7 +18,7 @@
 
 namespace viewgain::detail {
 
-/// Rates of the unknown in a .vdb file of any program.
+/// Hazard rates in a .vdb file of any program.
 class RateReader {
  public:
   RateReader(const std::filesystem::path& path, const VdbContents& contents)
@@ -48,9 +48,9 @@ class RateReader {
   }
 
  private:
-  // Rates in other units or of another place would count as a single rate everywhere.
+  // Rates in other units or at another place would count as a single rate everywhere.
   void check_place(const BeliefGrid& grid, const VoxelBox& box) const {
-    constexpr double kMost = 50;  // times as coarse or as fine
+    constexpr double kMost = 50;  // ratio of voxel sizes
     openvdb::CoordBBox active;
     if (!rates_->tree().evalActiveVoxelBoundingBox(active)) return;
     const openvdb::Vec3d sides = rates_->voxelSize();
@@ -64,7 +64,7 @@ class RateReader {
       const openvdb::Vec3d low = rates_->indexToWorld(active.min().asVec3d());
       const openvdb::Vec3d high = rates_->indexToWorld(active.max().asVec3d());
       mismatch("its rates lie between " + text_of(low) + " and " + text_of(high) +
-               " m, none of them in the map");
+               " m, but none lies in the map");
     }
   }
   [[nodiscard]] static std::string text_of(const openvdb::Vec3d& p) {
@@ -73,7 +73,7 @@ class RateReader {
   [[noreturn]] void mismatch(const std::string& what) const {
     throw Error(ErrorCode::invalid_argument,
                 path_.string() + ": " + what +
-                    ": the transform of hazard rates is to the map's world, in metres");
+                    ": hazard rates must have a transform to the map's world, in metres");
   }
 
   [[nodiscard]] static bool is_index(const openvdb::Vec3d& at) {
@@ -94,7 +94,7 @@ class RateReader {
       if (floats) found = floats, ++count;
     }
     if (count != 1) {
-      fail("has " + std::to_string(count) + " grids of floats and none of them is 'hazard'");
+      fail("has " + std::to_string(count) + " float grids, but none is named 'hazard'");
     }
     return found;
   }
@@ -106,7 +106,7 @@ class RateReader {
     return rate;
   }
 
-  /// The map's voxels that active ones of the file may touch.
+  /// The map's voxels that active voxels of the file can touch.
   [[nodiscard]] VoxelBox touched_by_active(const BeliefGrid& grid) const {
     openvdb::CoordBBox active;
     if (!rates_->tree().evalActiveVoxelBoundingBox(active)) return {};
@@ -124,7 +124,7 @@ class RateReader {
     const auto within = [](double value, std::int32_t least, std::int32_t most) {
       return static_cast<std::int32_t>(std::clamp<double>(value, least, most));
     };
-    // Lattices that are the same differ by rounding.
+    // Equal lattices can differ by rounding.
     constexpr double kRounding = 1e-6;  // [voxels]
     const auto low = [&](int a, std::int32_t least, std::int32_t most) {
       return within(std::floor(touched.min()[a] + kRounding), least, most);

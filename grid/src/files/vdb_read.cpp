@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-// OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
+// OpenVDB keeps state in its templates; with hidden visibility each library would have a copy
+// (grid/README.md).
 #pragma GCC visibility push(default)
 #include <openvdb/tree/ValueAccessor.h>
 #pragma GCC visibility pop
@@ -77,22 +78,22 @@ class Loader {
     const auto found = metadata.getMetadata<Metadata>(name);
     if (!found) {
       fail(std::string("has no metadata '") + name + "' of type " + Metadata::staticTypeName() +
-           ": it is no viewgain map");
+           ": it is not a viewgain map");
     }
     return found->value();
   }
 
   [[nodiscard]] std::vector<Pose> poses(const openvdb::MetaMap& metadata, const char* name) const {
     auto result = poses_from_text(value<openvdb::StringMetadata>(metadata, name));
-    if (!result) fail(std::string("metadata '") + name + "' is no list of poses");
+    if (!result) fail(std::string("metadata '") + name + "' is not a list of poses");
     return *std::move(result);
   }
 
-  /// Of the layout (vdb_layout.hpp).
+  /// Layout of vdb_layout.hpp.
   [[nodiscard]] std::int32_t version_of(const openvdb::MetaMap& metadata) const {
     const auto found = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
     if (found != kVdbLayoutVersion && found != kVdbScaledVersion) {
-      fail("has viewgain_version " + std::to_string(found) + ", this program reads " +
+      fail("has viewgain_version " + std::to_string(found) + ", but this program reads " +
            std::to_string(kVdbLayoutVersion) + " and " + std::to_string(kVdbScaledVersion));
     }
     return found;
@@ -110,7 +111,7 @@ class Loader {
       dims[a] = static_cast<std::int32_t>(count);
     }
     const std::vector<Pose> T_world_grid = poses(metadata, "T_world_grid");
-    if (T_world_grid.size() != 1) fail("metadata 'T_world_grid' is not one pose");
+    if (T_world_grid.size() != 1) fail("metadata 'T_world_grid' is not a single pose");
     try {
       auto storage = std::make_unique<GridStorage>(
           value<openvdb::DoubleMetadata>(metadata, "voxel_size"), T_world_grid.front(),
@@ -142,7 +143,7 @@ class Loader {
       found = openvdb::gridPtrCast<Grid>(grid);
       if (!found) fail("grid '" + name + "' has values of type " + grid->valueType());
     }
-    if (!found) fail("has no grid '" + name + "': it is no viewgain map");
+    if (!found) fail("has no grid '" + name + "': it is not a viewgain map");
     CoordBBox box;
     if (found->tree().evalActiveVoxelBoundingBox(box) &&
         !(s.lattice.contains(to_index(box.min())) && s.lattice.contains(to_index(box.max())))) {
@@ -152,7 +153,7 @@ class Loader {
     for (const Coord& corner : {Coord(0, 0, 0), Coord(1, 0, 0), Coord(0, 1, 0), Coord(0, 0, 1)}) {
       if ((found->indexToWorld(corner) - expected->indexToWorld(corner)).length() >
           1e-6 * s.voxel_size) {
-        fail("grid '" + name + "' has another transform than voxel_size and T_world_grid say");
+        fail("grid '" + name + "' has a transform that contradicts voxel_size and T_world_grid");
       }
     }
     return found->tree();
@@ -171,7 +172,7 @@ class Loader {
     }
     const std::uint8_t code = log_odds_code(log_odds);
     if (std::abs(code_log_odds(code) - log_odds) > 1e-4F) {
-      fail("log_odds " + short_text(log_odds) + where(at) + " is no multiple of 0.05");
+      fail("log_odds " + short_text(log_odds) + where(at) + " is not a multiple of 0.05");
     }
     if (state != state_of(code)) {
       fail("state " + short_text(state) + where(at) + " contradicts log_odds " +
@@ -181,7 +182,7 @@ class Loader {
   }
 
   static constexpr const char* kOtherVoxels =
-      "grids 'state' and 'log_odds' do not know the same voxels";
+      "grids 'state' and 'log_odds' contain different voxels";
 
   void load_states(const VdbContents& contents, GridStorage& s) {
     const auto& log_odds = tree<FloatGrid>(contents, s, "log_odds");
@@ -210,7 +211,7 @@ class Loader {
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
       const Coord at = tile.getCoord();
-      // The states are a tile too, as large or larger, or a node of the tile's size.
+      // The states are also a tile, at least as large, or a node of the tile's size.
       const auto depth = static_cast<int>(tile.getDepth());
       if (states.getValueDepth(at) > depth) {
         using Upper = FloatTree::RootNodeType::ChildNodeType;
@@ -228,7 +229,7 @@ class Loader {
     }
   }
 
-  /// Calls body(i) for i < count, side by side. Of several errors the first is thrown.
+  /// Calls body(i) for i < count in parallel. Throws the error with the lowest index.
   template <typename Body>
   void for_each_leaf(std::size_t count, const Body& body) {
     constexpr std::size_t kChunk = 64;
@@ -249,7 +250,7 @@ class Loader {
       float known = 0;
       if (!probe(state, states, log_odds, offset, known)) fail(kOtherVoxels);
       const float value = log_odds.getValue(offset);
-      // Of nearly all this is the code; the others are looked at closely.
+      // Nearly all values have this code; the others are checked closely.
       const bool is_within = value >= -2 && value <= 3.5F;
       const auto guess = static_cast<std::uint8_t>(is_within ? 20 * value + 41.5F : 0.0F);
       const bool is_code = code_log_odds(guess) == value && known == state_of(guess);
@@ -258,7 +259,7 @@ class Loader {
     });
   }
 
-  /// What a tree has at a voxel of a leaf of another; `own` is its own leaf there, null if none.
+  /// Value of a tree at a voxel of another tree's leaf; `own` is its leaf there, or null.
   template <typename Tree, typename Leaf>
   [[nodiscard]] static bool probe(const Tree& tree, const typename Tree::LeafNodeType* own,
                                   const Leaf& leaf, unsigned offset,
@@ -267,8 +268,8 @@ class Loader {
                           : tree.probeValue(leaf.offsetToGlobalCoord(offset), value);
   }
 
-  // Looks at the states of a node in a tile of one log-odds, by the node's own tiles: one by one,
-  // the voxels of a few forged bytes would take hours.
+  // Checks the states of a node within a tile of one log-odds by the node's own tiles; single
+  // voxels would take hours for a forged file of a few bytes.
   template <typename Node>
   void check_states(const Node& states, float log_odds) const {
     for (auto it = states.cbeginValueAll(); it; ++it) {
@@ -299,9 +300,9 @@ class Loader {
     }
   }
 
-  static constexpr const char* kOtherBeliefs = "the grids of beliefs do not hold the same voxels";
+  static constexpr const char* kOtherBeliefs = "the grids of beliefs contain different voxels";
 
-  /// Where the grids of beliefs are.
+  /// The grids of beliefs.
   struct BeliefTrees {
     std::array<const openvdb::Vec3STree*, 3> parts;
     const FloatTree* hits;
@@ -373,7 +374,7 @@ class Loader {
 
   std::filesystem::path path_;
   ThreadPool pool_;
-  const FloatTree* scales_ = nullptr;  ///< of the file's; null if there are none
+  const FloatTree* scales_ = nullptr;  ///< of the file; null if there are none
 };
 
 }  // namespace

@@ -12,8 +12,8 @@ namespace {
 constexpr std::string_view kMark = "VGSEAL01";
 constexpr std::size_t kSealSize = 24;
 
-// Whether the file ends in the beginning of its seal: it was cut a few bytes short. Fewer than four
-// bytes of it could be there by chance.
+// Whether the file ends in the beginning of its seal, so that it was truncated by a few bytes.
+// Ignores fewer than four bytes, which could match by chance.
 bool ends_in_part_of_seal(std::string_view file) {
   for (std::size_t kept = 4; kept < std::min(kSealSize, file.size()); ++kept) {
     const std::string_view tail = file.substr(file.size() - kept);

@@ -8,9 +8,9 @@
 
 namespace viewgain::detail {
 
-// A seal is 24 bytes behind the last grid, where OpenVDB does not look: a mark, the length of what
-// comes before, and its hash. OpenVDB's reader trusts sizes that it finds in a file; a seal that
-// fits means that the bytes are those that were written.
+// A seal is 24 bytes after the last grid, which OpenVDB ignores: a mark, the length of everything
+// before, and its hash. OpenVDB's reader trusts sizes in a file; a valid seal shows that the bytes
+// are as written.
 
 [[nodiscard]] std::string make_seal(std::string_view bytes);
 

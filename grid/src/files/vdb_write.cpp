@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
-// OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
+// OpenVDB keeps state in its templates; with hidden visibility each library would have a copy
+// (grid/README.md).
 #pragma GCC visibility push(default)
 #include <openvdb/io/Archive.h>
 #include <openvdb/tree/ValueAccessor.h>
@@ -32,10 +33,10 @@ using openvdb::FloatGrid;
 using openvdb::Vec3f;
 using openvdb::Vec3SGrid;
 
-/// OpenVDB puts a random UUID into a file's head. One of what comes behind it takes its place, so
-/// that equal maps make equal files.
+/// OpenVDB writes a random UUID into a file's header. A UUID from the contents replaces it, so that
+/// equal maps give equal files.
 void name_by_contents(std::string& image) {
-  constexpr std::size_t kBegin = 21, kSize = 36;  // behind magic, three versions, a flag
+  constexpr std::size_t kBegin = 21, kSize = 36;  // after magic, three versions and a flag
   const std::string sum = make_seal(std::string_view(image).substr(kBegin + kSize)).substr(8);
   std::string uuid;
   for (const char byte : sum) {
@@ -47,7 +48,7 @@ void name_by_contents(std::string& image) {
   image.replace(kBegin, kSize, uuid);
 }
 
-/// Writes a seekable file image to memory, so that a full disk is noticed by our own writer.
+/// Writes a seekable file image to memory, so that our own writer detects a full disk.
 class MemoryArchive : public openvdb::io::Archive {
  public:
   [[nodiscard]] std::string image(const openvdb::GridCPtrVec& grids,
@@ -81,7 +82,7 @@ openvdb::MetaMap make_metadata(const GridStorage& s) {
   return metadata;
 }
 
-/// The grids of one file, sharing a transform.
+/// Grids of one file with a common transform.
 class GridSet {
  public:
   explicit GridSet(openvdb::math::Transform::Ptr transform) : transform_(std::move(transform)) {}
@@ -141,7 +142,7 @@ void put_states(const GridStorage& s, GridSet& set) {
       });
 }
 
-/// What the float of a voxel's hits leaves out.
+/// Part of a voxel's hits that a float cannot hold.
 float hits_rest(const Belief& belief) {
   return static_cast<float>(static_cast<double>(belief.hits) -
                             double{static_cast<float>(belief.hits)});
@@ -162,7 +163,7 @@ void put_covariances(const GridStorage& s, GridSet& set) {
   for (const auto& [key, block_pointer] : s.beliefs) {
     const Index3 origin = s.lattice.origin(key);
     const int scale = s.scale(key);
-    // The resolution's share.
+    // The variance from the resolution.
     const double floor = s.voxel_size * s.voxel_size / 12.0 * std::ldexp(1.0, 2 * scale);
     for_each_bit(block_pointer->mask, [&](unsigned at) {
       const Belief& belief = *block_pointer->find(at);
@@ -207,7 +208,7 @@ void put_beliefs(const GridStorage& s, GridSet& set, bool with_covariance) {
   if (with_covariance) put_covariances(s, set);
 }
 
-/// Writes what make_image() returns, with a seal.
+/// Writes the result of make_image() with a seal.
 template <typename MakeImage>
 void write_sealed(const std::filesystem::path& path, MakeImage&& make_image) {
   require_ending(path, "an OpenVDB file", {".vdb"});

@@ -14,16 +14,16 @@
 namespace viewgain {
 namespace {
 
-constexpr double kPixels = 800;       // that are followed
+constexpr double kPixels = 800;       // number of followed pixels
 constexpr double kLeftOut = 3;        // before a reading [σ_ax]
-constexpr double kEnough = 10;        // meetings to be expected of a frame that counts in full
-constexpr double kLeastEvents = 0.1;  // and of one that counts at all
+constexpr double kEnough = 10;        // expected meetings of a frame with full weight
+constexpr double kLeastEvents = 0.1;  // minimum to count at all
 
 struct Sums {
   std::array<double, HazardCounters::kClasses> expected{}, met{};
 };
 
-// Where a ray is in a box: [begin, end), empty if it misses it.
+// Interval of a ray inside a box: [begin, end), empty if it misses it.
 struct Stretch {
   double begin, end;
 };
@@ -41,8 +41,8 @@ Stretch clipped(const Box& box, const Eigen::Vector3d& origin, const Eigen::Vect
   return stretch;
 }
 
-// Does the map's update give the reading to surface that is known? As associate() from the reading:
-// noise carried it off, and it is no meeting.
+// Whether the map's update assigns the reading to known surface, as associate() does: then noise
+// moved it, and it is not a meeting.
 bool is_of_known_surface(const BeliefGrid& grid, const Eigen::Vector3d& p_grid,
                          const Eigen::Vector3d& direction, double range, double sigma) {
   const double size = grid.voxel_size();
@@ -75,8 +75,8 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
   const std::optional<Pose> T_rigid = rigid_pose(T_world_camera);
   if (!T_rigid) refuse("the frame's pose is not a rigid transform");
   if (hazard.voxel_size() != grid.voxel_size()) {
-    refuse("the hazard is of voxels of " + short_text(hazard.voxel_size()) +
-           " m, the grid's are of " + short_text(grid.voxel_size()) + " m");
+    refuse("the hazard has voxels of " + short_text(hazard.voxel_size()) +
+           " m, but the grid has voxels of " + short_text(grid.voxel_size()) + " m");
   }
   if (!hazard.follows_counters() || hazard.near_box().volume() == 0) return;
 
@@ -84,7 +84,7 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
   const Eigen::Vector3d eye = T_grid_camera.translation();
   const Box workspace = grid.workspace();
   const HazardConfig::Model& model = hazard.model();
-  // Half a hazard cell: finer steps say the same.
+  // Half a hazard cell: finer steps give the same result.
   const double step = 0.5 * std::ldexp(grid.voxel_size(), hazard.cell_shift());
   const auto class_at = [&](double distance) {
     return HazardCounters::class_of(distance / model.decay_length);
@@ -110,7 +110,7 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
       const std::size_t i = static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
                             static_cast<std::size_t>(u);
       const float z = frame.depth[i];
-      if (!(z > 0) || !rays_[i].allFinite()) continue;  // NaN says nothing either
+      if (!(z > 0) || !rays_[i].allFinite()) continue;  // skips NaN too
       const double norm = rays_[i].norm();
       const double range = z == DepthFrame::kOutOfRange ? std::numeric_limits<double>::infinity()
                                                         : static_cast<double>(z) * norm;

@@ -14,18 +14,18 @@
 namespace viewgain {
 namespace {
 
-constexpr std::uint64_t kLeastHits = 3;  // of a voxel, or cube of voxels, with evidence of surface
+// Of a voxel, or cube of voxels, with evidence of surface.
+constexpr std::uint64_t kLeastHits = 3;
 constexpr double kFar = std::numeric_limits<double>::infinity();
-// Up to which surface is not new [pooling lengths]: by rank correlation with what views truly show
-// 1.2 and 1.6 are alike, 2 and more are worse once most is seen.
+// Distance within which surface is not new [pooling lengths]: in rank correlation with the surface
+// that views really show, 1.2 and 1.6 are equal; 2 and more are worse once most is seen.
 constexpr double kKnownDistance = 1.2;
 
 void check(bool ok, const char* name, double value) {
   if (!ok) refuse("hazard: " + std::string(name) + " " + short_text(value) + " is out of bounds");
 }
 
-// The voxels that are evidence of surface: those of a cube of 2^shift voxels an edge count
-// together.
+// The voxels with evidence of surface; those of a cube of 2^shift voxels per edge count together.
 std::vector<Index3> evidence_in(const GridSnapshot& snapshot, int shift) {
   std::vector<Index3> voxels;
   std::vector<unsigned> occupied;
@@ -52,7 +52,7 @@ std::vector<Index3> evidence_in(const GridSnapshot& snapshot, int shift) {
   return voxels;
 }
 
-// Box of some voxels; empty if there are none.
+// Bounding box of voxels; empty if there are none.
 VoxelBox box_of(const std::vector<Index3>& voxels) {
   if (voxels.empty()) return {};
   VoxelBox box{voxels.front(), voxels.front()};
@@ -75,9 +75,9 @@ int shift_for(double decay_length, double voxel_size) {
   return static_cast<int>(std::clamp(std::round(wanted), 0.0, 3.0));
 }
 
-// Factors of the model's rates by class of distance that make the classes' rates not rise with the
-// distance: neighbours that do are pooled by weight (isotonic regression), so that a class about
-// which little is known follows those about which more is.
+// Factors of the model's rates by distance class that make the rates of classes decrease with
+// distance: classes that violate this are pooled by weight (isotonic regression), so that a class
+// with few counts follows its neighbours.
 using Factors = std::array<double, HazardCounters::kClasses>;
 Factors monotone_factors(const HazardConfig::Model& model, const HazardCounters& counters) {
   struct Block {
@@ -200,9 +200,9 @@ void HazardField::find_distances(const GridSnapshot& snapshot,
                {cells.max.x * edge, cells.max.y * edge, cells.max.z * edge}};
   constexpr std::uint64_t kMostCells = std::uint64_t{1} << 31U;
   if (cells.volume() > kMostCells) {
-    throw Error(ErrorCode::capacity, "hazard: what is known of the surface spreads over " +
+    throw Error(ErrorCode::capacity, "hazard: the known surface spreads over " +
                                          std::to_string(cells.volume()) + " cells, " +
-                                         std::to_string(kMostCells) + " are the most");
+                                         std::to_string(kMostCells) + " is the maximum");
   }
   squared_.assign(cells.volume(), detail::kNoDistance);
   for (const Index3& v : evidence) squared_[cell_of(v)] = 0;
@@ -213,7 +213,7 @@ void HazardField::find_distances(const GridSnapshot& snapshot,
       std::clamp(HazardConfig::Model::kOpenReach * model_.decay_length / cell, 1.0, 63.0));
   find_shapes(nearest, free, detail::OpenDirections(snapshot, cells, shift_, free, open_reach));
   find_rates(reach);
-  // [cells]; the neighbours of one with evidence at least
+  // [cells]; at least the neighbours of a cell with evidence
   const double known = std::max(kKnownDistance * pooling_.length / cell, 1.0);
   most_known_ = static_cast<std::uint32_t>(known * known);
 }
@@ -233,7 +233,8 @@ void HazardField::find_shapes(const detail::NearestCells& nearest, const detail:
         if (squared_[i] == kNoDistance || free.is_free(i)) continue;
         const auto [dx, dy, dz] = nearest.offset(x, y, z);
         const auto at = [](std::size_t from, int by) { return static_cast<int>(from) + by; };
-        // Towards free space at the nearest cell with evidence, and from there to here.
+        // Direction towards free space at the nearest cell with evidence, and direction from there
+        // to here.
         const Eigen::Vector3d n = free.gradient(at(x, dx), at(y, dy), at(z, dz));
         const Eigen::Vector3d away(-dx, -dy, -dz);
         const double product = n.norm() * away.norm();
@@ -249,7 +250,7 @@ void HazardField::find_shapes(const detail::NearestCells& nearest, const detail:
 void HazardField::find_rates(int reach) {
   const double cell = voxel_size_ * (1 << shift_);
   rates_.resize(static_cast<std::size_t>(reach * reach) + 1);
-  // Where a class ends the factor steps: what is nearer has at least the rate of what is farther.
+  // The factor steps at the end of a class: nearer cells have at least the rate of farther ones.
   double most = model_.rate(kFar) * factors_.back();
   for (std::size_t i = rates_.size(); i-- > 0;) {
     const double distance = std::sqrt(static_cast<double>(i)) * cell;

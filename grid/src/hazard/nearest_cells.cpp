@@ -8,12 +8,12 @@
 namespace viewgain::detail {
 namespace {
 
-// On the way distances are capped, so that adding a square of at most 127² stays below 2^15, where
-// instruction sets have minima of 16 bits.
+// Intermediate distances are capped, so that adding a square of at most 127² stays below 2^15,
+// because instruction sets have 16-bit minima.
 constexpr std::int16_t kFar = 128 * 128;
-constexpr std::size_t kChunk = 32;  // cells in which a pass runs through its steps at once
+constexpr std::size_t kChunk = 32;  // cells that a pass takes through its steps at once
 
-// Rows of cells in chunks; the last one lies over the one before it where it would be short.
+// Rows of cells in chunks; a short last chunk overlaps the one before.
 struct Chunks {
   std::size_t length;
   [[nodiscard]] std::size_t count() const { return (length + kChunk - 1) / kChunk; }
@@ -23,15 +23,14 @@ struct Chunks {
   [[nodiscard]] std::size_t size() const { return std::min(length, kChunk); }
 };
 
-// An axis: rows follow one another at `stride`, `count` of them.
+// An axis: `count` rows at distance `stride`.
 struct Axis {
   std::size_t stride, count;
 };
 
-// out[i] = min over |k| <= reach of in[i + k stride] + k² for a chunk of a row, the `position`-th
-// of the axis, and `best` the k, from the nearest row on, first that before. What another row
-// cannot lower, or not to at most reach², is not looked at: `least` has the least of each row's
-// chunk.
+// out[i] = min over |k| <= reach of in[i + k stride] + k² for a chunk of a row at index `position`
+// of the axis; `best` is the k, nearest row first, the lower one first. Skips rows that cannot
+// lower the result, or not below reach²: `least` has the minimum of each row's chunk.
 void lower(const std::int16_t* in, std::int16_t* out, std::int8_t* best, std::size_t size,
            const Axis& axis, std::size_t position, const std::int16_t* least,
            std::size_t least_stride, int reach) {
@@ -49,7 +48,7 @@ void lower(const std::int16_t* in, std::int16_t* out, std::int8_t* best, std::si
       step[i] = through < lowest[i] ? k : step[i];
       lowest[i] = std::min(lowest[i], through);
     };
-    if (size == kChunk) {  // of a known length, for vectors
+    if (size == kChunk) {  // fixed length, for vectorisation
       for (std::size_t i = 0; i < kChunk; ++i) each(i);
     } else {
       for (std::size_t i = 0; i < size; ++i) each(i);
@@ -67,7 +66,7 @@ void lower(const std::int16_t* in, std::int16_t* out, std::int8_t* best, std::si
                  [](std::int16_t k) { return static_cast<std::int8_t>(k); });
 }
 
-// lower() for all rows of `length` cells along an axis that takes every `rows_apart`-th of them.
+// lower() for all rows of `length` cells along an axis whose rows are `rows_apart` apart.
 void pass(const std::vector<std::int16_t>& in, std::vector<std::int16_t>& out,
           std::vector<std::int8_t>& best, std::size_t length, std::size_t rows_apart,
           std::size_t count, int reach) {
@@ -91,10 +90,10 @@ void pass(const std::vector<std::int16_t>& in, std::vector<std::int16_t>& out,
   }
 }
 
-// Along z: from the nearest 0 before, then from the nearest behind.
+// Along z: first from the nearest 0 below, then from the nearest above.
 void along_row(const std::uint16_t* row, std::int16_t* squared, std::int8_t* best,
                std::size_t length) {
-  constexpr int kNone = 128;  // whose square is kFar
+  constexpr int kNone = 128;  // its square is kFar
   int away = kNone;
   for (std::size_t i = 0; i < length; ++i) {
     away = row[i] == 0 ? 0 : std::min(away + 1, kNone);

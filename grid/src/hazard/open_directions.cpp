@@ -60,7 +60,7 @@ void FreeShare::count(const GridSnapshot& snapshot, int shift) {
   }
 }
 
-// Marks the free cells, and takes the workspace's part of a cell that its faces cut for the whole.
+// Marks the free cells; a cell cut by the workspace's faces counts by its part inside.
 void FreeShare::settle(const VoxelBox& workspace, int shift) {
   const int edge = 1 << shift;
   const std::int32_t all = std::int32_t{1} << (3 * shift);
@@ -86,14 +86,14 @@ void FreeShare::settle(const VoxelBox& workspace, int shift) {
   }
 }
 
-// Sums of 7 along an axis, of which the first and last go on beyond the ends: of rows of `stride`
-// cells side by side, `count` of them one after another.
+// Sums of 7 along an axis, with the first and last cells repeated beyond the ends: `count` rows of
+// `stride` adjacent cells.
 void FreeShare::add_up(std::size_t stride, std::size_t count) {
   const std::vector<std::int32_t> in =
       std::exchange(sums_, std::vector<std::int32_t>(sums_.size()));
   std::vector<std::int32_t> sum(stride);
   for (std::size_t outer = 0; outer < in.size(); outer += stride * count) {
-    const auto row = [&](std::size_t i) {  // kAround before the first is 0
+    const auto row = [&](std::size_t i) {  // the first value is repeated kAround times
       return &in[outer + std::min(std::max(i, kAround) - kAround, count - 1) * stride];
     };
     std::fill(sum.begin(), sum.end(), 0);
@@ -130,7 +130,7 @@ OpenDirections::OpenDirections(const GridSnapshot& snapshot, const VoxelBox& cel
             static_cast<std::size_t>(cells.max.z - cells.min.z)},
       words_((size_[2] + 63) / 64 + 1) {
   const std::size_t rows = size_[0] * size_[1];
-  const std::size_t all = rows * words_ + 2;  // one more before and behind, as shifts look there
+  const std::size_t all = rows * words_ + 2;  // one more on each side, because shifts read there
   Steps here{Bits(all), Bits(all)};
   const Steps none{Bits(all), Bits(all, ~std::uint64_t{0})};
   for (std::size_t row = 0; row < rows; ++row) {
@@ -161,7 +161,7 @@ OpenDirections::OpenDirections(const GridSnapshot& snapshot, const VoxelBox& cel
         static_cast<unsigned>(std::max(1.0, reach / std::sqrt(double{1} * squared)));
     const Steps one = joined(none, here, by, 1);
     Steps steps = one;
-    // The bits of `wanted` from the second on: twice as far, and one step more where there is one.
+    // The bits of `wanted` from the second on: doubles the distance, plus one step for a set bit.
     int taken = 1;
     for (int bit = std::bit_width(wanted) - 2; bit >= 0; --bit) {
       steps = joined(steps, steps, by, taken);
@@ -175,8 +175,8 @@ OpenDirections::OpenDirections(const GridSnapshot& snapshot, const VoxelBox& cel
   }
 }
 
-// `first` from each cell, then `then` from where that ends, `steps` on. A row's last word is kept
-// at 0, so that what is shifted from one row into the next is lost.
+// `first` from each cell, then `then` from its end, `steps` further. The last word of a row stays
+// 0, so that bits shifted from one row into the next are lost.
 OpenDirections::Steps OpenDirections::joined(const Steps& first, const Steps& then,
                                              const Direction& by, int steps) const {
   Steps result{first.free, Bits(first.unknown.size())};
@@ -188,7 +188,7 @@ OpenDirections::Steps OpenDirections::joined(const Steps& first, const Steps& th
   for (int x = std::max(0, -dx); x < std::min(nx, nx - dx); ++x) {
     const std::size_t here = word_of(static_cast<std::size_t>(x * ny + low), 0),
                       there = word_of(static_cast<std::size_t>((x + dx) * ny + low + dy), 0);
-    // Compilers make vectors of this where the shift is a constant of the loop.
+    // Compilers vectorise this if the shift is a loop constant.
     const auto join = [&](auto&& shifted) {
       for (std::size_t w = 0; w < count; ++w) {
         const std::uint64_t passed = first.unknown[here + w];

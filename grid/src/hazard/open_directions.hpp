@@ -12,16 +12,16 @@
 
 namespace viewgain::detail {
 
-/// How much of the 7³ cells round each is free, in a box of cells of 2^shift voxels an edge in the
-/// workspace; of a cell that the workspace cuts its part counts for the whole. Beyond the box all
-/// is as at its faces. 5 bytes a cell.
+/// Share of free voxels in the 7³ cells around each cell, in a box of cells of 2^shift voxels per
+/// edge in the workspace; cells cut by the workspace count by their part inside. Values continue
+/// beyond the faces of the box. 5 bytes per cell.
 class FreeShare {
  public:
   FreeShare(const GridSnapshot& snapshot, const VoxelBox& cells, int shift);
 
-  /// Is all of a cell free? By its place in a dense array [x][y][z], z fastest.
+  /// Whether a cell is entirely free, by its index in a dense array [x][y][z], z fastest.
   [[nodiscard]] bool is_free(std::size_t cell) const { return is_free_[cell] != 0; }
-  /// Which way more is free, at a cell's place from the box's lowest; in no unit.
+  /// Gradient of free space at a cell, relative to the box's lowest cell; not normalised.
   [[nodiscard]] Eigen::Vector3d gradient(int x, int y, int z) const;
 
  private:
@@ -35,20 +35,20 @@ class FreeShare {
   std::vector<std::uint8_t> is_free_;
 };
 
-/// Along how many of the 26 directions to the cells around one comes to free space, before any
-/// occupied cell and within a reach, in a box of cells of 2^shift voxels an edge. A cell is free if
-/// all of it is, occupied if any voxel of it is; nothing is beyond the box.
+/// Number of the 26 directions along which free space comes within a reach, before any occupied
+/// cell, in a box of cells of 2^shift voxels per edge. A cell is free if all of it is, occupied if
+/// any voxel is; beyond the box there is nothing.
 class OpenDirections {
  public:
   static constexpr int kDirections = 26;
 
-  /// `free` is of the same box; `reach` in cells, at least 1, at most 63. A diagonal goes by as
-  /// many whole steps as its length allows, one at least. Costs some 130 passes over the cells, 64
-  /// of them at once, and 2 bytes a cell.
+  /// `free` belongs to the same box; `reach` in cells, 1 to 63. A diagonal takes as many whole
+  /// steps as its length allows, at least one. Cost: about 130 passes over the cells, 64 cells at
+  /// once, and 2 bytes per cell.
   OpenDirections(const GridSnapshot& snapshot, const VoxelBox& cells, int shift,
                  const FreeShare& free, int reach);
 
-  /// At a cell's place from the box's lowest; 0 to 26. Of free and occupied cells too.
+  /// Result at a cell relative to the box's lowest; 0 to 26. Also for free and occupied cells.
   [[nodiscard]] int count(std::size_t x, std::size_t y, std::size_t z) const {
     const std::size_t word = word_of(x * size_[1] + y, z);
     int sum = 0;
@@ -61,10 +61,11 @@ class OpenDirections {
  private:
   static constexpr std::size_t kPlanes = 5;  // bits of a count
 
-  // One bit a cell, rows along z in whole words and one that is 0; other bits beyond a row's end
-  // mean nothing.
+  // One bit per cell: rows along z in whole words followed by a zero word; bits beyond a row's end
+  // are undefined.
   using Bits = std::vector<std::uint64_t>;
-  // From each cell so many steps on: has free space come by then; is all still unknown?
+  // A number of steps from each cell: whether free space has been reached, and whether all is still
+  // unknown.
   struct Steps {
     Bits free, unknown;
   };
@@ -78,7 +79,7 @@ class OpenDirections {
   void add(const Bits& bits);
 
   std::array<std::size_t, 3> size_;
-  std::size_t words_;                 // a row's
+  std::size_t words_;                 // words of a row
   std::array<Bits, kPlanes> counts_;  // bit k of the counts
 };
 

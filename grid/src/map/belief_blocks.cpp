@@ -45,12 +45,12 @@ std::string has(const char* what, const std::string& value) {
   return std::string("has ") + what + value;
 }
 
-/// Bound on how far the sum of `hits` readings may be from positive semidefinite, its information
-/// scaled to a unit diagonal. Whoever rounds each of the readings' sums to single precision, to the
-/// nearest, is off by at most 2^-24 each time, and |Λ_ij| <= √(Λ_ii Λ_jj): that is hits · 2^-24 an
-/// entry, three times as much for the matrix. From 2^24 readings on such sums stand still, each
-/// within a factor of 2 of the others. Twice the bound, so that the matrix that is factored below
-/// is regular, and for BeliefSum, which rounds by up to 2^-23 but less often.
+/// Bound on how far the sum of `hits` readings can deviate from positive semidefinite, with its
+/// information scaled to a unit diagonal. Rounding each sum to nearest single precision has an
+/// error of at most 2^-24, and |Λ_ij| <= √(Λ_ii Λ_jj): that is hits · 2^-24 per entry, three times
+/// as much for the matrix. From 2^24 readings on, such sums stagnate within a factor of 2 of each
+/// other. The bound is doubled, so that the matrix factored below is regular, and for BeliefSum,
+/// which rounds by up to 2^-23 but less often.
 double rounding(std::uint32_t hits) { return 6.0 * std::min((hits + 1.0) * 0x1p-24, 1.0); }
 
 }  // namespace
@@ -71,10 +71,10 @@ std::string fault_of_belief(const Belief& belief, double voxel_size) {
   if (belief.hits > static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max())) {
     return has("more than 2147483647 hits: ", std::to_string(belief.hits));
   }
-  // Sums that would overflow stay where they are; no more can be said of them.
+  // Sums that would overflow stay unchanged.
   if (is_clamped) return {};
 
-  // The smallest normal number: below it rounding is absolute.
+  // Smallest normal number: below it rounding errors are absolute.
   const Eigen::Matrix3d information = belief.information_matrix().matrix();
   const Eigen::Vector3d scale =
       (information.diagonal().array() + double{std::numeric_limits<float>::min()}).rsqrt();
@@ -84,9 +84,9 @@ std::string fault_of_belief(const Belief& belief, double voxel_size) {
   if (factors.info() != Eigen::Success) {
     return "has an information that is not positive semidefinite";
   }
-  // The mean of readings in a voxel, weighted by their matrices, is at most about twice as many
-  // voxels off its centre as a sensor's sigmas differ by a factor. Farther off than this, a place
-  // given in voxels would leave the range of 32 bits.
+  // The matrix-weighted mean of readings in a voxel is at most about twice as many voxels from its
+  // centre as a sensor's sigmas differ by a factor. A position farther away, in voxels, would
+  // exceed 32 bits.
   constexpr double kFarthest = 0x1p28;
   const Eigen::Vector3d vector(belief.information_vector[0], belief.information_vector[1],
                                belief.information_vector[2]);
@@ -94,7 +94,7 @@ std::string fault_of_belief(const Belief& belief, double voxel_size) {
       scale.cwiseProduct(factors.solve(scale.cwiseProduct(vector))) / voxel_size;
   const double farthest = offset.cwiseAbs().maxCoeff();
   if (!(farthest <= kFarthest))
-    return has("a place that many voxels off its own: ", short_text(farthest));
+    return has("a point too many voxels away from its voxel: ", short_text(farthest));
   return {};
 }
 

@@ -31,7 +31,7 @@ std::unique_ptr<GridStorage> make_storage(const GridConfig& config, const Sensor
 std::uint64_t tree_bytes(const CodeTree& tree) {
   std::uint64_t bytes = sizeof(CodeTree);
   const auto& root = tree.root();
-  // A node of the root's map: key, entry and the red-black tree's own links and colour.
+  // A map node: key, entry, and the links and colour of the red-black tree.
   bytes += root.getTableSize() * (sizeof(openvdb::Coord) + 2 * sizeof(void*) + 4 * sizeof(void*));
   for (auto upper = root.cbeginChildOn(); upper; ++upper) {
     bytes += sizeof(CodeUpper);
@@ -131,7 +131,7 @@ void detail::GridStorage::fold_cell(std::uint64_t key) {
 
 std::uint64_t detail::GridStorage::bytes() const {
   std::uint64_t bytes = sizeof(GridStorage) + tree_bytes(tree) + views.capacity() * sizeof(Pose);
-  // Each entry of the map: its node (link, key, pointer), its bucket and the shared block.
+  // Each map entry: its node (link, key, pointer), its bucket and the shared block.
   constexpr std::size_t kSharedCounts = 2 * sizeof(void*);
   for (const auto& [key, block] : beliefs) {
     bytes += sizeof(void*) + sizeof(std::pair<std::uint64_t, std::shared_ptr<BeliefBlock>>) +
@@ -150,7 +150,7 @@ BeliefGrid::BeliefGrid(BeliefGrid&&) noexcept = default;
 BeliefGrid& BeliefGrid::operator=(BeliefGrid&&) noexcept = default;
 
 BeliefGrid BeliefGrid::clone() const {
-  // Belief blocks are immutable, so sharing them is as good as copying.
+  // Belief blocks are immutable, so they can be shared.
   return BeliefGrid(storage_->copy());
 }
 
@@ -235,7 +235,7 @@ std::uint64_t BeliefGrid::forget(const Box& region) {
   const auto part_of = [&](Index3 origin, int size) {
     return range.intersection(VoxelBox::from_dims(origin, {size, size, size}));
   };
-  // A list first: the tree must not change while it is visited.
+  // Collect first: the tree must not change during the visit.
   std::vector<VoxelBox> known_tiles;
   std::vector<Index3> leaves;
   visit_blocks(
@@ -328,9 +328,9 @@ void fill_cube(BeliefGrid& grid, Index3 origin, std::int32_t size, std::uint8_t 
     s.mark_changed(s.lattice.key(block_origin(clipped(s.lattice, origin, size).min)));
     ++s.time;
   } else {
-    s.forget_snapshots();  // a mark for each region of a large cube would cost more than it saves
+    s.forget_snapshots();  // a mark per region of a large cube would cost more than it saves
   }
-  // Whole blocks, of large cubes whole nodes, round the part in the workspace.
+  // The part in the workspace, extended to whole blocks or, for large cubes, whole nodes.
   const std::int32_t unit = may_be_tile(code) && size > kNodeSize ? kNodeSize : kBlockSize;
   const VoxelBox part = clipped(s.lattice, origin, size);
   const auto down = [&](std::int32_t v) { return v & ~(unit - 1); };

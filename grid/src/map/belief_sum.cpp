@@ -13,12 +13,12 @@
 namespace viewgain::detail {
 namespace {
 
-/// `salt` parts the chances of numbers with the same bits.
+/// `salt` makes the random numbers of equal values differ.
 float rounded_by_chance(double value, std::uint64_t salt) {
   constexpr double kLimit = std::numeric_limits<float>::max();
   if (!(std::abs(value) < kLimit)) return static_cast<float>(std::clamp(value, -kLimit, kLimit));
-  // The bits that single precision lacks; what is added to them carries into the others as often
-  // as they are a part of a step.
+  // The bits that single precision lacks. A random number added to them carries into the higher
+  // bits with a probability equal to their share of a step.
   constexpr std::uint64_t kLost = (std::uint64_t{1} << 29U) - 1;
   const auto bits = std::bit_cast<std::uint64_t>(value);
   const std::uint64_t chance = mix64(bits + kMixStep * salt) & kLost;
@@ -50,7 +50,7 @@ void BeliefSum::add(const SymmetricMatrix3& information, const Eigen::Vector3d& 
 
 Belief BeliefSum::rounded() const {
   Belief belief;
-  // With the count, or a sum that chance has left where it was would stay there for ever.
+  // Includes the count: otherwise an unchanged sum would get the same random number every time.
   std::uint64_t salt = 9 * static_cast<std::uint64_t>(hits_);
   const auto narrow = [&](double value) { return rounded_by_chance(value, salt++); };
   std::transform(information_.begin(), information_.end(), belief.information.begin(), narrow);

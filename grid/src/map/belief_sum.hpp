@@ -9,20 +9,19 @@
 
 namespace viewgain::detail {
 
-/// A belief that grows, in double precision; rounded() is what the map keeps of it.
+/// A growing belief in double precision; rounded() gives the stored belief.
 class BeliefSum {
  public:
-  /// `way`: from this sum's centre to the belief's own [m].
+  /// `way`: from this sum's centre to the belief's [m].
   void add(const Belief& belief, const Eigen::Vector3d& way);
-  /// A reading `offset` [m] from the centre.
+  /// Adds a reading at `offset` [m] from the centre.
   void add(const SymmetricMatrix3& information, const Eigen::Vector3d& offset);
 
-  /// Each number is rounded up or down by chance, the nearer more often, so that the errors of
-  /// many sums grow with the root of their count, not with the count: to the nearest, readings from
-  /// one side would always be rounded the same way, and that hides a weak axis. The chance is a
-  /// hash of the number's bits and the count of readings, hence the same everywhere. A number that
-  /// single precision holds stays as it is; one beyond its largest is that. The information is made
-  /// definite().
+  /// Rounds each number up or down at random, with a probability given by the distance, so that
+  /// errors grow with the square root of the number of sums. Rounding to nearest would always round
+  /// readings from one side in the same way and hide a weak axis. The randomness is a hash of the
+  /// number's bits and the count, so it is the same on all machines. Numbers that single precision
+  /// holds do not change; larger ones are clamped. The information is made definite().
   [[nodiscard]] Belief rounded() const;
 
  private:
@@ -31,10 +30,9 @@ class BeliefSum {
   double hits_ = 0;
 };
 
-/// The belief with an information that is positive definite, where rounding has made it another: 2t
-/// of its diagonal is added to it, t the smallest power of two, 2^-24 or more, with t of which it
-/// is. As it is where it is positive definite, or a zero or the largest number on its diagonal
-/// lets nothing help.
+/// The belief with positive definite information. If rounding broke that, adds 2t of its diagonal,
+/// where t is the smallest power of two, at least 2^-24, that makes it positive definite. Unchanged
+/// if it is positive definite, or if a zero or the largest number on its diagonal prevents it.
 [[nodiscard]] Belief definite(const Belief& belief);
 
 }  // namespace viewgain::detail

@@ -10,12 +10,12 @@
 
 namespace viewgain::detail {
 
-/// Bits of the voxels of a block whose code is greater, eight codes at a time.
+/// Bits of the voxels of a block with a greater code, eight codes at a time.
 [[nodiscard]] inline LeafMask mask_above(const std::uint8_t* codes, std::uint8_t code) {
   static_assert(kMaxCode < 128 && std::endian::native == std::endian::little);
   constexpr std::uint64_t kOnes = 0x0101010101010101ULL;
-  constexpr std::uint64_t kGather = 0x0102040810204080ULL;  // byte i's lowest bit to bit 56 + i
-  const std::uint64_t lift = kOnes * (127U - code);         // a greater code gets its top bit
+  constexpr std::uint64_t kGather = 0x0102040810204080ULL;  // lowest bit of byte i to bit 56 + i
+  const std::uint64_t lift = kOnes * (127U - code);         // sets the top bit of greater codes
   LeafMask mask{};
   for (std::size_t word = 0; word < 8; ++word) {
     for (std::size_t byte = 0; byte < 8; ++byte) {

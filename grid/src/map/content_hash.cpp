@@ -32,9 +32,9 @@ std::uint64_t hash_codes(const std::array<std::uint8_t, kBlockVoxels>& codes) {
   return hash.value();
 }
 
-/// Adds up hashes of the largest uniform cubes of 2048, 128 and 8 voxels, unknown ones left out,
-/// and of the blocks that are not uniform. A cube is uniform if its voxels in the workspace are, so
-/// neither the tree's topology nor the order matters, and the cost is that of the tree's nodes.
+/// Sums hashes of the largest uniform cubes of 2048, 128 and 8 voxels, except unknown ones, and of
+/// blocks that are not uniform. A cube is uniform if its voxels in the workspace are, so neither
+/// the tree's topology nor the order matters; the cost is that of the tree's nodes.
 class ContentHash {
  public:
   explicit ContentHash(const BlockLattice& lattice) : lattice_(lattice) {}
@@ -73,8 +73,8 @@ class ContentHash {
  private:
   /// A cube's voxels in the workspace.
   struct Part {
-    bool any = true;      ///< are there some?
-    bool uniform = true;  ///< then `code` is that of all, else `sum` is over smaller cubes
+    bool any = true;      ///< whether there are any
+    bool uniform = true;  ///< then `code` is common to all, otherwise `sum` is over smaller cubes
     std::uint8_t code = kUnknownCode;
     std::uint64_t sum = 0;
   };
@@ -107,7 +107,7 @@ class ContentHash {
     return all;
   }
 
-  // Puts one of a node's cubes to the others.
+  // Adds one cube of a node to the others.
   void add_cube(const openvdb::Coord& at, int size, const Part& cube, Part& all) const {
     const Index3 origin = to_index(at);
     if (!cube.any || !lattice_.overlaps(origin, size)) return;
@@ -152,7 +152,7 @@ std::string BeliefGrid::content_hash() const {
   hash.add(s.views.size());
   for (const Pose& view : s.views) add_pose(view);
   hash.add(contents.sum());
-  if (!s.hazard.empty()) {  // maps without keep the hash that they always had
+  if (!s.hazard.empty()) {  // maps without it keep their earlier hash
     for (const HazardCounters::Class& c : s.hazard.classes) {
       hash.add(static_cast<std::uint64_t>(c.expected));
       hash.add(static_cast<std::uint64_t>(c.met));

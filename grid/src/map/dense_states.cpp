@@ -28,7 +28,7 @@ void check_states(std::span<const std::uint8_t> states) {
       std::find_if(states.begin(), states.end(), [](std::uint8_t s) { return s > 2; });
   if (wrong != states.end()) {
     refuse("state " + std::to_string(*wrong) + " at position " +
-           std::to_string(wrong - states.begin()) + "; valid are 0, 1, 2");
+           std::to_string(wrong - states.begin()) + "; valid values: 0, 1, 2");
   }
 }
 
@@ -39,8 +39,8 @@ void check_size(const BeliefGrid& grid, std::size_t size) {
   }
 }
 
-/// Calls row(first voxel, position in the array of all of `whole`, length) for the rows along z of
-/// a box within it.
+/// Calls row(first voxel, index in the array of `whole`, length) for the rows along z of a box
+/// within it.
 template <typename Row>
 void for_each_row(const VoxelBox& whole, const VoxelBox& box, Row&& row) {
   const auto along_y = static_cast<std::size_t>(whole.max.y - whole.min.y);
@@ -55,7 +55,7 @@ void for_each_row(const VoxelBox& whole, const VoxelBox& box, Row&& row) {
     }
   }
 }
-/// The same of what a cube has in the workspace.
+/// As above for the part of a cube in the workspace.
 template <typename Row>
 void for_each_row(const BlockLattice& lattice, Index3 origin, std::int32_t size, Row&& row) {
   for_each_row(lattice, clipped(lattice, origin, size), std::forward<Row>(row));
@@ -113,7 +113,7 @@ std::uint64_t BeliefGrid::update_box(const VoxelBox& box, std::span<const std::u
         } else {
           codes.fill(s.tree.getValue(to_coord(origin)));
         }
-        LeafMask other{};  // what is not what it was
+        LeafMask other{};  // different states
         const VoxelBox part =
             box.intersection(VoxelBox::from_dims(origin, {kBlockSize, kBlockSize, kBlockSize}));
         for_each_row(box, part, [&](Index3 voxel, std::size_t at, std::size_t length) {
@@ -127,7 +127,7 @@ std::uint64_t BeliefGrid::update_box(const VoxelBox& box, std::span<const std::u
         });
         if (other == LeafMask{}) continue;
         const std::uint64_t key = s.lattice.key(origin);
-        if (s.scale(key) != 0) {  // once more, by voxels
+        if (s.scale(key) != 0) {  // again, per voxel
           set_scale(s, key, 0);
           changed -= count_bits(other);
           z -= kBlockSize;

@@ -61,11 +61,11 @@ GridLayout layout_of(const GridConfig& config) {
     const double last = std::max(snap(a1, std::ceil(a1)), first + 1.0);
     if (!(last - first <= kMaxDim)) {
       fail(ErrorCode::capacity, "workspace has ", last - first, " voxels along ", "xyz"[a],
-           ", the most is ", kMaxDim);
+           "; the maximum is ", kMaxDim);
     }
     if (!(std::abs(first) <= kMaxIndex && std::abs(last) <= kMaxIndex)) {
-      fail(ErrorCode::capacity, "workspace is ", std::max(std::abs(first), std::abs(last)),
-           " voxels off the origin along ", "xyz"[a], ", the most is ", kMaxIndex);
+      fail(ErrorCode::capacity, "workspace lies ", std::max(std::abs(first), std::abs(last)),
+           " voxels from the origin along ", "xyz"[a], "; the maximum is ", kMaxIndex);
     }
     low[a] = static_cast<std::int32_t>(first);
     count[a] = static_cast<std::int32_t>(last - first);
@@ -77,14 +77,14 @@ void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigm
                   const GridLayout& layout) {
   check_positive("voxel size", voxel_size);
   if (voxel_size < kMinVoxelSize) {
-    fail(ErrorCode::invalid_argument, "voxel size ", voxel_size, " m is under ", kMinVoxelSize,
-         " m, and could not be saved");
+    fail(ErrorCode::invalid_argument, "voxel size ", voxel_size, " m is below ", kMinVoxelSize,
+         " m and could not be saved");
   }
   check_positive("prior sigma", prior_sigma);
   const double error = orthonormality_error(T_world_grid);
   if (!(error <= kRigidTolerance)) {
-    fail(ErrorCode::invalid_argument, "T_world_grid is no rigid transform: its rotation is off by ",
-         error);
+    fail(ErrorCode::invalid_argument,
+         "T_world_grid is not a rigid transform: its rotation deviates by ", error);
   }
   double voxels = 1;
   for (const auto& [low, count] :
@@ -93,12 +93,13 @@ void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigm
     if (count < 1 || count > kMaxDim || std::abs(static_cast<double>(low)) > kMaxIndex ||
         std::abs(static_cast<double>(low) + count) > kMaxIndex) {
       fail(ErrorCode::capacity, "workspace of ", count, " voxels from voxel ", low,
-           "; there may be ", kMaxDim, " along an axis, at most ", kMaxIndex, " off the origin");
+           "; the limits are ", kMaxDim, " voxels along an axis and ", kMaxIndex,
+           " from the origin");
     }
     voxels *= count;
   }
   if (voxels > kMaxVoxels) {
-    fail(ErrorCode::capacity, "workspace has ", voxels, " voxels, the most is ", kMaxVoxels);
+    fail(ErrorCode::capacity, "workspace has ", voxels, " voxels; the maximum is ", kMaxVoxels);
   }
 }
 
@@ -119,7 +120,7 @@ VoxelBox voxels_in(const BeliefGrid& grid, const Box& region) {
     }
   }
   const VoxelBox workspace = VoxelBox::from_dims(grid.min_index(), grid.dims());
-  // The first index i with (i + 1/2) V >= x, kept within what an integer can hold.
+  // First index i with (i + 1/2) V >= x, clamped to the range of an integer.
   const auto first = [&](double x, std::int32_t low, std::int32_t high) {
     return static_cast<std::int32_t>(std::clamp(std::ceil(x / grid.voxel_size() - 0.5),
                                                 static_cast<double>(low),
@@ -135,7 +136,7 @@ VoxelBox voxels_in(const BeliefGrid& grid, const Box& region) {
 Pose rigid_view(const Pose& T_world_camera) {
   const std::optional<Pose> rigid = rigid_pose(T_world_camera);
   if (!rigid) {
-    refuse("camera pose is not rigid: its rotation is off by " +
+    refuse("camera pose is not rigid: its rotation deviates by " +
            short_text(orthonormality_error(T_world_camera)));
   }
   return *rigid;

@@ -12,23 +12,21 @@ struct GridLayout {
   Index3 dims;
 };
 
-/// The box of whole voxels round the workspace. Throws as BeliefGrid's constructor.
+/// The box of whole voxels around the workspace. Throws as BeliefGrid's constructor.
 [[nodiscard]] GridLayout layout_of(const GridConfig& config);
 
 /// Throws as BeliefGrid's constructor.
 void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigma,
                   const GridLayout& layout);
 
-/// Throws Error(invalid_argument) for a count that is negative or over 2^40.
+/// Throws Error(invalid_argument) for a count that is negative or above 2^40.
 void check_counters(const HazardCounters& counters);
 
-/// The voxels of the workspace whose centres lie in a region of the grid's frame [m], which is half
-/// open; its bounds may be infinite. Throws Error(invalid_argument) for a bound that is not a
-/// number.
+/// The voxels of the workspace whose centres lie in a half-open region of the grid frame [m];
+/// bounds may be infinite. Throws Error(invalid_argument) for a bound that is NaN.
 [[nodiscard]] VoxelBox voxels_in(const BeliefGrid& grid, const Box& region);
 
-/// A camera's pose as a map takes it, rigid_pose(). Throws Error(invalid_argument) if there is
-/// none.
+/// A camera pose made rigid by rigid_pose(). Throws Error(invalid_argument) if that fails.
 [[nodiscard]] Pose rigid_view(const Pose& T_world_camera);
 
 }  // namespace viewgain::detail

@@ -15,17 +15,17 @@ namespace {
 
 using namespace detail;
 
-// Where tiles larger than a region come in their list: by the nodes of 2048³ and of 128³ voxels
-// that hold their lowest voxel, each by x, y, z.
+// Order of tiles larger than a region: by the nodes of 2048³ and of 128³ voxels that contain their
+// lowest voxel, each by x, y, z.
 std::array<std::int32_t, 6> place_of(Index3 v) {
   constexpr int kUpper = static_cast<int>(CodeUpper::TOTAL),
                 kNode = static_cast<int>(CodeNode::TOTAL);
   return {v.x >> kUpper, v.y >> kUpper, v.z >> kUpper, v.x >> kNode, v.y >> kNode, v.z >> kNode};
 }
 
-/// Makes a snapshot's lists of leaves and tiles, node by node and region by region. A map has many
-/// times more free leaves than others, spread over the heap: those of a node are read some time
-/// after they are asked for, so that they can be on their way into the cache.
+/// Builds a snapshot's lists of leaves and tiles, node by node and region by region. A map has many
+/// more free leaves than others, spread over the heap: leaves of a node are prefetched and read
+/// some time later.
 class SnapshotMaker {
  public:
   SnapshotMaker(const GridStorage& storage, const GridSnapshot& before, GridSnapshot& out)
@@ -181,7 +181,7 @@ Eigen::Vector3d GridSnapshot::center(Index3 voxel) const {
 
 namespace {
 
-// The region that holds a voxel of the workspace, if it is listed.
+// The listed region that contains a voxel of the workspace, if any.
 std::optional<std::size_t> listed_region(const GridSnapshot& snapshot, const BlockLattice& lattice,
                                          Index3 voxel) {
   const std::vector<GridSnapshot::Region>& regions = snapshot.regions;
@@ -223,7 +223,8 @@ bool GridSnapshot::is_free(Index3 voxel) const {
                                      [&](const VoxelBox& tile) { return tile.contains(voxel); });
     if (in_tile) return false;
   }
-  // A larger one fills a node, or what the workspace has of it: the last that is not behind.
+  // A larger tile fills a node, or its part in the workspace: the last one that is not behind the
+  // voxel.
   const auto large =
       tiles.begin() +
       static_cast<std::ptrdiff_t>(regions.empty() ? tiles.size() : regions.front().first_tile);

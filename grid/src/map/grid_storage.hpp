@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// OpenVDB keeps state in its templates: hidden, each library would have its own (grid/README.md).
+// OpenVDB keeps state in its templates; with hidden visibility each library would have a copy
+// (grid/README.md).
 #pragma GCC visibility push(default)
 #include <openvdb/Exceptions.h>
 #include <openvdb/tree/InternalNode.h>
@@ -23,9 +24,9 @@
 
 namespace viewgain::detail {
 
-// One byte a voxel (log_odds_code.hpp); active means not free. Upper nodes span 2048 voxels rather
-// than OpenVDB's usual 4096: small maps around the origin touch eight of them, at 33 KB instead of
-// 270 KB.
+// One byte per voxel (log_odds_code.hpp); active means not free. Upper nodes span 2048 voxels
+// instead of OpenVDB's usual 4096: small maps around the origin touch eight of them, at 33 KB
+// instead of 270 KB.
 using CodeTree = openvdb::tree::Tree4<std::uint8_t, 4, 4, 3>::Type;
 using CodeLeaf = CodeTree::LeafNodeType;
 using CodeUpper = CodeTree::RootNodeType::ChildNodeType;
@@ -45,21 +46,21 @@ inline constexpr openvdb::Index kNodeTileLevel = 2;
   return words;
 }
 
-/// Empties a tree in this thread. OpenVDB's own destructor first makes a list of the leaves and
-/// asks for threads to delete them, and where there is no memory for that the process ends.
+/// Clears a tree in this thread. OpenVDB's own destructor first lists the leaves and requests
+/// threads to delete them; without memory for that the process ends.
 template <typename Tree>
 void take_down(Tree& tree) noexcept {
   tree.root().clear();
 }
 
-/// A tree that is taken down so, whatever throws.
+/// A tree that is always cleared this way, also on exceptions.
 struct OwnCodeTree : CodeTree {
   using CodeTree::CodeTree;
   OwnCodeTree(const OwnCodeTree&) = default;
   ~OwnCodeTree() override { take_down(*this); }
 };
 
-/// What a BeliefGrid holds.
+/// Contents of a BeliefGrid.
 struct GridStorage {
   double voxel_size = 0;
   Pose T_world_grid;
@@ -71,15 +72,14 @@ struct GridStorage {
   HazardCounters hazard;
   MapNotes notes;
 
-  /// Unknown fills the workspace grown outward to multiples of 2048 voxels, so that only tiles of
-  /// the root arise; whoever reads the tree clips to the workspace. Voxels outside it hold no
-  /// meaning.
+  /// Unknown space fills the workspace extended to multiples of 2048 voxels, so that only root
+  /// tiles arise; readers of the tree clip to the workspace. Voxels outside are undefined.
   OwnCodeTree tree{kUnknownCode};
 
   BeliefMap beliefs;
 
-  /// Of the blocks, by key, whose scale is not 0. In the tree all voxels of a cell have its code; a
-  /// cell's belief is that of its lowest voxel.
+  /// Nonzero scales by block key. In the tree all voxels of a cell have its code; a cell's belief
+  /// is stored at its lowest voxel.
   std::unordered_map<std::uint64_t, std::uint8_t> scales;
   [[nodiscard]] int scale(std::uint64_t key) const {
     if (scales.empty()) return 0;
@@ -94,16 +94,16 @@ struct GridStorage {
     }
   }
 
-  /// When what a snapshot tells has changed: a time, and that of each region's last change (by key
+  /// Times of changes that affect snapshots: of the grid, and of each region's last change (by key
   /// >> 6).
   std::uint64_t time = 1;
   std::unordered_map<std::uint64_t, std::uint64_t> changed;
   void mark_changed(std::uint64_t block_key) { changed[block_key >> 6U] = time + 1; }
 
-  /// Tells grids apart. A copy goes its own way from `copied_at` on.
+  /// Identifies grids. A copy diverges from `copied_at` on.
   std::uint64_t number = next_number(), copy_of = 0, copied_at = 0;
   [[nodiscard]] static std::uint64_t next_number();
-  /// From now on no snapshot made before counts as one of this grid. Allocates nothing.
+  /// Invalidates all earlier snapshots. Does not allocate.
   void forget_snapshots() {
     number = next_number();
     copy_of = 0;
@@ -114,7 +114,7 @@ struct GridStorage {
            (snapshot.grid_number == copy_of && copy_of != 0 && snapshot.time <= copied_at);
   }
 
-  /// Checks everything, as BeliefGrid's constructor says.
+  /// Checks everything, as BeliefGrid's constructor documents.
   GridStorage(double voxel_size, const Pose& T_world_grid, double prior_sigma, Index3 min_index,
               Index3 dims);
   GridStorage(const GridStorage&) = default;
@@ -125,25 +125,25 @@ struct GridStorage {
     return found == beliefs.end() ? nullptr : found->second.get();
   }
 
-  /// Memory of all of it [bytes].
+  /// Total memory [bytes].
   [[nodiscard]] std::uint64_t bytes() const;
 
-  /// Does the block hold something by cells, a leaf, an occupied tile or beliefs?
+  /// Whether the block stores anything by cells: a leaf, an occupied tile or beliefs.
   [[nodiscard]] bool is_held(std::uint64_t key) const;
-  /// Makes the leaf of a block that is one cell a tile.
+  /// Converts the leaf of a block that is one cell to a tile.
   void fold_cell(std::uint64_t key);
 
-  /// A leaf of the 512 codes of a block; null if they are a tile.
+  /// A leaf with the 512 codes of a block; null if they form a tile.
   [[nodiscard]] static std::unique_ptr<CodeLeaf> make_leaf(Index3 origin,
                                                            const std::uint8_t* codes);
-  /// Puts what make_leaf() made of a block whose first code this is.
+  /// Inserts the result of make_leaf() for a block with this first code.
   void put_leaf(Index3 origin, std::unique_ptr<CodeLeaf> leaf, std::uint8_t code);
   void put_block(Index3 origin, const std::uint8_t* codes) {
     put_leaf(origin, make_leaf(origin, codes), codes[0]);
   }
 };
 
-/// The way from a grid to what it holds, and back.
+/// Access from a grid to its contents and back.
 struct GridAccess {
   [[nodiscard]] static GridStorage& storage(BeliefGrid& grid) { return *grid.storage_; }
   [[nodiscard]] static const GridStorage& storage(const BeliefGrid& grid) { return *grid.storage_; }
@@ -152,8 +152,8 @@ struct GridAccess {
   }
 };
 
-/// Calls leaf(const CodeLeaf&, Index3 origin), without having looked into the leaf, and tile(Index3
-/// origin, int size, std::uint8_t code) for all leaves and tiles that overlap the workspace.
+/// Calls leaf(const CodeLeaf&, Index3 origin), without reading the leaf, and tile(Index3 origin,
+/// int size, std::uint8_t code) for all leaves and tiles that overlap the workspace.
 template <typename LeafFn, typename TileFn>
 void visit_blocks(const GridStorage& storage, LeafFn&& leaf, TileFn&& tile) {
   const BlockLattice& lattice = storage.lattice;

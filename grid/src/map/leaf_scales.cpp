@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Voxels set and resampled, by the cells of their leaves.
+// Sets and resamples voxels by the cells of their leaves.
 #include "leaf_scales.hpp"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ void check_value(const GridStorage& s, const BeliefGrid::VoxelValue& value) {
 /// A value and the key of its block.
 using KeyedValue = std::pair<std::uint64_t, const BeliefGrid::VoxelValue*>;
 
-/// A block that is uniform and not occupied has no scale unless it has beliefs.
+/// A uniform block that is not occupied has no scale unless it has beliefs.
 void drop_if_idle(GridStorage& s, std::uint64_t key) {
   const CodeLeaf* leaf = s.tree.probeConstLeaf(to_coord(s.lattice.origin(key)));
   const bool is_uniform =
@@ -46,7 +46,7 @@ void drop_if_idle(GridStorage& s, std::uint64_t key) {
   if (!s.is_held(key) || (is_uniform && !s.beliefs.contains(key))) s.scales.erase(key);
 }
 
-/// Sets voxels of one block; of those given twice the last counts.
+/// Sets voxels of one block; the last value of duplicates counts.
 void set_in_block(GridStorage& s, std::span<const KeyedValue> values) {
   const std::uint64_t key = values.front().first;
   s.mark_changed(key);
@@ -78,7 +78,7 @@ void set_in_block(GridStorage& s, std::span<const KeyedValue> values) {
   changed->scale = static_cast<std::uint8_t>(scale);
   for (const auto& [_, value] : values) {
     const unsigned offset = cell_offset(block_offset(value->voxel), scale);
-    // A later value of the same voxel may have none.
+    // A later value of the same voxel can have none.
     if (value->belief && test_bit(mask, offset)) {
       changed->beliefs[changed->rank(offset)] = definite(*value->belief);
     }
@@ -86,7 +86,7 @@ void set_in_block(GridStorage& s, std::span<const KeyedValue> values) {
   s.beliefs[key] = std::move(changed);
 }
 
-// The offset of the smaller cell in which the mean of a cell's readings lies, or comes nearest to.
+// Offset of the smaller cell that contains, or is nearest to, the mean of a cell's readings.
 unsigned mean_offset(const Belief& belief, unsigned lowest, int from, int to, double voxel_size) {
   const auto& v = belief.information_vector;
   const Eigen::Vector3d mean =
@@ -142,9 +142,9 @@ int detail::fitting_scale(const BlockLattice& lattice, Index3 origin, int scale)
 void detail::resample_block(Index3 origin, double voxel_size, int from, int to, std::uint8_t* codes,
                             std::shared_ptr<const BeliefBlock>& beliefs) {
   std::shared_ptr<BeliefBlock> fresh;
-  LeafMask emptied{};  // what was occupied and has given its belief away
+  LeafMask emptied{};  // cells that were occupied and gave their belief away
   if (beliefs != nullptr) {
-    std::array<std::uint16_t, kBlockVoxels> place{};  // 1 + position among the sums
+    std::array<std::uint16_t, kBlockVoxels> place{};  // 1 + index among the sums
     std::vector<BeliefSum> sums;
     LeafMask mask{};
     std::size_t rank = 0;
@@ -233,7 +233,7 @@ void BeliefGrid::set(std::span<const BeliefGrid::VoxelValue> voxels) {
   GridStorage& s = *storage_;
   for (const BeliefGrid::VoxelValue& value : voxels) check_value(s, value);
 
-  // Block by block, so that its beliefs are copied once.
+  // By block, so that its beliefs are copied once.
   std::vector<KeyedValue> by_block;
   by_block.reserve(voxels.size());
   for (const BeliefGrid::VoxelValue& value : voxels)
@@ -256,7 +256,7 @@ std::uint64_t BeliefGrid::resample(const Box& region, int scale) {
   GridStorage& s = *storage_;
   const VoxelBox range = voxels_in(*this, region);
   if (scale < 0 || scale > kMaxScale) {
-    refuse("scale " + std::to_string(scale) + " is not 0 to " + std::to_string(kMaxScale));
+    refuse("scale " + std::to_string(scale) + " must be in 0.." + std::to_string(kMaxScale));
   }
   std::uint64_t changed = 0;
   for (const std::uint64_t key : held_blocks(s)) {

@@ -16,10 +16,10 @@ namespace viewgain::detail {
 namespace {
 
 constexpr const char* kSensorNote = "sensor";
-constexpr const char* kFramesNote = "frames";  // an identity per line
+constexpr const char* kFramesNote = "frames";  // one identity per line
 
-// The lines of a sensor's description that say what its readings mean, without comments: name,
-// mounting and housing change no reading.
+// Lines of a sensor's description that affect readings, without comments; name, mounting and
+// housing do not.
 std::string readings_of(const std::string& sensor) {
   constexpr std::array<std::string_view, 4> kOthers{"#", "name =", "T_flange_camera =", "body ="};
   std::string result;
@@ -51,7 +51,8 @@ void check_notes(const MapNotes& notes) {
   }
   for (const char* name : {kSensorNote, kFramesNote}) {
     if (!notes.others.contains(name)) continue;
-    refuse("a note is named " + viewgain::quoted(name) + ", which MapNotes has a member for");
+    refuse("a note has the name " + viewgain::quoted(name) +
+           ", which is reserved for a member of MapNotes");
   }
 }
 

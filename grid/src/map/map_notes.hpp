@@ -11,18 +11,18 @@
 
 namespace viewgain::detail {
 
-/// Throws Error(invalid_argument) for an identity that is none, and for another text by the name of
+/// Throws Error(invalid_argument) for an invalid identity, and for another note with the name of
 /// the sensor's or the frames' note.
 void check_notes(const MapNotes& notes);
 
-/// As a map's file has them, by name, and back. Throws as check_notes().
+/// Conversion to and from a map file's notes, by name. Throws as check_notes().
 [[nodiscard]] std::map<std::string, std::string> texts_of(const MapNotes& notes);
 [[nodiscard]] MapNotes notes_of(std::map<std::string, std::string> texts);
 
-/// For what keeps the rules of set_notes() by itself.
+/// For callers that ensure the rules of set_notes() themselves.
 [[nodiscard]] MapNotes& notes_to_change(BeliefGrid& grid) noexcept;
 
-/// What a frame adds to a map's notes: made before the frame goes in, so that nothing can fail
+/// A frame's addition to a map's notes, prepared before integration so that nothing can fail
 /// afterwards.
 class FrameNote {
  public:

@@ -7,8 +7,8 @@
 namespace viewgain::detail {
 namespace {
 
-// Cubes of 2^shift voxels lie within +-2^27 of the origin, so 21 bits an axis would not do for all
-// of them; within one workspace (at most 2^13 blocks an axis) the low 21 bits tell them apart.
+// Cubes of 2^shift voxels lie within ±2^27 of the origin, so 21 bits per axis do not suffice for
+// all; within one workspace (at most 2^13 blocks per axis) the low 21 bits are unique.
 std::uint64_t cube_number(Index3 voxel, unsigned shift) {
   const auto bits = [shift](std::int32_t v) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v) >> shift & 0x1FFFFFU);
@@ -27,7 +27,7 @@ bool is_in_one_cube(const VoxelBox& tile, unsigned shift) {
 }
 
 // For a row of 8 bits: the number of set bits and the sum of their positions. A table, because
-// without -mpopcnt the compiler makes std::popcount a function call.
+// without -mpopcnt std::popcount is a function call.
 struct RowSums {
   std::int8_t count = 0, places = 0;
 };
@@ -78,7 +78,7 @@ void BeliefBricks::add_beliefs(const BeliefBlockAt& block, double voxel_size) {
       at = static_cast<std::int32_t>(beliefs_.size());
       beliefs_.emplace_back();
     }
-    // η about the cube's centre: readings lie (voxel's centre - cube's) further from it.
+    // η about the cube's centre: readings are (voxel's centre - cube's centre) further away.
     PlacedBelief& sum = beliefs_[static_cast<std::size_t>(at)];
     const SymmetricMatrix3 information = belief.information_matrix();
     const auto& v = belief.information_vector;
@@ -93,7 +93,7 @@ void BeliefBricks::find_states(const GridSnapshot& snapshot) {
   std::unordered_map<std::uint64_t, const GridSnapshot::Leaf*> leaves;
   leaves.reserve(snapshot.leaves.size());
   for (const GridSnapshot::Leaf& leaf : snapshot.leaves) leaves[block_number(leaf.origin)] = &leaf;
-  const int edge = 1 << shift_;  // of a brick in leaves, too
+  const int edge = 1 << shift_;  // offset of a brick in leaves
   for (Brick& brick : bricks_) {
     LeafMask has_free{};
     for (int i = 0; i < edge * edge * edge; ++i) {
@@ -111,7 +111,7 @@ void BeliefBricks::find_states(const GridSnapshot& snapshot) {
       } else if (!is_unknown_voxel(origin)) {
         free.fill(~std::uint64_t{0});
       }
-      // What lies beyond the workspace says nothing of where free space is.
+      // Space beyond the workspace does not affect the direction of free space.
       const LeafMask inside = block_mask(workspace_, origin);
       for (std::size_t w = 0; w < free.size(); ++w) free[w] &= inside[w];
       for_each_bit(free, [&](unsigned offset) {
@@ -154,7 +154,7 @@ VoxelBox BeliefBricks::workspace_cells() const {
 }
 
 bool BeliefBricks::is_unknown_voxel(Index3 voxel) const {
-  // A cube that the workspace's lower face cuts begins outside of it.
+  // A cube cut by the workspace's lower face starts outside of it.
   const Index3 v{std::max(voxel.x, workspace_.min.x), std::max(voxel.y, workspace_.min.y),
                  std::max(voxel.z, workspace_.min.z)};
   for (std::size_t size = 0; size < kTileShifts.size(); ++size) {
@@ -210,7 +210,7 @@ Eigen::Vector3d BrickNeighborhood::free_side(const Eigen::Vector3d& position) co
            1}}.intersection(bricks_->workspace_cells());
   const auto end_of = [](std::int32_t v, std::int32_t max) { return std::min(max, (v | 7) + 1); };
   Index3 sum{0, 0, 0};
-  // By what lies in one layer of one block.
+  // Layer by layer of each block.
   for (std::int32_t x = near.min.x; x < near.max.x; ++x) {
     for (std::int32_t y0 = near.min.y; y0 < near.max.y; y0 = end_of(y0, near.max.y)) {
       for (std::int32_t z0 = near.min.z; z0 < near.max.z; z0 = end_of(z0, near.max.z)) {

@@ -30,20 +30,20 @@ struct PlacedBelief {
   Eigen::Vector3d toward_free = Eigen::Vector3d::Zero();
 };
 
-/// The beliefs and states of a map, laid out for looking at a voxel's neighbours: by bricks of 8³
-/// voxels, or of 8³ cubes of 2^shift voxels an edge whose beliefs are added up. A cube is occupied
-/// if one of its voxels is, else free if one of its voxels is. Called voxels all the same. Beliefs
-/// of larger cells than these cubes are left out.
+/// Beliefs and states of a map, arranged for access to a voxel's neighbours: in bricks of 8³
+/// voxels, or of 8³ cubes of 2^shift voxels per edge with summed beliefs. A cube is occupied if one
+/// of its voxels is, otherwise free if one is. Cubes are called voxels too. Ignores beliefs of
+/// cells larger than these cubes.
 class BeliefBricks {
  public:
   static constexpr std::int32_t kNone = -1;
 
   BeliefBricks(const GridSnapshot& snapshot, const std::vector<BeliefBlockAt>& blocks, int shift);
 
-  /// Gives each belief its free side. Costs about 0.1 µs a belief.
+  /// Computes the free side of each belief. Cost: about 0.1 µs per belief.
   void find_sides(ThreadPool& pool);
 
-  /// Voxels that are occupied and have a belief: brick and offset, in a fixed order.
+  /// Occupied voxels with a belief: brick and offset, in a fixed order.
   [[nodiscard]] std::vector<std::pair<std::size_t, unsigned>> occupied_with_belief() const;
 
   [[nodiscard]] Index3 origin(std::size_t brick) const { return bricks_[brick].origin; }
@@ -58,11 +58,11 @@ class BeliefBricks {
     return bricks_[brick].occupied;
   }
 
-  /// Number of the brick with this origin, kNone if there is none.
+  /// Index of the brick with this origin, kNone if there is none.
   [[nodiscard]] std::int32_t number(Index3 origin) const;
   /// State of a voxel in a block without a brick, which is uniform. O(1).
   [[nodiscard]] bool is_unknown_tile(Index3 voxel) const;
-  /// What of the lattice of these voxels the workspace touches.
+  /// Part of the lattice of these voxels that the workspace touches.
   [[nodiscard]] VoxelBox workspace_cells() const;
 
  private:
@@ -72,15 +72,15 @@ class BeliefBricks {
     LeafMask occupied{};
     std::array<std::int32_t, kBlockVoxels> belief{};
   };
-  /// Edges of a snapshot's tiles before they are clipped, as powers of two.
+  /// Edges of a snapshot's tiles before clipping, as powers of two.
   static constexpr std::array<unsigned, 3> kTileShifts{3, 7, 11};
 
   [[nodiscard]] Index3 cell_of(Index3 voxel) const {
     return {voxel.x >> shift_, voxel.y >> shift_, voxel.z >> shift_};
   }
-  /// Number of the brick that holds a leaf of the map, a new one if there is none.
+  /// Index of the brick that contains a leaf of the map; creates it if missing.
   std::size_t brick_at(Index3 leaf);
-  /// Of a voxel of the map in a leaf that is uniform.
+  /// State of a map voxel in a uniform leaf.
   [[nodiscard]] bool is_unknown_voxel(Index3 voxel) const;
   void add_beliefs(const BeliefBlockAt& block, double voxel_size);
   void find_states(const GridSnapshot& snapshot);
@@ -88,7 +88,7 @@ class BeliefBricks {
   std::vector<Brick> bricks_;
   std::vector<PlacedBelief> beliefs_;
   std::unordered_map<std::uint64_t, std::int32_t> numbers_;
-  /// Cubes that are unknown as far as the workspace reaches, by the size of tile.
+  /// Cubes that are entirely unknown within the workspace, by size of tile.
   std::array<std::unordered_set<std::uint64_t>, kTileShifts.size()> unknown_cubes_;
   VoxelBox workspace_;
   int shift_;
@@ -97,15 +97,15 @@ class BeliefBricks {
 /// A brick and its 26 neighbours.
 class BrickNeighborhood {
  public:
-  /// The greatest radius and half height of a search [voxels]: one brick further.
+  /// Largest radius and half height of a search [voxels]: one further brick.
   static constexpr double kMaxReach = kBlockSize;
 
   BrickNeighborhood(const BeliefBricks& bricks, std::size_t center)
       : BrickNeighborhood(bricks, bricks.origin(center)) {}
-  /// Round the place of a brick, whether there is one or not.
+  /// Neighbourhood of a brick position, with or without a brick.
   BrickNeighborhood(const BeliefBricks& bricks, Index3 origin);
 
-  /// The belief of a voxel in the neighbourhood; null if it has none.
+  /// Belief of a voxel in the neighbourhood; null if it has none.
   [[nodiscard]] const PlacedBelief* find(Index3 v) const {
     const std::int32_t brick = brick_of(v);
     return brick == BeliefBricks::kNone
@@ -113,19 +113,19 @@ class BrickNeighborhood {
                : bricks_->find(static_cast<std::size_t>(brick), block_offset(v));
   }
 
-  /// f(belief, from `start` to the centre of the belief's voxel [voxels]) for the voxels whose
-  /// centres are within `radius` of the line start + h n and within `half_height` of start along
-  /// it. `start` must be near.
+  /// Calls f(belief, vector from `start` to the centre of the belief's voxel [voxels]) for voxels
+  /// whose centres are within `radius` of the line start + h n and within `half_height` of start
+  /// along it. `start` must be near.
   template <typename F>
   void for_each_in_column(const Eigen::Vector3d& start, const Eigen::Vector3d& n, double radius,
                           double half_height, F&& f) const {
-    // Layer by layer along the axis that the line follows most.
+    // By layer along the line's dominant axis.
     Eigen::Index axis = 0;
     const double steepest = n.cwiseAbs().maxCoeff(&axis);
     const Eigen::Index b = (axis + 1) % 3, c = (axis + 2) % 3;
     const double reach = half_height * steepest + radius;
     const double spread = radius / steepest;
-    // Centres are sums, one component each: read as a vector, components just written are slow.
+    // Sums the centres per component: reading freshly written components as a vector is slow.
     const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis), unit_b = Eigen::Vector3d::Unit(b),
                           unit_c = Eigen::Vector3d::Unit(c);
     std::array<std::int32_t, 3> v{};
@@ -151,22 +151,22 @@ class BrickNeighborhood {
     }
   }
 
-  /// Lies the position [voxels] in the brick in the middle?
+  /// Whether the position [voxels] lies in the central brick.
   [[nodiscard]] bool is_centered_on(const Eigen::Vector3d& position) const {
     const Index3 v = containing(position);
     return v.x >> 3 == low_.x + 1 && v.y >> 3 == low_.y + 1 && v.z >> 3 == low_.z + 1;
   }
 
-  /// Can a search from `position` [voxels] find anything? Beyond this everything is out of the
-  /// neighbourhood, and so far out that coordinates lose their digits, or are NaN.
+  /// Whether a search from `position` [voxels] can find anything. Otherwise everything is outside
+  /// the neighbourhood, so far away that coordinates lose their digits, or NaN.
   [[nodiscard]] bool is_near(const Eigen::Vector3d& position) const {
     const Eigen::Vector3d middle =
         (Eigen::Vector3d(low_.x, low_.y, low_.z).array() + 1.5) * kBlockSize;
     return ((position - middle).array().abs() <= 1.5 * kBlockSize + kMaxReach).all();
   }
 
-  /// From where unknown voxels are around `position` [voxels], which must be near, to where free
-  /// ones are; zero if there is no difference. Not normalised.
+  /// Direction from the unknown voxels around `position` [voxels], which must be near, to the free
+  /// ones; zero if there is no difference. Not normalised.
   [[nodiscard]] Eigen::Vector3d free_side(const Eigen::Vector3d& position) const;
 
   [[nodiscard]] static Index3 containing(const Eigen::Vector3d& position) {
@@ -176,14 +176,14 @@ class BrickNeighborhood {
   }
 
  private:
-  /// Voxels of one x in a block as bits, rows along z side by side.
+  /// Voxels of one x in a block as bits, rows along z adjacent.
   struct Layer {
     std::uint64_t free = 0, unknown = 0;
   };
-  /// Those of the voxel's block from its row on; in blocks without a brick rows are uniform.
+  /// Rows of the voxel's block from its row on; rows are uniform in blocks without a brick.
   [[nodiscard]] Layer layer_from(Index3 v) const;
 
-  /// Number of the brick of a voxel, kNone if there is none or it is not in the neighbourhood.
+  /// Index of a voxel's brick, kNone if there is none or it is outside the neighbourhood.
   [[nodiscard]] std::int32_t brick_of(Index3 v) const {
     const std::int32_t x = (v.x >> 3) - low_.x, y = (v.y >> 3) - low_.y, z = (v.z >> 3) - low_.z;
     if (static_cast<std::uint32_t>(x) > 2 || static_cast<std::uint32_t>(y) > 2 ||

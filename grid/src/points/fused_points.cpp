@@ -25,12 +25,11 @@ using namespace detail;
 
 constexpr double kMaxReach = BrickNeighborhood::kMaxReach;
 constexpr double kSupportRadius = 4.0;  // pooling lengths
-constexpr double kMostHeight = 6.0;     // half of a column's [voxels]
-constexpr int kSteps = 3;               // of a point towards its column's mean
-constexpr double kRamp = 0.2;           // from one sheet to two [voxels]
-// What readings of one place share, and what pooling a column blurs, as shares of a reading's
-// sigma, of the column's scatter and of a voxel: perf/results/honesty.md says on what they were
-// fitted.
+constexpr double kMostHeight = 6.0;     // half height of a column [voxels]
+constexpr int kSteps = 3;               // iterations of a point towards its column's mean
+constexpr double kRamp = 0.2;           // transition from one sheet to two [voxels]
+// Errors common to readings of one place, and blur from pooling a column, relative to a reading's
+// sigma, the column's scatter and a voxel; perf/results/honesty.md describes the fit.
 constexpr double kOfSigma = 0.19, kOfScatter = 0.43, kOfVoxel = 0.02;
 
 void check(const FusedPointsConfig& config) {
@@ -57,7 +56,7 @@ void check(const FusedPointsConfig& config) {
   }
 }
 
-/// One voxel's point on its way; positions in voxels of the grid.
+/// State of one voxel's point; positions in voxels of the grid.
 struct Seed {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
@@ -65,11 +64,11 @@ struct Seed {
   SymmetricMatrix3 covariance{};   ///< of the position [m²]
   std::uint32_t hits = 0;
   double scatter = 0;     ///< variance of the column's means along the normal [voxels²]
-  bool has_side = false;  ///< does the normal point to the voxel's free side?
-  bool is_near = false;   ///< is the position in the voxel's neighbourhood?
+  bool has_side = false;  ///< whether the normal points to the voxel's free side
+  bool is_near = false;   ///< whether the position is in the voxel's neighbourhood
 };
 
-/// The direction in which the readings around a voxel spread least.
+/// The direction in which the readings around a voxel scatter least.
 Eigen::Vector3d local_normal(const HitMoments::Sums& around) {
   const Eigen::Vector3d mean = around.first / around.weight;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
@@ -77,7 +76,7 @@ Eigen::Vector3d local_normal(const HitMoments::Sums& around) {
   return solver.eigenvectors().col(0);
 }
 
-/// Those of the items whose mark, one an item, is not 0.
+/// The items with a nonzero mark, one mark per item.
 template <typename Item>
 void keep(std::vector<Item>& items, const std::vector<std::uint8_t>& marks) {
   std::size_t next = 0;
@@ -89,11 +88,12 @@ struct Lengths {
   double normal_radius, column_radius, min_distance, support_radius;
 };
 
-/// Sums over those beliefs of a column whose free side is that of its normal, or is not.
+/// Sums over the beliefs of a column whose free side agrees with its normal, or disagrees.
 struct Face {
   SymmetricMatrix3 information{}, covariance{};
   double hits = 0;
-  double height = 0, square = 0;  ///< Σ hits · h and h², h the belief's mean over the seed [voxels]
+  /// Σ hits · h and h², h the belief's mean relative to the seed [voxels].
+  double height = 0, square = 0;
 
   void add(const PlacedBelief& belief, double h) {
     const double weight = belief.hits;
@@ -105,8 +105,8 @@ struct Face {
   }
 };
 
-/// How far the beliefs of a wall's other face count, 0 to 1. Noise alone puts the means of the two
-/// halves of one sheet that was seen from both sides up to a sigma of a reading apart [voxels].
+/// Weight, 0 to 1, of the beliefs of a wall's other face. Noise alone separates the means of both
+/// halves of a sheet seen from both sides by up to a sigma of a reading [voxels].
 double share_of_other(const Face& own, const Face& other, double sigma) {
   if (own.hits == 0 || other.hits == 0) return 1;
   const double apart = std::abs(own.height / own.hits - other.height / other.hits);
@@ -137,9 +137,9 @@ void pool_column(const BeliefBricks& bricks, BrickNeighborhood around, double vo
     const double share = share_of_other(face, other, sigma);
     const double hits = face.hits + share * other.hits;
     if (hits == 0) return;
-    // Only along the normal: across it the column is where the seed is. Each reading counts once:
-    // those that graze the surface look sharp across it, but where it bends their error along the
-    // ray leads off it, and weighted by information they blur thin parts.
+    // Only along the normal: laterally the column stays at the seed. Each reading counts once:
+    // grazing readings look precise across the surface, but where it curves their error along the
+    // ray leaves it, and weighting by information would blur thin parts.
     const double height = (face.height + share * other.height) / hits;
     seed.position += height * n;
     seed.information = face.information + other.information * share;
@@ -149,14 +149,14 @@ void pool_column(const BeliefBricks& bricks, BrickNeighborhood around, double vo
   }
 }
 
-/// How often the surface at a seed was seen, in frontal views: the areas on it that its readings
-/// stand for over that of its column. Whatever the range, one frontal view makes about 1.
+/// Number of times that the surface at a seed was seen, in frontal views: the areas of its readings
+/// relative to the area of its column. One frontal view gives about 1 at any range.
 double evidence(const Seed& seed, double column_area) {
   return seed.hits * lateral_variance(seed.information, seed.hits) / column_area;
 }
 
-/// F of a pooled point along its normal [m²]: what its readings share, and what the column blurs.
-/// Falls as readings of more views lie at other places in a voxel.
+/// F of a pooled point along its normal [m²]: errors common to its readings, and blur of the
+/// column. Decreases as readings of more views lie at other places in a voxel.
 double pooled_floor(const Seed& seed, double evidence, double voxel_size) {
   const double own = seed.hits * seed.normal.dot(seed.covariance * seed.normal);  // of one reading
   const double left = std::min(1.0, 0.2 + 2.0 / std::max(evidence, 1.0));
@@ -165,10 +165,9 @@ double pooled_floor(const Seed& seed, double evidence, double voxel_size) {
           voxel_size * voxel_size * (kOfScatter * kOfScatter * seed.scatter + kOfVoxel * kOfVoxel));
 }
 
-/// By how much a point moves if all ranges are off by the same factor 1 + x, over x [m]: the mean
-/// of the ways to it from the views before which it lies on the side of `normal`, by the readings
-/// that each has of a piece of surface, cosθ / t². Zero without such views. All in the world's
-/// frame.
+/// Displacement of a point if all ranges change by the same factor 1 + x, over x [m]: the mean
+/// vector from the views in front of it (on the side of `normal`), weighted by the readings that
+/// each has of a piece of surface, cosθ / t². Zero without such views. World frame.
 Eigen::Vector3d mean_way(const std::vector<Pose>& views, const Eigen::Vector3d& point,
                          const Eigen::Vector3d& normal) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -184,7 +183,7 @@ Eigen::Vector3d mean_way(const std::vector<Pose>& views, const Eigen::Vector3d& 
   return weights > 0 ? Eigen::Vector3d(sum / weights) : sum;
 }
 
-/// Those of the leaves of one scale; beliefs of finer ones around take part in their columns.
+/// Points of the leaves of one scale; beliefs of finer leaves nearby contribute to their columns.
 std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& snapshot,
                                   const std::vector<BeliefBlockAt>& blocks, int scale,
                                   const FusedPointsConfig& config, const ExecConfig& exec) {
@@ -241,8 +240,8 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
       seed.covariance = own.covariance;
       seed.hits = own.hits;
       if (pooled && around.is_near(seed.position)) {
-        // The voxel was given its readings from as far as noise carries: the mean of a few may lie
-        // so far off the surface that a column round it would miss that.
+        // Noise assigns readings from some distance to a voxel: the mean of a few can lie so far
+        // from the surface that a column around it would miss the surface.
         seed.position = center + own.mean.cwiseMax(-0.5).cwiseMin(0.5);
         pool_column(bricks, around, V, own, config, lengths.column_radius, seed);
       }
@@ -258,8 +257,7 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
   pool.for_each_chunk(kept.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       Seed& seed = seeds[kept[k]];
-      // A pooled point keeps the side that it was pooled by, wherever in a thin wall it has come to
-      // lie.
+      // A pooled point keeps the side of its pooling, wherever it ends up in a thin wall.
       if (!seed.has_side) {
         const BrickNeighborhood around(bricks, occupied[kept[k]].first);
         if (seed.normal.dot(around.free_side(seed.position)) < 0) seed.normal = -seed.normal;
@@ -270,7 +268,7 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
     }
   });
   if (pooled) {
-    // Before points are thinned, so that none goes for one that goes itself.
+    // Before thinning, so that no point is removed because of a removed one.
     const std::vector<std::uint8_t> good =
         well_supported(pooled_points, lengths.support_radius, config.min_relative_evidence, pool);
     keep(kept, good);
@@ -311,7 +309,7 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
 
 constexpr int kMostShift = 3;  // cubes stay within a leaf
 
-// Median sigma of a reading across its ray [m]; 0 if nothing was read.
+// Median sigma of a reading across its ray [m]; 0 without readings.
 double footprint_in(const GridSnapshot& snapshot, std::optional<int> scale) {
   std::vector<float> variances;
   for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {

@@ -13,11 +13,11 @@
 
 namespace viewgain::detail {
 
-/// Sums over the readings in balls round the voxels of one brick: w = hits, d = from the ball's
-/// middle to a voxel's centre [voxels]. A ball leaves out voxels that face the other way, so that a
-/// wall's two faces do not look like one thick cloud. These are voxels whose free side is more than
-/// 120° from the coordinate axis nearest to the middle voxel's free side. Prefix sums along z make
-/// a ball cost two look-ups per row. The sums are of integers below 2^53, hence exact in any order.
+/// Sums over the readings in balls around the voxels of one brick: w = hits, d = vector from the
+/// ball's centre to a voxel's centre [voxels]. A ball ignores voxels that face the other way, so
+/// that a wall's two faces do not look like one thick cloud: those whose free side is more than
+/// 120° from the coordinate axis nearest to the central voxel's free side. With prefix sums along
+/// z, a ball costs two look-ups per row. Sums are integers below 2^53, hence exact in any order.
 class HitMoments {
  public:
   struct Sums {
@@ -38,14 +38,14 @@ class HitMoments {
     }
   }
 
-  /// From here on the balls are round voxels of the brick in the middle, whose first voxel this is.
+  /// Starts a brick: later balls are around its voxels, of which this is the first.
   void look_at(const BrickNeighborhood& around, Index3 origin) {
     around_ = around;
     origin_ = origin;
     is_ready_ = {};
   }
 
-  /// Of the ball round a voxel of the brick whose free side is this; zero leaves out nothing.
+  /// Sums of the ball around a voxel of the brick with this free side; zero ignores nothing.
   [[nodiscard]] Sums round(unsigned offset, const Eigen::Vector3d& toward_free) {
     const std::size_t side = side_of(toward_free);
     if (!is_ready_[side]) add_up(side);
@@ -84,8 +84,8 @@ class HitMoments {
   }
 
  private:
-  static constexpr std::size_t kSides = 7;  // both ways along three axes, and none
-  static constexpr double kOther = -0.5;    // cosine from which on a voxel is on the other side
+  static constexpr std::size_t kSides = 7;  // both directions along three axes, and none
+  static constexpr double kOther = -0.5;    // cosine from which a voxel is on the other side
 
   [[nodiscard]] static std::size_t side_of(const Eigen::Vector3d& toward_free) {
     Eigen::Index axis = 0;
@@ -124,7 +124,7 @@ class HitMoments {
   std::vector<int> halves_;  // of a ball's rows along z; -1: none
   std::optional<BrickNeighborhood> around_;
   Index3 origin_{};
-  // By side: Σ w (1, z, z²) of a row below z, z from the row's begin.
+  // By side: Σ w (1, z, z²) of a row below z, with z from the row's begin.
   std::array<std::vector<Eigen::Array3d>, kSides> up_to_;
   std::array<bool, kSides> is_ready_{};
 };

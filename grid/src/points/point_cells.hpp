@@ -31,7 +31,7 @@ class PointCells {
   /// in a fixed order and stops at the first true.
   template <typename F>
   [[nodiscard]] bool any_near(const Eigen::Vector3d& p, double radius, F&& f) const {
-    const double reach = 1.001 * radius;  // whichever way sums and quotients are rounded
+    const double reach = 1.001 * radius;  // for any rounding of sums and quotients
     std::array<std::int64_t, 3> low{}, high{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[axis] = cell(p[static_cast<Eigen::Index>(axis)] - reach);
@@ -57,12 +57,12 @@ class PointCells {
   }
 
  private:
-  static constexpr double kLeastEdge = 0.1;  // tinier cubes save nothing
+  static constexpr double kLeastEdge = 0.1;  // smaller cubes save nothing
 
   [[nodiscard]] std::int64_t cell(double v) const {
     return static_cast<std::int64_t>(std::floor(v / edge_));
   }
-  // A workspace has at most 2^16 voxels an axis, and cubes no edges under 0.1 voxels.
+  // A workspace has at most 2^16 voxels per axis, and cubes no edges below 0.1 voxels.
   [[nodiscard]] static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
     const auto bits = [](std::int64_t v) { return static_cast<std::uint64_t>(v) & 0x1FFFFFU; };
     return bits(x) << 42U | bits(y) << 21U | bits(z);

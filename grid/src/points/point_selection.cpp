@@ -39,7 +39,8 @@ struct Columns {
 };
 
 // Counts the points within a radius that face the same way, and those of them whose evidence, times
-// `share`, is not above the point's. Counts are doubles, as GCC does not vectorise with integers.
+// `share`, is at most the point's. Counts are doubles, because GCC does not vectorise with
+// integers.
 struct Supporters {
   double all = 0, below = 0;
 
@@ -57,13 +58,14 @@ struct Supporters {
   }
 };
 
-// A point that was taken.
+// A selected point.
 struct Taken {
   Vector3d position;
   std::size_t number;
 };
 
-// Is the rim of the disc of radius `cover` in the point's tangent plane within `cover` of others?
+// Whether the rim of the disc of radius `cover` in the point's tangent plane is within `cover` of
+// others.
 bool rim_is_covered(const PooledPoint& point, double cover, const std::vector<Vector3d>& others) {
   const Vector3d u = point.toward_free.unitOrthogonal(), w = point.toward_free.cross(u);
   for (int k = 0; k < kDirections; ++k) {
@@ -113,7 +115,7 @@ std::vector<std::size_t> thinned(const std::vector<PooledPoint>& points, double 
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   if (min_distance == 0) return order;
-  // Ties by position, as the points' order tells how the map is stored.
+  // Ties by position, because the points' order depends on the storage of the map.
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const auto key = [&](std::size_t i) {
       const Vector3d& p = points[i].position;
@@ -122,8 +124,8 @@ std::vector<std::size_t> thinned(const std::vector<PooledPoint>& points, double 
     return key(a) < key(b);
   });
   PointCells<std::vector<Taken>> cells(std::max(min_distance, 2 * cover));
-  // Whether f(position) is true for any taken point on the same side that passes is_within(squared
-  // distance). is_within must reject points beyond the radius.
+  // Whether f(position) is true for any selected point on the same side that passes
+  // is_within(squared distance). is_within must reject points beyond the radius.
   const auto any_beside = [&](std::size_t i, double radius, const auto& is_within, const auto& f) {
     const PooledPoint& point = points[i];
     return cells.any_near(point.position, radius, [&](const std::vector<Taken>& bucket) {
@@ -161,7 +163,7 @@ std::vector<std::size_t> thinned(const std::vector<PooledPoint>& points, double 
         });
     return !rim_is_covered(points[i], cover, others);
   };
-  // Putting points back only closes holes, so that the second pass checks these candidates alone.
+  // Reinserting points only closes holes, so the second pass only checks these candidates.
   std::vector<std::uint8_t> holes(rest.size());
   pool.for_each_chunk(rest.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<Vector3d> others;

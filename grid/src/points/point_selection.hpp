@@ -11,7 +11,7 @@
 
 namespace viewgain::detail {
 
-/// A pooled point, and what decides whether it is delivered.
+/// A pooled point, and the data that decides whether it is returned.
 struct PooledPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();      ///< [voxels]
   Eigen::Vector3d toward_free = Eigen::Vector3d::UnitZ();  ///< unit
@@ -20,19 +20,19 @@ struct PooledPoint {
 };
 
 /// For each point, 1 if its evidence is at least `share` of the upper quartile among the points
-/// within `radius` [voxels] whose normals are within 60° of its own, itself included. This drops
-/// the halo that silhouettes leave beside a surface: it has few readings. The other face of a thin
-/// wall is ignored, as it may have been seen far more often. share 0 keeps all.
+/// within `radius` [voxels] whose normals are within 60° of its own, including itself. Removes the
+/// halo of silhouettes, which has few readings. The other face of a thin wall is ignored, because
+/// it may have been seen far more often. share 0 keeps all.
 [[nodiscard]] std::vector<std::uint8_t> well_supported(const std::vector<PooledPoint>& points,
                                                        double radius, double share,
                                                        ThreadPool& pool);
 
-/// Ascending indices of the points to keep. Lengths are in voxels; min_distance 0 keeps all. Points
-/// are taken most hits first, unless one on their side (normals within 90°) is within
-/// `min_distance`. Then rejected points are put back if they would leave a hole and none taken is
-/// within 0.4 `cover`. A hole is a place on the rim of the disc of radius `cover` round a point, in
-/// its tangent plane, that is not within `cover` of those taken; 8 places are tried. Depends on the
-/// set of points alone.
+/// Ascending indices of the points to keep. Lengths in voxels; min_distance 0 keeps all. Selects
+/// points by most hits first, unless a selected one on their side (normals within 90°) is within
+/// `min_distance`. Then reinserts rejected points that would leave a hole and have no selected one
+/// within 0.4 `cover`. A hole is a place on the rim of the disc of radius `cover` in the point's
+/// tangent plane, one of 8, that is not within `cover` of a selected point. The result depends only
+/// on the set of points.
 [[nodiscard]] std::vector<std::size_t> thinned(const std::vector<PooledPoint>& points,
                                                double min_distance, double cover, ThreadPool& pool);
 

@@ -9,10 +9,10 @@
 
 namespace viewgain::detail {
 
-/// Variance of one reading across its ray [m²], from the sum Λ of `hits` readings' information,
-/// taken to come along one direction d: Λ = hits (a I + (b - a) d dᵀ). With T = tr Λ and Q = |Λ|²,
-/// 6 a² - 4 T a + T² - Q = 0; of the two roots the one above T / 3 if the deviator's determinant,
-/// -2 (a - b)³ / 27, is negative.
+/// Variance of one reading across its ray [m²], from the sum Λ of the information of `hits`
+/// readings, assuming one common direction d: Λ = hits (a I + (b - a) d dᵀ). With T = tr Λ and Q =
+/// |Λ|², 6 a² - 4 T a + T² - Q = 0; of the two roots the one above T / 3 if the deviator's
+/// determinant, -2 (a - b)³ / 27, is negative.
 [[nodiscard]] inline double lateral_variance(const SymmetricMatrix3& sum, double hits) {
   const double T = sum.xx + sum.yy + sum.zz;
   const double off = sum.xy * sum.xy + sum.xz * sum.xz + sum.yz * sum.yz;

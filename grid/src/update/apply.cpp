@@ -15,16 +15,16 @@
 namespace viewgain::detail {
 namespace {
 
-// What a thread found in a region and may not put into the tree itself.
+// Results of a thread in a region that it must not insert into the tree itself.
 struct RegionResult {
   std::vector<std::unique_ptr<CodeLeaf>> leaves;
   std::vector<std::pair<Index3, std::uint8_t>> tiles;
-  std::vector<std::pair<std::uint64_t, int>> scales;  // by key, of blocks that have got another
+  std::vector<std::pair<std::uint64_t, int>> scales;  // by key, of blocks whose scale changed
   ApplyCounts counts;
-  bool changed = false;  // in what a snapshot tells
+  bool changed = false;  // for snapshots
 };
 
-// The regions that the frame may change, in rising order.
+// The regions that the frame can change, in increasing order.
 template <Evidence E>
 void list_regions(const BlockLattice& lattice, const E& evidence, FrameHits& hits,
                   std::vector<std::uint64_t>& regions) {
@@ -42,17 +42,17 @@ void put_mask(const LeafMask& mask, CodeLeaf& leaf) {
   for (openvdb::Index i = 0; i < 8; ++i) leaf.getValueMask().getWord<std::uint64_t>(i) = mask[i];
 }
 
-// A block before the frame: its leaf, else the code that all of its voxels have.
+// A block before the frame: its leaf, or the common code of its voxels.
 struct BlockPlace {
   Index3 origin;
-  bool whole = true;  // is all of it in the workspace?
+  bool whole = true;  // whether all of it is in the workspace
   CodeLeaf* leaf = nullptr;
   std::uint8_t tile_code = kUnknownCode;
   int scale = 0;
 };
 
-/// Works off regions, on many threads at once: writes leaves and belief blocks of its own region
-/// only, and reads the rest of the tree, whose shape stays as it is.
+/// Processes regions on many threads: writes leaves and belief blocks of its own region only, and
+/// reads the rest of the tree, whose shape does not change meanwhile.
 template <Evidence E>
 class RegionUpdate {
  public:
@@ -104,7 +104,7 @@ class RegionUpdate {
       } else {
         if (!plan_.is_idle()) {
           place.scale = scale_of(key, place, hit_block != nullptr);
-          // Far off the rim of what an image shows is not worth a leaf.
+          // Space far outside the image is not worth a leaf.
           if (block_class == CubeClass::cut && hit_block == nullptr && place.leaf == nullptr &&
               place.scale > 1) {
             continue;
@@ -116,7 +116,7 @@ class RegionUpdate {
   }
 
  private:
-  // A block that is not hit has one if it holds something; FrameHits has given the others theirs.
+  // A block without hits has a scale if it stores anything; FrameHits has set the others.
   [[nodiscard]] int scale_of(std::uint64_t key, const BlockPlace& place, bool is_hit) const {
     const bool is_held =
         is_hit || place.leaf != nullptr || is_occupied(place.tile_code) || s_.beliefs.contains(key);
@@ -152,7 +152,7 @@ class RegionUpdate {
     LeafMask mask{};
     for (const Hit& hit : hits_.of(hit_block)) set_bit(mask, hit.offset);
     result.counts.hit += count_bits(mask);
-    for_each_bit(mask, [&](unsigned lowest) {  // beats a crossing
+    for_each_bit(mask, [&](unsigned lowest) {  // overrides a crossing
       for_each_in_cell(lowest, place.scale, [&](unsigned offset) { deltas[offset] = kHitDelta; });
     });
     *hit_block.beliefs =
@@ -160,8 +160,8 @@ class RegionUpdate {
                   frame_.T_grid_readings, place.origin, s_.voxel_size, place.scale);
   }
 
-  // The code of a block that needs no leaf: it is one cell, all are equal, or, in a map of many
-  // scales, all were crossed as if once in full, of which the least sure one stands for all.
+  // The code of a block that needs no leaf: it is one cell, all codes are equal, or, in a map of
+  // many scales, all were crossed once in full, so that the least certain one represents all.
   [[nodiscard]] std::optional<std::uint8_t> tile_of(const BlockPlace& place,
                                                     const std::uint8_t* codes,
                                                     const BlockUpdate& update) const {
@@ -191,14 +191,14 @@ class RegionUpdate {
     kernels_.update(deltas, literal_, codes, update);
     if (!place.whole) {
       update.crossed = intersection(update.crossed, s_.lattice.clip(place.origin));
-      // All that was crossed is outside of the workspace.
+      // Everything crossed is outside the workspace.
       if (leaf == nullptr && !is_hit && update.crossed == LeafMask{}) return;
     }
     result.counts.crossed += count_bits(update.crossed);
-    // What is free stays free when it is crossed.
+    // Free voxels stay free when crossed.
     result.changed = result.changed || intersection(update.crossed, non_free) != LeafMask{};
 
-    // At once, so that codes and mask agree whatever allocation fails below.
+    // At once, so that codes and mask agree even if an allocation fails below.
     if (leaf != nullptr) put_mask(update.non_free, *leaf);
     if (const auto code = tile_of(place, codes, update)) {
       if (leaf != nullptr || *code != place.tile_code) {
@@ -227,9 +227,9 @@ class RegionUpdate {
   const bool literal_;
 };
 
-// Takes out the beliefs of voxels that stayed unknown since memory ran out before their leaf was in
-// the tree. Only a block that this frame made has such voxels: nobody else holds it yet, and a
-// shorter list needs no memory.
+// Removes beliefs of voxels that stayed unknown because memory ran out before their leaf was in the
+// tree. Only a block made for this frame has such voxels: it is not shared yet, and a shorter list
+// needs no memory.
 void drop_beliefs_of_unknown(const GridStorage& s, Index3 origin, const BeliefBlock& made) {
   LeafMask unknown{};
   for_each_bit(made.mask, [&](unsigned offset) {
@@ -260,7 +260,7 @@ struct FrameApply::Impl {
   void recover(GridStorage& s, FrameHits& hits);
 };
 
-// Blocks that changed between leaf and tile, and nodes that became uniform.
+// Handles blocks that changed between leaf and tile, and nodes that became uniform.
 void FrameApply::Impl::put_results(GridStorage& s) {
   for (std::size_t i = 0; i < regions.size(); ++i) {
     RegionResult& result = results[i];
@@ -268,7 +268,7 @@ void FrameApply::Impl::put_results(GridStorage& s) {
     const Index3 origin = s.lattice.origin(regions[i] << 6U);
     auto* node = s.tree.probeNode<CodeNode>(to_coord(origin));
     if (node == nullptr) {
-      // A tile of the same value one level down makes the nodes above it.
+      // Setting a tile of the same value one level down creates the nodes above it.
       const std::uint8_t code = s.tree.getValue(to_coord(origin));
       s.tree.addTile(kBlockTileLevel, to_coord(origin), code, is_non_free(code));
       node = s.tree.probeNode<CodeNode>(to_coord(origin));
@@ -296,10 +296,10 @@ void FrameApply::Impl::put_results(GridStorage& s) {
   }
 }
 
-// After memory ran out with some regions written: the map stays one that can be saved and loaded.
+// After memory ran out with some regions written: keeps the map valid for saving and loading.
 void FrameApply::Impl::recover(GridStorage& s, FrameHits& hits) {
-  // Nothing that a snapshot told before holds for sure, and what waits to be put into the tree is
-  // not for another frame's regions.
+  // Earlier snapshots may no longer hold, and pending insertions must not affect another frame's
+  // regions.
   s.forget_snapshots();
   for (RegionResult& result : results) result = {};
   for (const HitBlock& block : hits.blocks()) {
@@ -324,7 +324,7 @@ ApplyCounts FrameApply::run(BeliefGrid& grid, const PlacedFrame& frame, const E&
   const RegionUpdate<E> update(s, frame, evidence, hits, plan, m.kernels, m.literal);
   const auto empty = std::make_shared<const BeliefBlock>();
   try {
-    // Entries are made here, alone; the map's values do not move when it grows.
+    // Entries are created here, in one thread; the map's values do not move when it grows.
     for (HitBlock& block : hits.blocks()) {
       block.beliefs = &s.beliefs.try_emplace(block.key, empty).first->second;
     }

@@ -17,13 +17,13 @@
 
 namespace viewgain::detail {
 
-/// Voxels that one frame changed.
+/// Voxels changed by one frame.
 struct ApplyCounts {
   std::uint64_t hit = 0;
   std::uint64_t crossed = 0;  ///< and not hit
 };
 
-/// The last stage of a frame: puts hits and evidence into a grid, region by region.
+/// Last stage of a frame: applies hits and evidence to a grid, region by region.
 class FrameApply {
  public:
   FrameApply(const BlockKernels& kernels, bool literal);
@@ -32,7 +32,7 @@ class FrameApply {
   FrameApply& operator=(const FrameApply&) = delete;
 
   /// Changes states, log-odds and beliefs and appends the frame's view. If memory runs out, the
-  /// grid has some of the frame's hits and crossings and not the view. For ConeEvidence and
+  /// grid has some of the frame's hits and crossings, but not the view. For ConeEvidence and
   /// LineEvidence.
   template <Evidence E>
   ApplyCounts run(BeliefGrid& grid, const PlacedFrame& frame, const E& evidence, FrameHits& hits,

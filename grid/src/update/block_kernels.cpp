@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Compiled once for each instruction set. Double precision and the operations that IEEE 754 rounds
-// correctly, in one fixed order, so every set gives the same bits as a plain scalar loop.
+// Compiled once per instruction set. Uses double precision and operations that IEEE 754 rounds
+// correctly, in a fixed order, so that all sets give the bits of a plain scalar loop.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "update/block_kernels.cpp"
@@ -29,7 +29,7 @@ constexpr hn::Rebind<std::int8_t, DF> di8;
 using VF = hn::Vec<DF>;
 using MF = hn::Mask<DF>;
 
-// OpenCV's lens model; clears the lanes beyond the fold.
+// OpenCV's lens model; clears lanes beyond the fold.
 HWY_INLINE void distort(const ConeCamera& camera, VF& x, VF& y, MF& seen) {
   const auto& d = camera.distortion;
   const VF k1 = hn::Set(df, d[0]), k2 = hn::Set(df, d[1]), k3 = hn::Set(df, d[4]);
@@ -46,7 +46,8 @@ HWY_INLINE void distort(const ConeCamera& camera, VF& x, VF& y, MF& seen) {
   y = hn::Add(hn::Mul(y, radial), tangential_y);
 }
 
-// A non-negative integer below 2^51 held as a double, as an integer: its bits after adding 2^52.
+// Converts a non-negative integer below 2^51 held as a double to an integer: its bits after adding
+// 2^52.
 HWY_INLINE hn::Vec<decltype(di)> small_integer(VF value) {
   return hn::And(hn::BitCast(di, hn::Add(value, hn::Set(df, 4503599627370496.0))),
                  hn::Set(di, (std::int64_t{1} << 52) - 1));
@@ -171,13 +172,13 @@ HWY_AFTER_NAMESPACE();
 namespace viewgain::detail {
 namespace {
 
-/// Smallest r² > 0 at which d/dr of r (1 + k1 r² + k2 r⁴ + k3 r⁶) vanishes; infinity if it never
-/// does.
+/// Smallest r² > 0 at which d/dr of r (1 + k1 r² + k2 r⁴ + k3 r⁶) is zero; infinity if there is
+/// none.
 double fold_radius_squared(const std::array<double, 5>& d) {
   const auto slope = [&d](double s) {
     return 1.0 + s * (3.0 * d[0] + s * (5.0 * d[1] + s * 7.0 * d[4]));
   };
-  // The image plane out to 89.4° in steps that no lens model's double root hides in, then
+  // The image plane out to 89.4°, in steps too small for a double root of a lens model, then
   // bisection.
   double below = 0;
   for (double r = 0.01; r < 100.0; r *= 1.01) {

@@ -9,10 +9,11 @@
 namespace viewgain::detail {
 namespace {
 
-// Rounding in the projections here and in the kernel is some 1e-13 of a pixel and of a range.
+// Rounding errors of the projections here and in the kernel are about 1e-13 of a pixel and of a
+// range.
 constexpr double kPixelMargin = 1e-6;
 constexpr double kRangeMargin = 1e-9;
-// Squares looked at along one side of a rectangle: more is tighter, less is quicker.
+// Squares along one side of a rectangle: more is tighter, fewer is faster.
 constexpr std::int32_t kTexels = 4;
 
 struct Interval {
@@ -52,7 +53,7 @@ void RangePyramid::build(std::span<const double> reach_taper, std::int32_t width
     coarse.height = (fine.height + 1) / 2;
     coarse.texels.resize(count(coarse.width, coarse.height));
     for (std::int32_t v = 0; v < coarse.height; ++v) {
-      // At an odd border the last row or column counts twice.
+      // With an odd size the last row or column counts twice.
       const Bounds* row0 = fine.texels.data() + count(fine.width, 2 * v);
       const Bounds* row1 =
           fine.texels.data() + count(fine.width, std::min(2 * v + 1, fine.height - 1));
@@ -90,7 +91,7 @@ RangePyramid::Bounds RangePyramid::bounds(std::int32_t u0, std::int32_t v0, std:
 
 CubeClass ConeCull::classify(Index3 origin, int size) const {
   const auto& T = camera_.T_camera_grid;
-  // The box of the voxel centres: its middle and, along each grid axis, half its extent.
+  // The box of the voxel centres: its centre and, along each grid axis, half its extent.
   const double middle[3] = {(origin.x + 0.5 * size) * voxel_size_,
                             (origin.y + 0.5 * size) * voxel_size_,
                             (origin.z + 0.5 * size) * voxel_size_};
@@ -111,7 +112,7 @@ CubeClass ConeCull::classify(Index3 origin, int size) const {
   if (z_low <= rounding) return CubeClass::mixed;  // straddles the camera's plane
 
   Interval x{}, y{};
-  double farthest2 = 0;  // range is convex: a corner is the farthest
+  double farthest2 = 0;  // range is convex, so a corner is the farthest
   for (int corner = 0; corner < 8; ++corner) {
     const double s[3] = {corner & 1 ? half : -half, corner & 2 ? half : -half,
                          corner & 4 ? half : -half};
@@ -142,7 +143,7 @@ CubeClass ConeCull::classify(Index3 origin, int size) const {
     x = x_distorted;
   }
 
-  // Pixel q holds the centres with coordinates in [q - 0.5, q + 0.5).
+  // Pixel q contains the centres with coordinates in [q - 0.5, q + 0.5).
   const double u_low = std::floor(camera_.fx * x.low + camera_.cx + 0.5 - kPixelMargin);
   const double u_high = std::floor(camera_.fx * x.high + camera_.cx + 0.5 + kPixelMargin);
   const double v_low = std::floor(camera_.fy * y.low + camera_.cy + 0.5 - kPixelMargin);
@@ -150,7 +151,7 @@ CubeClass ConeCull::classify(Index3 origin, int size) const {
   const double last_u = camera_.width - 1, last_v = camera_.height - 1;
   if (u_high < 0 || u_low > last_u || v_high < 0 || v_low > last_v) return CubeClass::untouched;
   if (!(u_low >= 0 && u_high <= last_u && v_low >= 0 && v_high <= last_v)) inside = false;
-  // Written so that a NaN, from an overflow, widens the rectangle to the image.
+  // Written so that NaN from an overflow extends the rectangle to the image.
   const auto lower = [](double value) {
     return value > 0 ? static_cast<std::int32_t>(value) : std::int32_t{0};
   };
@@ -160,8 +161,8 @@ CubeClass ConeCull::classify(Index3 origin, int size) const {
   const RangePyramid::Bounds bounds =
       pyramid_.bounds(lower(u_low), lower(v_low), upper(u_high, last_u), upper(v_high, last_v));
 
-  // The nearest centre lies behind the plane that touches the box across the direction to its
-  // middle.
+  // The nearest centre lies behind the plane that touches the box and is perpendicular to the
+  // direction to its centre.
   const double distance = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
   double nearest = distance;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -194,13 +195,13 @@ std::vector<std::uint64_t> ConeEvidence::regions(const BlockLattice& lattice) co
   return regions;
 }
 
-// A cell's centre stands for it: the block's cells are voxels of a coarser lattice.
+// A cell is represented by its centre: the block's cells are voxels of a coarser lattice.
 bool ConeEvidence::deltas(std::uint64_t /*key*/, Index3 origin, int scale,
                           std::int8_t* deltas) const {
   const bool any = kernels_.project(
       *camera_, readings_->reach_taper().data(), voxel_size_ * (1 << scale),
       {origin.x >> scale, origin.y >> scale, origin.z >> scale}, kBlockSize >> scale, deltas);
-  // Spread downwards in place: a cell's entry lies before those of its voxels.
+  // Expanded downwards in place: a cell's entry precedes those of its voxels.
   const auto s = static_cast<unsigned>(scale);
   for (unsigned i = kBlockVoxels; scale > 0 && i-- > 0;) {
     deltas[i] = deltas[(i >> 6U) >> s << 6U | (i >> 3U & 7U) >> s << 3U | (i & 7U) >> s];

@@ -19,10 +19,10 @@ class RangePyramid {
   void build(std::span<const double> reach_taper, std::int32_t width, std::int32_t height);
 
   struct Bounds {
-    double clear = 0;  ///< nearer than this every pixel crosses at full weight
-    double reach = 0;  ///< at or beyond this no pixel crosses
+    double clear = 0;  ///< below this range all pixels cross at full weight
+    double reach = 0;  ///< from this range on no pixel crosses
   };
-  /// Bounds that hold for the pixels [u0, u1] x [v0, v1], inside the image.
+  /// Bounds for the pixels [u0, u1] x [v0, v1], inside the image.
   [[nodiscard]] Bounds bounds(std::int32_t u0, std::int32_t v0, std::int32_t u1,
                               std::int32_t v1) const;
 
@@ -34,8 +34,7 @@ class RangePyramid {
   std::vector<Level> levels_;
 };
 
-/// Sorts cubes of voxels into classes, conservatively: exact decisions are left to the block
-/// kernel.
+/// Classifies cubes of voxels conservatively; the block kernel makes exact decisions.
 class ConeCull {
  public:
   ConeCull(const ConeCamera& camera, const RangePyramid& pyramid, double voxel_size)
@@ -58,7 +57,7 @@ class ConeEvidence {
   ConeEvidence(const ConeEvidence&) = delete;
   ConeEvidence& operator=(const ConeEvidence&) = delete;
 
-  /// Of the pixels of this camera; both must live until the evidence has been used.
+  /// Uses the pixels of this camera; both must live until the evidence has been used.
   void gather(const Readings& readings, const ConeCamera& camera, double voxel_size);
 
   [[nodiscard]] std::vector<std::uint64_t> regions(const BlockLattice& lattice) const;

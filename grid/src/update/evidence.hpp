@@ -10,21 +10,20 @@
 
 namespace viewgain::detail {
 
-/// What a frame can say about the voxel centres of a cube.
+/// Effect of a frame on the voxel centres of a cube.
 enum class CubeClass : std::uint8_t {
   untouched,  ///< no centre is crossed
   crossed,    ///< every centre is crossed at full weight
-  cut,    ///< those that the image shows are crossed at full weight; its edge cuts the others off
-  mixed,  ///< each must be looked at
+  cut,        ///< those in the image are crossed at full weight; the image edge excludes the others
+  mixed,      ///< each must be checked
 };
 
-/// What a frame says about the voxels in front of its readings. ConeEvidence and LineEvidence are
-/// the two ways of carving. They offer:
-/// - regions(): the regions in which a voxel may be crossed, in rising order;
-/// - classify(): of the cube [origin, origin + size) as a whole;
-/// - deltas(): of the 512 voxels of the block with this key, origin and scale, in steps of the
-///   log-odds, kNoDelta where nothing is said, the same in all of a cell; false if nothing is said
-///   anywhere.
+/// Effect of a frame on the voxels in front of its readings. ConeEvidence and LineEvidence
+/// implement the two ways of marking free space. They offer:
+/// - regions(): the regions in which a voxel can be crossed, in increasing order;
+/// - classify(): the cube [origin, origin + size) as a whole;
+/// - deltas(): the 512 voxels of the block with this key, origin and scale, in steps of the
+/// log-odds or kNoDelta, the same in all voxels of a cell; false if there are none.
 template <typename T>
 concept Evidence = requires(const T& evidence, const BlockLattice& lattice, std::uint64_t key,
                             Index3 origin, int size, int scale, std::int8_t* deltas) {

@@ -19,22 +19,23 @@
 namespace viewgain {
 namespace {
 
-constexpr std::size_t kSamples = 600;     // of a frame
-constexpr std::size_t kFewSamples = 300;  // more are looked for
+constexpr std::size_t kSamples = 600;     // readings of a frame
+constexpr std::size_t kFewSamples = 300;  // with fewer, more are sought
 constexpr std::size_t kKept = 40'000;     // readings of all frames
-constexpr std::size_t kOthers = 600;      // of these, that a frame is held against
-constexpr std::size_t kImages = 64;       // that are remembered
-// Of the range: what real cameras and trackers are off by beside what they declare.
+constexpr std::size_t kOthers = 600;      // of these, compared with a frame
+constexpr std::size_t kImages = 64;       // remembered images
+// Relative to range: errors of real cameras and trackers beyond those declared.
 constexpr double kUndeclared = 0.01;
-constexpr double kSigmas = 3;            // that noise explains
-constexpr double kSteepest = 3;          // slope to the image plane of a surface that is looked at
-constexpr int kMostSteps = 12;           // along a ray, on either side of a reading
-constexpr double kLeastCosine = 0.4;     // of the angle of incidence, where distances are measured
-constexpr double kCommon = 0.0035;       // of the range, the most of noise that is the same for all
-constexpr double kSameDirection = 0.85;  // cosine between normals of one surface, at least
-constexpr double kSameSurface = 0.03;    // of the range, beside noise; farther off is another one
+constexpr double kSigmas = 3;            // sigmas explained by noise
+constexpr double kSteepest = 3;          // largest slope of a surface to the image plane
+constexpr int kMostSteps = 12;           // along a ray, on both sides of a reading
+constexpr double kLeastCosine = 0.4;     // of the angle of incidence, for measuring distances
+constexpr double kCommon = 0.0035;       // relative to range: largest noise common to all readings
+constexpr double kSameDirection = 0.85;  // least cosine between normals of one surface
+// Relative to range, in addition to noise; farther readings belong to another surface.
+constexpr double kSameSurface = 0.03;
 
-// The same images from poses that differ by less say nothing.
+// Equal images from poses that differ by less are not suspicious.
 constexpr double kMoved = 0.005, kTurned = 0.01;  // [m], [rad]
 
 bool has_moved(const Pose& a, const Pose& b) {
@@ -44,7 +45,7 @@ bool has_moved(const Pose& a, const Pose& b) {
 
 bool is_depth(float z) { return z > 0 && std::isfinite(z); }
 
-// The least depth of pixels in a square round one, 0 if one of them says nothing; a few of a large
+// Smallest depth in a square of pixels, 0 if one is invalid; samples a few pixels of a large
 // square.
 float nearest_round(const DepthFrame& frame, std::size_t u, std::size_t v, std::size_t reach) {
   const std::size_t step = (reach + 2) / 3;
@@ -59,7 +60,7 @@ float nearest_round(const DepthFrame& frame, std::size_t u, std::size_t v, std::
   return nearest;
 }
 
-// Errors of a pose as readings at this range have them, all alike.
+// Errors of a pose for readings at this range, assumed common.
 MeasurementSigmas of_pose(const PoseSigma& pose_sigma, double range) {
   return {pose_sigma.translation, std::hypot(pose_sigma.translation, pose_sigma.rotation * range)};
 }
@@ -146,7 +147,7 @@ void FrameAgreement::look(const BeliefGrid& before, const DepthFrame& frame,
   const double pixels = static_cast<double>(frame.width) * static_cast<double>(frame.height);
   auto stride = static_cast<std::size_t>(std::max(1.0, std::ceil(std::sqrt(pixels / kSamples))));
   std::vector<Reading> readings = sampled(before, frame, T_world_camera, pose_sigma, stride);
-  // What is mapped may be a small part of the image.
+  // The mapped part can be small in the image.
   while (readings.size() < kFewSamples && stride > 1) {
     stride /= 2;
     readings = sampled(before, frame, T_world_camera, pose_sigma, stride);
@@ -160,8 +161,8 @@ void FrameAgreement::look(const BeliefGrid& before, const DepthFrame& frame,
   frames_.push_back(found);
 }
 
-// Everything near is free where a reading may come from: along its ray, and across it where errors
-// are larger than a cell.
+// Whether everything near is free where a reading can come from: along its ray, and across it where
+// errors exceed a cell.
 bool FrameAgreement::lies_in_free(const BeliefGrid& grid, const Reading& reading) {
   const Eigen::Vector3d& p_world = reading.p_world;
   const Eigen::Vector3d ray = reading.ray.cast<double>();
@@ -193,9 +194,9 @@ MeasurementSigmas FrameAgreement::sigmas(double range, const PoseSigma& pose_sig
           std::hypot(own.lateral, moved, sensor_.scale_sigma * range)};
 }
 
-// How far a reading of an earlier frame lies from what this one sees there, if that is flat, and
-// how far declared errors may move it: those of both poses, that of the scale, and so much of the
-// noise as all readings may have in common; for noisy cameras that is not all of it.
+// Distance of a reading of an earlier frame from the surface that this frame sees there, if that is
+// flat, and the distance that declared errors allow: both poses, the scale, and the part of the
+// noise that all readings can share, which for noisy cameras is less than all of it.
 void FrameAgreement::compare(const DepthFrame& frame, std::size_t u, std::size_t v,
                              const Reading& earlier, const Pose& T_camera_world,
                              const PoseSigma& pose_sigma, DisplacementFit& fit) const {
@@ -249,7 +250,7 @@ void FrameAgreement::look_at_others(const DepthFrame& frame, const Pose& T_world
     const double axial = std::hypot(own.axial, static_cast<double>(kept_[k].axial));
     const double lateral = std::hypot(own.lateral, static_cast<double>(kept_[k].lateral));
     compare(frame, u, v, kept_[k], T_camera_world, pose_sigma, fit);
-    // Where errors are larger than a pixel the surface may be seen beside it.
+    // If errors exceed a pixel, neighbouring pixels can show the surface.
     const auto reach = static_cast<std::size_t>(
         std::max(1.0, std::ceil(kSigmas * lateral * sensor_.camera.fx / p_camera.z())));
     const float nearest = nearest_round(frame, u, v, reach);
@@ -257,7 +258,7 @@ void FrameAgreement::look_at_others(const DepthFrame& frame, const Pose& T_world
     const double beyond = static_cast<double>(nearest) - p_camera.z();
     const double gate =
         kSigmas * std::max(axial, lateral) + 0.5 * range / sensor_.camera.fx + kUndeclared * range;
-    if (beyond < -gate) continue;  // hidden
+    if (beyond < -gate) continue;  // occluded
     ++found.others;
     found.seen_past += beyond > gate ? 1 : 0;
   }
@@ -269,7 +270,7 @@ void FrameAgreement::look_at_others(const DepthFrame& frame, const Pose& T_world
 
 void FrameAgreement::look_for_copy(const DepthFrame& frame, const Pose& T_world_camera,
                                    FrameContradiction& found) {
-  // Images of nothing, or of one depth, are alike from everywhere.
+  // Images without content, or of one depth, are equal from everywhere.
   const auto first = std::find_if(frame.depth.begin(), frame.depth.end(), is_depth);
   if (std::all_of(first, frame.depth.end(), [&](float z) { return !is_depth(z) || z == *first; })) {
     return;
@@ -298,7 +299,8 @@ void FrameAgreement::keep(std::vector<Reading> readings) {
 
 std::vector<FrameContradiction> FrameAgreement::frames(const BeliefGrid& after) const {
   std::vector<FrameContradiction> all = frames_;
-  // What lay in free space before and what has become free since are shares of the same readings.
+  // Readings in space that was free before and in space that became free since are shares of the
+  // same readings.
   std::vector<std::size_t> kept(all.size()), carved(all.size());
   for (const Reading& reading : kept_) {
     ++kept[reading.frame];

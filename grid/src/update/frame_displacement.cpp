@@ -11,14 +11,14 @@
 namespace viewgain {
 namespace {
 
-constexpr double kHalfWidth = 0.02;     // of the square of pixels: tangent of its angle
-constexpr double kMostPixels = 3;       // and no more to each side
-constexpr double kUneven = 0.002;       // of the depth, what a plane may be off beside noise
-constexpr std::size_t kFewPairs = 60;   // fewer are not enough for a fit
-constexpr int kRounds = 4;              // of reweighting (Huber 1964)
+constexpr double kHalfWidth = 0.02;  // tangent of the angle of the pixel square
+constexpr double kMostPixels = 3;    // limit on each side
+constexpr double kUneven = 0.002;  // relative to depth: deviation from a plane in addition to noise
+constexpr std::size_t kFewPairs = 60;   // minimum for a fit
+constexpr int kRounds = 4;              // iterations of reweighting (Huber 1964)
 constexpr double kHuber = 1.5;          // standard deviations
 constexpr double kMadToSigma = 1.4826;  // of a normal distribution
-constexpr double kUndetermined = 1e-9;  // of the normal equations' size: such motions stay 0
+constexpr double kUndetermined = 1e-9;  // relative to the normal equations: smaller motions stay 0
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -28,8 +28,8 @@ double median_of(std::vector<double> values) {
 
 }  // namespace
 
-// Inverse depth is linear in the pixel for a plane. A paraboloid, whose terms are orthogonal over
-// the square, gives its value in the middle: the mean of a curved surface lies behind it.
+// Inverse depth of a plane is linear in the pixel. A paraboloid, whose terms are orthogonal over
+// the square, gives the value at the centre; the mean of a curved surface would lie behind it.
 std::optional<Eigen::Vector3d> plane_at(const DepthFrame& frame, const PinholeCamera& camera,
                                         const std::vector<Eigen::Vector3d>& rays, std::size_t u,
                                         std::size_t v, double sigma) {
@@ -120,7 +120,7 @@ double DisplacementFit::displacement() const {
     const double moved = pair.by_motion.dot(motion);
     squares += moved * moved;
   }
-  // Noise moves six parameters.
+  // Noise affects six parameters.
   return std::sqrt(
       std::max(0.0, (squares - 6 * sigma * sigma) / static_cast<double>(pairs_.size())));
 }

@@ -16,20 +16,20 @@ namespace {
 
 constexpr std::size_t kPixelChunk = 1024, kBlockChunk = 16;
 constexpr double kStep = 0.5;    // along the ray [cells]
-constexpr double kMargin = 2.0;  // by which another voxel must be better
-constexpr double kFarthest = 8;  // that is looked at; bounds the cost [cells]
+constexpr double kMargin = 2.0;  // factor by which another voxel must be better
+constexpr double kFarthest = 8;  // reach that is searched; limits the cost [cells]
 
 constexpr std::size_t kHitChunk = 1024;
 constexpr int kRadius = 2;         // of the neighbourhood [pixels]
-constexpr double kSteepest = 2.0;  // depth over distance across the view
+constexpr double kSteepest = 2.0;  // depth per lateral distance
 constexpr int kFewest = 6;
 
-/// The reading put along the normal onto the surface that the pixels around say [m]: the plane, by
-/// least squares of depth over the image, through the readings of 5×5 pixels whose depth differs
-/// from the pixel's by no more than a slope of 2 and noise explain. Nothing where fewer than 6 are
-/// left, they are in one line, the plane is seen at under kMinCosIncidence, or the reading is over
-/// 3 sigma off it, and so of something else. Nothing for clouds, whose points have no neighbours.
-/// `pixel` must be a reading.
+/// The reading moved along the normal onto the surface of the surrounding pixels [m]: the
+/// least-squares plane of depth over the image through readings of the 5×5 pixels whose depth
+/// differs from the pixel's by at most a slope of 2 plus noise. Empty if fewer than 6 remain, they
+/// are collinear, the plane is seen at less than kMinCosIncidence, or the reading is more than 3
+/// sigma from it and so belongs to something else. Empty for clouds, whose points have no
+/// neighbours. `pixel` must be a reading.
 std::optional<Eigen::Vector3d> surface_at(const Readings& readings, std::size_t pixel) {
   const int width = readings.row_length();
   if (width == 0) return std::nullopt;
@@ -55,7 +55,7 @@ std::optional<Eigen::Vector3d> surface_at(const Readings& readings, std::size_t 
     }
   }
   if (n < kFewest) return std::nullopt;
-  // Depth = z + gradient · (pixel - p), p and z the means.
+  // Depth = z + gradient · (pixel - p), with the means p and z.
   p /= n, z /= n;
   pz -= n * z * p;
   uu -= n * p.x() * p.x(), uv -= n * p.x() * p.y(), vv -= n * p.y() * p.y();
@@ -64,7 +64,7 @@ std::optional<Eigen::Vector3d> surface_at(const Readings& readings, std::size_t 
   const Eigen::Vector2d gradient((vv * pz.x() - uv * pz.y()) / determinant,
                                  (uu * pz.y() - uv * pz.x()) / determinant);
 
-  const double off = z - gradient.dot(p);  // of the plane from the reading, in depth [m]
+  const double off = z - gradient.dot(p);  // distance of the plane from the reading, in depth [m]
   const double depth = point.z() + off;
   const Eigen::Vector3d ray = point / point.z();
   const Eigen::Vector3d along_u = gradient.x() * ray + Eigen::Vector3d(depth / camera.fx, 0, 0);
@@ -79,9 +79,9 @@ std::optional<Eigen::Vector3d> surface_at(const Readings& readings, std::size_t 
   return point + distance * normal;
 }
 
-/// Orders the hits by block, keeping their order within each block. `scratch` is working space.
+/// Sorts the hits by block, stably. `scratch` is working space.
 void sort_by_block(std::vector<Hit>& hits, std::vector<Hit>& scratch) {
-  // Radix sort from the lowest digit: stable, and most keys have few digits that vary.
+  // Radix sort from the lowest digit: stable, and most keys have few varying digits.
   constexpr unsigned kBits = 11;
   constexpr std::size_t kBuckets = std::size_t{1} << kBits;
   std::uint64_t varying = 0;
@@ -181,7 +181,7 @@ void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places
       const double cell = before.cell();
       if (sigma < kNoisySigma * cell) continue;
       const double reach = std::min(kTaperSigmas * sigma, kFarthest * cell);
-      // A voxel is worth most where its side's first look falls into it.
+      // A voxel's value is largest at the first sample on its side.
       Index3 last_before = own, last_behind = own;
       const auto look = [&](double t, VoxelSupport::Reader& reader, Index3& last) {
         const std::optional<Index3> voxel = lattice.voxel_at(p + t * direction);
@@ -285,7 +285,7 @@ std::shared_ptr<const BeliefBlock> with_hits(const BeliefBlock* block, std::span
   auto result = reshaped(block, mask);
   result->scale = static_cast<std::uint8_t>(scale);
 
-  std::array<std::uint16_t, kBlockVoxels> place;  // among the sums, of voxels that are hit
+  std::array<std::uint16_t, kBlockVoxels> place;  // index among the sums of voxels that are hit
   std::vector<BeliefSum> sums;
   sums.reserve(count_bits(hit_mask));
   for_each_bit(hit_mask, [&](unsigned offset) {

@@ -20,10 +20,10 @@
 
 namespace viewgain::detail {
 
-/// The support plane in a camera's frame: points p with normal · p = offset.
+/// The support plane in a camera frame: points p with normal · p = offset.
 struct CameraPlane {
   Eigen::Vector3d normal;  ///< unit, up in the world
-  double offset = 0;       ///< [m]; negative where the camera stands above the plane
+  double offset = 0;       ///< [m]; negative if the camera is above the plane
 
   /// The plane world z = `height` [m].
   CameraPlane(double height, const Pose& T_world_camera)
@@ -31,34 +31,33 @@ struct CameraPlane {
         offset(height - T_world_camera.translation().z()) {}
 };
 
-/// One sensor's pixels: where they look and what the current frame says there, in the camera's
-/// frame.
+/// One sensor's pixels: their rays and the data of the current frame, camera frame.
 class FramePixels : public Readings {
  public:
-  /// Undoes the lens distortion of every pixel once.
+  /// Removes the lens distortion of every pixel once.
   explicit FramePixels(const Sensor& sensor);
 
-  /// By which the pose of the next frames may be off, beside the sensor's own.
+  /// Pose uncertainty of the next frames in addition to the sensor's.
   void set_pose_sigma(const PoseSigma& sigma);
 
-  /// Sorts the frame's pixels into the kinds and computes what follows from the readings alone.
-  /// cosθ = amplitude · range² where the frame has amplitudes that are not saturated, else
-  /// cos_incidence(). With `tapered` false crossings keep their weight up to the reading. Readings
-  /// of the frame's known depth, and those below `plane` or less than 3 σ above it, are on_known.
-  /// The frame must have the camera's size.
+  /// Classifies the frame's pixels and computes data that depends only on the readings. cosθ =
+  /// amplitude · range² if the frame has unsaturated amplitudes, otherwise cos_incidence(). With
+  /// `tapered` false crossings keep their weight up to the reading. Readings of the frame's known
+  /// depth, and those below `plane` or less than 3 σ above it, are on_known. The frame must have
+  /// the camera's size.
   void load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
             const std::optional<CameraPlane>& plane = {});
 
   /// Cosine of the angle between a reading's ray and the normal of its 3×3 neighbourhood: the cross
-  /// product of the sums, over rows and over columns, of differences across the pixel (one-sided at
-  /// the pixel itself if there is no such pair). Neighbours that are no readings, or whose depth
-  /// differs by more than a surface at the least cosine of the noise models would explain, do not
-  /// count. 1 where no normal is left.
+  /// product of the sums, over rows and columns, of differences across the pixel (one-sided at the
+  /// pixel itself if there is no such pair). Ignores neighbours that are not readings, or whose
+  /// depth differs by more than a surface at the least cosine of the noise models explains. 1
+  /// without a normal.
   [[nodiscard]] double cos_incidence(int u, int v) const;
 
  private:
   PoseSigma own_pose_sigma_;
-  std::vector<double> depths_;  ///< of readings, else NaN; with a border of one pixel
+  std::vector<double> depths_;  ///< of readings, otherwise NaN; with a border of one pixel
 };
 
 namespace {
@@ -66,7 +65,7 @@ namespace {
 constexpr std::size_t kRowChunk = 8;
 constexpr double kNoDepth = std::numeric_limits<double>::quiet_NaN();
 
-/// An amplitude that is no number, or negative, counts as the darkest: least information.
+/// An amplitude that is NaN or negative counts as the darkest: least information.
 double cos_from_amplitude(double amplitude, double range) {
   return amplitude > 0 ? std::min(1.0, amplitude * range * range) : 0.0;
 }
@@ -143,7 +142,7 @@ double FramePixels::cos_incidence(int u, int v) const {
     return points[static_cast<std::ptrdiff_t>(j) * camera.width + i];
   };
   const Eigen::Vector3d& center = at(0, 0);
-  // Depth per pixel of the steepest surface that the noise models tell apart.
+  // Depth per pixel of the steepest surface in the noise models.
   static const double kMaxSlope =
       std::sqrt(1.0 - kMinCosIncidence * kMinCosIncidence) / kMinCosIncidence;
   const double max_step = kMaxSlope * center.z() / std::min(camera.fx, camera.fy);
@@ -153,7 +152,7 @@ double FramePixels::cos_incidence(int u, int v) const {
     for (int i = -1; i <= 1; ++i) {
       const double depth = depths[static_cast<std::ptrdiff_t>(j) * (camera.width + 2) + i];
       const double pixels = std::abs(i) + std::abs(j);
-      ok[j + 1][i + 1] = std::abs(depth - center.z()) <= pixels * max_step;  // not for NaN
+      ok[j + 1][i + 1] = std::abs(depth - center.z()) <= pixels * max_step;  // false for NaN
     }
   }
   Eigen::Vector3d du = Eigen::Vector3d::Zero(), dv = Eigen::Vector3d::Zero();
@@ -196,7 +195,7 @@ struct FrameIntegrator::Impl {
   IntegrationConfig config;
   MapUpdate update;
   FramePixels pixels;
-  std::string sensor;  // for the maps' notes
+  std::string sensor;  // for the map's notes
 };
 
 FrameIntegrator::FrameIntegrator(const Sensor& sensor, const IntegrationConfig& config,
@@ -255,8 +254,8 @@ class CloudPoints : public Readings {
   void load(std::span<const std::array<double, 3>> points, const Eigen::Vector3d& origin,
             bool tapered, std::optional<double> support_plane, ThreadPool& pool) {
     if (points.size() > std::numeric_limits<std::uint32_t>::max()) {
-      throw Error(ErrorCode::capacity,
-                  "cloud of " + std::to_string(points.size()) + " points, the most is 4294967295");
+      throw Error(ErrorCode::capacity, "cloud of " + std::to_string(points.size()) +
+                                           " points; the maximum is 4294967295");
     }
     origin_ = origin;
     rays_.resize(points.size());
@@ -288,7 +287,7 @@ struct CloudIntegrator::Impl {
   IntegrationConfig config;
   MapUpdate update;
   CloudPoints points;
-  std::string sensor;  // for the maps' notes
+  std::string sensor;  // for the map's notes
 };
 
 CloudIntegrator::CloudIntegrator(const Sensor& sensor, const IntegrationConfig& config,

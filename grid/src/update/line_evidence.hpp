@@ -16,19 +16,19 @@
 
 namespace viewgain::detail {
 
-/// The crossings of those rays of a frame that one thread walked. A voxel's mark is 0 if no ray
-/// crossed it, else 1 + the weight of its strongest crossing. Marks take memory in blocks that a
-/// ray entered; the memory is kept between frames.
+/// The crossings of the rays of a frame that one thread walked. A voxel's mark is 0 if no ray
+/// crossed it, otherwise 1 + the weight of its strongest crossing. Marks take memory in blocks that
+/// a ray entered; the memory is kept between frames.
 class LineMarks {
  public:
   using Block = std::array<std::uint8_t, kBlockVoxels>;
 
   void clear();
-  /// The block with this key, made if it is not there.
+  /// The block with this key; creates it if missing.
   [[nodiscard]] Block& touch(std::uint64_t key);
   [[nodiscard]] const Block* find(std::uint64_t key) const;
 
-  /// Calls f(region key) for every region with a block, in no certain order.
+  /// Calls f(region key) for every region with a block, in any order.
   template <typename F>
   void for_each_region(F&& f) const {
     for (const auto& [node, slots] : nodes_) {
@@ -42,7 +42,7 @@ class LineMarks {
   }
 
  private:
-  using Slots = std::array<std::uint32_t, 4096>;  ///< 1 + position in blocks_, 0: none
+  using Slots = std::array<std::uint32_t, 4096>;  ///< 1 + index in blocks_, 0: none
   std::unordered_map<std::uint64_t, Slots> nodes_;
   std::uint64_t last_node_ = ~std::uint64_t{0};
   Slots* last_slots_ = nullptr;
@@ -50,21 +50,21 @@ class LineMarks {
   std::size_t used_ = 0;
 };
 
-/// A pixel's ray in the grid's frame.
+/// A pixel's ray in the grid frame.
 struct GridRay {
   Eigen::Vector3d origin;     ///< [m]
   Eigen::Vector3d direction;  ///< unit
-  double reach = 0;           ///< voxels that it enters before this range are crossed [m]
+  double reach = 0;           ///< crosses voxels that it enters before this range [m]
   double taper = 0;           ///< see miss_weight()
 };
 
-/// Walks the voxels of the workspace along the ray and marks those in which it has a stretch of
-/// positive length and which it enters before `reach`. The weight is that of the entry point.
+/// Walks the workspace's voxels along the ray and marks those that it crosses over a positive
+/// length and enters before `reach`. The weight is that of the entry point.
 void walk_line(const BlockLattice& lattice, double voxel_size, const GridRay& ray,
                LineMarks& marks);
 
 /// Evidence by lines: a voxel is crossed if a ray passes through it before its reading. The
-/// strongest crossing counts. It is the same whichever thread walked the ray.
+/// strongest crossing counts, so the result does not depend on the threads.
 class LineEvidence {
  public:
   void gather(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,

@@ -16,11 +16,11 @@
 
 namespace viewgain::detail {
 
-/// Puts readings from one origin into a grid: readings -> evidence by cones or lines -> hits ->
-/// apply (grid/README.md).
+/// Integrates readings from one origin into a grid: readings -> evidence by cones or lines -> hits
+/// -> apply (grid/README.md).
 class MapUpdate {
  public:
-  /// Throws as FrameIntegrator's constructor for scales that it refuses.
+  /// Throws as FrameIntegrator's constructor for invalid scales.
   MapUpdate(const IntegrationConfig& config, const ExecConfig& exec);
   ~MapUpdate();
   MapUpdate(MapUpdate&&) noexcept;
@@ -29,7 +29,7 @@ class MapUpdate {
   [[nodiscard]] ThreadPool& pool();
 
   /// Updates states, log-odds and beliefs and appends the view to the grid's. With a camera the
-  /// readings are its pixels and carve cones, else lines.
+  /// readings are its pixels and use cones, otherwise lines.
   IntegrationReport run(BeliefGrid& grid, const PlacedFrame& frame, const ConeCamera* camera);
 
  private:
@@ -37,7 +37,7 @@ class MapUpdate {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Throws Error(invalid_argument) unless the support plane, if there is one, is finite.
+/// Throws Error(invalid_argument) unless the support plane, if any, is finite.
 inline void check_plane(std::optional<double> height) {
   if (height && !std::isfinite(*height)) {
     refuse("support plane " + short_text(*height) + " m is not finite");

@@ -24,7 +24,7 @@ PixelKind Readings::sort_by_range(std::size_t pixel, double range) {
       reach = range;
     } else {
       kind = PixelKind::out_of_range;
-      // A centre at max_range itself is still crossed.
+      // A centre exactly at max_range is still crossed.
       reach = std::nextafter(sensor_.max_range, std::numeric_limits<double>::infinity());
     }
   }

@@ -13,27 +13,27 @@
 
 namespace viewgain::detail {
 
-/// on_known: a reading of the support plane or of a known obstacle, which carves as far as it
-/// reaches but is no hit.
+/// on_known: a reading of the support plane or of a known obstacle, which marks free space but is
+/// not a hit.
 enum class PixelKind : std::uint8_t { invalid, reading, out_of_range, on_known };
 
 /// Noise spreads readings by this many sigma_ax.
 inline constexpr double kTaperSigmas = 3.0;
 
-/// The first stage of a frame: what its pixels, or the points of a cloud, say. Rays from one
+/// First stage of a frame: the data of its pixels, or of the points of a cloud. Rays from one
 /// origin, in one frame.
 class Readings {
  public:
   [[nodiscard]] const Sensor& sensor() const { return sensor_; }
   [[nodiscard]] std::size_t size() const { return rays_.size(); }
-  /// Pixels in a row of the image; 0 for a cloud.
+  /// Pixels per row of the image; 0 for a cloud.
   [[nodiscard]] int row_length() const { return row_length_; }
   [[nodiscard]] PixelKind kind(std::size_t pixel) const { return kinds_[pixel]; }
   [[nodiscard]] const std::vector<PixelKind>& kinds() const { return kinds_; }
 
-  /// Where all rays begin [m].
+  /// Origin of all rays [m].
   [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
-  /// A reading's point [m]; on the support plane too.
+  /// Position of a reading [m], also on the support plane.
   [[nodiscard]] const Eigen::Vector3d& point(std::size_t pixel) const { return points_[pixel]; }
   /// Unit vector along the pixel's ray.
   [[nodiscard]] Eigen::Vector3d direction(std::size_t pixel) const {
@@ -41,9 +41,9 @@ class Readings {
   }
   [[nodiscard]] MeasurementSigmas sigmas(std::size_t pixel) const { return sigmas_[pixel]; }
 
-  /// Reach and taper [m] of each pixel, one after the other; 0, 0 for invalid pixels. A voxel that
-  /// is nearer than the reach is crossed. Within the taper before the reach the crossing weighs
-  /// less (miss_weight()).
+  /// Reach and taper [m] of each pixel, alternating; 0, 0 for invalid pixels. A voxel nearer than
+  /// the reach is crossed. Within the taper before the reach the crossing weighs less
+  /// (miss_weight()).
   [[nodiscard]] const std::vector<double>& reach_taper() const { return reach_taper_; }
 
  protected:
@@ -53,7 +53,7 @@ class Readings {
   Readings& operator=(Readings&&) = default;
 
   void resize(std::size_t count);
-  /// What a pixel at this range says (NaN: invalid), with its reach and no taper yet.
+  /// Kind of a pixel at this range (NaN: invalid), with its reach and no taper yet.
   [[nodiscard]] PixelKind sort_by_range(std::size_t pixel, double range);
 
   Sensor sensor_;
@@ -67,15 +67,15 @@ class Readings {
   std::vector<double> reach_taper_;
 };
 
-/// Readings and where they belong in a grid.
+/// Readings and their place in a grid.
 struct PlacedFrame {
   const Readings& readings;
   const Pose& T_grid_readings;
-  const Pose& T_world_view;  ///< what the grid's views get
+  const Pose& T_world_view;  ///< appended to the grid's views
 };
 
-/// The box that holds every reading, those of the support plane left out, in the grid's frame [m];
-/// nothing if there is none.
+/// The box that contains all readings except those of the support plane, grid frame [m]; empty if
+/// there are none.
 [[nodiscard]] std::optional<Box> bounds_of(const Readings& readings, const Pose& T_grid_readings);
 
 }  // namespace viewgain::detail

@@ -12,7 +12,7 @@
 namespace viewgain::detail {
 namespace {
 
-// From how many voxels a pixel covers on a scale is one more: as supereight2 has it (Vespa et al.
+// Number of voxels per pixel from which the next scale is used: as in supereight2 (Vespa et al.
 // 2019; Funk et al. 2021).
 constexpr std::array<double, kMaxScale> kThresholds{1.5, 3, 6};
 
@@ -21,17 +21,17 @@ constexpr std::array<double, kMaxScale> kThresholds{1.5, 3, 6};
 ScalePlan::ScalePlan(const IntegrationConfig& config)
     : coarsest_(config.coarsest), finest_(config.finest), fine_(config.fine) {
   if (coarsest_ < 0 || coarsest_ > kMaxScale) {
-    refuse("coarsest scale " + std::to_string(coarsest_) + " is not 0 to " +
+    refuse("coarsest scale " + std::to_string(coarsest_) + " must be in 0.." +
            std::to_string(kMaxScale));
   }
   if (finest_ < 0 || finest_ > coarsest_) {
-    refuse("finest scale " + std::to_string(finest_) + " is not 0 to the coarsest, " +
+    refuse("finest scale " + std::to_string(finest_) + " must be in 0 .. coarsest, " +
            std::to_string(coarsest_));
   }
   for (const Box& box : fine_) {
     for (std::size_t a = 0; a < 3; ++a) {
       if (box.min[a] < box.max[a]) continue;
-      refuse(std::string("fine box is inside out or no box, axis ") + "xyz"[a] + " is " +
+      refuse(std::string("fine box is inside out or empty, axis ") + "xyz"[a] + " is " +
              short_text(box.min[a]) + " .. " + short_text(box.max[a]));
     }
   }

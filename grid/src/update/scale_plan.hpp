@@ -13,27 +13,27 @@
 
 namespace viewgain::detail {
 
-/// Which scale a frame wants for a block: that whose cells are nearest in size to the larger of a
-/// pixel's footprint and sigma_ax, at the range of the block's nearest point, and not below the
-/// finest; 0 in the fine boxes.
+/// Wanted scale of a block: the one whose cells are nearest in size to the larger of a pixel's
+/// footprint and sigma_ax, at the range of the block's nearest point, and not below the finest; 0
+/// in the fine boxes.
 class ScalePlan {
  public:
   /// Throws as FrameIntegrator's constructor.
   explicit ScalePlan(const IntegrationConfig& config);
 
-  /// From here on of this frame and map; both must live as long as they are asked about.
+  /// Starts a frame and map, which must outlive the queries.
   void look(const PlacedFrame& frame, const BeliefGrid& map);
 
-  /// Whether all leaves have scale 0 and keep it.
+  /// Whether all leaves have and keep scale 0.
   [[nodiscard]] bool is_idle() const { return coarsest_ == 0 && !has_scales(*map_); }
-  /// Of a block that holds nothing by cells yet.
+  /// Scale of a block that stores nothing by cells yet.
   [[nodiscard]] int of_new(Index3 origin) const { return wanted(origin, 1.0); }
-  /// Of one that has a scale, which stays unless this is finer by a quarter more than it must: what
-  /// is seen from about a threshold's range does not go to and fro.
+  /// Scale of a block that has one: it stays unless the wanted scale is finer by a margin of a
+  /// quarter, so that views at a threshold's range do not toggle it.
   [[nodiscard]] int of_held(Index3 origin, int scale) const {
     return scale == 0 ? 0 : std::min(scale, wanted(origin, 1.25));
   }
-  /// Gives a block that is hit its scale.
+  /// Sets the scale of a hit block.
   void set(BeliefGrid& map, std::uint64_t key) const;
 
  private:

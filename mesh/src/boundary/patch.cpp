@@ -247,7 +247,7 @@ std::vector<std::uint32_t> grow_region(const SurfaceMesh& surface,
   detail::check_surface(surface);
   for (const std::uint32_t v : seeds) {
     if (v >= surface.vertices.size()) {
-      refuse("grow_region: there is no vertex " + std::to_string(v));
+      refuse("grow_region: invalid vertex " + std::to_string(v));
     }
   }
   return detail::RegionGrower(surface).grow(seeds, depth, max_turn);

@@ -22,7 +22,7 @@ void MeshBuilder::add_vertex(const std::array<double, 3>& p, std::size_t line) {
   for (const double x : p) {
     if (std::abs(x) < kBeyond) continue;
     fail(line, "a coordinate of vertex " + std::to_string(vertices()) +
-                   " is not finite, or 1e30 and more");
+                   " is not finite, or not below 1e30");
   }
   mesh_.vertices.push_back(p);
 }
@@ -37,7 +37,7 @@ void MeshBuilder::add_corner(double index, std::size_t line) {
 TriangleMesh MeshBuilder::finish(MeshRepairs& repairs) && {
   split_faces();
   if (mesh_.triangles.empty() && repairs_.dropped_faces > 0) {
-    fail(0, "none of the mesh's faces has an area");
+    fail(0, "no face of the mesh has an area");
   }
   if (mesh_.triangles.empty()) fail(0, "the mesh has no faces");
   drop_unused();
@@ -58,7 +58,7 @@ void MeshBuilder::split_faces() {
     const auto number = [&] { return "face " + std::to_string(&face - faces_.data()); };
     for (const std::uint32_t corner : corners) {
       if (corner < in_file) continue;
-      fail(face.line, number() + " has an index out of range, the file has " +
+      fail(face.line, number() + " has an index out of range; the file has " +
                           std::to_string(in_file) + " vertices");
     }
     if (corners.size() < 3) continue;

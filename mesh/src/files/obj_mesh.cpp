@@ -33,12 +33,12 @@ class ObjReader {
       } else if (keyword == "f") {
         add_face();
       } else if (keyword == "surf") {
-        lines_.fail("free-form surfaces are not read");
+        lines_.fail("free-form surfaces are not supported");
       } else if (keyword == "call" || keyword == "csh") {
-        lines_.fail("what other files and commands add is not read");
+        lines_.fail("statements that add other files or run commands are not supported");
       } else if (std::find(kSkippedInObj.begin(), kSkippedInObj.end(), keyword) ==
                  kSkippedInObj.end()) {
-        lines_.fail("the word " + quoted(keyword) + " begins no line of an OBJ file");
+        lines_.fail("the word " + quoted(keyword) + " is not a known OBJ statement");
       }
     }
     return std::move(mesh_).finish(repairs);
@@ -51,12 +51,12 @@ class ObjReader {
     for (bool goes_on = false, is_glued = false; goes_on || words_.empty();) {
       const char* const begin = lines_.rest().data();
       if (!lines_.next()) {
-        if (goes_on) lines_.fail("the file ends behind a backslash");
+        if (goes_on) lines_.fail("the file ends after a backslash");
         return false;
       }
       const auto& words = lines_.words();
       if (is_glued && !words.empty() && words[0].data() == begin) {
-        lines_.fail("a backslash stands in the middle of a word");
+        lines_.fail("a backslash must end its line");
       }
       const auto count = static_cast<std::ptrdiff_t>(words_before_comment(lines_));
       words_.insert(words_.end(), words.begin(), words.begin() + count);
@@ -73,15 +73,15 @@ class ObjReader {
     std::array<double, 7> numbers{};
     const std::size_t count = words_.size() - 1;
     if (count < 3 || count == 5 || count > numbers.size()) {
-      lines_.fail("a vertex has 3 coordinates, a weight and a colour, here are " +
+      lines_.fail("a vertex has 3 coordinates, then optionally a weight and a colour; found " +
                   std::to_string(count) + " numbers");
     }
     for (std::size_t i = 0; i < count; ++i) numbers[i] = lines_.number_of(words_[i + 1]);
     // Seven are x y z w r g b or x y z r g b a, which is told by the weight or the alpha of 1.
     const bool has_weight = count == 4 || (count == 7 && numbers[6] != 1);
     if (has_weight && numbers[3] != 1) {
-      lines_.fail("vertices of a weight, the fourth of " + std::to_string(count) +
-                  " numbers, that is not 1 are not read");
+      lines_.fail("weights other than 1, the fourth of " + std::to_string(count) +
+                  " numbers, are not supported");
     }
     mesh_.add_vertex({numbers[0], numbers[1], numbers[2]}, lines_.line());
   }
@@ -96,7 +96,7 @@ class ObjReader {
         rest.remove_prefix(std::min(end + 1, rest.size()));
         const double index = part > 0 && word.empty() ? 1 : lines_.number_of(word);
         if (index != std::floor(index) || part > 2) {
-          lines_.fail(quoted(words_[i]) + " is no corner of a face");
+          lines_.fail(quoted(words_[i]) + " is not a corner of a face");
         }
         if (part > 0) continue;
         if (index == 0) lines_.fail("index 0 is out of range");

@@ -49,16 +49,16 @@ class OffReader {
       }
     }
     if (word.starts_with("4OFF") || word.starts_with("nOFF") || word.starts_with("4nOFF")) {
-      lines_.fail("vertices of other than 3 coordinates are not read");
+      lines_.fail("vertices must have 3 coordinates");
     }
     if (!takes("OFF") && !takes("off")) {
-      lines_.fail("is no OFF file: it does not begin with \"OFF\"");
+      lines_.fail("is not an OFF file: it does not begin with \"OFF\"");
     }
     (void)words_.next();
     if (!word.empty()) {
       glued_ = lines_.number_of(word);
     } else if (words_.more_here() && words_.peek() == "BINARY") {
-      lines_.fail("binary OFF is not read; text is");
+      lines_.fail("binary OFF is not supported; write text");
     }
   }
 
@@ -111,7 +111,7 @@ class OffReader {
     const bool has_face_rows = has_rows || has_lines(faces_);
     for (double i = 0; i < faces_; ++i) {
       const double corners = words_.whole_number();
-      if (!(corners >= 0)) lines_.fail("a face has a negative count of corners");
+      if (!(corners >= 0)) lines_.fail("a face has a negative number of corners");
       for (double k = 0; k < corners; ++k) {
         if (has_face_rows && !words_.more_here()) lines_.fail("a face has too few corners");
         mesh_.add_corner(words_.whole_number(), words_.line());
@@ -119,12 +119,12 @@ class OffReader {
       mesh_.end_face(words_.line());
       if (has_face_rows) end_row(4);  // a colour
     }
-    if (words_.more()) lines_.fail("the file goes on behind its last face");
+    if (words_.more()) lines_.fail("the file continues after its last face");
   }
 
   void end_row(std::size_t most) {
     for (; words_.more_here(); --most) {
-      if (most == 0) lines_.fail("the line has more numbers than it can have");
+      if (most == 0) lines_.fail("the line has too many numbers");
       (void)words_.number();
     }
   }

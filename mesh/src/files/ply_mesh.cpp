@@ -58,8 +58,8 @@ TriangleMesh ply_mesh(std::string_view bytes, const std::string& name, MeshRepai
   const auto vertices = find_element(file, "vertex", "vertices");
   const auto faces = find_element(file, "face", "faces");
   const auto strips = find_element(file, "tristrips", "tristrip");
-  if (!vertices) file.fail("there is no element 'vertex'");
-  if (!faces && !strips) file.fail("the mesh has no faces: there is no element 'face'");
+  if (!vertices) file.fail("the element 'vertex' is missing");
+  if (!faces && !strips) file.fail("the mesh has no faces: the element 'face' is missing");
   std::array<std::size_t, 3> xyz{};
   for (const auto& [axis, place] : {std::pair("x", &xyz[0]), {"y", &xyz[1]}, {"z", &xyz[2]}}) {
     const auto property = file.elements()[*vertices].find(axis, false);

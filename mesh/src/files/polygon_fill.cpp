@@ -153,7 +153,7 @@ bool PolygonFill::triangulate(TriangleMesh& mesh, FillBudget& budget) {
     if (added_.size() <= node) added_.resize(node + 1, ConstrainedTriangulation::kNone);
     if (added_[node] == ConstrainedTriangulation::kNone) {
       if (mesh.vertices.size() >= std::numeric_limits<std::uint32_t>::max()) {
-        throw Error(ErrorCode::format, "needs more vertices than a mesh may have");
+        throw Error(ErrorCode::format, "needs more vertices than a mesh can have");
       }
       const Point& p = triangulation_.position_of(node);
       added_[node] = static_cast<std::uint32_t>(mesh.vertices.size());

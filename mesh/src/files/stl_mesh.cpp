@@ -171,12 +171,12 @@ TriangleMesh stl_mesh(std::string_view bytes, const std::string& name, MeshRepai
     throw Error(ErrorCode::format, name + ": " + what);
   };
   if (bytes.size() < kStlBody)
-    fail("neither text that begins with \"solid\" nor long enough for a binary STL file");
+    fail("is neither text that begins with \"solid\" nor long enough for a binary STL file");
   // Fewer bytes than a triangle's may follow.
   const std::uint64_t held = (bytes.size() - kStlBody) / kStlTriangle;
-  if (promised != held && !has_nul) fail("neither text that begins with \"solid\" nor binary");
+  if (promised != held && !has_nul) fail("is neither text that begins with \"solid\" nor binary");
   if (promised != held) {
-    fail("the header promises " + std::to_string(promised) + " triangles, the file holds " +
+    fail("the header declares " + std::to_string(promised) + " triangles, but the file holds " +
          std::to_string(held));
   }
   return binary_stl_mesh(bytes, promised, name, repairs);

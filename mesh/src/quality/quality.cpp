@@ -287,7 +287,7 @@ ErrorStatistics GroundTruth::error(std::span<const std::array<double, 3>> points
 Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> points,
                                      std::span<const SymmetricMatrix3> covariances) const {
   if (points.size() != covariances.size()) {
-    refuse(std::to_string(points.size()) + " points but " + std::to_string(covariances.size()) +
+    refuse(std::to_string(points.size()) + " points, but " + std::to_string(covariances.size()) +
            " covariances");
   }
   Consistency result{kNaN, kNaN, kNaN, 0, 0};
@@ -323,7 +323,7 @@ Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> poin
 double coverage(std::span<const double> distances, double radius,
                 std::span<const std::uint8_t> mask) {
   if (!mask.empty() && mask.size() != distances.size()) {
-    refuse(std::to_string(distances.size()) + " distances but " + std::to_string(mask.size()) +
+    refuse(std::to_string(distances.size()) + " distances, but " + std::to_string(mask.size()) +
            " mask values");
   }
   std::size_t counted = 0, covered = 0;

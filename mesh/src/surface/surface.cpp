@@ -25,7 +25,7 @@ namespace viewgain::detail {
 void check_surface(const SurfaceMesh& surface) {
   const std::size_t count = surface.vertices.size();
   if (surface.normals.size() != count) {
-    refuse("surface: " + std::to_string(count) + " vertices but " +
+    refuse("surface: " + std::to_string(count) + " vertices, but " +
            std::to_string(surface.normals.size()) + " normals");
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -36,7 +36,7 @@ void check_surface(const SurfaceMesh& surface) {
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     for (const std::uint32_t v : surface.triangles[i]) {
       if (v >= count) {
-        refuse("surface: triangle " + std::to_string(i) + " names vertex " + std::to_string(v) +
+        refuse("surface: triangle " + std::to_string(i) + " refers to vertex " + std::to_string(v) +
                " of " + std::to_string(count));
       }
     }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Everything of the library but mesh/: core, grid, raycast.
+/// All of the library except mesh/: core, grid, raycast.
 
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/camera.hpp"

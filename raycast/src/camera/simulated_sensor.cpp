@@ -30,14 +30,14 @@ void check(const Sensor& sensor, const SimulationConfig& config) {
   sensor.validate();
   const auto fail = [](const std::string& what) { refuse("simulated sensor: " + what); };
   if (!(config.background_radius >= 0) || !std::isfinite(config.background_radius)) {
-    fail("background radius " + short_text(config.background_radius) + " m is not >= 0");
+    fail("background radius " + short_text(config.background_radius) + " m must be >= 0");
   }
   if (config.sub_rays < 1 || config.sub_rays > kMaxSubRays) {
-    fail("sub-rays " + std::to_string(config.sub_rays) + " are not in 1.." +
+    fail("sub-rays " + std::to_string(config.sub_rays) + " must be in 1.." +
          std::to_string(kMaxSubRays));
   }
   if (!(std::abs(config.scale_error) < 1)) {
-    fail("scale error " + short_text(config.scale_error) + " is not in (-1, 1)");
+    fail("scale error " + short_text(config.scale_error) + " must be in (-1, 1)");
   }
   if (config.support_plane && !std::isfinite(*config.support_plane)) {
     fail("support plane " + short_text(*config.support_plane) + " m is not finite");

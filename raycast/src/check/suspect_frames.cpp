@@ -33,13 +33,13 @@ Suspicion suspect_camera(const PinholeCamera& camera, const std::vector<Eigen::V
   if (const double share = static_cast<double>(lost) / static_cast<double>(rays.size());
       share > 0.5) {
     return {"distortion", percent(share) +
-                              " of the image's pixels have no ray by the lens's distortion: are k1 "
-                              "k2 p1 p2 k3 those of this camera?"};
+                              " of the image's pixels have no ray under the lens distortion. Do k1 "
+                              "k2 p1 p2 k3 belong to this camera?"};
   }
   if (std::max(camera.fx, camera.fy) > 1.1 * std::min(camera.fx, camera.fy)) {
     return {"focal_lengths",
             "fx is " + short_text(camera.fx) + " px and fy " + short_text(camera.fy) +
-                " px, more than 10 % apart: are the intrinsics in the right order?"};
+                " px, more than 10 % apart. Are the intrinsics in the right order?"};
   }
   if (camera.width == 1 || camera.height == 1) return {};  // such an image has no middle
   const double u = camera.cx / (camera.width - 1), v = camera.cy / (camera.height - 1);
@@ -47,7 +47,7 @@ Suspicion suspect_camera(const PinholeCamera& camera, const std::vector<Eigen::V
   return {
       "principal_point",
       "the principal point lies at " + percent(u) + " of the image's width and " + percent(v) +
-          " of its height, far from the middle: are the intrinsics those of another resolution?"};
+          " of its height, far from the middle. Are the intrinsics those of another resolution?"};
 }
 
 // Of the pixels with a depth, those within the sensor's range if depths are so many times larger.
@@ -214,7 +214,7 @@ Suspicion suspect_plane(std::span<const DepthFrame> frames, const FrameMeetings&
   if (10 * under <= all) return {};
   const double share = static_cast<double>(under) / static_cast<double>(all);
   return {"support_plane", percent(share) + " of the readings lie more than " + short_text(kUnder) +
-                               " m under the support plane at " + short_text(plane) + " m"};
+                               " m below the support plane at " + short_text(plane) + " m"};
 }
 
 // Depths along the ray: told by readings for which it matters.
@@ -286,7 +286,7 @@ Suspicion detail::suspicion_of(const Sensor& sensor, std::span<const DepthFrame>
 
 Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frames,
                          std::span<const Pose> T_world_camera) {
-  if (frames.size() != T_world_camera.size()) refuse("one pose a frame is needed");
+  if (frames.size() != T_world_camera.size()) refuse("one pose per frame is required");
   for (const DepthFrame& frame : frames) check_frame_size(frame, sensor.camera);
   std::vector<std::size_t> places(frames.size());
   std::iota(places.begin(), places.end(), std::size_t{0});

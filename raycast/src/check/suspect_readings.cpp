@@ -32,8 +32,8 @@ struct Taken {
 };
 
 constexpr const char* kMaskRule =
-    ": nonzero pixels of a mask and confidences below the least confidence are ignored. If the "
-    "masks show the object in white, invert them";
+    "; pixels are ignored where a mask is nonzero or the confidence is below the least confidence. "
+    "If the masks show the object in white, invert them";
 
 // In the middle one of so many equal parts of a side?
 bool is_amid(std::size_t at, std::size_t size, std::size_t parts) {
@@ -136,7 +136,7 @@ Suspicion suspect_masks(const Sensor& sensor, std::span<const DepthFrame> unmask
                         std::span<const DepthFrame> masked, std::span<const Pose> T_world_camera,
                         const BeliefGrid* map) {
   if (masked.size() != unmasked.size() || T_world_camera.size() != unmasked.size()) {
-    refuse("a masked frame and a pose per frame are needed");
+    refuse("one masked frame and one pose per frame are required");
   }
   constexpr double kNearlyAll = 0.95, kMostOfMiddle = 0.8, kLittleElse = 0.4;
   const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
@@ -161,11 +161,11 @@ Suspicion suspect_masks(const Sensor& sensor, std::span<const DepthFrame> unmask
   const bool leaves_middle = middle_inside.all > 0 && middle_inside.share() < 0.5;
   if (inside.taken > 0 && inside.share() >= kNearlyAll && !leaves_middle) {
     const char* const where = map == nullptr ? "" : " in the workspace";
-    return {"masks", "the masks took " + figure(std::round(100 * inside.share())) +
+    return {"masks", "the masks remove " + figure(std::round(100 * inside.share())) +
                          " % of the readings" + where + kMaskRule};
   }
   if (middle.share() >= kMostOfMiddle && elsewhere.share() <= kLittleElse) {
-    return {"masks", "the masks took " + figure(std::round(100 * middle.share())) +
+    return {"masks", "the masks remove " + figure(std::round(100 * middle.share())) +
                          " % of the readings in the middle of the images and " +
                          figure(std::round(100 * elsewhere.share())) + " % elsewhere" + kMaskRule};
   }

@@ -57,7 +57,7 @@ Suspicion suspect_ranges(const Sensor& sensor, const std::optional<double>& voxe
       voxel_size && sensor.working_distance > 5 && footprint > 0.5 * kNoiseOfVoxel * *voxel_size;
   if (sensor.max_range <= kLongestRange && !is_coarse) return {};
   std::string what = "the sensor measures from " + figure(sensor.min_range) + " to " +
-                     figure(sensor.max_range) + " m and is meant for " +
+                     figure(sensor.max_range) + " m and has a working distance of " +
                      figure(sensor.working_distance) + " m";
   if (is_coarse) {
     what += ", where a pixel is " + figure(footprint / *voxel_size) + " voxels wide";
@@ -163,7 +163,7 @@ Suspicion suspect_scale_sigma(const Sensor& sensor) {
   if (sensor.scale_sigma < 0.1) return {};
   return {"scale_sigma", "scale_sigma = " + figure(sensor.scale_sigma) + " means that ranges are " +
                              figure(100 * sensor.scale_sigma) +
-                             " % off: it is a factor, neither a percentage nor a length"};
+                             " % off. It is a factor, neither a percentage nor a length"};
 }
 
 Suspicion suspect_calibration(const Sensor& sensor) {
@@ -182,9 +182,7 @@ Suspicion suspect_body(const Sensor& sensor) {
   const auto& size = *sensor.body_size;
   if (*std::max_element(size.begin(), size.end()) <= kLongestBody) return {};
   return {"body_unit", "the sensor's body is " + figure(size[0]) + " x " + figure(size[1]) + " x " +
-                           figure(size[2]) +
-                           " m: its size is in metres, not in millimetres; such a body fits "
-                           "nowhere"};
+                           figure(size[2]) + " m; its size is in metres, not in millimetres"};
 }
 
 Suspicion suspect_mounting(const Sensor& sensor) {
@@ -203,13 +201,13 @@ Suspicion suspect_pose_sigma(const PoseSigma& sigma, double working_distance,
   const double turned = sigma.rotation * working_distance;
   if (is_much(sigma.translation, working_distance, kPoseOfDistance, voxel_size)) {
     return {"pose_sigma_unit",
-            "poses are off by a standard deviation of " + figure(sigma.translation) + " m, " +
+            "the declared standard deviation of poses is " + figure(sigma.translation) + " m, " +
                 compared(sigma.translation, working_distance, kPoseOfDistance, voxel_size) +
                 ": translations are in metres, not in millimetres"};
   }
   if (sigma.rotation >= kPoseRotation || (voxel_size && turned > kNoiseOfVoxel * *voxel_size)) {
     return {"pose_sigma_unit",
-            "poses are turned by a standard deviation of " + figure(sigma.rotation) + " rad, " +
+            "the declared standard deviation of rotations is " + figure(sigma.rotation) + " rad, " +
                 figure(sigma.rotation * 180 / std::numbers::pi) +
                 " degrees: pose_sigma is in metres and radians, --register in metres and "
                 "degrees"};

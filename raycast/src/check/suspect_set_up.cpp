@@ -53,7 +53,7 @@ Suspicion suspect_workspace(const BeliefGrid& map, const Sensor& sensor) {
   const double side = longest(aligned(map.workspace()));
   if (side <= kHuge * sensor.max_range && map.voxel_size() <= 0.5 * sensor.max_range) return {};
   return {"workspace_unit", "the workspace is " + figure(side) + " m long and its voxels " +
-                                figure(map.voxel_size()) + " m, but the sensor sees to " +
+                                figure(map.voxel_size()) + " m, but the sensor's range ends at " +
                                 figure(sensor.max_range) +
                                 " m: lengths are in metres, not in millimetres"};
 }
@@ -65,7 +65,7 @@ Suspicion suspect_obstacle(const Box& bounds, const BeliefGrid& map, const Senso
   if (distance <= far_from_map(sensor) && side <= kHuge * longest(workspace)) return {};
   return {"obstacle_unit", "is " + figure(side) + " m long and " + figure(distance) +
                                " m from the map, which is " + figure(longest(workspace)) +
-                               " m long: is it in metres?"};
+                               " m long. Is it in metres?"};
 }
 
 Box obstacle_bounds(const TriangleMesh& mesh) {
@@ -94,9 +94,8 @@ Suspicion suspect_solid_obstacles(const Obstacles& obstacles, std::span<const Po
   if (2 * static_cast<std::size_t>(inside) <= views.size()) return {};
   return {"views_in_obstacle",
           std::to_string(inside) + " of the map's " + std::to_string(views.size()) +
-              " views were taken inside of an obstacle, where no view is possible: boxes and "
-              "closed meshes are solid. Give the walls of a room as an open mesh or as one box "
-              "per wall"};
+              " views were taken inside an obstacle, where no view is possible. Boxes and closed "
+              "meshes are solid: give the walls of a room as an open mesh or as one box per wall"};
 }
 
 Suspicion suspect_reach(const ReachRegion& reach, const BeliefGrid& map, const Sensor& sensor) {
@@ -129,7 +128,8 @@ Suspicion suspect_reach(const ReachRegion& reach, const BeliefGrid& map, const S
   }
   if (distance <= far_from_map(sensor)) return {};
   return {"reach_unit", "the nearest reachable place is " + figure(distance) +
-                            " m from the map, but the sensor sees to " + figure(sensor.max_range) +
+                            " m from the map, but the sensor's range ends at " +
+                            figure(sensor.max_range) +
                             " m: the reach region is in metres, not in millimetres"};
 }
 
@@ -138,7 +138,8 @@ Suspicion suspect_support_plane(double z, const BeliefGrid& map, const Sensor& s
   const double distance = std::max(workspace.min().z() - z, z - workspace.max().z());
   if (distance <= far_from_map(sensor)) return {};
   return {"plane_unit", "the support plane at z = " + figure(z) + " m is " + figure(distance) +
-                            " m from the map, but the sensor sees to " + figure(sensor.max_range) +
+                            " m from the map, but the sensor's range ends at " +
+                            figure(sensor.max_range) +
                             " m: its height is in metres, not in millimetres"};
 }
 
@@ -154,9 +155,9 @@ Suspicion suspect_object_size(double size, const BeliefGrid& map) {
 
 Suspicion suspect_clearance(double clearance) {
   if (clearance <= 2) return {};
-  return {"clearance_unit", "a clearance of " + figure(clearance) +
-                                " m round the body leaves no room anywhere: it is in metres, not "
-                                "in millimetres"};
+  return {"clearance_unit",
+          "a clearance of " + figure(clearance) +
+              " m around the body leaves no room anywhere: it is in metres, not in millimetres"};
 }
 
 }  // namespace viewgain

@@ -23,7 +23,7 @@ void check_costs(std::span<const double> costs, std::size_t poses) {
     refuse(std::to_string(costs.size()) + " costs for " + std::to_string(poses) + " poses");
   }
   for (const double cost : costs) {
-    if (!std::isfinite(cost)) refuse("a cost is " + short_text(cost) + ", not finite");
+    if (!std::isfinite(cost)) refuse("a cost is " + short_text(cost) + "; it must be finite");
   }
 }
 
@@ -35,9 +35,10 @@ void check_tour(const TourConfig& config, std::size_t poses) {
   if (!(config.cost_per_way >= 0 && std::isfinite(config.cost_per_way))) {
     refuse("cost_per_way " + short_text(config.cost_per_way) + " must be at least 0 and finite");
   }
-  if (!(config.budget >= 0)) refuse("the budget is " + short_text(config.budget) + ", not >= 0");
+  if (!(config.budget >= 0))
+    refuse("the budget is " + short_text(config.budget) + "; it must be >= 0");
   if (!(config.least_area >= 0)) {
-    refuse("least_area is " + short_text(config.least_area) + ", not >= 0");
+    refuse("least_area is " + short_text(config.least_area) + "; it must be >= 0");
   }
   if (!(config.share > 0 && config.share <= 1)) {
     refuse("share is " + short_text(config.share) + "; it must be in (0, 1]");
@@ -55,7 +56,7 @@ WayPricing::WayPricing(const TourConfig& config, std::size_t poses)
 double WayPricing::way(std::size_t from, std::size_t to) const {
   const double value = config_.way(from, to);
   if (value >= 0) return value;
-  refuse("the way from " + (from == kTourStart ? "the start" : std::to_string(from)) + " to " +
+  refuse("the path from " + (from == kTourStart ? "the start" : std::to_string(from)) + " to " +
          std::to_string(to) + " costs " + short_text(value));
 }
 

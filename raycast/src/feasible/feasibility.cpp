@@ -205,7 +205,7 @@ constexpr std::size_t kPosesAtOnce = 16;  // that a thread takes
 [[noreturn]] void fail(const std::string& what) { refuse("feasibility: " + what); }
 
 void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConfig& config) {
-  if (scene == nullptr) fail("there is no scene");
+  if (scene == nullptr) fail("the scene is null");
   for (const double size : config.body.size) {
     if (!(std::isfinite(size) && size > 0)) {
       fail("the body's size must be positive and finite, not " + short_text(size));
@@ -342,7 +342,7 @@ FeasibilityChecker::FeasibilityChecker(FeasibilityChecker&&) noexcept = default;
 FeasibilityChecker& FeasibilityChecker::operator=(FeasibilityChecker&&) noexcept = default;
 
 FeasibilityChecker FeasibilityChecker::with_scene(std::shared_ptr<const VoxelScene> scene) const {
-  if (scene == nullptr) fail("there is no scene");
+  if (scene == nullptr) fail("the scene is null");
   auto obstacles = impl_->obstacles;
   if (&scene->surroundings() != &impl_->scene->surroundings()) {
     obstacles = std::make_shared<const detail::ObstacleCheck>(scene->surroundings().obstacles);

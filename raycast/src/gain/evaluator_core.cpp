@@ -42,7 +42,7 @@ void check(const GainConfig& config, const Sensor& sensor) {
            short_text(max_range) + " m");
   }
   if (config.model == GainModel::combined && config.criterion == Criterion::trace) {
-    refuse("the combined gain is in nats and does not go with trace; the gain paper does");
+    refuse("criterion trace requires the gain paper: the combined gain is in nat");
   }
   if (!std::isfinite(config.refinement_weight) || config.refinement_weight < 0) {
     refuse("refinement weight is " + short_text(config.refinement_weight) +
@@ -58,7 +58,7 @@ void check(const GainConfig& config, const Sensor& sensor) {
     }
     if (const double least = std::min(sigma.axial, sigma.lateral); least < kMinSigma) {
       refuse("the sensor's sigma at " + short_text(t) + " m is " + short_text(least) +
-             " m; the least is " + short_text(kMinSigma) + " m");
+             " m; the minimum is " + short_text(kMinSigma) + " m");
     }
   }
   for (const GainConfig::WeightRegion& region : config.weights) {

@@ -18,7 +18,7 @@ namespace {
 using detail::ViewDriver;
 
 std::shared_ptr<const VoxelScene> checked(std::shared_ptr<const VoxelScene> scene) {
-  if (!scene) refuse("the gain evaluator has no scene");
+  if (!scene) refuse("the scene is null");
   return scene;
 }
 
@@ -135,8 +135,8 @@ DepthFrame depth_image(const GainEvaluator& evaluator, const Pose& T_world_camer
   const int stride = evaluator.pixel_stride();
   const std::vector<RayHit> hits = evaluator.trace(T_world_camera);
   if (hits.empty()) {
-    refuse("the pose of a depth image is off from a rigid transform by " +
-           short_text(orthonormality_error(T_world_camera)) + "; 1e-3 is allowed");
+    refuse("the pose of a depth image deviates from a rigid transform by " +
+           short_text(orthonormality_error(T_world_camera)) + "; the tolerance is 1e-3");
   }
   DepthFrame image;
   image.width = detail::strided(camera.width, stride);

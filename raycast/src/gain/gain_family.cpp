@@ -18,7 +18,7 @@ class NoGains : public GainFamily {
                                                            const BeliefGrid&, const Sensor&,
                                                            std::span<const std::string>,
                                                            const ExecConfig&) const override {
-    refuse("no gains are registered (register_gains())");
+    refuse("no gains are registered; call register_gains() first");
   }
 
  private:

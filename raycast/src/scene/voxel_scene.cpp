@@ -51,14 +51,14 @@ std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
 std::shared_ptr<const VoxelScene> VoxelScene::update(
     const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
     const ExecConfig& exec) {
-  if (!before) refuse("there is no scene to update");
+  if (!before) refuse("the scene to update is null");
   return update(before, grid.snapshot(before->snapshot()), exec);
 }
 
 std::shared_ptr<const VoxelScene> VoxelScene::update(
     const std::shared_ptr<const VoxelScene>& before, GridSnapshot snapshot,
     const ExecConfig& exec) {
-  if (!before) refuse("there is no scene to update");
+  if (!before) refuse("the scene to update is null");
   (void)thread_count(exec.num_threads);
   const detail::SceneData& data = SceneAccess::data(*before);
   return make_traceable(

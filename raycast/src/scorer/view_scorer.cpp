@@ -30,8 +30,8 @@ BeliefGrid empty_grid(const GridConfig& config, const Sensor& sensor) {
   const double longest = std::max({max[0] - min[0], max[1] - min[1], max[2] - min[2]});
   if (config.voxel_size < longest && config.voxel_size <= sensor.max_range) return grid;
   refuse("voxels of " + short_text(config.voxel_size) + " m in a workspace of " +
-         short_text(longest) + " m, for a sensor that sees to " + short_text(sensor.max_range) +
-         " m: lengths are in metres");
+         short_text(longest) + " m, but the sensor's range ends at " +
+         short_text(sensor.max_range) + " m; lengths are in metres");
 }
 
 // The possible ones of some poses.
@@ -78,7 +78,8 @@ void check_costs(std::span<const double> costs, std::size_t poses) {
 
 // The layout is the map's.
 ScorerConfig with_layout(ScorerConfig config, const BeliefGrid& grid) {
-  if (config.gain.prior_sigma) refuse("gain.prior_sigma: set ScorerConfig::prior_sigma instead");
+  if (config.gain.prior_sigma)
+    refuse("gain.prior_sigma cannot be used here; set ScorerConfig::prior_sigma");
   if (!(config.clearance >= 0) || !std::isfinite(config.clearance)) {
     refuse("the clearance is " + short_text(config.clearance) + " m; it must be 0 or more");
   }

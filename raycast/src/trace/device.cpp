@@ -58,7 +58,7 @@ RTCDevice shared_device(Isa isa) {
   if (made == nullptr) {
     const RTCError code = rtcGetDeviceError(nullptr);
     keep_message(nullptr, code, ("error " + std::to_string(code)).c_str());
-    fail(code, "no device for tracing");
+    fail(code, "cannot create a device for tracing");
   }
   rtcSetDeviceErrorFunction(made, keep_message, nullptr);
   if (kept.compare_exchange_strong(device, made, std::memory_order_acq_rel)) return made;

@@ -9,7 +9,7 @@
 #include <embree3/rtcore.h>
 #endif
 static_assert(RTC_VERSION_MAJOR == VIEWGAIN_EMBREE_MAJOR,
-              "the Embree headers are not of the version that CMake found");
+              "the Embree headers differ in version from the library that CMake found");
 
 namespace viewgain::detail {
 

@@ -263,7 +263,7 @@ static void of_evaluators(const vg_scene* scene) {
   pose[5] = 3;
   CHECK_OK(vg_evaluate(evaluator, pose, 1, &gain, NULL));
   CHECK(isnan(gain));
-  CHECK_REFUSED(vg_depth_image(evaluator, pose, depth, NULL, 640), "off from");
+  CHECK_REFUSED(vg_depth_image(evaluator, pose, depth, NULL, 640), "deviates from");
   CHECK_REFUSED(vg_contributions(evaluator, pose, &part, sizeof part, 1, &found), "by 8;");
   pose[5] = 1;
   pose[12] = 1;
@@ -300,7 +300,7 @@ static void of_range_calibrations(void) {
   } bad[] = {{NULL, 0, "rows is 0"},
              {good, 0, "rows is 0"},
              {NULL, 2, "table is null"},
-             {falling[0], 2, "must rise, but 1 m follows 2 m"}};
+             {falling[0], 2, "must increase, but 1 m follows 2 m"}};
   vg_sensor other;
   float depth[1] = {1};
   vg_range_calibration* calibration;

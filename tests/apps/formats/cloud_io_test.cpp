@@ -213,7 +213,7 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
     expect_refused("bad.pcd", part, with(good, from, to));
   };
   change("bad.pcd:10: the count '99999999999'", "POINTS 50", "POINTS 99999999999");
-  change("is not WIDTH x HEIGHT", "POINTS 50", "POINTS 51");
+  change("differs from WIDTH x HEIGHT", "POINTS 50", "POINTS 51");
   change("bad.pcd:10: '-5' is not a whole number", "POINTS 50", "POINTS -5");
   change("'5e1' is not", "POINTS 50", "POINTS 5e1");
   change("a number is missing", "POINTS 50", "POINTS");
@@ -224,21 +224,21 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
          "WIDTH 4294967295\nHEIGHT 1\nPOINTS 4294967295");
   change("only one of WIDTH and HEIGHT", "HEIGHT 1", "# none");
   change("no count of points", "WIDTH 50\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 50", "# none");
-  change("no field 'z'", "y z\n", "y w\n");
+  change("missing field 'z'", "y z\n", "y w\n");
   change("'x' must have COUNT 1", "COUNT 1 1 3", "COUNT 1 2 3");
   change("the count '100001' is too large", "COUNT 1 1 3", "COUNT 1 1 100001");
   change("are there", "COUNT 1 1 3", "COUNT 1 1 100000");
-  change("needs a word for each of the 5 fields", "SIZE 2 4 4 8 4", "SIZE 2 4 4 8");
-  change("needs a word for each", "TYPE U F F F I", "TYPE U F F F I I");
+  change("needs one word for each of the 5 fields", "SIZE 2 4 4 8 4", "SIZE 2 4 4 8");
+  change("needs one word for each", "TYPE U F F F I", "TYPE U F F F I I");
   change("bad.pcd:5: TYPE 'D'", "TYPE U F", "TYPE U D");
   change("SIZE that its TYPE", "SIZE 2 4", "SIZE 2 2");
   change("SIZE that its TYPE", "SIZE 2 4", "SIZE 3 4");
   change("SIZE that its TYPE", "SIZE 2 4", "SIZE 0 4");
   change("is too large", "SIZE 2 4", "SIZE 2 9");
   change("no line SIZE", "SIZE 2 4 4 8 4", "# none");
-  change("the field 'x' stands there twice", "intensity x normal y z", "x x normal y z");
+  change("the field 'x' is declared twice", "intensity x normal y z", "x x normal y z");
   change("FIELDS must come first", "FIELDS intensity x normal y z\n", "");
-  change("FIELDS stands there twice", "VERSION 0.7", "FIELDS x y z");
+  change("FIELDS is declared twice", "VERSION 0.7", "FIELDS x y z");
   change("FIELDS needs", "FIELDS intensity x normal y z", "FIELDS");
   change("VIEWPOINT needs 7", "VIEWPOINT 1 2 3 0 1 0 0", "VIEWPOINT 1 2 3");
   change("bad.pcd:9: VIEWPOINT's quaternion", "0 1 0 0\n", "0 2 0 0\n");
@@ -249,9 +249,8 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
   change("the header's word 'ply' is unknown", "VERSION 0.7", "ply");
 
   const std::string ascii = pcd_ascii();
-  expect_refused("bad.pcd", "bad.pcd:12: a point has 7 words, here are 6",
-                 with(ascii, "\n12 ", "\n"));
-  expect_refused("bad.pcd", "the file goes on behind its last point", ascii + "1 2 3 4 5 6 7\n");
+  expect_refused("bad.pcd", "bad.pcd:12: a point has 7 words; found 6", with(ascii, "\n12 ", "\n"));
+  expect_refused("bad.pcd", "the file continues after its last point", ascii + "1 2 3 4 5 6 7\n");
   expect_refused("bad.pcd", "bad.pcd:12: 'zero", with(ascii, " 0 0 1 ", " 0 0 1 zero"));
 }
 
@@ -266,14 +265,14 @@ TEST_F(CloudFiles, ForgedPlyHeadersAreNamedByLine) {
   change("the file ends", "vertex 50", "vertex 4294967295");
   change("the file ends", "camera 2", "camera 4294967295");
   change("bad.ply:2: the format 'binary'", "binary_little_endian", "binary");
-  change("no line format", "format binary_little_endian 1.0", "comment");
+  change("no format line", "format binary_little_endian 1.0", "comment");
   change("a property needs a type and a name", "float x", "float");
   change("a property needs a type and a name", "float x", "float x y");
   change("a list's count must be a whole number", "list uchar short", "list float short");
   change("an element needs", "element camera 2", "element camera");
   change("the header's word 'property,'", "property float fx", "property, float fx");
   change("no line end_header", good.substr(good.find("end_header")), "");
-  expect_refused("bad.ply", "bad.ply:10: the file goes on",
+  expect_refused("bad.ply", "bad.ply:10: the file continues",
                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                  "property float z\nend_header\n1 2 3\n\n4 5 6\n");
   // A list of 2^32 - 1 numbers, one of a negative count.

@@ -196,7 +196,7 @@ TEST_F(Recordings, LinksOutOfARecordingAreRefusedWhereTheyAreRead) {
                                  std::pair{"rec/masks/0.png", dir / "elsewhere/0.png"}}) {
     if (fs::exists(dir / link)) fs::rename(dir / link, dir / "away");
     fs::create_symlink(to, dir / link);
-    expect_refused(masked, std::string(link) + ": is a link out of the recording");
+    expect_refused(masked, std::string(link) + ": is a link that leaves the recording");
     fs::remove(dir / link);
     if (fs::exists(dir / "away")) fs::rename(dir / "away", dir / link);
     ++cases;
@@ -295,7 +295,7 @@ TEST_F(Recordings, MasksTakePixelsAway) {
   EXPECT_EQ(load_frame(frames, 1).depth[100], 0.0F);
   EXPECT_GT(load_frame(frames, 1).depth[101], 0.0F);
   EXPECT_GT(load_frame(frames, 0).depth[100], 0.0F);
-  EXPECT_NE(run_well(call({"--mask", "masks"})).find("masks: of 1 frames, 2 pixels"),
+  EXPECT_NE(run_well(call({"--mask", "masks"})).find("masks: 1 frames, 2 pixels"),
             std::string::npos);
 
   // So do confidences under the least: of 0, 1 and 255 the first, or the first two.
@@ -340,11 +340,11 @@ TEST_F(Recordings, OnlyAnEarlierImportIsReplaced) {
   run_well(test::joined(simulate, {"simulated"}));
   const Strings import{"import", "rec", "--sensor", "small.toml", "--out"};
   expect_refused({{test::joined(import, {"foreign"}), "frame-000009"},
-                  {test::joined(import, {"simulated"}), "no file of import"},
+                  {test::joined(import, {"simulated"}), "import did not write this file"},
                   {test::joined(import, {"rec"}), "SOURCE"},
                   {test::joined(import, {"rec/frames"}), "SOURCE"},
                   {test::joined(import, {"f", "--save-config", "rec/groundtruth.txt"}), "SOURCE"},
-                  {test::joined(simulate, {"frames"}), "no frames of simulate"}});
+                  {test::joined(simulate, {"frames"}), "simulate did not write this file"}});
 }
 
 TEST_F(Recordings, AMapIsMadeOfWhatIsImported) {
@@ -383,7 +383,7 @@ TEST_F(Recordings, FlagsThatDoNotFitAreRefused) {
        {call({"--intrinsics", "60,-60,23.5,17.5"}), "fy"},
        {{"import", "nowhere", "--sensor", "small.toml", "--out", "frames"}, "nowhere"},
        {{"import", "rec", "--format", "bop", "--sensor", "small.toml", "--out", "frames"},
-        "bop is no format; there are auto, tum"},
+        "unknown format bop; valid: auto, tum"},
        {{"import", "rec", "--sensor", "small.toml"}, "--out"}});
 }
 

@@ -154,7 +154,7 @@ TEST(ClassicGains, RefuseWhatTheyCannotDo) {
   };
   expect(refused(map, {.gains = {ClassicGain::proximity_count}}), "sensor");
   expect(refused(map, {.gains = {ClassicGain::proximity_count}}), "proximity_count");
-  expect(refused(no_views, {.gains = {ClassicGain::area_factor}}), "remembers no views");
+  expect(refused(no_views, {.gains = {ClassicGain::area_factor}}), "records no views");
   expect(refused(map, {}), "no classic gain");
   const ClassicGain one = ClassicGain::unknown_count;
   expect(refused(map, {.gains = {one, one}}), "twice");

@@ -162,7 +162,7 @@ TEST(SavedPlanner, RefusesAMapThatHasGrownWithoutIt) {
   BeliefGrid grid = load_vdb(path);
   FrameIntegrator(scene.sensor).integrate(grid, scene.see(scene.views[1]), scene.views[1]);
   save_vdb(grid, path);
-  expect_error(ErrorCode::invalid_argument, "has 2 views, of which its planner added 1",
+  expect_error(ErrorCode::invalid_argument, "has 2 views, but its planner added 1",
                [&] { (void)scene.config().load(path, scene.sensor); });
 }
 
@@ -179,7 +179,7 @@ TEST(SavedPlanner, RefusesWhatIsNone) {
   ViewPlanner planner = config.make(scene.sensor, {1});
   (void)planner.add(scene.see(scene.views[0]), scene.views[0]);
   save_vdb(planner.scorer().grid(), path);
-  refuses(ErrorCode::format, "without the state of a planner", config);
+  refuses(ErrorCode::format, "without a planner's state", config);
   planner.tried(scene.views[4], false);
   planner.save(path);
   PlannerSetUp other = config;
@@ -214,7 +214,7 @@ TEST(SavedPlanner, RefusesWhatIsNone) {
   with_note("");
   refuses(ErrorCode::format, "version", config);
   with_note("version 1\n");
-  refuses(ErrorCode::format, "planner's state of version 1;", config);
+  refuses(ErrorCode::format, "planner's state has version 1;", config);
   with_note(note + "of_view tired\n");
   refuses(ErrorCode::format, "tired", config);
   with_note(note);

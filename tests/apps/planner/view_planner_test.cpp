@@ -353,11 +353,11 @@ TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
     ++cases;
   };
   const DepthFrame frame = scene.see(scene.views[0]);
-  refuses("propose() comes first", [&] { (void)planner.rank(); });
+  refuses("call propose() after each view", [&] { (void)planner.rank(); });
   (void)planner.propose();  // before any view: all is unknown
   EXPECT_FALSE(planner.rank().views.empty());
   planner.add(frame, scene.views[0]);
-  refuses("propose() comes first", [&] { (void)planner.rank(); });
+  refuses("call propose() after each view", [&] { (void)planner.rank(); });
   Pose nan = scene.views[0], bent = scene.views[0];
   nan.m[3] = kNan;
   bent.m[0] += 0.01;

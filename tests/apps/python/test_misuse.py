@@ -290,10 +290,10 @@ def test_the_mesh_part_says_when_it_was_not_built(tmp_path):
 
 def test_a_wrong_call_is_told_in_a_line(sensor, evaluator, poses):
     scorer = viewgain.ViewScorer
-    cases = [(lambda: scorer(sensor, voxelsize=0.01), r"^ViewScorer\(\): there is no argument 'voxelsize'; did you mean 'voxel_size'\?$"),
-             (lambda: scorer.load("m.vdb", sensor, stride=2), r"^ViewScorer\(\): there is no argument 'stride'; did you mean 'pixel_stride'\?$"),
-             (lambda: evaluator.evaluate(pose=poses), r"^GainEvaluator.evaluate\(\): there is no argument 'pose'; did you mean"),
-             (lambda: evaluator.best(poses, n=2), "there is no argument 'n'"),
+    cases = [(lambda: scorer(sensor, voxelsize=0.01), r"^ViewScorer\(\): unknown argument 'voxelsize'; did you mean 'voxel_size'\?$"),
+             (lambda: scorer.load("m.vdb", sensor, stride=2), r"^ViewScorer\(\): unknown argument 'stride'; did you mean 'pixel_stride'\?$"),
+             (lambda: evaluator.evaluate(pose=poses), r"^GainEvaluator.evaluate\(\): unknown argument 'pose'; did you mean"),
+             (lambda: evaluator.best(poses, n=2), "unknown argument 'n'"),
              (lambda: evaluator.best(), r"^GainEvaluator.best\(\): the argument 'T_world_camera' is missing$"),
              (lambda: evaluator.evaluate(poses, True), "2 arguments by position; at most 1, others by keyword"),
              (lambda: evaluator.best(poses, "2"), r"^GainEvaluator.best\(\): k must be int, not str$"),

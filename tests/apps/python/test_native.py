@@ -85,7 +85,7 @@ def test_a_grid_goes_through_bytes_and_pickles(grid, sensor):
 def test_bytes_that_are_no_map_are_refused(grid, tmp_path, monkeypatch):
     data = grid.to_bytes()
     for bad in (b"", b"no map", data[:-1], data[: len(data) // 2], data[:100] + b"x" + data[101:]):
-        with pytest.raises(viewgain.Error, match="no map that to_bytes"):
+        with pytest.raises(viewgain.Error, match="not a map from to_bytes"):
             viewgain.BeliefGrid.from_bytes(bad)
     with pytest.raises(TypeError):
         viewgain.BeliefGrid.from_bytes("text")
@@ -231,9 +231,9 @@ def test_pictures_show_what_they_are_given(evaluator, poses):
 def test_pictures_of_what_cannot_be_drawn_say_why(evaluator, poses, sensor):
     pytest.importorskip("matplotlib").use("agg")
     surface = viewgain.GainEvaluator(evaluator.scene, sensor, gain="surface", pixel_stride=8)
-    cases = [(lambda: viewgain.plot.gains(poses, [1.0]), "not one a pose"),
+    cases = [(lambda: viewgain.plot.gains(poses, [1.0]), "one value per pose"),
              (lambda: viewgain.plot.gains(poses[:2], [np.nan, np.nan]), "no value is a number"),
-             (lambda: viewgain.plot.gains(poses[0], 1.0), "not one a pose"),
+             (lambda: viewgain.plot.gains(poses[0], 1.0), "one value per pose"),
              (lambda: viewgain.plot.depth([1.0]), "two dimensions"),
              (lambda: viewgain.plot.contributions(surface, poses[0]), "'surface'")]
     for call, message in cases:

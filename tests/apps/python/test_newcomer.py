@@ -26,7 +26,7 @@ def test_a_camera_comes_from_its_matrix():
 
 
 @pytest.mark.parametrize("at, value, text", [
-    ((0, 1), 0.3, r"K has skew: K\[0, 1\] is 0.3"), ((1, 0), 1e-6, "K has skew"), ((2, 2), 2.0, "last row that is not 0 0 1"),
+    ((0, 1), 0.3, r"K has skew: K\[0, 1\] is 0.3"), ((1, 0), 1e-6, "K has skew"), ((2, 2), 2.0, "the last row 0 0 1"),
     ((2, 0), 0.1, "last row"), ((2, 1), np.nan, "last row"), ((0, 1), np.nan, "skew"), ((0, 0), 0.0, "fx|focal"), ((1, 1), -520.0, "fy|focal"),
     ((0, 2), np.inf, "cx"), ((1, 2), np.nan, "cy")])
 def test_a_matrix_that_is_none_is_refused(at, value, text):

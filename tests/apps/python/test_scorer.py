@@ -112,7 +112,7 @@ def test_files_come_back(sensor, tmp_path):
     assert np.array_equal(of_grid.evaluate(POSES), scorer.evaluate(POSES))
     # What the map has is not said twice.
     for said in ({"voxel_size": 0.01}, {"workspace": WORKSPACE}, {"T_world_grid": np.eye(4)}, {"prior_sigma": 0.01}):
-        with pytest.raises(ValueError, match="map brings its own"):
+        with pytest.raises(ValueError, match="cannot be used with map"):
             viewgain.ViewScorer(sensor, map=tmp_path / "map.vdb", **said)
 
 

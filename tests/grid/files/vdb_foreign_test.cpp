@@ -246,16 +246,16 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
   log_odds("multiple of 0.05", wall, 1.52F);
   log_odds("contradicts", wall, -1.0F);
   log_odds("contradicts", free, 1.0F);
-  log_odds("same voxels", unknown, 1.0F);
+  log_odds("different voxels", unknown, 1.0F);
   for (const float state : {0.0F, 1.0F, 3.0F, -1.0F, 1.5F, static_cast<float>(nan)}) {
     expect_refused("state", [&](Contents& c) {
       c.grid<openvdb::FloatGrid>("state").tree().setValueOn(wall, state);
     });
   }
-  expect_refused("same voxels", [&](Contents& c) {
+  expect_refused("different voxels", [&](Contents& c) {
     c.grid<openvdb::FloatGrid>("state").tree().setValueOff(wall);
   });
-  expect_refused("same voxels", [&](Contents& c) {
+  expect_refused("different voxels", [&](Contents& c) {
     // As many voxels, but others.
     c.grid<openvdb::FloatGrid>("state").tree().setValueOff(wall);
     c.grid<openvdb::FloatGrid>("state").tree().setValueOn(unknown, 1);
@@ -379,7 +379,7 @@ TEST_F(ForeignTiles, StatesMayBeFinerTiles) {
   expect_error(ErrorCode::format, "[1000, 2000, 3000] contradicts",
                [&] { (void)load_vdb(written()); });
   states_->tree().addTile(1, somewhere, 1, false);
-  expect_error(ErrorCode::format, "same voxels", [&] { (void)load_vdb(written()); });
+  expect_error(ErrorCode::format, "different voxels", [&] { (void)load_vdb(written()); });
 }
 
 // As many voxels, but others: a hole in the states, and a state where nothing is known.
@@ -388,7 +388,7 @@ TEST_F(ForeignTiles, HolesInFinerStatesAreFound) {
   states_->tree().addTile(2, {128, 0, 0}, 1, true);
   states_->tree().addTile(1, {160, 32, 8}, 1, false);
   states_->tree().addTile(1, {1024, 0, 0}, 1, true);
-  expect_error(ErrorCode::format, "same voxels", [&] { (void)load_vdb(written()); });
+  expect_error(ErrorCode::format, "different voxels", [&] { (void)load_vdb(written()); });
   // A block's tile over single voxels.
   log_odds_->tree().clear();
   states_->tree().clear();
@@ -398,7 +398,7 @@ TEST_F(ForeignTiles, HolesInFinerStatesAreFound) {
   EXPECT_EQ(load_vdb(written()).statistics().free, 512U);
   states_->tree().setValueOff({9, 10, 11});
   states_->tree().setValueOn({100, 0, 0}, 1);
-  expect_error(ErrorCode::format, "same voxels", [&] { (void)load_vdb(written()); });
+  expect_error(ErrorCode::format, "different voxels", [&] { (void)load_vdb(written()); });
 }
 
 /// Rates on a lattice that is turned, shifted and coarser than the map's.

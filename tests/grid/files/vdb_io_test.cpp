@@ -274,7 +274,7 @@ TEST(VdbIo, MissingAndForeignFiles) {
   expect_error(ErrorCode::io, "none.vdb", [&] { (void)load_vdb(folder.path() / "none.vdb"); });
   expect_error(ErrorCode::io, folder.path().string(), [&] { (void)load_vdb(folder.path()); });
   for (const char* text : {"", "x", " BD", "solid thing\n", "\x89PNG\r\n"}) {
-    expect_error(ErrorCode::format, "no OpenVDB file",
+    expect_error(ErrorCode::format, "not an OpenVDB file",
                  [&] { (void)load_vdb(folder.file("text.vdb", text)); });
   }
   expect_error(ErrorCode::format, "a.vdb",

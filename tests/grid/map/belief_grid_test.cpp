@@ -89,7 +89,7 @@ TEST(BeliefGrid, RefusesBadConfigurations) {
   refused(ErrorCode::capacity, "1e+08 voxels", cube(1e-8, 0, 1));  // 1e24 in all
   refused(ErrorCode::capacity, "voxels", cube(1e-300, 0, 1));
   refused(ErrorCode::capacity, "2.7", cube(1.0, 0, 30000));  // 2.7e13 in all
-  refused(ErrorCode::capacity, "off the origin", cube(0.001, 2e6, 2e6 + 1));
+  refused(ErrorCode::capacity, "from the origin", cube(0.001, 2e6, 2e6 + 1));
   GridConfig skewed = cube(0.01, 0, 1);
   skewed.T_world_grid.m[1] = 1e-6;
   refused(ErrorCode::invalid_argument, "T_world_grid", skewed);

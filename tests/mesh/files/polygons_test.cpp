@@ -267,7 +267,7 @@ TEST_F(Polygons, AreasInEveryFormat) {
           {"p.stl", stl_of(row.points)}}) {
       SCOPED_TRACE(row.name + ", " + name);
       if (row.area == 0) {
-        expect_error(ErrorCode::format, name + ": none of the mesh's faces has an area",
+        expect_error(ErrorCode::format, name + ": no face of the mesh has an area",
                      [&, &n = name, &b = bytes] { (void)read(n, b); });
         continue;
       }

@@ -217,7 +217,7 @@ TEST(Limits, LatticesBeyondTheirIntegersAreRefused) {
     return [voxel] { (void)BeliefGrid({voxel, {{1e6, 0, 0}, {1e6 + 1, 1, 1}}, {}, 0.01}); };
   };
   EXPECT_NO_THROW(at(0.01)());
-  expect_error(ErrorCode::capacity, "off the origin along x, the most is 1073741824", at(1e-4));
+  expect_error(ErrorCode::capacity, "from the origin along x; the maximum is 1073741824", at(1e-4));
 }
 
 TEST(Limits, ImagesOfTwelveMillionPixels) {

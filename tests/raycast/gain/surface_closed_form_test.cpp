@@ -214,12 +214,13 @@ TEST(SurfaceGain, RefusesWhatCannotBeMeant) {
     test::expect_error(ErrorCode::invalid_argument, what,
                        [&] { (void)GainEvaluator(scene, one_ray(1.0), config); });
   };
-  refuses("not go with trace", {.model = GainModel::combined, .criterion = Criterion::trace});
+  refuses("criterion trace requires the gain paper",
+          {.model = GainModel::combined, .criterion = Criterion::trace});
   refuses("refinement weight is -1", {.model = GainModel::combined, .refinement_weight = -1});
   test::expect_error(ErrorCode::invalid_argument, "support plane", [] {
     (void)VoxelScene::build(slab(1, 2), {{}, HUGE_VAL});
   });
-  test::expect_error(ErrorCode::invalid_argument, "valid are paper, surface, combined",
+  test::expect_error(ErrorCode::invalid_argument, "valid values: paper, surface, combined",
                      [] { (void)parse_gain_model("papers"); });
 }
 

@@ -182,7 +182,7 @@ TEST_F(Own, DepthImageIsWhereRaysEndAlongTheOpticalAxis) {
   }
   EXPECT_GT(pixels, 1000U);
   EXPECT_GT(ends, 500U);
-  test::expect_error(ErrorCode::invalid_argument, "off from a rigid transform by inf",
+  test::expect_error(ErrorCode::invalid_argument, "deviates from a rigid transform by inf",
                      [&] { (void)depth_image(GainEvaluator(scene_, sensor_), poses_[2]); });
 }
 

@@ -89,11 +89,11 @@ class NpyFile {
     try {
       read_layout();
     } catch (const json::exception&) {
-      fail(".npy header: is not one that is read here");
+      fail(".npy header: is not supported");
     }
-    if (rows_ == 0) fail("holds no pose");
+    if (rows_ == 0) fail("contains no pose");
     if (rows_ > (bytes_.size() - begin_) / row_bytes_) {
-      fail("is cut off: " + std::to_string(rows_) + " rows do not fit");
+      fail("is truncated: " + std::to_string(rows_) + " rows do not fit");
     }
   }
 
@@ -106,7 +106,7 @@ class NpyFile {
     std::vector<double> numbers;
     for (const Place& place : places_) {
       numbers.push_back(number_at(row, place));
-      if (!std::isfinite(numbers.back())) fail_row("holds a number that is not finite");
+      if (!std::isfinite(numbers.back())) fail_row("contains a number that is not finite");
     }
     return pose_of_numbers(numbers, mended, fail_row);
   }
@@ -115,7 +115,7 @@ class NpyFile {
   [[nodiscard]] double time(std::size_t row) const {
     const double time = time_ ? number_at(row, *time_) : static_cast<double>(row);
     if (!std::isfinite(time)) {
-      fail("row " + std::to_string(row) + ": holds a number that is not finite");
+      fail("row " + std::to_string(row) + ": contains a number that is not finite");
     }
     return time;
   }
@@ -141,11 +141,11 @@ class NpyFile {
     const auto byte = [this](std::size_t i) {
       return std::size_t{static_cast<unsigned char>(bytes_[i])};
     };
-    if (bytes_.size() < 12 || !bytes_.starts_with("\x93NUMPY")) fail("is no .npy file");
+    if (bytes_.size() < 12 || !bytes_.starts_with("\x93NUMPY")) fail("is not a .npy file");
     const std::size_t first = byte(6) == 1 ? 10 : 12;
     begin_ = first + (byte(8) | byte(9) << 8U);
     if (byte(6) > 1) begin_ += byte(10) << 16U | byte(11) << 24U;
-    if (begin_ > bytes_.size()) fail("is cut off in its header");
+    if (begin_ > bytes_.size()) fail("is truncated in its header");
     std::string text;
     for (const char c : std::string_view(bytes_).substr(first, begin_ - first)) {
       if (c == ' ' || c == '\n') continue;
@@ -168,7 +168,7 @@ class NpyFile {
       find_matrices(type == "<f4", is_fortran);
     } else {
       fail("is " + shape.dump() + " of " + type.dump() +
-           ", neither rows with tx, ty, tz, qx, qy, qz, qw nor (n, 4, 4) matrices of <f8 or <f4");
+           "; expected rows with tx, ty, tz, qx, qy, qz, qw or (n, 4, 4) matrices of <f8 or <f4");
     }
   }
 
@@ -200,7 +200,7 @@ class NpyFile {
       if (type.find('U') == 1) bytes *= 4;  // numpy counts characters
       for (const json& count : field.size() > 2 ? field[2] : json(1U)) {
         bytes *= std::min(count_of(count), kMostFieldBytes);
-        if (bytes == 0 || bytes > kMostFieldBytes) fail(columns.back() + " is not read here");
+        if (bytes == 0 || bytes > kMostFieldBytes) fail(columns.back() + " is not supported");
       }
       row_bytes_ += bytes;
     }

@@ -37,7 +37,7 @@ TimedPoses read_pose_lines(const fs::path& path, PoseLineRules rules) {
       try {
         (void)line.number(0);
       } catch (const Error&) {
-        line.fail("is no pose; a heading begins with '#'");
+        line.fail("is not a pose; a heading must begin with '#'");
       }
     }
     read.times.push_back(std::numeric_limits<double>::quiet_NaN());
@@ -102,7 +102,7 @@ std::map<std::uint64_t, std::string> list_frames(const std::vector<std::string>&
       if (number && frames.emplace(*number, frame).second) continue;
       if (left_out == nullptr) {
         throw Error(ErrorCode::format,
-                    number ? frame + " and " + frames.at(*number) + " are of one number"
+                    number ? frame + " and " + frames.at(*number) + " have the same number"
                            : frame + " has a number of more than 64 bits");
       }
       left_out->emplace(frame, number);

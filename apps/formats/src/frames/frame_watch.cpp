@@ -150,7 +150,7 @@ struct FrameWatch::Impl {
     try {
       for (const fs::path& file : files) {
         if (has_end(file)) continue;
-        return no_frame({FrameVerdict::unreadable, file.string() + ": the image has no end"});
+        return no_frame({FrameVerdict::unreadable, file.string() + ": the image is incomplete"});
       }
     } catch (const Error& error) {
       return no_frame({FrameVerdict::unreadable, error.what()});
@@ -209,7 +209,7 @@ struct FrameWatch::Impl {
           image = own + end;
           own = name;
         }
-        what = ": is of the number of " + own + "; a number is one frame's";
+        what = ": has the number of " + own + "; each frame needs a number of its own";
       }
       if (!twins.contains(image)) {
         found.bad.push_back({number.value_or(std::numeric_limits<std::uint64_t>::max()),
@@ -281,9 +281,10 @@ struct FrameWatch::Impl {
           return;
         }
         if (entry.state == State::taken) continue;
-        finding = fault(FrameVerdict::changed,
-                        finding.frame->image.string() +
-                            ": was taken with other contents; a number is one frame's");
+        finding =
+            fault(FrameVerdict::changed,
+                  finding.frame->image.string() +
+                      ": was integrated with other contents; each frame needs a number of its own");
       }
       if (finding.fault.verdict == FrameVerdict::used || !is_stable) continue;
       found.bad.push_back(set_bad(number, entry, std::move(finding)));

@@ -63,8 +63,8 @@ std::vector<fs::path> simulated_files(const fs::path& dir) {
       if (digits) is_own = is_own && frame_index(*digits).value_or(count) < count;
     }
     if (is_own) continue;
-    refuse((dir / file).string() + ": no frames of simulate (" + kSimulated +
-           " says which are); choose another folder");
+    refuse((dir / file).string() + ": simulate did not write this file (" + kSimulated +
+           " lists its files); choose another folder");
   }
   return files;
 }
@@ -100,9 +100,9 @@ void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
            std::to_string(frame.depth.size()) + " depths and " +
            std::to_string(frame.amplitude.size()) + " amplitudes");
   }
-  if (index != written_) refuse("comes after " + std::to_string(written_) + " frames");
+  if (index != written_) refuse("must be number " + std::to_string(written_));
   if (written_ > 0 && (frame.width != width_ || frame.height != height_)) {
-    refuse("is of another size than those before");
+    refuse("differs in size from the earlier ones");
   }
   width_ = frame.width, height_ = frame.height;
   ++written_;

@@ -44,7 +44,7 @@ constexpr std::uint16_t kFullScale = 65535;
 
 void check_index(std::size_t index, std::size_t count) {
   if (index < count) return;
-  refuse("there is no frame " + std::to_string(index) + " of " + std::to_string(count));
+  refuse("no frame " + std::to_string(index) + "; there are " + std::to_string(count) + " frames");
 }
 
 // The numbers of a 3x3 matrix, whatever lines they stand on.
@@ -58,7 +58,7 @@ void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
     for (std::size_t i = 0; i < line.words().size(); ++i) k.push_back(line.finite_number(i));
   }
   if (k.size() != 9) {
-    refuse("needs the nine numbers of a 3x3 matrix, has " + std::to_string(k.size()));
+    refuse("needs the nine numbers of a 3x3 matrix; found " + std::to_string(k.size()));
   }
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
     refuse("must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew)");
@@ -138,7 +138,7 @@ FrameFault size_fault(const fs::path& image, const PinholeCamera& camera) {
   const auto [width, height] = png_size(image);
   if (width == camera.width && height == camera.height) return {};
   return {FrameVerdict::wrong_size, image.string() + ": has " + size_text(width, height) +
-                                        " pixels, the sensor " +
+                                        " pixels, but the sensor has " +
                                         size_text(camera.width, camera.height)};
 }
 
@@ -157,7 +157,7 @@ void MaskFolder::require_mask_of_any(const std::vector<std::filesystem::path>& i
                   [this](const auto& image) { return is_there(file_of(image)); })) {
     return;
   }
-  refuse(folder_.string() + ": has no image of the name of a depth image" +
+  refuse(folder_.string() + ": no image is named like a depth image" +
          (images.empty() ? "" : ", as " + images.front().filename().string()));
 }
 
@@ -207,10 +207,10 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
   if (frames.depth_scale > 1) {
     throw Error(ErrorCode::format, dir.string() + ": the depth scale " +
                                        short_text(frames.depth_scale) +
-                                       " is over 1 m per unit: is it units per metre?");
+                                       " is over 1 m per unit. Is it in units per metre?");
   }
   if (sensor.empty() && !has_sensor) {
-    refuse(dir.string() + ": has no sensor.toml, so a sensor is needed");
+    refuse(dir.string() + ": has no sensor.toml; give a sensor");
   }
   const fs::path own = dir / kSensor;
   frames.sensor = sensor.empty()
@@ -275,7 +275,7 @@ std::string assumed_text(const FrameSequence& frames) {
     add("out_of_range", carves ? "\"carve\"" : "\"invalid\"",
         carves ? "65535: no surface up to max_range" : "65535: no reading");
   }
-  return std::string("the folder does not state ") + keys + "; assumed: " + values +
+  return std::string("the folder does not state ") + keys + "; assuming " + values +
          "; state it in " + kFrames;
 }
 

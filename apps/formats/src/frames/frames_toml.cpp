@@ -46,7 +46,7 @@ FramesToml read_frames_toml(const std::filesystem::path& dir) {
   said.recorded = is_second(reader, "poses", kPoses, kPoseFiles);
   if (const toml::node* node = reader.find("first_frame"); node != nullptr) {
     const auto number = node->value_exact<std::int64_t>();
-    if (!number || *number < 0) reader.fail("first_frame", "must be a whole number from 0 on");
+    if (!number || *number < 0) reader.fail("first_frame", "must be a whole number of at least 0");
     said.first_frame = static_cast<std::uint64_t>(*number);
   }
   if (reader.find("pose_time_offset") != nullptr) {
@@ -60,8 +60,8 @@ std::string frames_toml(const FramesToml& said) {
   std::string text = "# The images and poses of this folder, for viewgain.\nformat = " +
                      std::to_string(kTomlFormat) + "\n";
   if (said.depth_scale) {
-    text +=
-        "depth_scale = " + toml_float(*said.depth_scale) + "  # [m] per unit of the depth images\n";
+    text += "depth_scale = " + toml_float(*said.depth_scale) +
+            "  # metres per unit of the depth images\n";
   }
   if (said.out_of_range) {
     text += *said.out_of_range == Sensor::OutOfRange::carve

@@ -106,17 +106,17 @@ std::string stamps_misfit(const fs::path& dir, const TimedPoses& lines,
   std::vector<double> seconds = seconds_of(lines, said);
   std::erase_if(seconds, [](double time) { return !std::isfinite(time); });
   if (seconds.empty()) {
-    return (dir / kPoses).string() + ": no line has a time, the images have time stamps";
+    return (dir / kPoses).string() + ": the lines have no times, but the images have time stamps";
   }
   const auto [first, last] = std::minmax_element(seconds.begin(), seconds.end());
   const auto back = static_cast<double>(numbers.back());
   const double unit = unit_of(std::array{back});
   const double start = static_cast<double>(numbers.front()) * unit;
-  return (dir / kPoses).string() + ": the poses' times, " + fixed_text(*first) + " to " +
-         fixed_text(*last) + " s, and the images' time stamps, " + fixed_text(start) + " to " +
-         fixed_text(back * unit) + " s, do not overlap: no image has a pose within " +
+  return (dir / kPoses).string() + ": the times of the poses, " + fixed_text(*first) + " to " +
+         fixed_text(*last) + " s, and the time stamps of the images, " + fixed_text(start) +
+         " to " + fixed_text(back * unit) + " s, do not overlap: no image has a pose within " +
          short_text(kMostGap) +
-         " s. If their clocks differ, write the seconds to be added to the poses' times as "
+         " s. If their clocks differ, write the seconds to add to the times of the poses, "
          "pose_time_offset (" +
          fixed_text(said.pose_time_offset + start - *first) + " if both begin together) into " +
          in(dir);
@@ -148,7 +148,7 @@ std::string numbers_misfit(const fs::path& dir, const TimedPoses& lines,
   return (dir / kPoses).string() + ": has " + poses + ", but there are " +
          std::to_string(numbers.size()) + " images numbered " +
          range_text(numbers.front(), numbers.back()) +
-         ": which pose belongs to which image is not known. " + cure + " into " + in(dir);
+         ": it is not known which pose belongs to which image. " + cure + " into " + in(dir);
 }
 
 bool has_all(const PoseMatch& match, std::span<const std::uint64_t> numbers) {

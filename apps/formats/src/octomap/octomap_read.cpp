@@ -23,7 +23,7 @@ namespace {
 
 using namespace detail;
 
-static_assert(std::endian::native == std::endian::little, "OctoMap's files are little-endian");
+static_assert(std::endian::native == std::endian::little, "OctoMap files are little-endian");
 
 struct Header {
   bool binary = false;          ///< .bt
@@ -43,16 +43,16 @@ Header read_header(std::string_view bytes, const std::string& name) {
     throw Error(ErrorCode::format,
                 name +
                     ": is an OpenVDB file, not an OctoMap file; read it with load_vdb (in Python "
-                    "BeliefGrid.load), or in the program under a name that ends in .vdb");
+                    "BeliefGrid.load), or rename it to end in .vdb for the program");
   } else if (!bytes.starts_with(kOctomapFullMark)) {
-    throw Error(ErrorCode::format, name + ":1: is no OctoMap file: it does not begin with \"" +
+    throw Error(ErrorCode::format, name + ":1: is not an OctoMap file: it does not begin with \"" +
                                        std::string(kOctomapFullMark) + "\" or \"" +
                                        std::string(kOctomapBinaryMark) + "\"");
   }
   LineReader lines(name, bytes);
   bool has_type = false, has_size = false, has_resolution = false;
   for (;;) {
-    if (!lines.next()) lines.fail("the header is cut: it has no line \"data\"");
+    if (!lines.next()) lines.fail("the header is truncated: it has no line \"data\"");
     const auto& words = lines.words();
     if (words.empty() || words[0].front() == '#') continue;
     if (words[0] == "data") break;
@@ -60,7 +60,7 @@ Header read_header(std::string_view bytes, const std::string& name) {
       const std::string_view type = words.size() > 1 ? words[1] : std::string_view();
       if (type != "OcTree" && type != "ColorOcTree") {
         lines.fail("trees of the type " + quoted(type) +
-                   " are not read; OcTree and ColorOcTree are");
+                   " are not supported; OcTree and ColorOcTree are");
       }
       header.extra_bytes = type == "ColorOcTree" && !header.binary ? 3 : 0;
       has_type = true;
@@ -111,7 +111,7 @@ class TreeWalk {
     }
     if (nodes_ != header_.nodes) {
       throw Error(ErrorCode::format, name_ + ": has " + std::to_string(nodes_) +
-                                         " nodes, the header says " +
+                                         " nodes, but the header declares " +
                                          std::to_string(header_.nodes));
     }
   }
@@ -122,7 +122,7 @@ class TreeWalk {
   }
 
   const char* take(std::size_t count) {
-    if (bytes_.size() - at_ < count) fail("the tree is cut");
+    if (bytes_.size() - at_ < count) fail("the tree is truncated");
     const char* taken = bytes_.data() + at_;
     at_ += count;
     return taken;
@@ -264,12 +264,12 @@ BeliefGrid empty_grid(const GridConfig& config, const std::string& name) {
 BeliefGrid grid_from_octomap_bytes(std::string_view bytes, const OctomapConfig& config,
                                    const std::string& name) {
   if (!std::isfinite(config.occupied_from)) {
-    refuse("the log-odds from which a voxel is occupied is " + short_text(config.occupied_from));
+    refuse("the log-odds threshold of occupied voxels is " + short_text(config.occupied_from));
   }
   const Header header = read_header(bytes, name);
   const std::optional<Box> known = check_tree(bytes, header, name);
   if (!known && !config.workspace) {
-    throw Error(ErrorCode::format, name + ": has no known voxel, and no workspace is given");
+    throw Error(ErrorCode::format, name + ": has no known voxel; give a workspace");
   }
   BeliefGrid grid = empty_grid({header.resolution,
                                 config.workspace ? *config.workspace : *known,

@@ -128,9 +128,9 @@ Parts parts_of(const BeliefGrid& grid, Index3 shift) {
   const auto in_tree = [](std::int32_t v, std::int32_t by) {
     const std::int64_t shifted = std::int64_t{v} + by + kOctomapOffset;
     if (shifted < 0 || shifted > 2 * kOctomapOffset) {
-      throw Error(ErrorCode::capacity, "voxel index " + std::to_string(v) +
-                                           " does not fit into an OctoMap tree, which holds "
-                                           "-32768 to 32767");
+      throw Error(ErrorCode::capacity,
+                  "voxel index " + std::to_string(v) +
+                      " does not fit into an OctoMap tree; its range is -32768 to 32767");
     }
     return static_cast<std::int32_t>(shifted);
   };

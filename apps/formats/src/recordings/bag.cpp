@@ -59,7 +59,7 @@ class BagReader {
   void read() {
     read_records();
     warn_of_left_out(path_, without_connection_,
-                     "without their connection, which may be in a damaged chunk,", warnings_);
+                     "whose connection is missing, perhaps in a damaged chunk,", warnings_);
   }
 
  private:
@@ -100,12 +100,12 @@ class BagReader {
   void check_head(const BagFields& fields) {
     const auto encryptor = fields.find("encryptor");
     if (encryptor != fields.end() && !encryptor->second.empty()) {
-      file_.fail_at(begin_, "the bag is encrypted; decrypt it by `rosbag decrypt`");
+      file_.fail_at(begin_, "the bag is encrypted; decrypt it with `rosbag decrypt`");
     }
     if (checked([&] { return bag_number<std::uint64_t>(fields, "index_pos"); }) == 0) {
       warnings_.add(path_.string() +
-                    ": the bag has no index, since the recording was interrupted; it is read as "
-                    "far as it goes");
+                    ": the bag has no index, because the recording was interrupted; reading it up "
+                    "to the interruption");
     }
   }
 
@@ -121,7 +121,7 @@ class BagReader {
         header = records.text(), data = records.text();
       } catch (const Error&) {
         if (!why.empty()) return;
-        file_.fail_at(begin_, "a damaged chunk: its last record ends behind it");
+        file_.fail_at(begin_, "a damaged chunk: its last record ends outside it");
       }
       const BagFields inner = checked([&] { return bag_fields(header); });
       take(checked([&] { return BagRecord{bag_number<std::uint8_t>(inner, "op")}; }), inner, data);

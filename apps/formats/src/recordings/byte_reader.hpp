@@ -24,7 +24,7 @@ class ByteReader {
 
   std::string_view bytes(std::uint64_t count) {
     if (count > bytes_.size()) {
-      throw Error(ErrorCode::format, std::to_string(count) + " bytes are to follow, " +
+      throw Error(ErrorCode::format, std::to_string(count) + " bytes should follow, but " +
                                          std::to_string(bytes_.size()) + " are left");
     }
     const std::string_view taken = bytes_.substr(0, count);

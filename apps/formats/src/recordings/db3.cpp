@@ -86,7 +86,7 @@ class Db3Reader {
   Statement prepared(const char* sql) const {
     sqlite3_stmt* statement = nullptr;
     if (sqlite3_prepare_v2(db_.get(), sql, -1, &statement, nullptr) != SQLITE_OK) {
-      fail(ErrorCode::format, "is no rosbag2 file of SQLite");
+      fail(ErrorCode::format, "is not an SQLite file of rosbag2");
     }
     return {statement, &sqlite3_finalize};
   }
@@ -103,7 +103,7 @@ class Db3Reader {
     }
     if (code != SQLITE_DONE) {
       warnings_.add(path_.string() + ": " + sqlite3_errmsg(db_.get()) +
-                    ": the file is cut or damaged; it is read as far as it goes");
+                    ": the file is truncated or damaged; reading it up to the damage");
     }
     return false;
   }
@@ -132,8 +132,8 @@ class Db3Reader {
       return;
     }
     warnings_.add(journal.string() +
-                  ": is not read, since the recorder was interrupted; `sqlite3 FILE.db3 vacuum` "
-                  "puts its messages into the file");
+                  ": is not read, because the recorder was interrupted; add its messages to the "
+                  "file with `sqlite3 FILE.db3 vacuum`");
   }
 
   const std::filesystem::path& path_;

@@ -73,7 +73,7 @@ DepthImage decode_depth(const DepthMessage& message, double unit) {
   const auto fail = [](const std::string& what) -> void { throw Error(ErrorCode::format, what); };
   if (depth_likelihood(message.encoding) == 0) {
     fail("the encoding " + viewgain::quoted(message.encoding) +
-         " is no depth (16UC1, 32FC1, mono16 are)");
+         " is not a depth encoding (supported: 16UC1, 32FC1, mono16)");
   }
   if (message.is_compressed) return decode_png(message, unit);
   const std::size_t bytes = message.encoding == "32FC1" ? 4 : 2;

@@ -37,8 +37,8 @@ class InputFile {
   std::string_view read(std::uint64_t count) {
     if (count > left()) fail("the file ends early");
     if (count > kMostRecordBytes) {
-      fail("a record of " + std::to_string(count) + " bytes; at most " +
-           std::to_string(kMostRecordBytes) + " are read");
+      fail("a record of " + std::to_string(count) + " bytes; the maximum is " +
+           std::to_string(kMostRecordBytes));
     }
     buffer_.resize(count);
     in_.read(buffer_.data(), static_cast<std::streamsize>(count));
@@ -74,11 +74,11 @@ class InputFile {
   void warn_of_cut(std::uint64_t begin, Warnings& warnings) const {
     warnings.add(at(begin,
                     "the file ends here, within a record: the recording was interrupted or the "
-                    "file is cut; it is read as far as it goes"));
+                    "file is truncated; reading it up to here"));
   }
   /// `why` a chunk could not be unpacked as a whole.
   void warn_of_chunk(std::uint64_t begin, const std::string& why, Warnings& warnings) const {
-    warnings.add(at(begin, "a damaged chunk: " + why + "; it is read as far as it goes"));
+    warnings.add(at(begin, "a damaged chunk: " + why + "; reading it up to the damage"));
   }
   [[nodiscard]] std::string at(std::uint64_t offset, const std::string& what) const {
     return path_.string() + ": byte " + std::to_string(offset) + ": " + what;

@@ -43,7 +43,7 @@ class McapReader {
     while (read_record()) {
     }
     warn_of_left_out(path_, without_channel_,
-                     "without their channel, which may be in a damaged chunk,", warnings_);
+                     "whose channel is missing, perhaps in a damaged chunk,", warnings_);
   }
 
  private:
@@ -121,7 +121,7 @@ class McapReader {
     const auto* data = reinterpret_cast<const Bytef*>(unpacked_.data());
     if (why.empty() && checksum != 0 &&
         crc32(0, data, static_cast<uInt>(unpacked_.size())) != checksum) {
-      warnings_.add(file_.at(begin_, "a chunk does not have its checksum and is left out"));
+      warnings_.add(file_.at(begin_, "a chunk does not match its checksum and is left out"));
       return;
     }
     if (!why.empty() && !is_cut) {

@@ -41,7 +41,7 @@ class MessageImport {
     read_all([this](const Message& message) { note(message); });
     if (bad_transforms_ > 0) {
       warnings_.add(std::to_string(bad_transforms_) +
-                    " transforms are not rigid or damaged and are left out");
+                    " transforms are damaged or not rigid and are left out");
     }
     report_.depth_topic = topics_.chosen_depth_topic(source_, config_.depth_topic);
     join_trees();
@@ -59,7 +59,7 @@ class MessageImport {
     say_what_has_no_pose();
     if (stamps_back_ > 0) {
       warnings_.add(std::to_string(stamps_back_) +
-                    " images have a stamp before that of an earlier image: the clock was set back, "
+                    " images have a stamp before that of an earlier image; the clock was set back, "
                     "or the recording holds two runs");
     }
     if (report_.frames == 0) dropped_.fail_without_frames(source_);
@@ -102,8 +102,8 @@ class MessageImport {
     if (is_chosen && is_tf) {
       throw Error(ErrorCode::format,
                   source_.string() + ": " + message.topic.name + " (" + type +
-                      ") has the transforms of all frames, not the poses of one body; leave out "
-                      "--pose-topic, and choose the world by --world");
+                      ") holds the transforms of all frames, not the poses of one body; leave out "
+                      "--pose-topic and choose the world with --world");
     }
     std::vector<TransformMessage> transforms;
     try {
@@ -119,10 +119,10 @@ class MessageImport {
       if (is_chosen && body_frame_.empty()) body_frame_ = child;
       if (is_chosen && body_frame_ != child) {
         throw Error(ErrorCode::format,
-                    of_message(message, "has the poses of several bodies, " +
+                    of_message(message, "holds the poses of several bodies, " +
                                             viewgain::quoted(body_frame_) + " and " +
                                             viewgain::quoted(child) +
-                                            "; give a topic of one (--pose-topic)"));
+                                            "; give a topic with one body (--pose-topic)"));
       }
       const bool is_good = is_chosen
                                ? poses_.add(header.frame, kBody, header.stamp, numbers, false)
@@ -178,8 +178,8 @@ class MessageImport {
     } else if (config_.sensor) {
       report_.camera = config_.sensor->camera;
       warnings_.add("no camera_info belongs to " + report_.depth_topic +
-                    ", and the intrinsics are the sensor's; give those of the camera by "
-                    "--intrinsics (camera_info of other images: " +
+                    "; using the sensor's intrinsics. Give those of the camera with --intrinsics "
+                    "(camera_info of other images: " +
                     topics_.listed_infos() + ")");
     } else {
       throw Error(
@@ -209,15 +209,15 @@ class MessageImport {
     Way way;
     if (config_.pose_topic.empty()) {
       if (tree_.empty()) {
-        fail("has no transforms: record /tf and /tf_static, or give a topic of poses" +
-             topics_.listed_poses() + " by --pose-topic");
+        fail("has no transforms; record /tf and /tf_static, or give a topic of poses" +
+             topics_.listed_poses() + " with --pose-topic");
       }
       way.moving = tree_.chain(report_.world, frame);
     } else {
       if (poses_.empty()) {
         fail(config_.pose_topic +
-             " has no poses (PoseStamped, PoseWithCovarianceStamped, TransformStamped, Odometry); "
-             "topics are " +
+             " holds no poses (PoseStamped, PoseWithCovarianceStamped, TransformStamped, "
+             "Odometry); topics: " +
              topics_.listed());
       }
       way.moving = poses_.chain(report_.world, kBody);
@@ -228,16 +228,15 @@ class MessageImport {
       } else if (config_.sensor && config_.sensor->T_flange_camera) {
         way.T_body_camera = *config_.sensor->T_flange_camera;
       } else {
-        fail(
-            config_.pose_topic +
-            " does not say where the camera is on its body; give it behind the topic (--pose-topic "
-            "TOPIC,tx,ty,tz,qx,qy,qz,qw)");
+        fail(config_.pose_topic +
+             " does not state the camera's pose on its body; give it after the topic "
+             "(--pose-topic TOPIC,tx,ty,tz,qx,qy,qz,qw)");
       }
     }
     if (way.moving.empty()) {
       fail("the frame " + viewgain::quoted(frame) +
-           " of the images has no parent, so that the camera would never move; record the "
-           "transform that leads to it, or choose the world by --world");
+           " of the images has no parent, so the camera would never move; record the transform "
+           "that leads to it, or choose the world with --world");
     }
     return ways_.emplace(frame, std::move(way)).first->second;
   } catch (const Error& error) {
@@ -309,10 +308,9 @@ class MessageImport {
     if (!is_wrong_order_) is_wrong_order_ = is_wrong_byte_order(image);
     if (is_wrong_order_.value_or(false)) {
       is_wrong_order_ = false;  // said once
-      warnings_.add(
-          of_message(message,
-                     "the image would be much smoother with its bytes in the other order; "
-                     "is its is_bigendian wrong?"));
+      warnings_.add(of_message(message,
+                               "the image would be much smoother with its bytes in the other "
+                               "order. Is its is_bigendian wrong?"));
     }
     const GrayImage pixels = gray_image(depth, scale_);
     report_.readings += static_cast<std::uint64_t>(
@@ -382,8 +380,8 @@ ImportReport import_messages(const fs::path& source, const std::vector<fs::path>
                              const ImportConfig& config) {
   if (!config.masks.empty() || !config.confidences.empty()) {
     refuse(
-        "a recording of messages has no image files that masks belong to; give masks to what "
-        "reads the imported frames");
+        "a recording of messages has no image files for masks to belong to; give the masks to the "
+        "command that reads the imported frames");
   }
   return MessageImport(source, files, format, config).run(out);
 }

@@ -93,7 +93,7 @@ std::string MessageTopics::chosen_depth_topic(const std::filesystem::path& sourc
     }
     if (names.size() > 1) {
       fail("several topics have depth images: " + viewgain::listed(texts) +
-           "; choose one by --depth-topic");
+           "; choose one with --depth-topic");
     }
     if (names.size() == 1) return names.front();
   }
@@ -102,7 +102,7 @@ std::string MessageTopics::chosen_depth_topic(const std::filesystem::path& sourc
   }
   fail(topics_.empty() ? "holds no message"
                        : "no topic has depth images (sensor_msgs/Image of 16UC1, 32FC1 or mono16, "
-                         "or compressedDepth); topics are " +
+                         "or compressedDepth); topics: " +
                              listed());
   return {};
 }
@@ -155,12 +155,12 @@ bool MessageTopics::is_rectified(const std::string& depth_topic, const CameraInf
       name.find("rect") != std::string::npos && (has_distortion || info.p[0] != 0);
   if (!is_rectified && has_distortion && name.find("raw") == std::string::npos) {
     warnings.add("the name of " + depth_topic +
-                 " says neither raw nor rect; its images are taken for raw ones, with the "
-                 "distortion of camera_info");
+                 " contains neither raw nor rect; its images are taken as raw, with the distortion "
+                 "of camera_info");
   }
   if (is_rectified && info.r != kIdentity && info.r != std::array<double, 9>{}) {
     warnings.add("the camera_info of " + depth_topic +
-                 " has a rotation R; the images' frame is taken for the rectified one");
+                 " has a rotation R; the images' frame is taken as the rectified one");
   }
   return is_rectified;
 }

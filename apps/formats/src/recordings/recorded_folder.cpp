@@ -35,8 +35,8 @@ std::vector<fs::path> imported_files(const fs::path& dir) {
   }
   for (const fs::path& file : files) {
     if (own.contains(file.string())) continue;
-    refuse((dir / file).string() + ": no file of import (" + kImported +
-           " says which are); choose another folder");
+    refuse((dir / file).string() + ": import did not write this file (" + kImported +
+           " lists its files); choose another folder");
   }
   return files;
 }

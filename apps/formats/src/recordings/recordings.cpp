@@ -35,10 +35,11 @@ RecordingFormat file_format(const fs::path& file) {
   if (head.starts_with("#ROSBAG V")) return RecordingFormat::rosbag1;
   if (small_ending(file) == ".json") return RecordingFormat::transforms;
   if (head.starts_with("\x28\xb5\x2f\xfd")) {
-    throw Error(ErrorCode::format, file.string() + ": is packed as a whole; unpack it by `unzstd`");
+    throw Error(ErrorCode::format,
+                file.string() + ": is compressed as a whole; unpack it with `unzstd`");
   }
   throw Error(ErrorCode::format,
-              file.string() + ": is no recording (MCAP, rosbag2, bag, transforms.json)");
+              file.string() + ": is not a recording (MCAP, rosbag2, bag, transforms.json)");
 }
 
 // Files of one recording in their order: NAME_2.mcap comes before NAME_10.mcap.
@@ -80,7 +81,7 @@ void check(const fs::path& source, const ImportConfig& config) {
 
 void require_sensor_for_distortion(const PinholeCamera& camera, const ImportConfig& config) {
   if (config.sensor || !camera.has_distortion()) return;
-  refuse("the images have lens distortion, which only a sensor file can hold; give --sensor");
+  refuse("the images have lens distortion, which only a sensor file can describe; give --sensor");
 }
 
 void check_recorded_camera(const PinholeCamera& camera) {
@@ -94,7 +95,7 @@ void check_recorded_camera(const PinholeCamera& camera) {
     return;
   }
   refuse("camera: the principal point (" + short_text(camera.cx) + ", " + short_text(camera.cy) +
-         ") px is far outside of the image of " + size_text(camera.width, camera.height) + " px");
+         ") px is far outside the image of " + size_text(camera.width, camera.height) + " px");
 }
 
 RecordingFormat recording_format(const fs::path& source) {
@@ -114,16 +115,16 @@ RecordingFormat recording_format(const fs::path& source) {
     if (!message_files(source, ending).empty()) found.emplace_back(ending, format);
   }
   if (found.size() > 1) {
-    throw Error(ErrorCode::format, source.string() + ": holds recordings of two kinds, " +
+    throw Error(ErrorCode::format, source.string() + ": contains recordings of two kinds, " +
                                        found[0].first + " and " + found[1].first + "; name a file");
   }
   if (found.empty()) {
     for (const std::string& name : names_in(source)) {
       if (small_ending(name) == ".zstd") (void)file_format(source / name);
     }
-    throw Error(
-        ErrorCode::format,
-        source.string() + ": holds no recording (depth.txt, transforms.json, .mcap, .db3 or .bag)");
+    throw Error(ErrorCode::format,
+                source.string() +
+                    ": contains no recording (depth.txt, transforms.json, .mcap, .db3 or .bag)");
   }
   return found[0].second;
 }
@@ -146,7 +147,7 @@ ImportReport import_recording(const fs::path& source, const fs::path& out,
     for (const fs::path& file : files) {
       refuse_link_out(source, file);
       if (file_format(file) != format) {
-        throw Error(ErrorCode::format, file.string() + ": is not what its name says");
+        throw Error(ErrorCode::format, file.string() + ": its contents do not match its name");
       }
     }
   }

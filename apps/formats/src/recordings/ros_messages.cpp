@@ -32,8 +32,9 @@ void split_compressed(std::string_view bytes, DepthMessage& depth) {
   depth.data = reader.bytes(reader.left());
   if (!depth.data.starts_with("\x89PNG")) {
     throw Error(ErrorCode::format,
-                "compressedDepth other than PNG (such as RVL) is not read; record the raw images, "
-                "or republish them: `ros2 run image_transport republish compressedDepth raw`");
+                "compressedDepth is only supported as PNG, not as RVL or others; record the raw "
+                "images, or republish them: `ros2 run image_transport republish compressedDepth "
+                "raw`");
   }
 }
 
@@ -135,11 +136,10 @@ PinholeCamera camera_of(const CameraInfoMessage& info, bool is_rectified) {
     const bool is_brown = info.model == "plumb_bob" || info.model == "rational_polynomial";
     const auto five = info.d.begin() + std::min<std::ptrdiff_t>(5, std::ssize(info.d));
     if (!is_brown || !std::all_of(five, info.d.end(), is_zero)) {
-      throw Error(ErrorCode::format,
-                  "the distortion model " + viewgain::quoted(info.model) + " with " +
-                      std::to_string(info.d.size()) +
-                      " coefficients is not supported (k1, k2, p1, p2, k3 are); record rectified "
-                      "images");
+      throw Error(ErrorCode::format, "the distortion model " + viewgain::quoted(info.model) +
+                                         " with " + std::to_string(info.d.size()) +
+                                         " coefficients is not supported (supported: k1, k2, p1, "
+                                         "p2, k3); record rectified images");
     }
     std::copy(info.d.begin(), five, camera.distortion.begin());
   }

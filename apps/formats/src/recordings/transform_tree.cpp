@@ -72,7 +72,7 @@ void TransformTree::finish(Warnings& warnings) {
     warnings.add("stamps of " + viewgain::quoted(edge.parent) + " to " +
                  viewgain::quoted(edge.child) + " go back by " +
                  short_text(static_cast<double>(edge.went_back / 1'000'000) * 1e-3) +
-                 " s: the clock was set back, or the recording holds two runs");
+                 " s; the clock was set back, or the recording holds two runs");
   }
 }
 
@@ -105,9 +105,10 @@ TransformTree::Chain TransformTree::chain(std::string& world, const std::string&
     if (parents == 0) roots.insert(at);
   }
   if (edges == 0) {
-    fail("no transform leads to the frame " + viewgain::quoted(frame) + "; there are " +
-         listed_frames(frames()) +
-         "; record /tf_static, too, or give a frame and the camera's pose in it by --camera-frame");
+    fail("no transform leads to the frame " + viewgain::quoted(frame) +
+         "; existing frames: " + listed_frames(frames()) +
+         "; record /tf_static, too, or give a frame and the camera's pose in it with "
+         "--camera-frame");
   }
   if (edges >= joined.size()) {
     fail("the transforms of " + listed_frames(joined) +
@@ -115,12 +116,12 @@ TransformTree::Chain TransformTree::chain(std::string& world, const std::string&
   }
   if (world.empty() && roots.size() > 1) {
     fail("the frame " + viewgain::quoted(frame) +
-         " hangs below several worlds: " + listed_frames(roots) + "; choose one by --world");
+         " belongs to several worlds: " + listed_frames(roots) + "; choose one with --world");
   }
   if (world.empty()) world = *roots.begin();
   if (!joined.contains(world)) {
-    fail("no transforms join the world " + viewgain::quoted(world) + " and the frame " +
-         viewgain::quoted(frame) + ", which has " + listed_frames(joined) + " (--world)");
+    fail("no transforms connect the world " + viewgain::quoted(world) + " and the frame " +
+         viewgain::quoted(frame) + ", which belongs to " + listed_frames(joined) + " (--world)");
   }
   Chain way;
   for (std::string at = world; at != frame;) {

@@ -49,9 +49,10 @@ class JsonCamera {
       const Json* const found = find(key);
       const bool is_set = found != nullptr && *found != 0 && *found != Json(false);
       if (!is_set && known.contains(model)) continue;
-      throw Error(ErrorCode::format, file_.string() + ": the camera model " +
-                                         viewgain::quoted(is_set ? key : model.c_str()) +
-                                         " is not supported (pinhole with k1, k2, p1, p2, k3 is)");
+      throw Error(ErrorCode::format,
+                  file_.string() + ": the camera model " +
+                      viewgain::quoted(is_set ? key : model.c_str()) +
+                      " is not supported (supported: pinhole with k1, k2, p1, p2, k3)");
     }
   }
 
@@ -68,7 +69,8 @@ class JsonCamera {
       *size = static_cast<int>(value);
     }
     if ((camera.width == 0) != (camera.height == 0)) {
-      throw Error(ErrorCode::format, file_.string() + ": has one of w and h; both are needed");
+      throw Error(ErrorCode::format,
+                  file_.string() + ": has only one of w and h; both are required");
     }
     if (camera.width == 0) camera.width = image_size[0], camera.height = image_size[1];
     // A frame's angle comes before the file's focal length.
@@ -124,7 +126,7 @@ ReadPose json_pose(const Json& frame, const std::string& where) {
   }
   std::vector<double> numbers;
   for (const Json& row : *matrix) {
-    if (!row.is_array()) return lost("is no matrix");
+    if (!row.is_array()) return lost("is not a matrix");
     for (const Json& value : row) {
       if (!value.is_number() || !std::isfinite(value.get<double>())) return lost("is not finite");
       numbers.push_back(value.get<double>());
@@ -179,8 +181,9 @@ PinholeCamera camera_of_frames(const fs::path& file, const Json& json,
   for (const Json& frame : json["frames"]) {
     const PinholeCamera camera = JsonCamera(file, json, frame).camera(size);
     if (camera.fx != 0 && known && *known != camera) {
-      throw Error(ErrorCode::format, file.string() + ": frame " + std::to_string(number) +
-                                         " has another camera; one for all is supported");
+      throw Error(ErrorCode::format,
+                  file.string() + ": frame " + std::to_string(number) +
+                      " has a different camera; only one camera for all frames is supported");
     }
     if (camera.fx != 0) known = camera;
     ++number;
@@ -202,7 +205,7 @@ ImportReport import_transforms(const fs::path& file, const fs::path& out,
   };
   const Json json = app::parse_or_null(folder_file_bytes(file, kMostJsonBytes));
   if (!json.is_object() || !json.contains("frames") || !json["frames"].is_array()) {
-    fail("is no JSON with a list 'frames'");
+    fail("is not JSON with a list 'frames'");
   }
   const JsonCamera said(file, json, json);
   said.refuse_models();
@@ -213,7 +216,7 @@ ImportReport import_transforms(const fs::path& file, const fs::path& out,
   std::uint64_t number = 0;
   for (const Json& frame : json["frames"]) {
     const std::string where = file.string() + ": frame " + std::to_string(number);
-    if (!frame.is_object()) fail("frame " + std::to_string(number) + " is no object");
+    if (!frame.is_object()) fail("frame " + std::to_string(number) + " is not an object");
     JsonCamera(file, json, frame).refuse_models();
     const JsonCamera own(file, frame, frame);
     std::string image = own.text("depth_file_path");
@@ -224,11 +227,11 @@ ImportReport import_transforms(const fs::path& file, const fs::path& out,
       dropped.add({FrameVerdict::unreadable, where + ": names no depth image (depth_file_path)"});
     } else if (inside.empty()) {
       fail("frame " + std::to_string(number) + ": the image " + viewgain::quoted(image) +
-           " is outside of the recording");
+           " is outside the recording");
     } else if (pose.fault.verdict != FrameVerdict::used) {
       dropped.add(pose.fault);
     } else if (!names.insert(inside).second) {
-      dropped.add({FrameVerdict::changed, where + ": an earlier frame has named this image"});
+      dropped.add({FrameVerdict::changed, where + ": an earlier frame uses the same image"});
     } else {
       refuse_link_out(source, source / inside);
       frames.push_back({number, source / inside, std::move(pose)});

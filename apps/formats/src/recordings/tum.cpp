@@ -26,7 +26,7 @@ TimedPoses read_timed_poses(const fs::path& path) {
     return pose.fault.verdict == FrameVerdict::used;
   });
   if (!has_any) {
-    throw Error(ErrorCode::format, read.poses.empty() ? path.string() + ": holds no pose"
+    throw Error(ErrorCode::format, read.poses.empty() ? path.string() + ": contains no pose"
                                                       : read.poses.front().fault.what);
   }
   return read;
@@ -56,13 +56,13 @@ std::vector<RecordedFrame> read_tum_frames(const fs::path& source, double max_ti
   for (LineReader line(list.string(), bytes); line.next();) {
     if (line.words().empty() || line.words().front().front() == '#') continue;
     if (line.words().size() != 2) {
-      line.fail("expected a timestamp and an image, found " + std::to_string(line.words().size()) +
+      line.fail("expected a timestamp and an image; found " + std::to_string(line.words().size()) +
                 " words");
     }
     // A recording may be of anybody, and names no files of elsewhere.
     const fs::path image = path_inside(std::string(line.words()[1]));
     if (image.empty()) {
-      line.fail("the image " + quoted(line.words()[1]) + " is outside of the recording");
+      line.fail("the image " + quoted(line.words()[1]) + " is outside the recording");
     }
     const double time = line.finite_number(0);
     const ReadPose* const pose = nearest(poses, time, max_time_gap);
@@ -74,14 +74,14 @@ std::vector<RecordedFrame> read_tum_frames(const fs::path& source, double max_ti
     } else if (pose->fault.verdict != FrameVerdict::used) {
       dropped.add(pose->fault);
     } else if (!names.insert(image).second) {
-      dropped.add({FrameVerdict::changed, where + ": an earlier line has named this image"});
+      dropped.add({FrameVerdict::changed, where + ": an earlier line uses the same image"});
     } else {
       refuse_link_out(source, source / image);
       frames.push_back({number, source / image, *pose});
     }
     ++number;
   }
-  if (number == 0) throw Error(ErrorCode::format, list.string() + ": names no image");
+  if (number == 0) throw Error(ErrorCode::format, list.string() + ": lists no image");
   return frames;
 }
 
@@ -90,7 +90,7 @@ std::vector<RecordedFrame> read_tum_frames(const fs::path& source, double max_ti
 ImportReport import_tum(const fs::path& source, const fs::path& out, const ImportConfig& config) {
   ImportReport report;
   if (!(config.camera.fx > 0) && !config.sensor) {
-    refuse(source.string() + ": a recording in TUM's layout does not say its camera; give one");
+    refuse(source.string() + ": a recording in TUM's layout does not state its camera; give one");
   }
   report.camera = config.camera.fx > 0 ? config.camera : config.sensor->camera;
   Dropped dropped{report.bad};

@@ -120,8 +120,9 @@ std::string unpack_bz2(std::string_view packed, std::uint64_t size, std::string&
 std::string unpack(std::string_view packing, std::string_view packed, std::uint64_t size,
                    std::string& out) {
   if (size > kMostRecordBytes) {
-    throw Error(ErrorCode::format, "a chunk of " + std::to_string(size) + " bytes; at most " +
-                                       std::to_string(kMostRecordBytes) + " are read");
+    throw Error(ErrorCode::format, "a chunk of " + std::to_string(size) +
+                                       " bytes; the maximum is " +
+                                       std::to_string(kMostRecordBytes));
   }
   if (packing.empty() || packing == "none") {
     out.assign(packed);
@@ -131,8 +132,9 @@ std::string unpack(std::string_view packing, std::string_view packed, std::uint6
   if (packing == "zstd") return unpack_zstd(packed, size, out);
   if (packing == "lz4") return unpack_lz4(packed, size, out);
   if (packing == "bz2") return unpack_bz2(packed, size, out);
-  throw Error(ErrorCode::format, "chunks packed by '" + std::string(packing.substr(0, 32)) +
-                                     "'; zstd, lz4, bz2 and plain ones are read");
+  throw Error(ErrorCode::format,
+              "chunks compressed with '" + std::string(packing.substr(0, 32)) +
+                  "' are not supported; zstd, lz4, bz2 and uncompressed ones are");
 }
 
 }  // namespace viewgain

@@ -21,7 +21,7 @@ namespace {
 
 enum class Cell : std::uint8_t { free, unknown, occupied };
 
-// The hazard's cells and what is in them; a cell that is not all free is unknown.
+// The hazard's cells and their contents; a cell that is not entirely free is unknown.
 class Cells {
  public:
   explicit Cells(const VoxelScene& scene)
@@ -54,7 +54,7 @@ class Cells {
   }
 
   [[nodiscard]] const VoxelBox& box() const { return box_; }
-  // What is beyond the box is too far from known surface to be asked.
+  // Space beyond the box is too far from known surface to matter.
   [[nodiscard]] Cell operator[](Index3 c) const {
     return box_.contains(c) ? states_[place(c)] : Cell::occupied;
   }
@@ -75,7 +75,7 @@ class Cells {
   std::vector<Cell> states_;
 };
 
-// Of the faces in a cube: area to be expected by the direction to which they look, and where.
+// Faces in a cube: expected area by direction, and position.
 struct Place {
   std::array<double, 6> areas{};                       // -x, +x, -y, +y, -z, +z [m²]
   Eigen::Vector3d weighted = Eigen::Vector3d::Zero();  // [m³]
@@ -85,7 +85,7 @@ struct Place {
     for (const double a : areas) sum += a;
     return sum;
   }
-  // Of two sides that look away from one another the better.
+  // The better of two opposite sides.
   [[nodiscard]] Eigen::Vector3d outward() const {
     Eigen::Vector3d n;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -96,7 +96,7 @@ struct Place {
   }
 };
 
-// Where faces look out of the world's unknown places, the place of most area first.
+// Places where faces look out of unknown space, largest area first; world frame.
 struct Target {
   Eigen::Vector3d at, outward;  // world [m]
   double area;                  // [m²]
@@ -105,7 +105,7 @@ struct Target {
 std::vector<Target> targets_in(const VoxelScene& scene, double distance, double spacing) {
   for (const double length : {distance, spacing}) {
     if (length > 0 && std::isfinite(length)) continue;
-    refuse("views by the hazard: a length must not be " + short_text(length) + " m");
+    refuse("hazard views: a length must not be " + short_text(length) + " m");
   }
   const HazardField& hazard = scene.hazard();
   const double edge = hazard.voxel_size() * (1 << hazard.cell_shift());
@@ -153,7 +153,7 @@ std::vector<Target> targets_in(const VoxelScene& scene, double distance, double 
   return targets;
 }
 
-// At an angle [rad] to n, turned about it by `turn` [rad].
+// Direction at an angle [rad] to n, rotated about it by `turn` [rad].
 Eigen::Vector3d tilted(const Eigen::Vector3d& n, double tilt, double turn) {
   const Eigen::Vector3d beside = n.unitOrthogonal();
   return std::cos(tilt) * n +
@@ -198,7 +198,7 @@ std::vector<Pose> reachable_hazard_views(const VoxelScene& scene, const ReachReg
   std::vector<Pose> views;
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t attempt = 0; attempt < kTries; ++attempt) {
-      // Sequences of which any number of members in a row is spread evenly.
+      // Sequences whose consecutive members are spread evenly.
       const auto n = static_cast<double>(i + attempt * count + 1);
       const double place = sum * fraction(n * 0.6180339887498949);
       const std::size_t k = static_cast<std::size_t>(

@@ -12,7 +12,8 @@
 namespace viewgain {
 namespace {
 
-constexpr std::size_t kMostSpreadOut = 20'000;  // the order takes time by their square
+// The time of the ordering grows with the square of their number.
+constexpr std::size_t kMostSpreadOut = 20'000;
 constexpr double kDegree = std::numbers::pi / 180;
 
 std::vector<Pose> sequence_poses(const PoseSetRequest& request) {
@@ -33,10 +34,10 @@ Eigen::Vector3d direction_from(const Eigen::Vector3d& center, const Pose& pose) 
   return (pose.translation() - center).normalized();
 }
 
-// Each pose the farthest, by angle, from the start's and from those before it.
+// Orders poses so that each is the farthest, by angle, from the start's and all before it.
 std::vector<Pose> spread_out(const std::vector<Pose>& poses, const PoseSetRequest& request) {
   if (poses.size() > kMostSpreadOut) {
-    refuse("at most " + std::to_string(kMostSpreadOut) + " poses can be spread out, not " +
+    refuse("at most " + std::to_string(kMostSpreadOut) + " poses can be spread out; found " +
            std::to_string(poses.size()));
   }
   std::vector<double> nearest(poses.size(), -1);  // cosine of the angle to the nearest one taken
@@ -61,7 +62,7 @@ std::vector<Pose> spread_out(const std::vector<Pose>& poses, const PoseSetReques
   return ordered;
 }
 
-// The shells, or else those round the boxes.
+// The shells, or those around the boxes.
 std::vector<ReachRegion::Shell> shells_of(const ReachRegion& reach) {
   if (!reach.shells.empty()) return reach.shells;
   std::vector<ReachRegion::Shell> shells;
@@ -72,17 +73,17 @@ std::vector<ReachRegion::Shell> shells_of(const ReachRegion& reach) {
   return shells;
 }
 
-// Where the robot can put the camera, in equal numbers for each of its shells if these have room.
+// Reachable positions, in equal numbers for each shell if possible.
 std::vector<Pose> poses_in_reach(const std::vector<ReachRegion::Shell>& shells, std::size_t count,
                                  const PoseSetRequest& request) {
-  constexpr std::size_t kMostDrawn = 1'000'000;  // of a shell
+  constexpr std::size_t kMostDrawn = 1'000'000;  // poses of one shell
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < shells.size(); ++i) {
     const ReachRegion::Shell& shell = shells[i];
     const std::size_t wanted = count * (i + 1) / shells.size();
     if (!(shell.max_radius > 0)) continue;
     const double least = std::max(shell.min_radius, 1e-6 * shell.max_radius);
-    // More of them begin with the same ones.
+    // A larger count appends poses.
     std::vector<Pose> found;
     for (std::size_t drawn = count; drawn <= kMostDrawn; drawn *= 2) {
       found.clear();
@@ -139,7 +140,7 @@ PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request)
   } else if (generator == "sequence") {
     set.poses = sequence_poses(request);
   } else {
-    refuse("generator \"" + std::string(generator) + "\": no such set of poses");
+    refuse("generator \"" + std::string(generator) + "\": unknown set of poses");
   }
   if (request.spread_out) set.poses = spread_out(set.poses, request);
   return set;
@@ -147,7 +148,7 @@ PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request)
 
 double filling_distance(const Sensor& sensor, double radius) {
   const PinholeCamera& camera = sensor.camera;
-  // A camera of one line has no second side.
+  // A camera with one line has no second side.
   const double half_x = std::atan(0.5 * camera.width / camera.fx);
   const double half_y = camera.height > 1 ? std::atan(0.5 * camera.height / camera.fy) : half_x;
   return std::max(sensor.working_distance, radius / std::sin(std::min(half_x, half_y)));

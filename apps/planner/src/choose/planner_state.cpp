@@ -70,17 +70,17 @@ StopReason reason_of(const LineReader& reader) {
   for (const StopReason reason : kReasons) {
     if (reader.words()[1] == stop_reason_name(reason)) return reason;
   }
-  reader.fail(quoted(reader.words()[1]) + " is no reason to stop");
+  reader.fail(quoted(reader.words()[1]) + " is not a stop reason");
 }
 
 FrameVerdict verdict_of(const LineReader& reader) {
   const auto& names = kFrameVerdictNames;
   const auto found = std::find(names.begin(), names.end(), reader.words()[1]);
-  if (found == names.end()) reader.fail(quoted(reader.words()[1]) + " is no verdict");
+  if (found == names.end()) reader.fail(quoted(reader.words()[1]) + " is not a verdict");
   return static_cast<FrameVerdict>(found - names.begin());
 }
 
-// What a line is and how many words it has.
+// Keywords of lines and their numbers of words.
 struct Entry {
   std::string_view name;
   std::size_t words;
@@ -131,11 +131,11 @@ PlannerState state_of(const std::string& name, std::string_view text) {
       reader.fail("entry " + quoted(key) + " has " + std::to_string(reader.words().size() - 1) +
                   " values, not " + std::to_string(kEntries[at].words - 1));
     }
-    if (at < 4 && at != needed++) reader.fail("entry " + quoted(key) + " is not in its place");
+    if (at < 4 && at != needed++) reader.fail("entry " + quoted(key) + " is out of place");
     if (key == "version") {
       const std::uint64_t version = reader.count(1, kMost);
       if (version >= kOldest && version <= kVersion) continue;
-      reader.fail("a planner's state of version " + std::to_string(version) +
+      reader.fail("the planner's state has version " + std::to_string(version) +
                   "; this library reads versions " + std::to_string(kOldest) + " to " +
                   std::to_string(kVersion));
     } else if (key == "seen_area") {

@@ -14,25 +14,25 @@
 
 namespace viewgain::detail {
 
-/// What a planner remembers beside its map. A value type.
+/// The planner's state in addition to its map. A value type.
 struct PlannerState {
-  double seen_area = 0;                 ///< the sum of what the views showed of new surface [m²]
-  FrameCounts frames;                   ///< that were added or dropped
-  std::vector<Pose> reached;            ///< commanded, and the camera got there
-  std::vector<Pose> missed;             ///< commanded, and it did not
-  std::size_t first_views = 0;          ///< of the map that it began with
-  std::optional<Pose> last_pose;        ///< where the camera is: the last pose that was told
-  std::vector<Pose> planned;            ///< of a plan, still to be taken, in its order
-  std::optional<Pose> promised;         ///< the best of the last ranking since the last view
-  StopMemory before_choice;             ///< of the rules, as the last view left them
-  StopMemory after_choice;              ///< and as the last ranking did
-  std::optional<StopReason> of_view;    ///< why to end since the last view
-  std::optional<StopReason> of_choice;  ///< and since the last proposal or ranking
+  double seen_area = 0;                 ///< sum of the new surface of all views [m²]
+  FrameCounts frames;                   ///< number of views added or dropped
+  std::vector<Pose> reached;            ///< commanded and reached
+  std::vector<Pose> missed;             ///< commanded and not reached
+  std::size_t first_views = 0;          ///< views of the initial map
+  std::optional<Pose> last_pose;        ///< current camera pose: the last known one
+  std::vector<Pose> planned;            ///< remaining views of a plan, in order
+  std::optional<Pose> promised;         ///< best view of the last ranking since the last view
+  StopMemory before_choice;             ///< state of the rules after the last view
+  StopMemory after_choice;              ///< state of the rules after the last ranking
+  std::optional<StopReason> of_view;    ///< stop reason since the last view
+  std::optional<StopReason> of_choice;  ///< stop reason since the last proposal or ranking
 };
 
-/// One line an entry; exact.
+/// One line per entry; exact.
 [[nodiscard]] std::string text_of(const PlannerState& state);
-/// Throws Error(format), naming `name` and the line.
+/// Throws Error(format) with `name` and the line.
 [[nodiscard]] PlannerState state_of(const std::string& name, std::string_view text);
 
 }  // namespace viewgain::detail

@@ -17,13 +17,14 @@ namespace viewgain {
 namespace {
 
 constexpr std::size_t kMostPlanned = 1000;
-// What is looked at of views that go together: of the rays, and of the poses by stop and at least.
+// Sampling for views ranked together: share of rays, and minimum number of poses in total and per
+// stop.
 constexpr double kFewRays = 0.25;
 constexpr std::size_t kByStop = 3, kFewPoses = 32;
 
 void refuse_measures(const RankConfig& config) {
   if (config.measure == nullptr && config.run_measure == nullptr) return;
-  refuse("views that go together are chosen by the gain, not by a measure");
+  refuse("views of a set are chosen by the gain, not by a measure");
 }
 
 double least_area_of(const PlanAhead& ahead, double surface_area) {
@@ -59,7 +60,7 @@ Ranking ranking_of(ViewTour tour, std::span<const Pose> T_world_camera) {
   return ranking;
 }
 
-// The views that were chosen by few rays, alone.
+// The views that were chosen with few rays, each alone.
 void score_in_full(const GainEvaluator& evaluator, Ranking& ranking) {
   std::vector<std::size_t>& indices = ranking.scored_indices;
   indices.clear();
@@ -74,7 +75,7 @@ void score_in_full(const GainEvaluator& evaluator, Ranking& ranking) {
   ranking.scored_gains = evaluator.evaluate(poses);
 }
 
-// Unless it is to be exact, of few poses, by some of their rays.
+// Unless it must be exact: few poses, with some of their rays.
 Ranking chosen_together(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
                         TourConfig tour, bool exact, const BatchControl& control) {
   if (!exact) {
@@ -86,7 +87,7 @@ Ranking chosen_together(const GainEvaluator& evaluator, std::span<const Pose> T_
   return ranking;
 }
 
-// A set without ways. Its first view is the best one, as it is alone, even if others are estimates.
+// A set without paths. Its first view is the best single one, even if others are estimates.
 Ranking set_of(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera, std::size_t k,
                const std::vector<double>& costs, bool exact, const BatchControl& control) {
   TourConfig tour{.max_stops = k, .costs = costs};
@@ -128,11 +129,11 @@ std::vector<double> view_costs(std::span<const Pose> poses, const RankConfig& co
   std::vector<double> costs(config.costs.begin(), config.costs.end());
   if (config.cost_per_metre == 0 || !here) return costs;
   if (costs.empty()) costs.resize(poses.size());
-  if (costs.size() != poses.size()) return costs;  // best() refuses them
+  if (costs.size() != poses.size()) return costs;  // best() rejects them
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Vector3d to = poses[i].translation() - *here;
-    const double way = std::hypot(to.x(), to.y(), to.z());  // finite however far it is
-    // A bad pose is left out whatever the way to it.
+    const double way = std::hypot(to.x(), to.y(), to.z());  // finite at any distance
+    // An invalid pose is omitted regardless of its path.
     if (std::isfinite(way)) costs[i] += config.cost_per_metre * way;
   }
   return costs;
@@ -149,8 +150,7 @@ Ranking rank_views(const GainEvaluator& evaluator, std::span<const Pose> T_world
   }
   const BestConfig best_by{
       .costs = costs, .measure = config.measure, .run_measure = config.run_measure};
-  // Of all of them where all are scored, since the rule of area asks for the most that any
-  // promises.
+  // Of all poses if all are scored, because the rule of area needs the largest expected area.
   BestViews best =
       config.exact || evaluator.model() == GainModel::paper
           ? evaluator.best(T_world_camera, T_world_camera.size(), best_by, control)
@@ -234,7 +234,7 @@ std::optional<DecisionMaking::Decision> decision_of(const Ranking& ranking, Gain
   decision.gain = gain.gain;
   decision.area = gain.area;
   decision.worth = ranking.worth;
-  if (std::isnan(gain.gain)) return decision;  // bad poses, or a measure of the user's own
+  if (std::isnan(gain.gain)) return decision;  // invalid poses, or a custom measure
   if (model == GainModel::paper) {
     const std::uint32_t touched = gain.unknown_voxels + gain.occupied_voxels;
     decision.gain_per_voxel = touched > 0 ? gain.gain / touched : 0.0;

@@ -19,11 +19,11 @@ void set_stop_rules(PlanningConfig& planning, GainModel model, Criterion criteri
   }
   const bool by_paper = model == GainModel::paper;
   if (by_paper && stop_area.value_or(0) > 0) {
-    refuse("stop_area goes with the gains surface and combined");
+    refuse("stop_area requires the gain surface or combined");
   }
-  if (!by_paper && stop_gain.value_or(0) > 0) refuse("stop_gain goes with the gain paper");
+  if (!by_paper && stop_gain.value_or(0) > 0) refuse("stop_gain requires the gain paper");
   if (model == GainModel::combined && criterion == Criterion::trace) {
-    refuse("criterion trace goes with the gain paper: the combined gain is in nats");
+    refuse("criterion trace requires the gain paper, because the combined gain is in nat");
   }
   planning.stop_gain_is_relative = criterion == Criterion::trace && !stop_gain;
   planning.stop_gain =

@@ -21,7 +21,7 @@
 namespace viewgain {
 namespace {
 
-constexpr const char* kNote = "planner";  // the note of the saved map that holds the state
+constexpr const char* kNote = "planner";  // the note with the state in the saved map
 
 void check_rigid(const Pose& pose, const char* what) {
   if (!rigid_pose(pose)) refuse(std::string(what) + " is not a rigid transform of finite numbers");
@@ -46,7 +46,7 @@ std::optional<StopReason> limit_reached(const PlanningConfig& limits, const Stop
   return is_broken ? std::optional(StopReason::promises) : std::nullopt;
 }
 
-// What a planner's settings come to for its parts.
+// The planner's settings for its parts.
 
 ProposerConfig proposer_config(const PlannerConfig& config, const ViewScorer& scorer) {
   FeasibilityConfig feasibility = feasibility_of(scorer.sensor());
@@ -79,18 +79,18 @@ struct ViewPlanner::Impl {
   std::optional<DecisionMaking::Decision> decision;  // the last one
   StageSeconds seconds;
   std::once_flag is_registering;
-  std::optional<FrameAlignment> registration;  // once it is asked for
+  std::optional<FrameAlignment> registration;  // computed on demand
 
   Impl(ViewScorer by, const PlannerConfig& with)
       : config(with),
         scorer(std::move(by)),
         planning(planning_config(with, scorer.config().gain)),
         proposer(scorer.scene(), proposer_config(with, scorer), scorer.exec()) {
-    (void)StopRules(planning);  // refuses what no run can have
+    (void)StopRules(planning);  // rejects invalid settings
     config.ahead.check();
   }
 
-  // From a map that has something already: what is there is not the first view's.
+  // For an initial map: its contents do not count as the first view's.
   void begin() {
     const std::vector<Pose>& views = scorer.grid().views();
     const ModelProgress progress = scorer.progress();
@@ -101,7 +101,7 @@ struct ViewPlanner::Impl {
     state.before_choice = state.after_choice;
   }
 
-  // What a view that is over came to.
+  // Result of a finished view.
   AddedView counted(MapUpdate update, const std::optional<Pose>& T_world_camera) {
     AddedView added;
     added.view = state.after_choice.views;
@@ -110,7 +110,7 @@ struct ViewPlanner::Impl {
     added.progress = scorer.progress();
     ++state.frames[added.update.verdict];
     if (is_in_map(added.update.verdict)) {
-      // Without learn_hazard nobody asks for the area.
+      // Without learn_hazard the area is not needed.
       if (!std::isnan(added.update.new_area)) state.seen_area += added.update.new_area;
     } else if (T_world_camera && rigid_pose(*T_world_camera)) {
       state.reached.push_back(*T_world_camera);
@@ -127,7 +127,7 @@ struct ViewPlanner::Impl {
     state.of_view = rules.after_view(added.progress);
     state.of_choice.reset();
     state.before_choice = state.after_choice = rules.memory();
-    // Where nobody knew yet where the camera was, it has not begun.
+    // If the current pose was unknown, the path has not begun.
     const bool has_pose =
         std::any_of(state.frames.begin(), state.frames.end(), [](const auto& counted) {
           return counted.first != FrameVerdict::lost_pose && counted.first != FrameVerdict::no_pose;
@@ -139,7 +139,7 @@ struct ViewPlanner::Impl {
     return added;
   }
 
-  // The view is one of the plan, or came in the place of its next one.
+  // The view is one of the plan, or replaces its next one.
   void pass_planned(const std::optional<Pose>& T_world_camera) {
     if (state.planned.empty()) return;
     const auto is_it = [&](const Pose& pose) {
@@ -150,7 +150,7 @@ struct ViewPlanner::Impl {
     state.planned.erase(found == state.planned.end() ? state.planned.begin() : found);
   }
 
-  // What is left of the plan; nothing if it is not worth taking any more.
+  // The rest of the plan; empty if it is no longer worthwhile.
   Proposal planned_proposal() {
     Proposal left = proposer.propose_these({std::string(kPlanned), state.planned}, scorer.grid(),
                                            scorer.scene(), state.reached, state.missed);
@@ -165,7 +165,7 @@ struct ViewPlanner::Impl {
                       : plan_views(by, poses, config.ahead, state.seen_area, rank_config, control);
   }
 
-  // A view from elsewhere was not what promised.
+  // A view from elsewhere does not test the prediction.
   void forget_promise_unless_kept_at(const std::optional<Pose>& T_world_camera) {
     const bool is_there =
         state.promised && T_world_camera &&
@@ -182,12 +182,11 @@ struct ViewPlanner::Impl {
     for (const auto& [reason, count] : bad_frames(state.frames)) {
       counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
     }
-    refuse(
-        "no view can be proposed: of no frame so far could anything be used (" + counts +
-        "); poses that are world to camera, other units or another workspace would explain that");
+    refuse("no view can be proposed: no frame so far could be used (" + counts +
+           "). Are the poses world to camera, or are units or workspace wrong?");
   }
 
-  // After a choice, which takes the place of an earlier one of the same view.
+  // After a decision, which replaces an earlier one of the same view.
   void remember(std::optional<DecisionMaking::Decision> chosen, const Proposal& from) {
     decision = chosen;
     StopRules rules(planning, state.before_choice);
@@ -203,7 +202,7 @@ struct ViewPlanner::Impl {
     const std::shared_ptr<const GainEvaluator> evaluator = scorer.evaluator();
     const GainEvaluator& by = *evaluator;
     const bool plans = from != nullptr && config.ahead.is_on();
-    // The first one says why to end, whatever k.
+    // The first view determines the stop reason, for any k.
     Ranking ranking =
         plans ? plan(by, poses, rank_config, control)
               : rank_views(by, poses, std::max<std::size_t>(k, 1), rank_config, control);
@@ -272,7 +271,7 @@ AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_wor
 }
 
 AddedView ViewPlanner::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera) {
-  if (is_in_map(verdict)) refuse("a frame that is dropped is not in the map");
+  if (is_in_map(verdict)) refuse("a dropped frame is not in the map");
   MapUpdate nothing;
   nothing.verdict = verdict;
   return impl_->counted(std::move(nothing), T_world_camera);
@@ -311,7 +310,7 @@ std::size_t ViewPlanner::candidate_count() const noexcept {
 
 Ranking ViewPlanner::rank(std::size_t k, const RankConfig& config, const BatchControl& control) {
   if (!impl_->proposal) {
-    refuse("rank: there are no candidates; propose() comes first, after each view anew");
+    refuse("rank: there are no candidates; call propose() after each view, before rank()");
   }
   return impl_->rank(poses_of(impl_->proposal->candidates), k, config, control, &*impl_->proposal);
 }
@@ -347,32 +346,32 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
                               const ExecConfig& exec) {
   BeliefGrid grid = load_vdb(path, exec);
   MapNotes notes = grid.notes();
-  const auto note = notes.others.extract(kNote);  // save() writes it anew
+  const auto note = notes.others.extract(kNote);  // save() rewrites it
   grid.set_notes(std::move(notes));
   if (note.empty()) {
-    throw Error(ErrorCode::format, path.string() + ": is a map without the state of a planner");
+    throw Error(ErrorCode::format, path.string() + ": is a map without a planner's state");
   }
   const BeliefGrid expected(scorer.grid(), sensor);
   if (grid.voxel_size() != expected.voxel_size() || grid.dims() != expected.dims() ||
       grid.min_index() != expected.min_index() || grid.prior_sigma() != expected.prior_sigma() ||
       !(grid.T_world_grid() == expected.T_world_grid())) {
     refuse(path.string() + ": its map, " + layout_text(grid) +
-           ", is laid out otherwise than the configuration says, " + layout_text(expected));
+           ", differs from the configuration, " + layout_text(expected));
   }
   detail::PlannerState state = detail::state_of(path.string() + " (note planner)", note.mapped());
   std::size_t added = state.first_views;
   for (const auto& [verdict, count] : state.frames) added += is_in_map(verdict) ? count : 0;
   if (added != grid.views().size()) {
     refuse(path.string() + ": its map has " + std::to_string(grid.views().size()) +
-           " views, of which its planner added " + std::to_string(added) +
-           ": the map has grown since; begin a new planner");
+           " views, but its planner added " + std::to_string(added) +
+           ": the map has grown since; create a new planner");
   }
   auto impl = std::make_unique<Impl>(ViewScorer(std::move(grid), sensor, scorer, exec), config);
   impl->state = std::move(state);
-  // A state of version 2 does not say it.
+  // A state of version 2 does not contain it.
   const std::vector<Pose>& views = impl->scorer.grid().views();
   if (!impl->state.last_pose && !views.empty()) impl->state.last_pose = views.back();
-  // The limits are those of today's configuration; what the last choice said stays.
+  // The limits come from the current configuration; the result of the last decision remains.
   impl->state.of_view = limit_reached(impl->planning, impl->state.after_choice);
   return ViewPlanner(std::move(impl));
 }

@@ -12,9 +12,9 @@ namespace viewgain {
 namespace {
 
 constexpr std::size_t kFromReach = 1200;  // views
-constexpr double kPlaces = 0.03;          // that they look at: apart [m]
+constexpr double kPlaces = 0.03;          // distance between the points that they look at [m]
 
-// Faces included, since a camera may stand on a limit.
+// Includes faces, because a camera may be on a limit.
 bool is_in_workspace(const BeliefGrid& grid, const Pose& pose) {
   const Box box = grid.workspace();
   const Eigen::Vector3d p = grid.T_world_grid().inverse() * pose.translation();
@@ -128,7 +128,7 @@ void ViewProposer::keep_possible(std::vector<Candidate> candidates, std::size_t 
     }
   }
   dropped_.clear();
-  std::size_t next = 0;  // of those that were checked
+  std::size_t next = 0;  // of the checked poses
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (found[i] == Infeasibility::none) found[i] = checked[next++];
     std::string_view reason;

@@ -15,7 +15,7 @@
 namespace viewgain {
 namespace {
 
-// Sets these numbers apart from those of the readings' noise, which may have the same seed.
+// Separates these random numbers from those of the readings' noise with the same seed.
 constexpr std::uint64_t kStream = 0x706F7365;
 
 void check_noise(const PoseSigma& sigma) {
@@ -31,7 +31,7 @@ void check_noise(const PoseSigma& sigma) {
 }  // namespace
 
 Measurements SimulatedAcquisition::acquire(const Pose& T_world_camera, std::size_t view) {
-  if (frames_per_view_ == 0) refuse("frames per view: 0 is not at least 1");
+  if (frames_per_view_ == 0) refuse("frames per view must be at least 1, not 0");
   Measurements measurements{T_world_camera, {}};
   for (std::size_t i = 0; i < frames_per_view_; ++i) {
     measurements.frames.push_back(camera_.acquire(T_world_camera, view * frames_per_view_ + i));
@@ -47,7 +47,7 @@ Pose reported_pose(const Pose& T_world_camera, std::size_t view, const PoseSigma
   if (view == 0) return T_world_camera;
   const std::uint64_t of_view = mix64(mix64(seed ^ mix64(kStream)) ^ view);
   std::uint64_t drawn = 0;
-  // Box and Muller.
+  // Box-Muller transform.
   const auto normal = [&] {
     const double u = 1 - unit_number(mix64(of_view ^ mix64(++drawn)));  // in (0, 1]
     const double turn = 2 * std::numbers::pi * unit_number(mix64(of_view ^ mix64(++drawn)));

@@ -22,16 +22,52 @@
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
+// The method of FrameAlignment.
+//
+// It minimises, over the poses T_i of all frames that move and a rim width b,
+//   Σ_ij Σ_k w ρ(e) / c + Σ_i |T_i ⊖ T_i,reported|² / (s σ²) + (b - 0.03)² / 0.03².
+// e = nᵀ(T_i s - T_j m) is the distance of reading s of frame i from the reading m of frame j into
+// whose pixel it projects, along the mean n of both normals (symmetric distance: Rusinkiewicz, ACM
+// Trans. Graphics 38(4), 2019), or from a map. 1/w is the sum of both variances along the normals;
+// ρ is Cauchy's function of e² over the variance. Gates on distance and on the angle of normals
+// select the pairs; they start at the uncertainty of the reports. Gauss-Newton uses every 4th, then
+// 2nd, then every selected pixel of a row.
+//
+// Readings are smoothed by planes through the surrounding 5x5 pixels. Single readings, with five
+// times the noise, push frames apart: 12 views of the camel by 7 mm. A pixel also sees surface
+// beside its ray, so rims seem wider than they are: s and m are moved back along their normals by b
+// lateral sigmas for each of the 25 pixels past a rim. Readings of a map are its fused_points(),
+// rendered into the image; the readings of a frame compared with it are single ones.
+//
+// Errors of neighbours are correlated, so readings carry less information than independent ones.
+// c is the squared gradient of single neighbours relative to the noise of their readings, averaged
+// over the motions (sandwich estimate, Huber 1967). It is at least 3, because a reading is used in
+// several pairs. A map's neighbours are cubes of 10 pooling lengths. A frame's are other frames,
+// where it counts 8 times: 0.1 to 0.4 for simulated objects, 9 in a room with a real camera, whose
+// systematic errors would otherwise pull frames along.
+//
+// Random errors of normals would make even a sphere seem to fix a rotation. Therefore information
+// is Σ w (J_m J_sᵀ + J_s J_mᵀ) / 2c, with the J of either side's normals, whose errors are
+// independent. A motion with less information than the report is free and stays as reported.
+//
+// s, at most 1, is common to all frames: its most likely value given the corrections (empirical
+// Bayes). Poses that are better than their sigmas say then stay in place. Covariances use s = 1.
+//
+// A frame is refused if it shows surface in free space of the others, or sees past their surface:
+// at its best fit or, if that is poorly determined, within a sigma. The others are the frames
+// connected to the first frame by a chain of fits. If the reported pose leads to a refused fit,
+// twelve poses within 1.5 sigmas are tried.
+
 namespace viewgain::detail {
 namespace {
 
-// Columns of radius 1 round points 0.75 to 1 apart: each reading of the map is in about three.
+// Columns of radius 1 around points 0.75 to 1 apart: each reading of the map is in about three.
 constexpr double kPointsPerReading = 3;
-constexpr double kPoseSigmas = 5;  // by which the pose may be off
-constexpr double kBehind = 10;     // pooling lengths behind what the frame shows
+constexpr double kPoseSigmas = 5;  // largest error of the pose
+constexpr double kBehind = 10;     // pooling lengths behind the surface that the frame shows
 constexpr double kCube = 10;       // pooling lengths
 
-// How deep a frame may look, wherever its pose may be [m].
+// Largest depth that a frame can see, for all likely poses [m].
 class SeenDepths {
  public:
   SeenDepths(const RegistrationView& frame, const Sensor& sensor, const PoseSigma& sigma,
@@ -40,7 +76,7 @@ class SeenDepths {
     const double shift = kPoseSigmas * sigma.translation, turn = kPoseSigmas * sigma.rotation;
     tile_ = static_cast<int>(
         std::clamp((shift / nearest + turn) * camera_.fx, 8.0, std::max(8.0, camera_.width / 2.0)));
-    columns_ = camera_.width / tile_ + 3;  // one beside the image, on each side
+    columns_ = camera_.width / tile_ + 3;  // one tile beside the image, on each side
     deepest_.assign(static_cast<std::size_t>(columns_ * (camera_.height / tile_ + 3)), 0.0);
     for (std::size_t i = 0; i < frame.depth.size(); ++i) {
       const auto z = static_cast<double>(frame.depth[i]);
@@ -51,7 +87,7 @@ class SeenDepths {
     }
   }
 
-  // Round a pixel of the image.
+  // Largest depth around a pixel of the image.
   [[nodiscard]] double round(const Eigen::Vector2d& pixel) const {
     const std::size_t tile =
         tile_of(static_cast<int>(pixel.x() + 0.5), static_cast<int>(pixel.y() + 0.5));
@@ -69,11 +105,11 @@ class SeenDepths {
   }
 
   const PinholeCamera& camera_;
-  int tile_, columns_;           // [px], with those beside the image
+  int tile_, columns_;           // [px], including those beside the image
   std::vector<double> deepest_;  // tile by tile
 };
 
-// The number of the cube that a point lies in.
+// Number of the cube that contains a point.
 class Cubes {
  public:
   explicit Cubes(double edge) : edge_(edge) {}
@@ -89,7 +125,7 @@ class Cubes {
   std::map<std::array<double, 3>, std::uint32_t> numbers_;
 };
 
-// Each node of the lattice has the nearest of the points that fall on it.
+// Each lattice node gets the nearest of the points that project onto it.
 void draw(RegistrationView& view) {
   view.clear_lattice();
   for (std::size_t i = 0; i < view.readings.size(); ++i) {
@@ -104,9 +140,9 @@ void draw(RegistrationView& view) {
   }
 }
 
-/// What a map has of the surface that a frame may show: its fused points as the readings of a view
-/// from where the frame's pose was reported, which may be off by `sigma`. `frame` has readings;
-/// `length` is the map's pooling length [m]. Keeps the grid by reference.
+/// The map's surface that a frame can show: its fused points as the readings of a view from the
+/// frame's reported pose, whose uncertainty is `sigma`. `frame` has readings; `length` is the map's
+/// pooling length [m]. Keeps a reference to the grid.
 RegistrationView map_view(const BeliefGrid& grid, double length, const Sensor& sensor,
                           const RegistrationView& frame, const Pose& T_reported,
                           const PoseSigma& sigma, const ExecConfig& exec) {
@@ -133,7 +169,7 @@ RegistrationView map_view(const BeliefGrid& grid, double length, const Sensor& s
     Reading reading;
     reading.point = T_camera_world * point;
     reading.normal = R_camera_world * normal;
-    // Seen from inside, or beside the picture.
+    // Seen from the back, or outside the image.
     if (!(reading.normal.dot(reading.point) < 0) || !camera.sees(reading.point)) continue;
     const double variance = normal.dot(fused.covariance * normal);
     reading.axial = std::sqrt(variance);
@@ -144,7 +180,7 @@ RegistrationView map_view(const BeliefGrid& grid, double length, const Sensor& s
   view.parts = cubes.size();
   view.stride = std::max(1, static_cast<int>(std::lround(length * camera.fx / range)));
   draw(view);
-  // The error of a point is shared by all readings that belong to it.
+  // All readings of a point share its error.
   const auto drawn = std::count_if(view.at.begin(), view.at.end(), [](auto i) { return i >= 0; });
   const double share = static_cast<double>(frame.readings.size()) /
                        static_cast<double>(std::max<std::ptrdiff_t>(drawn, 1));
@@ -161,10 +197,10 @@ namespace {
 using detail::JointRegistration;
 using detail::RegistrationView;
 
-// Lengths. Single readings as FusedPointsConfig::normal_radius: noisier normals would hold what
-// slides.
+// Pooling lengths. Single readings need a radius as FusedPointsConfig::normal_radius: noisier
+// normals would seem to fix sliding motions.
 constexpr double kSmoothedRadius = 4, kSingleRadius = 5;
-// Smoothed neighbours share most of their surroundings: more say hardly more, and take longer.
+// Smoothed neighbours overlap mostly: more of them add little and take longer.
 constexpr std::size_t kSmoothedReadings = 6'000, kSingleReadings = 20'000;
 
 void check(const Pose& T_reported, const PoseSigma& sigma) {
@@ -201,7 +237,7 @@ PoseSigma FrameRegistration::pose_sigma() const {
 }
 
 struct FrameAlignment::Impl {
-  // Of the frames that were added.
+  // Poses of the added frames.
   struct Added {
     BeliefGrid layout;
     double length;  // [m]
@@ -235,13 +271,13 @@ struct FrameAlignment::Impl {
            is_of_plane(point.z() - *support_plane, sight.z() / range, sensor.sigmas(range));
   }
 
-  // Of a frame as a map with this workspace takes it.
+  // A frame as used in a map with this workspace.
   [[nodiscard]] RegistrationView view_of(DepthFrame frame, const Pose& T_world_camera,
                                          const BeliefGrid& layout, double length,
                                          bool is_smoothed) const {
     if (filter) filter->apply(frame);
     obstacles.mark(frame, T_world_camera);
-    // What does not count is not to thin out the rest.
+    // Excluded readings must not thin out the others.
     DepthFrame inside = frame;
     const Eigen::Matrix3d R = T_world_camera.rotation();
     pool.for_each_chunk(inside.depth.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -307,7 +343,7 @@ FrameRegistration FrameAlignment::register_frame(const BeliefGrid& grid, DepthFr
   check(T_reported, sigma);
   const Pose T = orthonormalized(T_reported);
   const double length = pooling_of(grid.snapshot()).length;
-  // The means that a map's points are are not smoothed either.
+  // The map's points, which are means, are not smoothed either.
   RegistrationView view = m.view_of(std::move(frame), T, grid, length, false);
   JointRegistration frames(length, "the map", m.pool);
   RegistrationView map = detail::map_view(grid, length, m.sensor, view, T, sigma, m.exec);

@@ -14,24 +14,26 @@ namespace viewgain::detail {
 namespace {
 
 constexpr double kAlongSurface = 2;  // lengths
-// Readings are used in several pairs of frames. What a map's points get wrong alike does not show:
+// Readings are used in several pairs of frames. Common errors of a map's points do not show:
 // squared errors of poses are 2.8 to 3.9 times those of independent errors.
 constexpr double kRedundancy = 3;
-// Of what normals agree on, where points share readings: leaves 23 of 24 noisy walls free.
+// For the information that both normals agree on, where points share readings: leaves 23 of 24
+// noisy walls free.
 constexpr double kMapRedundancy = 1.5;
-// What all frames get wrong alike does not show in how they differ. Measured: on simulated objects
-// frames differ by 0.1 to 0.4 of what their readings' noise gives, where 3 widens as it should.
+// Errors common to all frames do not show in their differences. Measured: simulated frames differ
+// by 0.1 to 0.4 of their readings' noise, where 3 widens correctly.
 constexpr double kAlike = 8;
-// Of the prior on rims' width. Simulated views want 0 without any noise, 0.02 with noise along the
-// ray alone, 0.055 with lateral noise as well.
+// Prior of the rims' width. Simulated views want 0 without noise, 0.02 with noise along the ray
+// only, 0.055 with lateral noise too.
 constexpr double kRimSigma = 0.03;
 constexpr double kSettled = 0.3;  // slack of frames that were aligned before, in sigmas
-constexpr double kSearch = 1.5;   // where the search begins, in sigmas from the reported pose
+constexpr double kSearch = 1.5;   // starting points of the search, in sigmas from the reported pose
 constexpr int kMaxIterations = 15;
 constexpr std::size_t kLeastPairs = 20;      // of two frames
 constexpr std::size_t kLeastReadings = 400;  // of a frame
 
-// What a motion of the source does, as one of the target: e falls with the motion A of that.
+// Effect of a motion of the source as one of the target: e decreases with the motion A of the
+// target.
 Matrix6 carried(const Pose& T_world_source, const Pose& T_world_target) {
   const Eigen::Vector3d d = T_world_source.translation() - T_world_target.translation();
   Matrix6 A = Matrix6::Identity();
@@ -41,12 +43,12 @@ Matrix6 carried(const Pose& T_world_source, const Pose& T_world_target) {
 
 }  // namespace
 
-// In sigmas of the priors, along what the others hold of each frame. The rims' width, if it is to
-// be found, is the last.
+// In sigmas of the priors, along the motions that the others determine for each frame. The rims'
+// width, if estimated, is last.
 struct JointAlignment::System {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;
-  Eigen::VectorXd away;     // from what was reported
+  Eigen::VectorXd away;     // from the reported pose
   double disagreement = 0;  // of single neighbours about each frame
 };
 
@@ -79,7 +81,7 @@ Matrix6 JointAlignment::of_single_pairs(const Matrix6& agreed) const {
 
 double JointAlignment::least_widening() const { return is_by_map() ? 1 : kRedundancy; }
 
-// From one level to the next the readings are four times as many.
+// Each level has four times as many readings as the one before.
 int JointAlignment::level_of(const Pass& pass) const {
   std::size_t readings = 0;
   for (const std::size_t i : pass.movable) readings += frames[i].seen.readings.size();
@@ -101,7 +103,7 @@ JointAlignment::System JointAlignment::system(const Pass& pass) const {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     for (std::size_t j = 0; j < frames.size(); ++j) {
       if (i == j || (column[i] < 0 && column[j] < 0)) continue;
-      // A map's points are where readings fall, but fall on none: these would count twice.
+      // A map's points are targets of readings, but have no targets: they would count twice.
       if (frames[i].seen.grid != nullptr) continue;
       if (takes_part(i) && takes_part(j)) pairs.emplace_back(i, j);
     }
@@ -113,14 +115,14 @@ JointAlignment::System JointAlignment::system(const Pass& pass) const {
       sums_of[k] = sums(frames[pairs[k].first], frames[pairs[k].second], level);
     }
   };
-  // One pair shares its readings out among the threads.
+  // A single pair distributes its readings over the threads.
   if (pairs.size() == 1) add_up(0, 1);
   if (pairs.size() > 1) pool_.for_each_chunk(pairs.size(), 1, add_up);
   const auto motions = static_cast<Eigen::Index>(6 * pass.movable.size());
   const Eigen::Index n = motions + (pass.with_rims ? 1 : 0);
   System s{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   std::vector<Matrix6> agreed(frames.size(), Matrix6::Zero());
-  // Of what a frame's neighbours say, one by one; a map is many.
+  // The neighbours' contributions to a frame, one by one; a map has many.
   std::vector<std::vector<Vector6>> parts(frames.size(),
                                           std::vector<Vector6>(frames.size(), Vector6::Zero()));
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -176,11 +178,11 @@ JointAlignment::System JointAlignment::system(const Pass& pass) const {
   return s;
 }
 
-// One step of Gauss and Newton; false if it was short.
+// One Gauss-Newton step; false if it was short.
 bool JointAlignment::move(const Pass& pass) {
   const System s = system(pass);
   Eigen::VectorXd of_prior = Eigen::VectorXd::Constant(s.gradient.size(), 1 / scale_);
-  if (pass.with_rims) of_prior.tail<1>().setOnes();  // known as well as ever
+  if (pass.with_rims) of_prior.tail<1>().setOnes();  // as well known as before
   information_ = s.information;
   Eigen::MatrixXd whole = s.information;
   whole.diagonal() += of_prior;
@@ -228,7 +230,7 @@ void JointAlignment::align_one(std::size_t index, bool against_all) {
   align(pass);
 }
 
-// Of few readings, either way.
+// From a few readings, in both directions.
 std::size_t JointAlignment::pairs_of(std::size_t index) const {
   const JointFrame& frame = frames[index];
   std::size_t pairs = 0;
@@ -283,7 +285,7 @@ void JointAlignment::align_all() {
   pass.level = kLevels - 1, pass.still = 0.05;
   scale_ = estimated_scale(pass);
   align(pass);
-  // Not of the scaled prior: what frames hold says nothing of what they do not.
+  // Not with the scaled prior: agreement along determined motions does not apply to the others.
   information_ *= std::min(1.0, widening_ / kRedundancy);
   information_.diagonal().array() += 1;
   const Eigen::MatrixXd covariance = information_.inverse();

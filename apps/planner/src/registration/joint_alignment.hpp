@@ -14,48 +14,48 @@
 
 namespace viewgain::detail {
 
-/// A view among others, and where it is.
+/// A view among others, with its pose.
 struct JointFrame {
   RegistrationView seen;
   Pose T_reported;
-  PoseSigma sigma;          ///< by which T_reported may be off
-  bool is_fixed = false;    ///< does T_reported hold?
-  bool is_in = false;       ///< do others go by it?
-  bool is_trusted = false;  ///< and is its pose better known than it was reported?
-  Pose T{};                 ///< as known now
-  /// Of the pose relative to the fixed ones: the prior's, or as the last alignment of all found it.
+  PoseSigma sigma;          ///< uncertainty of T_reported
+  bool is_fixed = false;    ///< whether T_reported is fixed
+  bool is_in = false;       ///< whether others rely on it
+  bool is_trusted = false;  ///< and its pose is better known than reported
+  Pose T{};                 ///< current estimate
+  /// Covariance of the pose relative to the fixed ones: the prior's, or from the last alignment of
+  /// all.
   Matrix6 covariance = Matrix6::Zero();
-  double slack = 0;    ///< by which T may still be off, in sigmas
+  double slack = 0;    ///< remaining uncertainty of T, in sigmas
   int iterations = 0;  ///< of the last alignment
 
-  /// Of the six parts of a difference.
+  /// Sigmas of the six parts of a difference.
   [[nodiscard]] Vector6 sigmas() const;
-  /// Back to what was reported of it.
+  /// Resets it to the report.
   void reset();
 };
 
-/// The poses of frames by what they show of one another and by what was reported, see
-/// FrameAlignment. Says nothing of which frames are to be believed.
+/// Estimates the poses of frames from their overlap and their reports, see FrameAlignment. Does not
+/// decide which frames to trust.
 class JointAlignment {
  public:
-  /// `length`: of a voxel or footprint [m]. Keeps the pool by reference.
+  /// `length`: size of a voxel or footprint [m]. Keeps a reference to the pool.
   JointAlignment(double length, ThreadPool& pool);
 
   std::vector<JointFrame> frames;
-  /// By how much rims seem wider than they are: what a pixel shows comes from beside its ray, too,
-  /// so that pixels outside of a rim may show the surface. In lateral sigmas for each
-  /// of the 25 pixels round a reading that lies past a rim; align_all() finds it.
+  /// Apparent widening of rims, because pixels beside a rim can show its surface. In lateral sigmas
+  /// for each of the 25 pixels around a reading that lies past a rim; align_all() estimates it.
   double rim_width = kUsualRimWidth;
 
-  /// Moves one frame against those that are trusted, or all that are in, from where it is.
+  /// Moves one frame relative to the trusted ones, or to all that are in, from its current pose.
   void align_one(std::size_t index, bool against_all);
-  /// Puts a frame where, beginning at poses round the reported one, few of its readings fit those
-  /// that are trusted best.
+  /// Moves a frame to the pose, from starting points around the report, where a few of its readings
+  /// fit the trusted ones best.
   void search_one(std::size_t index);
-  /// Moves all that are in and not fixed.
+  /// Moves all frames that are in and not fixed.
   void align_all();
 
-  /// Of the readings of one frame, where it is or at another pose, that fall on another.
+  /// Pairs of one frame's readings, at its pose or another one, with another frame.
   [[nodiscard]] PairSums sums(const JointFrame& source, const JointFrame& target, int level,
                               std::vector<std::uint8_t>* is_paired = nullptr) const {
     return sums(source, source.T, target, level, is_paired);
@@ -63,21 +63,22 @@ class JointAlignment {
   [[nodiscard]] PairSums sums(const JointFrame& source, const Pose& T_source,
                               const JointFrame& target, int level,
                               std::vector<std::uint8_t>* is_paired = nullptr) const;
-  /// What `agreed` of all pairs of a frame with others is, were each reading in one of them.
+  /// `agreed` of all pairs of a frame with others, as if each reading were in one of them.
   [[nodiscard]] Matrix6 of_single_pairs(const Matrix6& agreed) const;
-  /// Is the first view a map's?
+  /// Whether the first view is a map's.
   [[nodiscard]] bool is_by_map() const { return frames.front().seen.grid != nullptr; }
 
  private:
-  static constexpr double kUsualRimWidth = 0.03;  // between what simulated views want, 0 to 0.055
+  // Between the values of simulated views, 0 to 0.055.
+  static constexpr double kUsualRimWidth = 0.03;
 
-  // What one iteration looks at.
+  // Selection of readings for one iteration.
   struct Pass {
     std::vector<std::size_t> movable;
-    int level;     // a finer one where it leaves too few readings
-    double still;  // a step this short ends it, in sigmas of what a pose is known to
+    int level;     // uses a finer level if too few readings remain
+    double still;  // a shorter step ends it, in sigmas of the current knowledge of a pose
     bool trusted_only = false;
-    bool with_rims = false;  // is the rims' width to be found as well?
+    bool with_rims = false;  // whether the rims' width is estimated too
   };
   struct System;
   [[nodiscard]] System system(const Pass& pass) const;
@@ -91,9 +92,9 @@ class JointAlignment {
 
   double length_;
   ThreadPool& pool_;
-  double widening_ = 1;          // of the variances that readings give, as align_all() found it
-  double scale_ = 1;             // of the priors' variances
-  Eigen::MatrixXd information_;  // of the last move: of frames and rims, in the priors' sigmas
+  double widening_ = 1;          // factor for variances from readings, from align_all()
+  double scale_ = 1;             // factor for the priors' variances
+  Eigen::MatrixXd information_;  // from the last move: of frames and rims, in the priors' sigmas
 };
 
 }  // namespace viewgain::detail

@@ -14,15 +14,16 @@
 namespace viewgain::detail {
 namespace {
 
-constexpr double kMinOverlap = 0.1;    // a smaller share FrameRegistration::overlap is too little
-constexpr std::size_t kMinPairs = 60;  // likewise of FrameRegistration::pairs
-constexpr double kMaxSigmas = 5;       // of the prior: a longer correction is refused
-constexpr double kMaxContradiction = 0.2;  // a larger share is refused, unless of few readings
-constexpr double kMargin = 2;              // lengths
-// A frame that the others do not hold may be so many sigmas off without contradicting them. More
-// would let frames pass for new surface that lie beside the object.
+constexpr double kMinOverlap = 0.1;    // minimum of FrameRegistration::overlap
+constexpr std::size_t kMinPairs = 60;  // minimum of FrameRegistration::pairs
+constexpr double kMaxSigmas = 5;       // limit of the correction, relative to the prior
+// Limit of the contradicting share, except with few readings.
+constexpr double kMaxContradiction = 0.2;
+constexpr double kMargin = 2;  // lengths
+// A frame that the others do not determine may be off by this many sigmas without contradicting
+// them. With more, frames beside the object would pass for new surface.
 constexpr double kReach = 1;
-// A frame that is refused is tried again once others show so many times what they did.
+// A refused frame is tried again when others show this many times more.
 constexpr double kMore = 1.5;
 
 std::string rounded(double value) {
@@ -39,7 +40,7 @@ double residual_of(const PairSums& sums) {
   return sums.pairs > 0 ? std::sqrt(sums.squares / static_cast<double>(sums.pairs)) : 0.0;
 }
 
-// Of readings: how many show what the other side has, how many contradict it.
+// Readings: how many show surface of the other side, and how many contradict it.
 struct Agreement {
   std::size_t with = 0;
   std::size_t against = 0;
@@ -47,7 +48,7 @@ struct Agreement {
     const std::size_t all = with + against;
     return all == 0 ? 0 : static_cast<double>(against) / static_cast<double>(all);
   }
-  // Few of them may by chance all be wrong.
+  // A few of them can all be wrong by chance.
   [[nodiscard]] bool contradicts(std::size_t readings) const {
     return contradiction() > kMaxContradiction && against > kMinPairs &&
            static_cast<double>(against) > kMinOverlap * static_cast<double>(readings);
@@ -56,12 +57,12 @@ struct Agreement {
 
 }  // namespace
 
-// What frame and others say of one another's readings.
+// Agreement of the frame's and the others' readings.
 struct JointRegistration::Agreements {
   Agreement readings, surface;
 };
 
-// What became of a frame, and whether those that are trusted hold it.
+// Result for a frame, and whether the trusted frames determine it.
 struct JointRegistration::Verdict {
   FrameRegistration result;
   bool is_held;
@@ -70,7 +71,7 @@ struct JointRegistration::Verdict {
   }
 };
 
-// With the frames that are trusted, if the frame's pose may be off by so many sigmas.
+// Agreement with the trusted frames if the frame's pose may be off by this many sigmas.
 JointRegistration::Agreements JointRegistration::agreements_of(
     std::size_t index, const std::vector<std::uint8_t>& is_paired, double sigmas) const {
   const JointFrame& frame = joint_.frames[index];
@@ -108,8 +109,7 @@ JointRegistration::Agreements JointRegistration::agreements_of(
   return found;
 }
 
-// Of the frame at a pose; marks its readings that are in pairs with frames that are trusted, and
-// with others.
+// Readings of the frame at a pose; marks those in pairs with trusted frames, and with others.
 PairSums JointRegistration::sums_with_others(std::size_t index, const Pose& T,
                                              std::vector<std::uint8_t>* by_trusted,
                                              std::vector<std::uint8_t>* by_others) const {
@@ -152,7 +152,7 @@ JointRegistration::Verdict JointRegistration::verdict_of(std::size_t index) cons
   const Vector6 correction = difference(frame.T, frame.T_reported);
   result.translation = correction.head<3>().norm();
   result.rotation = correction.tail<3>().norm();
-  // What nothing contradicts may be new surface; but a map says what is free all round.
+  // Without a contradiction it may be new surface; but a map knows the free space all around.
   const bool by_map = joint_.is_by_map();
   const bool may_be_new = !is_held && !by_map;
   Agreements found = agreements_of(index, is_paired, may_be_new ? kReach : 0);
@@ -168,18 +168,18 @@ JointRegistration::Verdict JointRegistration::verdict_of(std::size_t index) cons
   } else if (result.translation > kMaxSigmas * frame.sigma.translation ||
              result.rotation > kMaxSigmas * frame.sigma.rotation) {
     result.reason = "the correction, " + rounded(1e3 * result.translation) + " mm and " +
-                    rounded(result.rotation * 180 / std::numbers::pi) + " deg, is beyond " +
+                    rounded(result.rotation * 180 / std::numbers::pi) + " deg, exceeds " +
                     rounded(kMaxSigmas) + " sigma of the reported pose";
   } else if (found.readings.contradicts(readings)) {
     result.reason = rounded(100 * found.readings.contradiction()) +
-                    " % of the readings lie where " + others_ + " says free";
+                    " % of the readings lie in free space of " + others_;
   } else if (found.surface.contradicts(by_map ? 0 : readings)) {
-    result.reason = "the frame looks past " + rounded(100 * found.surface.contradiction()) +
-                    " % of the surface that " + others_ + " has there";
+    result.reason = "the frame sees past " + rounded(100 * found.surface.contradiction()) +
+                    " % of the surface of " + others_;
   } else if (result.overlap < kMinOverlap || result.pairs < kMinPairs) {
     result.status = RegistrationStatus::too_little_overlap;
     result.reason = std::to_string(result.pairs) + " of " + std::to_string(readings) +
-                    " readings show surface that " + others_ + " has";
+                    " readings show surface of " + others_;
   } else {
     result.status = RegistrationStatus::registered;
   }
@@ -191,7 +191,8 @@ JointRegistration::Verdict JointRegistration::verdict_of(std::size_t index) cons
   return {result, is_held};
 }
 
-// How many pairs others give each of few readings, if the frame lies within a sigma of its report.
+// Number of pairs with others for each of a few readings, if the frame is within a sigma of its
+// report.
 double JointRegistration::shown_of(std::size_t index) {
   JointFrame& frame = joint_.frames[index];
   const std::vector<Reading>& readings = frame.seen.readings;
@@ -207,7 +208,7 @@ double JointRegistration::shown_of(std::size_t index) {
   return few == 0 ? 0 : static_cast<double>(pairs) / static_cast<double>(few);
 }
 
-// Against those that are trusted; where these show too little of it, against all.
+// Relative to the trusted frames; if these show too little of it, relative to all.
 void JointRegistration::align_one(std::size_t index) {
   JointFrame& frame = joint_.frames[index];
   FrameRegistration& result = results_[index];
@@ -225,7 +226,7 @@ void JointRegistration::align_one(std::size_t index) {
   result = verdict_of(index).result;
 }
 
-// Of one that is not registered: true if it is now.
+// Tries a frame that is not registered; true if it is now.
 bool JointRegistration::register_frame(std::size_t index) {
   JointFrame& frame = joint_.frames[index];
   FrameRegistration& result = results_[index];
@@ -251,8 +252,8 @@ bool JointRegistration::register_frame(std::size_t index) {
   return false;
 }
 
-// As all are known now. Those that the others no longer hold go back to where they were reported;
-// true if there are such, which others may have gone by.
+// Updates all results. Frames that the others no longer determine return to their report; true if
+// there are any, because others may have relied on them.
 bool JointRegistration::judge_all() {
   std::vector<Verdict> verdicts(results_.size());
   pool_.for_each_chunk(results_.size(), 1, [&](std::size_t begin, std::size_t end) {

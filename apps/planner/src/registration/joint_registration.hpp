@@ -16,21 +16,21 @@
 
 namespace viewgain::detail {
 
-/// Aligns frames one after the other and says which are to be believed, see FrameAlignment.
+/// Aligns frames one after the other and decides which to trust, see FrameAlignment.
 class JointRegistration {
  public:
-  /// `length`: of a voxel or footprint [m]; `others`: what frames are held against, for people.
-  /// Keeps the pool by reference.
+  /// `length`: size of a voxel or footprint [m]; `others`: name of the other frames in messages.
+  /// Keeps a reference to the pool.
   JointRegistration(double length, std::string others, ThreadPool& pool)
       : length_(length), others_(std::move(others)), pool_(pool), joint_(length, pool) {}
 
-  /// One that others go by and that stays where it is.
+  /// Adds a trusted, fixed view.
   void add_fixed(RegistrationView seen, const Pose& T_world_view);
-  /// Aligns it, then all others that are not registered or not trusted, as long as one more frame
-  /// shows what they waited for.
+  /// Aligns a frame, then all others that are not registered or not trusted, until no more of them
+  /// can be.
   void add(RegistrationView seen, const Pose& T_reported, const PoseSigma& sigma);
 
-  /// Of all views, in their order.
+  /// Results of all views, in order.
   [[nodiscard]] const std::vector<FrameRegistration>& results() const noexcept { return results_; }
 
  private:
@@ -53,7 +53,7 @@ class JointRegistration {
   ThreadPool& pool_;
   JointAlignment joint_;
   std::vector<FrameRegistration> results_;
-  std::vector<double> shown_;  // shown_of() each, when it was tried last
+  std::vector<double> shown_;  // shown_of() of each at its last attempt
 };
 
 }  // namespace viewgain::detail

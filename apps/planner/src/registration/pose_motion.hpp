@@ -10,41 +10,40 @@
 
 namespace viewgain::detail {
 
-/// How a pose differs from another: the way of the camera's centre, the rotation vector about it;
-/// world axes.
+/// Difference of two poses: displacement of the camera centre, and rotation vector about it; world
+/// axes.
 [[nodiscard]] Vector6 difference(const Pose& T, const Pose& T_from);
 
 /// The pose after such a difference.
 [[nodiscard]] Pose moved(const Pose& T, const Vector6& step);
 
-/// Eigenvectors of what two sides agree on, in units of the prior's sigmas.
+/// Eigenvectors of the information that both sides agree on, in units of the prior's sigmas.
 struct Directions {
-  Vector6 information;  ///< of the data over that of the prior, along each; the least first
+  Vector6 information;  ///< data relative to the prior, along each; smallest first
   Matrix6 axes;
 };
 [[nodiscard]] Directions directions_of(const Matrix6& agreed, const Vector6& sigmas);
 
-/// The columns along which the data say more than the prior; 6 columns, the others are 0.
+/// The columns along which the data are stronger than the prior; 6 columns, the others are 0.
 [[nodiscard]] Matrix6 held_axes(const Directions& directions);
 
-/// By how much the gradients of parts, which have expectation 0 where a pose fits, differ from what
-/// independent residuals would give.
+/// Variance of the gradients of parts, which have expectation 0 at the right pose, relative to that
+/// of independent residuals.
 struct Overdispersion {
-  double sum = 0;  ///< over held motions, of the variance of their slopes over the information
+  /// Sum over determined motions of the variance of their slopes over the information.
+  double sum = 0;
   int motions = 0;
   [[nodiscard]] double mean() const { return motions > 0 ? sum / motions : 0.0; }
 };
-/// Adds that of one pose, whose parts' gradients and whole information these are; `held` are
-/// held_axes().
+/// Adds a pose with the gradients of its parts and its total information; `held` are held_axes().
 void add_overdispersion(Overdispersion& sum, std::span<const Vector6> gradients,
                         const Matrix6& information, const Matrix6& held, const Vector6& sigmas);
 
-/// By how much the variance of what was reported differs from the prior's, at most 1 and at least
-/// 1e-4: the share s under which the motions that the data ask for are the likeliest, which
-/// maximises Σ log N(x; 0, s + v) over the axes of the information (empirical Bayes, Efron and
-/// Morris 1973). x is the motion along an axis, did the prior not hold it, v twice the variance
-/// that the information gives it. All in the prior's sigmas: information and gradient of the data
-/// where the poses are now, and how far these are from what was reported.
+/// Ratio of the reports' variance to the prior's, between 1e-4 and 1: the most likely share s given
+/// the requested motions, which maximises Σ log N(x; 0, s + v) over the axes of the information
+/// (empirical Bayes, Efron and Morris 1973). x is the motion along an axis without the prior, v
+/// twice its variance from the information. All in the prior's sigmas: information and gradient of
+/// the data at the current poses, and the distance of these from the reports.
 [[nodiscard]] double likeliest_scale(const Eigen::MatrixXd& information,
                                      const Eigen::VectorXd& gradient, const Eigen::VectorXd& away);
 

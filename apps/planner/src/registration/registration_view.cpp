@@ -17,10 +17,10 @@ namespace {
 constexpr int kMaxHalfWindow = 20;  // [px]
 constexpr int kWindow = 25;         // pixels of 5x5
 constexpr int kLeastForPlane = 15;
-// Smoothed readings may have fewer: those at rims hold poses sideways.
+// Minimum for smoothed readings: those at rims determine lateral motion.
 constexpr int kLeastSmoothed = 12;
-// A window that lacks readings on one side extrapolates: measured variances grow by the third power
-// of how few there are.
+// A window that lacks readings on one side extrapolates: measured variances grow with the third
+// power of 25 over their number.
 constexpr double kRimPower = 3;
 
 class Surroundings {
@@ -39,7 +39,7 @@ class Surroundings {
     return range >= sensor_.min_range && range <= sensor_.max_range;
   }
 
-  // Nothing without a normal.
+  // Empty without a normal.
   [[nodiscard]] std::optional<Reading> reading(int u, int v) const {
     if (!is_reading(u, v)) return std::nullopt;
     const std::size_t i = index(u, v);
@@ -47,7 +47,7 @@ class Surroundings {
     const std::optional<Plane> plane = plane_at(u, v, half_window(radius_ / z, sensor_.camera.fx),
                                                 half_window(radius_ / z, sensor_.camera.fy));
     if (!plane) return std::nullopt;
-    // Of the nearest pixels alone: a wide plane cuts what is curved.
+    // From the nearest pixels only: a wide plane cuts off curved surface.
     const std::optional<Plane> near =
         are_smoothed_ ? plane_at(u, v, 2, 2) : Plane{z, plane->normal, kWindow, 0};
     if (!near) return std::nullopt;
@@ -73,27 +73,27 @@ class Surroundings {
  private:
   struct Plane {
     double depth;            // at the pixel, along z [m]
-    Eigen::Vector3d normal;  // toward the camera
+    Eigen::Vector3d normal;  // towards the camera
     int count;               // of readings
-    int beyond;              // pixels beside a rim: of farther surface, or without a reading
+    int beyond;              // pixels past a rim: of farther surface, or without a reading
   };
   [[nodiscard]] std::size_t index(int u, int v) const {
     return static_cast<std::size_t>(v) * static_cast<std::size_t>(frame_.width) +
            static_cast<std::size_t>(u);
   }
 
-  // Of what reaches so far in x or y at depth 1.
+  // Sum over a window of this extent in x or y at depth 1.
   static int half_window(double reach, double focal) {
     return std::clamp(static_cast<int>(std::lround(reach * focal)), 2, kMaxHalfWindow);
   }
 
-  // Through 5x5 readings. A plane n·p = 1 is 1/z = n·(x, y, 1) in the image, linear in n; noise is
-  // in z alone.
+  // Plane through 5x5 readings. A plane n·p = 1 is 1/z = n·(x, y, 1) in the image, linear in n;
+  // only z has noise.
   [[nodiscard]] std::optional<Plane> plane_at(int u, int v, int half_u, int half_v) const {
     const std::size_t center = index(u, v);
     const double z = static_cast<double>(frame_.depth[center]);
     const Eigen::Vector3d& ray = rays_[center];
-    // A surface turned by up to 70° reaches that deep.
+    // A surface turned by up to 70° has this depth range.
     const double deepest =
         2.75 * std::max(radius_, 2 * z / sensor_.camera.fx) + 3 * sensor_.noise_sigmas(z).axial;
     Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
@@ -123,7 +123,7 @@ class Surroundings {
     Eigen::Vector3d toward(plane.x(), plane.y(),
                            plane.z() - plane.x() * ray.x() - plane.y() * ray.y());
     toward.normalize();
-    // Of a surface that is seen; what has no such plane is a rim.
+    // For visible surface; readings without such a plane are rims.
     if (!toward.allFinite() || !(toward.dot(ray) > 0)) return std::nullopt;
     return Plane{1 / plane.z(), -toward, count, beyond};
   }
@@ -140,11 +140,11 @@ int level_of(int column, int row) {
   return column % 2 == 0 && row % 2 == 0 ? 1 : 2;
 }
 
-// How many sigmas apart the two of a pair may be, and from where on they count less: 95 % efficient
-// for Gaussian errors.
+// Largest distance of a pair in sigmas, and the distance from which pairs lose weight: 95 %
+// efficient for Gaussian errors.
 constexpr double kGateSigmas = 4;
 constexpr double kCauchy = 2.385;
-constexpr double kMinCosine = 0.6216;  // between the normals of a pair: 0.9 rad
+constexpr double kMinCosine = 0.6216;  // limit between the normals of a pair: 0.9 rad
 
 bool is_free(const RegistrationView& map, const Eigen::Vector3d& point) {
   const auto voxel = map.grid->index_of(map.T_world_view * point);
@@ -242,12 +242,12 @@ RegistrationView view_of(const DepthFrame& frame, const PinholeCamera& camera,
 
 namespace {
 
-/// A reading that falls on one of the target, in the target's axes.
+/// A reading that projects onto one of the target, in the target's axes.
 struct Pair {
-  const Reading* on = nullptr;  ///< null: falls on none
-  Eigen::Vector3d arm;          ///< to it from the source's camera
+  const Reading* on = nullptr;  ///< null: no target
+  Eigen::Vector3d arm;          ///< vector to it from the source's camera
   Eigen::Vector3d source_normal, normal;
-  double e = 0, square = 0;  ///< off along the normal [m], and in sigmas, squared
+  double e = 0, square = 0;  ///< distance along the normal [m], and in sigmas, squared
 };
 
 class PairFinder {
@@ -277,9 +277,10 @@ class PairFinder {
       const Eigen::Vector3d d = p - (m.point - rim_width_ * m.rim * m.normal);
       const double distance = d.squaredNorm();
       if (distance >= nearest) continue;
-      // Along the mean of both: of one alone the noise pulls more, and on what is curved a point
-      // beside the other lies off its plane. That it turns with the frames is left out of J, as is
-      // usual: d is short. A map's are of so many readings that they do better alone.
+      // Along the mean of both normals: the noise of a single one has more effect, and on curved
+      // surface a point beside the other lies outside its plane. Its rotation with the frames is
+      // left out of J, as usual, because d is short. A map's normals come from so many readings
+      // that they are better alone.
       const Eigen::Vector3d n = of_map ? m.normal : (pair.source_normal + m.normal).normalized();
       const double off = n.dot(d);
       const double slack = own_slack + target_.slack_variance(m.point.norm());
@@ -329,7 +330,7 @@ PairSums pair_sums(const PosedView& source, const PosedView& target, double alon
     const Vector6 derivative = derivative_along(normal);
     const Vector6 weighted = weight * derivative;
     sums.information += weighted * derivative.transpose();
-    // Of these two the noise is independent.
+    // Their noise is independent.
     sums.agreed +=
         weight * derivative_along(m.normal) * derivative_along(source_normal).transpose();
     sums.gradient += e * weighted;

@@ -24,14 +24,14 @@ struct CommonOptions {
 inline void add_common_options(App& program, CommonOptions& options) {
   program.add_flag("--json", options.json, "print one JSON object instead of text");
   program.add_flag("--quiet", options.quiet, "do not print progress");
-  program.add_option("--threads", options.threads, "threads; 0: as many as the machine has");
+  program.add_option("--threads", options.threads, "number of threads; 0: all cores");
   program
       .add_option("--trace", options.trace,
                   "how to find the voxels that rays hit: embree (BVH) or sweep (cells from near to "
-                  "far); automatic is sweep; the result is the same")
+                  "far); automatic: sweep. The results are identical")
       ->check(one_of(tracer_names(), "tracer"));
   program.add_option("--save-config", options.save_config,
-                     "write the given flags to this TOML file, for --config");
+                     "TOML file to write the given flags to, for --config");
 }
 
 [[nodiscard]] inline ExecConfig exec_of(const CommonOptions& options) {
@@ -51,20 +51,20 @@ inline void add_help(App& app, const char* group, const char* example) {
   for (Option* option : app.get_options()) {
     if (option->get_required() || option->get_expected_max() > 1) option->default_str("");
   }
-  app.group(group)->footer(std::string("Example:\n  viewgain ") + example);
+  app.group(group)->footer(app.get_footer() + "Example:\n  viewgain " + example);
 }
 
-inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap's .ot or .bt), or a run's folder";
+inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap .ot or .bt), or folder of a run";
 
 inline const std::string kSensorHelp =
     "preset (" + listed(sensor_preset_names()) + ") or a .toml file";
 
 inline const std::string kMapSensorHelp =
-    kSensorHelp + "; default: the one that the map's readings come from, where it says so";
+    kSensorHelp + " (default: the sensor recorded in the map)";
 
 inline constexpr const char* kBodyHelp =
-    "x,y,z: width, height, depth of the sensor's housing [m]; default: the sensor's own, else the "
-    "SR4000's";
+    "x,y,z: width, height and depth of the sensor's housing [m] (default: from the sensor, else "
+    "the SR4000's)";
 
 /// --seed, the same bounds in every subcommand.
 inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {

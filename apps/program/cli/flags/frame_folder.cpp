@@ -69,27 +69,24 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options) {
   app.add_option("--depth-scale", options.depth_scale,
                  "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
                  "poses.txt, 1e-3 with pose files)");
-  app.add_option(
-         "--out-of-range", options.out_of_range,
-         "meaning of 65535: carve (no surface up to max_range) or invalid (no reading) (default: "
-         "from frames.toml or the sensor file, else carve with poses.txt, invalid with pose "
-         "files)")
-      ->check(one_of({"carve", "invalid"}, "meaning"));
+  app.add_option("--out-of-range", options.out_of_range,
+                 "meaning of 65535: carve (free up to max_range) or invalid (no reading) (default: "
+                 "from frames.toml or sensor, else carve with poses.txt, else invalid)")
+      ->check(one_of({"carve", "invalid"}, "value"));
   add_mask_options(app, options.mask, options.confidence);
   app.add_option("--on-contradiction", options.on_contradiction,
-                 "what to do with frames that contradict the others: skip those that --register "
-                 "refuses and warn about the rest, keep all (requires --register on), or end with "
-                 "an error")
-      ->check(one_of({"skip", "keep", "error"}, "answer"));
+                 "frames that contradict the others: skip (omit those that --register refuses, "
+                 "warn about the rest), keep (requires --register on) or error")
+      ->check(one_of({"skip", "keep", "error"}, "value"));
 }
 
 void add_mask_options(App& app, std::string& mask, std::string& confidence) {
-  app.add_option("--mask", mask,
-                 "folder of grayscale PNGs with the depth images' names; nonzero pixels are "
-                 "ignored");
+  app.add_option(
+      "--mask", mask,
+      "folder of mask PNGs, grayscale, named like the depth images; nonzero pixels are ignored");
   app.add_option("--confidence", confidence,
-                 "DIR[,LEAST]: folder of grayscale PNGs with the depth images' names; pixels under "
-                 "LEAST (1..255, 1) are ignored");
+                 "DIR[,LEAST]: folder of confidence PNGs, grayscale, named like the depth images; "
+                 "pixels below LEAST (1..255, default 1) are ignored");
 }
 
 Confidence parse_confidence(const std::string& text) {
@@ -98,7 +95,7 @@ Confidence parse_confidence(const std::string& text) {
   if (number.empty() || number.find_first_not_of("0123456789") != std::string::npos) {
     return {text};
   }
-  if (comma == 0) refuse("--confidence " + text + ": needs DIR,LEAST");
+  if (comma == 0) refuse("--confidence " + text + ": expected DIR,LEAST");
   const std::size_t least =
       parse_count("--confidence", parse_numbers("--confidence", number, 1, 1)[0]);
   if (least < 1 || least > 255) refuse("--confidence " + text + ": LEAST must be in 1..255");

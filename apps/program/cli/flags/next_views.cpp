@@ -6,6 +6,7 @@
 #include <array>
 
 #include "program/cli/flags/gain_names.hpp"
+#include "program/cli/help.hpp"
 #include "program/cli/values.hpp"
 
 namespace viewgain::app {
@@ -25,11 +26,11 @@ struct Outcome {
   std::uint32_t GainEvaluator::RayOutcomes::*count;
 };
 constexpr std::array kOutcomes{
-    Outcome{"unknown", "come to unknown space", &GainEvaluator::RayOutcomes::unknown},
-    Outcome{"known_surface", "end in known surface", &GainEvaluator::RayOutcomes::known_surface},
-    Outcome{"obstacle", "end at obstacles", &GainEvaluator::RayOutcomes::obstacle},
-    Outcome{"too_near", "meet something too near", &GainEvaluator::RayOutcomes::too_near},
-    Outcome{"out_of_range", "see free space to the range limit",
+    Outcome{"unknown", "reach unknown space", &GainEvaluator::RayOutcomes::unknown},
+    Outcome{"known_surface", "end on known surface", &GainEvaluator::RayOutcomes::known_surface},
+    Outcome{"obstacle", "end on obstacles", &GainEvaluator::RayOutcomes::obstacle},
+    Outcome{"too_near", "hit something too near", &GainEvaluator::RayOutcomes::too_near},
+    Outcome{"out_of_range", "see free space up to the range limit",
             &GainEvaluator::RayOutcomes::out_of_range},
     Outcome{"out_of_map", "leave the map", &GainEvaluator::RayOutcomes::out_of_map}};
 
@@ -68,10 +69,14 @@ double total_gain(const NextViews& next) {
 
 void add_plan_option(App& app, std::string& text) {
   app.add_option("--plan", text,
-                 "K[,M]: plan up to K views as a set, in an order with a short straight-line path. "
-                 "Plan anew after M of them (default: K), or earlier if none is left that is "
-                 "possible and promises enough. next, and model without --watch, list the first M. "
-                 "1: one view at a time");
+                 "K[,M]: plan up to K views as a set and replan after M of them (default M: K; see "
+                 "below); 1: one view at a time");
+  explain_values(
+      app,
+      "Planning ahead with --plan K[,M]:\n"
+      "  The views of a plan come in an order with a short straight-line path. The\n"
+      "  planner replans after M views, or earlier if no remaining view is possible and\n"
+      "  promises enough. next, and model without --watch, list the first M.\n");
 }
 
 PlanAhead parse_plan(const std::string& text) {
@@ -137,8 +142,8 @@ std::string help_text(std::size_t candidates, const std::map<std::string, std::s
   // What would help where most are dropped for one reason.
   for (const auto& [reason, what] :
        {std::pair(kUnreachable,
-                  "out of reach: a wider --reach or --generator boundary,shell would add some"),
-        std::pair(std::string_view("too_near"), "too near: --distance puts them farther away")}) {
+                  "out of reach: widen --reach, or add candidates with --generator boundary,shell"),
+        std::pair(std::string_view("too_near"), "too near: move them away with --distance")}) {
     const auto found = dropped.find(std::string(reason));
     if (found == dropped.end() || 2 * found->second <= all) continue;
     return with_commas(found->second) + " of " + with_commas(all) + " candidates are " + what;
@@ -147,27 +152,28 @@ std::string help_text(std::size_t candidates, const std::map<std::string, std::s
 }
 
 std::string summary_of(const NextViews& next) {
-  if (next.candidates == 0 && next.dropped.empty()) return "nothing is left to look at";
+  if (next.candidates == 0 && next.dropped.empty())
+    return "no candidates: nothing is left to look at";
   const std::string count = with_commas(next.candidates);
   std::string text = next.candidates == 0 ? "no view is possible"
                      : next.views.empty()
                          ? "none of the " + count + " candidate views has a positive gain"
-                         : "the best of " + count + " views";
+                         : "best of " + count + " views";
   if (!next.dropped.empty()) text += "; dropped: " + counts_text(next.dropped);
   if (const std::string help = help_text(next.candidates, next.dropped); !help.empty()) {
     text += "; " + help;
   }
   if (next.candidates == 0 && next.dropped.contains("collision")) {
     text +=
-        " (the body would be in voxels not known to be free; does the workspace include the "
-        "camera's positions? see --workspace, --body)";
+        " (the body would touch voxels not known to be free; check that --workspace "
+        "includes the camera's positions, and check --body)";
   }
   return text;
 }
 
 std::string text_of(const NextViews& next) {
   const char* const unworthy = next.all_worth ? "" : "no other view gains more than it costs\n";
-  if (next.no_gain) return "none of the candidates gains: " + text_of(*next.no_gain) + "\n";
+  if (next.no_gain) return "no candidate has a positive gain: " + text_of(*next.no_gain) + "\n";
   if (next.views.empty()) return unworthy;
   const bool has_area = next.model != GainModel::paper;
   const std::string gain = "gain [" + std::string(gain_unit(next.model)) + "]";
@@ -191,9 +197,10 @@ std::string text_of(const NextViews& next) {
   }
   if (next.views.size() > 1 && next.together) {
     text += has_area ? "gain and area are" : "gain is";
-    text += " marginal: what each view adds to those before it\n";
+    text += " marginal: the increase over the views above\n";
   }
-  if (next.plan_metres) text += formatted("%.3f m of straight-line path\n", *next.plan_metres);
+  if (next.plan_metres)
+    text += formatted("path length: %.3f m, straight lines\n", *next.plan_metres);
   if (next.views.front().worth <= 0) text += "no view gains more than it costs\n";
   return text + unworthy;
 }
@@ -210,7 +217,7 @@ std::string outside_text(const NextViews& next, const BeliefGrid& grid) {
   });
   if (outside == 0) return {};
   return std::to_string(outside) + " of " + std::to_string(next.views.size()) +
-         " views stand outside the workspace, where nothing is known to be free (--workspace, "
+         " views lie outside the workspace, where no space is known to be free (--workspace, "
          "--reach)\n";
 }
 

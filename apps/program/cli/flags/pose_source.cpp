@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "program/cli/help.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/generators.hpp"
@@ -67,26 +68,33 @@ bool is_set_of_poses(const std::string& value) { return set_in(value).has_value(
 
 void add_pose_options(App& app, PoseOptions& options) {
   app.add_option("--poses", options.poses,
-                 "TUM file of camera-to-world poses: time tx ty tz qx qy qz qw [s, m]; or .npy: "
-                 "rows with tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4) matrices, float64 or float32; "
-                 "or a set that looks at --center [m, degrees]: sphere:N,RADIUS (Fibonacci "
-                 "lattice), dome:N,RADIUS (its upper half), rings:N,RADIUS (cylinder and dome "
-                 "rings of the literature, N is 48, 80, 288 or 864), shell:N,RMIN,RMAX (at random "
-                 "by --seed), orbit:N,RADIUS,ELEVATION[,START,STEP] (a circle of latitude)")
+                 "TUM or .npy file of camera-to-world poses, or a set of poses such as "
+                 "sphere:500,0.6 (see below)")
       ->required();
+  explain_values(
+      app,
+      "Values of --poses; sets of poses look at --center [m, degrees]:\n"
+      "  FILE (TUM)          lines with time tx ty tz qx qy qz qw [s, m]\n"
+      "  FILE.npy            rows with tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4)\n"
+      "                      matrices; float64 or float32\n"
+      "  sphere:N,RADIUS     Fibonacci lattice\n"
+      "  dome:N,RADIUS       upper half of the sphere\n"
+      "  rings:N,RADIUS      cylinder and dome rings of the literature; N: 48, 80, 288 or\n"
+      "                      864\n"
+      "  shell:N,RMIN,RMAX   random, from --seed\n"
+      "  orbit:N,RADIUS,ELEVATION[,START,STEP]  circle of latitude\n");
   app.add_option("--center", options.center,
-                 "x,y,z that the sets of poses look at, world [m]; default: the origin");
+                 "x,y,z that sets of poses look at, world frame [m] (default: the origin)");
 }
 
 void add_cost_options(App& app, CostOptions& options, const std::string& of) {
   app.add_option(
       "--costs", options.file,
-      "file of one cost per pose of " + of + ", subtracted from its gain, in the gain's unit");
+      "file with one cost per pose of " + of + ", subtracted from its gain, in the gain's unit");
   app.add_option("--cost-per-metre", options.per_metre, kCostPerMetreHelp);
-  app.add_option(
-      "--from", options.from,
-      "x,y,z of the camera in the world [m], where path lengths begin (default: at the last frame, "
-      "used or not; for a map file at its last view)");
+  app.add_option("--from", options.from,
+                 "x,y,z: camera position where paths begin, world frame [m] (default: at the last "
+                 "frame, used or not; for a map file, at its last view)");
 }
 
 void check(const CostOptions& options, bool has_way) {
@@ -104,7 +112,7 @@ std::vector<double> read_costs(const std::string& file, std::size_t poses) {
   std::vector<double> costs;
   while (reader.next()) {
     if (reader.words().empty() || reader.words()[0].front() == '#') continue;
-    if (reader.words().size() > 1) reader.fail("a line has one cost");
+    if (reader.words().size() > 1) reader.fail("expected one cost per line");
     costs.push_back(reader.finite_number(0));
     if (costs.back() < 0) reader.fail("a cost must not be negative");
   }
@@ -157,8 +165,8 @@ std::optional<Pose> begin_of_ways(const CostOptions& options,
 
 std::vector<Pose> poses_in(const std::string& file) {
   if (const auto set = set_in(file)) {
-    refuse("--poses " + file + ": a set is given by --generator " + std::string(set->kind) +
-           " here, with --count and --distance");
+    refuse("--poses " + file + ": expected a file of poses; for a set, use --generator " +
+           std::string(set->kind) + " with --count and --distance");
   }
   PoseOptions options;
   options.poses = file;

@@ -117,7 +117,7 @@ void warn_of_few_voxels(const BeliefGrid& grid) {
   if (longest >= kFew) return;
   std::fprintf(stderr,
                "viewgain: warning: --voxel %s m leaves %d voxel%s along the workspace's longest "
-               "side: voxels are in metres, not millimetres\n",
+               "side; --voxel is in metres, not millimetres\n",
                short_text(grid.voxel_size()).c_str(), longest, longest == 1 ? "" : "s");
 }
 
@@ -157,7 +157,9 @@ bool is_same_sensor(const Sensor& a, const Sensor& b) { return readings_of(a) ==
 bool warn_of_other_sensor(const std::string& path, const BeliefGrid& grid, const Sensor& sensor) {
   const std::optional<Sensor> noted = map_sensor(grid);
   if (!noted || is_same_sensor(*noted, sensor)) return false;
-  std::fprintf(stderr, "viewgain: warning: the readings in %s come from %s, not from this %s: %s\n",
+  std::fprintf(stderr,
+               "viewgain: warning: the readings in %s come from the sensor %s, but --sensor %s "
+               "differs: %s\n",
                path.c_str(), printable(noted->name).c_str(), printable(sensor.name).c_str(),
                printable(difference(*noted, sensor)).c_str());
   return true;
@@ -179,12 +181,12 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
   if (asked) warn_of_other_sensor(path, grid, *asked);
   std::optional<Sensor> sensor = asked ? std::move(asked) : map_sensor(grid);
   if (!sensor) {
-    refuse(path + ": does not say which sensor its readings come from; give --sensor");
+    refuse(path + ": the map does not record its sensor; give --sensor");
   }
   if (is_octomap(path) || has_states_alone(grid)) {
     std::fprintf(stderr,
-                 "viewgain: note: %s has states alone: known surface counts as never measured "
-                 "(--gain surface leaves that out), and views that were taken are not known\n",
+                 "viewgain: note: %s holds voxel states only: known surface counts as never "
+                 "measured (--gain surface is not affected), and its past views are unknown\n",
                  path.c_str());
   }
   return {std::move(grid), *std::move(sensor)};
@@ -193,8 +195,8 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
 void require_known(const BeliefGrid& grid, const std::string& path) {
   if (grid.statistics().unknown < grid.voxel_count()) return;
   refuse(path +
-         ": all of it is unknown, no reading is in it; was it made with the wrong "
-         "workspace, scale or poses (world to camera)?");
+         ": all voxels are unknown, the map holds no reading. Was it made with a wrong workspace, "
+         "scale or poses (world to camera)?");
 }
 
 }  // namespace viewgain::app

@@ -31,10 +31,16 @@ namespace viewgain::app {
 [[nodiscard]] HazardConfig hazard_source(const std::string& text, const BeliefGrid& grid);
 
 inline constexpr const char* kHazardHelp =
-    "rate at which rays meet surface in unknown voxels [1/m], for --gain surface and combined: a "
-    "number for all voxels, or a .vdb file (default: from distance to and elevation above the seen "
-    "surface). size=L, alone or before the rate and a comma: the object's longest side [m] "
-    "(default: that of its seen part)";
+    "rate at which rays meet surface in unknown voxels, for --gain surface and combined: RATE "
+    "[1/m], FILE.vdb or size=L (see below)";
+
+inline constexpr const char* kHazardValues =
+    "Values of --hazard; size=L can precede one of the others, as in size=0.3,5:\n"
+    "  RATE      one rate for all unknown voxels [1/m]\n"
+    "  FILE.vdb  a rate per voxel\n"
+    "  size=L    longest side of the object [m] (default: that of its seen part)\n"
+    "  By default, rates follow from the distance to the seen surface and from the\n"
+    "  elevation above it.\n";
 
 /// What --size [m], --place center and --up say of a mesh.
 [[nodiscard]] MeshPlacement placement_of(std::optional<double> size, const std::string& place,
@@ -49,8 +55,8 @@ inline constexpr const char* kHazardHelp =
 [[nodiscard]] Obstacles obstacles_of(const std::vector<std::string>& values);
 
 inline constexpr const char* kObstacleHelp =
-    "mesh file, or x0,y0,z0,x1,y1,z1: a known obstacle in the world's frame [m], which blocks rays "
-    "and gains nothing; may be repeated";
+    "known obstacle: mesh file or box x0,y0,z0,x1,y1,z1, world frame [m]; blocks rays, has no "
+    "gain; may be repeated";
 
 // What is allowed and seldom meant: one line on the error output.
 

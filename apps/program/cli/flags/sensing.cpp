@@ -32,15 +32,15 @@ SimulatedNoise parse_noise(const std::string& text, bool readings) {
     const std::size_t equals = part.find('=');
     const std::string word = part.substr(0, equals);
     const std::string fault =
-        fault_of_name(word, {"on", "off", "plain", "flying", "scale", "pose"}, "word of --noise");
+        fault_of_name(word, {"on", "off", "plain", "flying", "scale", "pose"}, "word");
     if (!fault.empty()) refuse("--noise: " + fault);
     const bool has_value = word == "scale" || word == "pose";
     if (has_value && equals == std::string::npos) {
-      refuse("--noise " + part + ": needs a value, as in scale=0.01 or pose=0.002/0.2");
+      refuse("--noise " + part + ": requires a value, as in scale=0.01 or pose=0.002/0.2");
     }
     if (!has_value && equals != std::string::npos) refuse("--noise " + part + ": takes no value");
     if (!words.insert(has_value ? word : "readings").second) {
-      refuse("--noise " + text + ": says the same twice");
+      refuse("--noise " + text + ": gives the same setting twice");
     }
     const std::string value = has_value ? part.substr(equals + 1) : "";
     if (word == "on" || word == "off") noise.readings = word == "on";
@@ -52,7 +52,7 @@ SimulatedNoise parse_noise(const std::string& text, bool readings) {
     if (word != "pose") continue;
     const std::size_t slash = value.find('/');
     if (slash == std::string::npos) {
-      refuse("--noise " + part + ": needs pose=SIGMA_M/SIGMA_DEG, with a slash");
+      refuse("--noise " + part + ": expected pose=SIGMA_M/SIGMA_DEG, with a slash");
     }
     noise.pose =
         parse_pose_sigma("--noise pose", value.substr(0, slash) + "," + value.substr(slash + 1));
@@ -64,16 +64,23 @@ void add_sensing_options(App& app, SensingOptions& o) {
   begin_group(app, "Simulated camera");
   app.add_option("--support-plane", o.support_plane,
                  "height z of an infinite table that occludes [m] (default: none)");
-  app.add_option(
-      "--noise", o.noise,
-      "off; on: the sensor's Gaussian noise along and across the ray and, for sensors with a "
-      "modulation frequency, flying pixels (each mixes 3x3 rays); plain: on without flying pixels; "
-      "flying: flying pixels only. Also, alone or after a comma: scale=E (ranges read 1 + E times "
-      "the true value), pose=SIGMA_M/SIGMA_DEG (error of reported poses per axis [m] and per "
-      "rotation-vector component [deg]; the first pose is exact and defines the world)");
+  app.add_option("--noise", o.noise,
+                 "noise of readings and poses: off, on, plain or flying, scale=E, "
+                 "pose=SIGMA_M/SIGMA_DEG, separated by commas (see below)");
+  explain_values(app,
+                 "Values of --noise, separated by commas:\n"
+                 "  off       no noise\n"
+                 "  on        the sensor's Gaussian noise along and across the ray; for sensors\n"
+                 "            with a modulation frequency also flying pixels, which mix 3x3 rays\n"
+                 "  plain     on without flying pixels\n"
+                 "  flying    flying pixels only\n"
+                 "  scale=E   ranges read 1 + E times the true value\n"
+                 "  pose=SIGMA_M/SIGMA_DEG  error of reported poses per axis [m] and per\n"
+                 "            rotation-vector component [deg]; the first pose is exact and\n"
+                 "            defines the world\n");
   app.add_option("--background", o.background,
-                 "radius of a sphere round the origin that stands for the room [m]; 0: none");
-  add_seed_option(app, o.seed, "of the noise of readings and of poses");
+                 "radius of a sphere around the origin that stands for the room [m]; 0: none");
+  add_seed_option(app, o.seed, "seed for the noise of readings and poses");
 }
 
 SimulationConfig simulation_config(const SensingOptions& options, const SimulatedNoise& noise,
@@ -103,18 +110,23 @@ std::optional<JumpEdgeFilter::Config> parse_jump_edge_filter(const std::string& 
 }
 
 void add_registration_option(App& app, RegistrationOptions& options) {
-  begin_group(app, "Poses that are a little wrong");
+  begin_group(app, "Registration");
   app.add_option(
       "--register", options.text,
-      "off; on: align frames with one another (integrate and --watch: each with the map) and leave "
-      "out those that contradict the rest; or SIGMA_M,SIGMA_DEG: on, with these standard "
-      "deviations of reported poses (default: 0.005,0.5; reconstruct: those of --noise if given)");
+      "correct reported poses by aligning frames: off, on or SIGMA_M,SIGMA_DEG (see below)");
+  explain_values(app,
+                 "Values of --register:\n"
+                 "  off       use poses as reported\n"
+                 "  on        align frames with one another and leave out those that contradict\n"
+                 "            the rest; integrate and model --watch align each with the map\n"
+                 "  SIGMA_M,SIGMA_DEG  on, with these standard deviations of reported poses\n"
+                 "            (default: 0.005,0.5; reconstruct: those of --noise if given)\n");
 }
 
 std::optional<PoseSigma> stated_sigma(const RegistrationOptions& options) {
   if (options.text == "on" || options.text == "off") return std::nullopt;
   if (options.text.find(',') == std::string::npos) {
-    refuse("--register " + options.text + ": needs on, off or SIGMA_M,SIGMA_DEG");
+    refuse("--register " + options.text + ": expected on, off or SIGMA_M,SIGMA_DEG");
   }
   const PoseSigma stated = parse_pose_sigma("--register", options.text);
   check_positive("--register", std::min(stated.translation, stated.rotation));
@@ -139,7 +151,7 @@ std::array<std::size_t, 2> parse_scales(const std::string& text) {
   const std::size_t coarsest = parse_count("--scales", n[0]);
   const std::size_t finest = n.size() > 1 ? parse_count("--scales", n[1]) : 0;
   if (coarsest > 3 || finest > coarsest) {
-    refuse("--scales " + text + ": needs 0 <= FINEST <= COARSEST <= 3");
+    refuse("--scales " + text + ": requires 0 <= FINEST <= COARSEST <= 3");
   }
   return {coarsest, finest};
 }
@@ -162,13 +174,12 @@ Json ScaleOptions::settings() const {
 
 void add_scale_options(App& app, ScaleOptions& options) {
   begin_group(app, "Scales");
-  app.add_option(
-      "--scales", options.scales,
-      "COARSEST[,FINEST], each 0 to 3: merge voxels into cells of up to 2^COARSEST voxels per edge "
-      "where a pixel covers that much; closer views refine them down to 2^FINEST");
+  app.add_option("--scales", options.scales,
+                 "COARSEST[,FINEST], each 0..3: merge voxels into cells of up to 2^COARSEST voxels "
+                 "per edge where a pixel covers them; closer views refine to 2^FINEST");
   app.add_option(
          "--fine", options.fine,
-         "x0,y0,z0,x1,y1,z1 [m]: box that keeps single voxels (requires --scales); may be repeated")
+         "box x0,y0,z0,x1,y1,z1 that keeps single voxels [m] (requires --scales); may be repeated")
       ->allow_extra_args(false);
 }
 

@@ -51,8 +51,8 @@ void add_sensing_options(App& app, SensingOptions& options);
 
 /// Wherever frames go into a map.
 inline constexpr const char* kJumpEdgeHelp =
-    "ANGLE_DEG, 1..10: remove a reading if the edge to a nearer neighbour is within this angle of "
-    "its ray (a flying pixel); or off";
+    "off, or ANGLE_DEG, 1..10: remove flying pixels, whose edge to a nearer neighbour is within "
+    "this angle of the ray";
 
 /// --jump-edge-filter ANGLE_DEG|off. Throws Error(invalid_argument) for other text; the filter
 /// itself refuses angles out of its bounds.

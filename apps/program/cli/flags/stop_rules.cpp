@@ -10,18 +10,21 @@
 namespace viewgain::app {
 
 void add_stop_option(App& app, std::string& text) {
-  app.add_option(
-         "--stop", text,
-         "RULE=LIMIT,...: gain: the best view gains less than this per touched voxel [nat, m^2] "
-         "(--gain "
-         "paper; default 1.2, trace: 0.01 of the first view's); area: the best candidate's "
-         "expected "
-         "new surface is below this share of the surface so far, mean of three decisions (--gain "
-         "surface, combined; default 0.004); idle: this many views in a row change entropy and "
-         "unknown voxels by less than 0.1 % (default 3); promises: this many views in a row bring "
-         "less than a fifth of what was promised (default 3); coverage: this share of the visible "
-         "surface is covered, 0..1 (reconstruct only). 0 disables a rule, except coverage; may be "
-         "repeated")
+  explain_values(app,
+                 "Rules of --stop; LIMIT 0 disables a rule, except coverage:\n"
+                 "  gain      the best view gains less than LIMIT per touched voxel [nat, m^2]\n"
+                 "            (--gain paper; default: 1.2, trace: 0.01 of the first view's)\n"
+                 "  area      the best candidate's expected new surface is below LIMIT times the\n"
+                 "            surface so far, mean of three decisions (--gain surface, combined;\n"
+                 "            default: 0.004)\n"
+                 "  idle      LIMIT views in a row change entropy and unknown voxels by less than\n"
+                 "            0.1 % (default: 3)\n"
+                 "  promises  LIMIT views in a row bring less than a fifth of what was predicted\n"
+                 "            (default: 3)\n"
+                 "  coverage  LIMIT of the visible surface is covered, 0..1 (reconstruct only)\n");
+  app.add_option("--stop", text,
+                 "RULE=LIMIT,...: stop when one of the rules gain, area, idle, promises or "
+                 "coverage holds (see below); may be repeated")
       ->join(',')
       ->check(CLI::Validator(
           [](std::string& value) {
@@ -43,7 +46,7 @@ StopLimits stop_limits(const std::string& text) {
     const std::string fault =
         fault_of_name(rule, {"gain", "area", "idle", "promises", "coverage"}, "rule");
     if (!fault.empty()) refuse(fault);
-    if (equals == std::string::npos) refuse(part + ": needs a limit, as in idle=3");
+    if (equals == std::string::npos) refuse(part + ": requires a limit, as in idle=3");
     const std::string flag = rule;
     const double limit = parse_numbers(flag, part.substr(equals + 1), 1, 1)[0];
     check_at_least_0(flag, limit);

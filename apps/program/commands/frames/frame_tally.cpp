@@ -21,7 +21,7 @@ Json frames_json(const FrameCounts& counts) {
 
 std::string frames_text(std::size_t carved, const std::map<std::string, std::size_t>& bad) {
   std::string text;
-  if (carved > 0) text = with_commas(carved) + " frames show free space alone";
+  if (carved > 0) text = with_commas(carved) + " frames show only free space";
   if (bad.empty()) return text;
   return text + (text.empty() ? "left out: " : "; left out: ") + counts_text(bad);
 }
@@ -39,8 +39,8 @@ std::string refused_text(const FrameCounts& counts) {
   return with_commas(refused) + " of " + with_commas(refused + taken) +
          " frames contradict the others and were left out (--register on), so that the map holds " +
          with_commas(taken) +
-         ". Registration corrects small errors only: are the poses those of "
-         "the camera, on time, and the intrinsics right?";
+         ". Registration corrects only small errors. Are the poses those of the camera, do they "
+         "match the images in time, and are the intrinsics right?";
 }
 
 namespace {
@@ -124,7 +124,7 @@ std::string suspicion_of(const FrameFolder& folder) {
 void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum) {
   if (sum.readings > 0 || sum.out_of_range == 0) return;
   std::fprintf(stderr,
-               "viewgain: warning: %s: none of %s points is in the sensor's range: are they in "
+               "viewgain: warning: %s: none of %s points is in the sensor's range. Are they in "
                "metres?\n",
                cloud.c_str(), with_commas(sum.out_of_range).c_str());
 }
@@ -181,12 +181,12 @@ void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
     std::string warning = is_outside ? none_inside(folder) : "";
     if (!has_surface) {
       constexpr const char* kWords =
-          "no voxel is occupied: does the workspace hold the object, are the poses camera to "
-          "world?";
+          "no voxel is occupied. Does the workspace contain the object, and are the poses camera "
+          "to world?";
       warning += (warning.empty() ? "" : "; ") + std::string(kWords);
     } else if (warning.empty() && suspicion.empty() &&
                count_of(counts_, FrameVerdict::carved) > used) {
-      warning = frames_text(counts_) + ": are scale, poses and workspace right?";
+      warning = frames_text(counts_) + ". Are scale, poses and workspace right?";
     }
     if (!suspicion.empty()) warning += (warning.empty() ? "" : "; ") + suspicion;
     if (warning.empty()) return;

@@ -104,7 +104,7 @@ class FrameSource : public ReadingSource {
 };
 
 Sensor sensor_of(const IntegrateOptions& options) {
-  if (options.frames.sensor.empty()) refuse("--sensor is needed with --cloud");
+  if (options.frames.sensor.empty()) refuse("--cloud requires --sensor");
   return load_sensor(options.frames.sensor);
 }
 
@@ -148,7 +148,7 @@ class CloudSource : public ReadingSource {
     } else if (cloud_.viewpoint) {
       T_world_sensor_ = *cloud_.viewpoint;
     } else {
-      refuse(files_[index] + ": has no VIEWPOINT, so --origin or --poses is needed");
+      refuse(files_[index] + ": has no VIEWPOINT; give --origin or --poses");
     }
     return {};
   }
@@ -159,7 +159,7 @@ class CloudSource : public ReadingSource {
       progress.update(i + 1, files_.size());
       return reading_bounds(sensor_, cloud_.points, T_world_sensor_, {}, support_plane_);
     });
-    if (!seen) refuse("no cloud has a reading");
+    if (!seen) refuse("no cloud has readings");
     return *seen;
   }
   void start(BeliefGrid grid) override { grid_.emplace(std::move(grid)); }

@@ -19,13 +19,17 @@ void add_model_options(App& app, ModelOptions& o) {
                  "replaces it)")
       ->check(counted(1, 1'000'000));
   add_output_options(app, o.outputs);
-  begin_group(app, "With --watch: when next.json says to stop");
-  Option* watch = app.add_flag(
-      "--watch", o.watch,
-      "requires --workspace: wait for frames until a signal, or until FRAMES_DIR/done exists; "
-      "after each frame write "
-      "state.vdb, next.txt and next.json to OUT; the same call resumes after a kill (cannot be "
-      "used with --costs, --from, --save-maps, --pictures, --report or --resume)");
+  begin_group(app, "Watching a folder");
+  Option* watch =
+      app.add_flag("--watch", o.watch,
+                   "wait for frames until a signal or FRAMES_DIR/done (requires --workspace; "
+                   "cannot be used with --costs, --from, --resume; see below)");
+  explain_values(
+      app,
+      "With --watch:\n"
+      "  After each frame the program writes state.vdb, next.txt and next.json to OUT.\n"
+      "  next.json says when to stop (--max-views, --stop). The same call resumes after\n"
+      "  a kill. --watch cannot be used with --pictures, --save-maps or --report.\n");
   app.add_option("--max-views", o.max_views,
                  "view budget; when it is used up, next.json has the stop_reason max_views "
                  "(requires --watch)")
@@ -41,11 +45,10 @@ void add_model_options(App& app, ModelOptions& o) {
 
 Command add_model(App& program) {
   auto options = std::make_shared<ModelOptions>();
-  App* app =
-      program.add_subcommand("model",
-                             "Turn a folder of depth frames into a map, its surface and points, "
-                             "and propose the next views. "
-                             "With --watch, also take frames as another program writes them.");
+  App* app = program.add_subcommand(
+      "model",
+      "Turn a folder of depth frames into a map, its surface and its points, and propose the next "
+      "views. With --watch, also take frames while another program writes them.");
   add_model_options(*app, *options);
   return command_of(app, options, [app](const ModelOptions& given) {
     const RunOutputs& outputs = given.outputs;

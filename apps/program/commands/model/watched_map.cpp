@@ -36,8 +36,8 @@ ViewPlanner planner_of(const Sensor& sensor, const ScorerConfig& map, const Plan
                        const fs::path& state, const std::optional<SavedFrames>& saved,
                        const ExecConfig& exec) {
   if (saved && saved->sensor && !is_same_sensor(*saved->sensor, sensor)) {
-    refuse(state.string() + ": its frames are of " + saved->sensor->name + ", not of this " +
-           sensor.name + "; name a new folder");
+    refuse(state.string() + ": its frames come from " + saved->sensor->name + ", not from this " +
+           sensor.name + "; choose a new folder");
   }
   return saved ? ViewPlanner::load(state, sensor, map, config, exec)
                : ViewPlanner(ViewScorer(sensor, map, exec), config);
@@ -49,7 +49,8 @@ MaskFolder mask_folder(const char* flag, const fs::path& folder, const fs::path&
   std::error_code ignored;
   if (fs::equivalent(folder, frames, ignored)) {
     refuse(std::string(flag) + " " + folder.string() +
-           ": has the depth images, whose names masks have; name a folder in it");
+           ": is the folder of the depth images, whose names the masks have; put the masks into a "
+           "folder in it");
   }
   return MaskFolder(folder, least_confidence);
 }
@@ -69,9 +70,7 @@ std::set<std::string> images_in(const fs::path& folder) {
 ScorerConfig map_config_of(const ModelOptions& options) {
   ScorerConfig config = scorer_config(options.frames, options.proposal);
   if (options.frames.workspace.empty()) {
-    refuse(
-        "--watch requires --workspace x0,y0,z0,x1,y1,z1: it cannot be taken from frames that are "
-        "still to come");
+    refuse("--watch requires --workspace x0,y0,z0,x1,y1,z1: future frames cannot determine it");
   }
   config.workspace = parse_box("--workspace", options.frames.workspace);
   config.gain.model = parse_gain_model(options.proposal.gain);
@@ -84,7 +83,7 @@ PlannerConfig planner_config_of(const ModelOptions& options) {
   config.max_views = options.max_views;
   const StopLimits stop = stop_limits(options.stop);
   if (stop.coverage)
-    refuse("--stop coverage cannot be used with model: it needs the object's mesh");
+    refuse("--stop coverage cannot be used with model: it requires the object's mesh");
   config.idle_views = stop.idle;
   config.broken_promises = stop.promises;
   config.stop_gain = stop.gain;
@@ -120,11 +119,11 @@ FolderLock::FolderLock(const fs::path& folder) : folder_(folder) {
   if (!code) lock_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ < 0) {
     const std::string why = code ? code.message() : std::generic_category().message(errno);
-    throw Error(ErrorCode::io, folder.string() + ": cannot be made or opened: " + why);
+    throw Error(ErrorCode::io, folder.string() + ": cannot be created or opened: " + why);
   }
   if (::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   ::close(lock_);
-  refuse(folder.string() + ": another process is writing into it");
+  refuse(folder.string() + ": another process is writing to it");
 }
 
 FolderLock::~FolderLock() {
@@ -141,7 +140,7 @@ std::optional<SavedFrames> saved_frames(const fs::path& state, const ExecConfig&
   if (frames.size() != grid.views().size()) {
     throw Error(ErrorCode::format, state.string() + ": has " + std::to_string(grid.views().size()) +
                                        " views of " + std::to_string(frames.size()) +
-                                       " frames with names; is of another program");
+                                       " named frames; another program wrote it");
   }
   return SavedFrames{frames, map_sensor(grid)};
 }

@@ -51,7 +51,7 @@ void check_folder(const fs::path& out, bool goes_on) {
   for (const fs::path& name : run_files(out)) {
     const bool is_own = goes_on && name != "map.vdb" && name != "run.json";
     if (!is_own && fs::exists(out / name, ignored)) {
-      refuse((out / name).string() + ": is there, but not of --watch; name a new folder");
+      refuse((out / name).string() + ": exists, but --watch did not write it; choose a new folder");
     }
   }
 }
@@ -81,7 +81,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     saved_ = saved_frames(out_ / "state.vdb", exec_of(options.common));
     if (saved_) {
       views_.recall(out_ / "next.json", saved_->frames);
-      say("goes on with the " + std::to_string(saved_->frames.size()) + " frames of " +
+      say("resuming with " + std::to_string(saved_->frames.size()) + " frames of " +
           (out_ / "state.vdb").string());
     }
     check_folder(out_, saved_.has_value());
@@ -111,7 +111,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
   void print_summary(double seconds) const {
     if (is_done_ && count() == 0) {
       const std::string bad = counts_text(watch_->bad());
-      refuse(frames_.string() + ": done, but without a frame" +
+      refuse(frames_.string() + ": finished without a frame" +
              (bad.empty() ? "" : "; bad: " + bad));
     }
     if (options_.common.json) {
@@ -130,7 +130,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
       json["seconds"] = seconds;
       return print_json(json);
     }
-    std::printf("%zu frames in the map, %zu of them new; %zu wait\n", count(), added_,
+    std::printf("%zu frames in the map, %zu of them new; %zu waiting\n", count(), added_,
                 watch_->waiting());
     if (const std::string text = frames_text(carved(), watch_->bad()); !text.empty()) {
       std::printf("%s\n", text.c_str());
@@ -138,7 +138,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     std::printf("%s", masked_text(folder_, masked_pixels_).c_str());
     if (!map_) return;
     if (const auto reason = map_->should_stop()) {
-      std::printf("enough: %s\n", stop_reason_name(*reason).data());
+      std::printf("stop: %s\n", stop_reason_name(*reason).data());
     }
     std::printf("%s: state.vdb (hash %s), next.txt, next.json%s\n", out_.c_str(),
                 map_->grid().content_hash().c_str(),
@@ -309,10 +309,10 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     if (options_.common.quiet) return;
     std::fprintf(stderr, "%zu frames: %zu candidates", count(), next.candidates);
     if (!next.views.empty()) {
-      std::fprintf(stderr, ", the best gains %.4g", next.views.front().gain.gain);
+      std::fprintf(stderr, ", best gain %.4g", next.views.front().gain.gain);
     }
     const auto reason = map_->should_stop();
-    std::fprintf(stderr, "%s%s\n", reason ? "; enough: " : "",
+    std::fprintf(stderr, "%s%s\n", reason ? "; stop: " : "",
                  reason ? stop_reason_name(*reason).data() : "");
   }
 

@@ -73,37 +73,42 @@ PoseSetRequest request_of(const ProposalOptions& options, const Sensor& sensor,
 
 void add_next_view_options(App& app, ProposalOptions& o) {
   begin_group(app, "Candidates");
-  app.add_option(
-         "--generator", o.generator,
-         "where candidates come from, comma-separated: boundary (open surface boundaries, and "
-         "places where more surface is expected), sphere, dome, rings, shell, sequence (default: "
-         "boundary; a map without surface or views gets a sphere round the workspace instead)")
+  app.add_option("--generator", o.generator,
+                 "sources of candidates, comma-separated (default: boundary; for a map without "
+                 "surface or views: a sphere around the workspace; see below)")
       ->check(several_of(generator_names(), "generator"));
+  explain_values(
+      app,
+      "Sources of candidates for --generator, with their --distance by default:\n"
+      "  boundary  in front of open surface boundaries and of places where more surface\n"
+      "            is expected; the sensor's working distance\n"
+      "  sphere, dome, rings, sequence  around --center; the workspace fills the view\n"
+      "  shell     random, around --center; the shells or boxes of --reach\n");
   app.add_option("--poses", o.poses,
-                 "TUM or .npy file of camera-to-world poses to choose among; with --generator, in "
+                 "TUM or .npy file of camera-to-world poses to choose from; with --generator, in "
                  "addition to its candidates");
   add_cost_options(app, o.costs, "--poses");
   app.add_option("--count", o.count,
-                 "poses of the sphere, dome or shell (default 500); rings: 48, 80, 288 or 864 "
-                 "(default 48)")
+                 "number of poses of the sphere, dome or shell (default: 500); rings: 48, 80, 288 "
+                 "or 864 (default: 48)")
       ->check(counted(1, 1'000'000));
-  app.add_option("--distance", o.distance,
-                 "distance from the surface (boundary) or from the centre (other generators) [m]. "
-                 "Default: boundary: the sensor's working distance; others: the workspace fills "
-                 "the view; shell: the shells or boxes of --reach");
+  app.add_option(
+      "--distance", o.distance,
+      "distance from the surface (boundary) or from the centre (others) [m] (default: see below)");
   app.add_option("--center", o.center,
-                 "x,y,z that poses look at, world [m]; default: the workspace's centre");
+                 "x,y,z that poses look at, world frame [m] (default: the workspace's centre)");
   app.add_option("--reach", o.reach,
                  "TOML file of reachable boxes, shells, half-spaces and poses (default: "
-                 "everywhere; boundary views: the workspace, if it contains all views so far)");
-  begin_group(app, "What is in the way");
+                 "everywhere; for boundary, the workspace if it contains all views so far)");
+  begin_group(app, "Obstacles");
   app.add_option("--body", o.body, kBodyHelp);
   app.add_option("--support-plane", o.support_plane, "height z of a table [m]");
   app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
   begin_group(app, "Gain and order");
   app.add_option("--hazard", o.hazard, kHazardHelp);
-  add_seed_option(app, o.seed, "of the shell");
-  app.add_option("--gain", o.gain, "paper, surface or combined, as in score")
+  explain_values(app, kHazardValues);
+  add_seed_option(app, o.seed, "seed of the shell");
+  app.add_option("--gain", o.gain, "gain to rank by: paper, surface or combined, as in score")
       ->check(one_of_gain_models());
   add_plan_option(app, o.plan);
 }
@@ -115,22 +120,22 @@ void check(const ProposalOptions& options) {
     return name != "boundary" && name != "sequence";
   });
   if (options.count && sets == 0 && (options.poses.empty() || !names.empty())) {
-    refuse("--count goes with sets of poses, not with --generator " +
+    refuse("--count requires --generator sphere, dome, rings or shell, not " +
            (names.empty() ? "boundary" : options.generator));
   }
   if (!options.center.empty() && sets == 0 && boundary && !has_generator(options, "sequence")) {
-    refuse("--center goes with sets of poses, not with --generator boundary");
+    refuse("--center cannot be used with --generator boundary");
   }
   if (options.distance) check_positive("--distance", *options.distance);
   check(options.costs, parse_plan(options.plan).is_on());
   if (!options.poses.empty() && options.generator.empty() &&
       (options.count || options.distance || !options.center.empty())) {
-    refuse("--count, --distance and --center go with --generator, not with --poses alone");
+    refuse("--count, --distance and --center require --generator when --poses is given");
   }
-  if (!options.costs.file.empty() && options.poses.empty()) refuse("--costs goes with --poses");
+  if (!options.costs.file.empty() && options.poses.empty()) refuse("--costs requires --poses");
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
   if (parse_gain_model(options.gain) == GainModel::paper && !options.hazard.empty()) {
-    refuse("--hazard goes with --gain surface or combined");
+    refuse("--hazard requires --gain surface or combined");
   }
 }
 
@@ -157,7 +162,7 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
   if (options.distance) config.boundary.working_distance = *options.distance;
   if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
   if (!map.empty() && has_generator(options, "boundary") && grid.views().empty()) {
-    refuse(map + ": has no views, which boundary candidates need; try --generator sphere");
+    refuse(map + ": has no views, which --generator boundary requires; try --generator sphere");
   }
   if (!options.poses.empty()) config.sets.push_back({kGivenPoses, poses_in(options.poses)});
   const PoseSetRequest request = request_of(options, sensor, grid, config.feasibility.reach);

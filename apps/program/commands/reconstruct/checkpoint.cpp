@@ -39,11 +39,13 @@ Checkpoint::Checkpoint(RunFolder& folder, const Json& head, bool resume)
         (void)decision(i);
       }
     } catch (const Json::exception& error) {
-      throw Error(ErrorCode::format, file_ + ": no checkpoint: " + error.what());
+      throw Error(ErrorCode::format, file_ + ": not a checkpoint: " + error.what());
     }
     if (json_.dump() != last.dump()) {
-      refuse(file_ + ": is of a run with other settings, or of another program; without --resume " +
-             "this one begins anew");
+      refuse(
+          file_ +
+          ": comes from a run with other settings or another program version; without --resume " +
+          "the run starts afresh");
     }
   }
   folder_.write_checkpoint(json_.dump(1) + "\n");
@@ -65,8 +67,9 @@ void Checkpoint::add_view(const ViewRecord& record, const std::string& map_hash)
   Json& decisions = json_["decisions"];
   if (record.index < decisions.size()) {
     if (decisions[record.index]["map_hash"].get<std::string>() == map_hash) return;
-    refuse(file_ + ": the map after view " + std::to_string(record.index) +
-           " was another: has a file changed? Without --resume the run begins anew");
+    refuse(
+        file_ + ": the map after view " + std::to_string(record.index) +
+        " differs from the saved one. Has a file changed? Without --resume the run starts afresh");
   }
   if (!record.decision) return;
   Json json{{"map_hash", map_hash}, {"candidate", record.decision->candidate}};

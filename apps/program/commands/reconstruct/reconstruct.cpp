@@ -82,7 +82,7 @@ void warn_of_workspace(const Stage& stage) {
   }
   if (share >= 0.5) return;
   std::fprintf(stderr,
-               "viewgain: warning: the workspace holds %.0f %% of the object's box, %s m "
+               "viewgain: warning: the workspace contains only %.0f %% of the object's box, %s m "
                "(--workspace)\n",
                100 * share, describe(object).c_str());
 }
@@ -170,12 +170,12 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
                 beside_text(beside, run["settings"]).c_str());
     if (setup.visibility.tolerance < options.voxel) {
       std::printf(
-          "coverage at %g mm, less than a voxel: what is rebuilt right may count as missed "
+          "coverage is measured at %g mm, less than a voxel: correct surface may count as missed "
           "(--tolerance)\n",
           1e3 * setup.visibility.tolerance);
     }
     const Eigen::Vector3d& center = setup.stage.center;
-    std::printf("the object's box, %.3g m long, has its centre at %.3g, %.3g, %.3g m\n",
+    std::printf("the object's box, %.3g m long, is centred at %.3g, %.3g, %.3g m\n",
                 setup.stage.size, center.x(), center.y(), center.z());
     print_left(outputs, "run.json, config.toml, views.txt, map.vdb, surface.ply, points.ply");
   }
@@ -187,8 +187,8 @@ Command add_reconstruct(App& program) {
   auto options = std::make_shared<ReconstructOptions>();
   App* app = program.add_subcommand(
       "reconstruct",
-      "The whole loop on a mesh: acquire with a simulated camera, update map and surface, propose "
-      "views, rank them, move, until little is left to gain.");
+      "Model a mesh with a simulated camera: take a view, update map and surface, propose and rank "
+      "views, move; repeat until little is left to gain.");
   add_options(*app, *options);
   return command_of(app, options, [app](const auto& given) { reconstruct(given, *app); });
 }

@@ -40,8 +40,9 @@ Pose start_pose(const ReconstructOptions& options, const Stage& stage, double di
 
 void check_voxel(const ReconstructOptions& options, const Stage& stage) {
   if (options.voxel < stage.size) return;
-  refuse("--voxel " + short_text(options.voxel) + ": the object is no larger, its longest side " +
-         short_text(stage.size) + " m (--size)");
+  refuse("--voxel " + short_text(options.voxel) +
+         ": is not smaller than the object, whose longest side is " + short_text(stage.size) +
+         " m (--size)");
 }
 
 // Most meshes that are far too large are in millimetres.
@@ -49,8 +50,8 @@ void check_size(const RunSetup& setup) {
   constexpr double kTooLarge = 10;  // times what the sensor sees
   if (setup.stage.size <= kTooLarge * setup.sensor.max_range) return;
   refuse("the object's longest side is " + short_text(setup.stage.size) +
-         " m, the sensor sees to " + short_text(setup.sensor.max_range) +
-         " m: is the mesh in millimetres? (--size)");
+         " m, but the sensor's range ends at " + short_text(setup.sensor.max_range) +
+         " m. Is the mesh in millimetres? (--size)");
 }
 
 // An obstacle where the run is to start.
@@ -62,7 +63,7 @@ void check_start(const ReconstructOptions& options, const RunSetup& setup, const
                                    feasibility_of(setup.sensor));
   if (checker.check(setup.start) != Infeasibility::obstacle) return;
   const std::string which =
-      options.from.empty() ? "the start pose, which --from would give" : "--from " + options.from;
+      options.from.empty() ? "the start pose (--from)" : "--from " + options.from;
   refuse(which + ": the sensor's body would overlap an --obstacle there");
 }
 
@@ -94,7 +95,7 @@ std::vector<std::string> generators(const ReconstructOptions& options, Policy po
   if (!options.generator.empty()) {
     const std::vector<std::string> names = names_in(options.generator);
     if (policy == Policy::kriegel && names != std::vector<std::string>{"boundary"}) {
-      refuse("--policy kriegel chooses among boundary candidates alone");
+      refuse("--policy kriegel can only use --generator boundary");
     }
     return names;
   }

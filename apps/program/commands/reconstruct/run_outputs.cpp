@@ -12,6 +12,7 @@
 #include "program/cli/flags/gain_names.hpp"
 #include "program/cli/flags/next_views.hpp"
 #include "program/cli/values.hpp"
+#include "program/commands/consistency_text.hpp"
 #include "program/commands/file_format.hpp"
 #include "program/commands/frames/frame_tally.hpp"
 #include "show/pictures/view_picture.hpp"
@@ -99,7 +100,7 @@ Json beside_json(const RunOutputs& outputs) {
   const bool has_views = run.is_object() && run.contains("settings") && run.contains("per_view") &&
                          run["per_view"].is_array() && !run["per_view"].empty();
   if (!has_views || !run.contains("format") || !run["format"].is_number_unsigned()) {
-    throw Error(ErrorCode::format, file.string() + ": is not a run's");
+    throw Error(ErrorCode::format, file.string() + ": is not the folder of a run");
   }
   check_format(file.string(), run);
   return {{"name", beside}, {"settings", run["settings"]}, {"per_view", run["per_view"]}};
@@ -112,8 +113,8 @@ std::string beside_text(const Json& beside, const Json& own) {
     const Json value = views.back().is_object() ? views.back().value(key, Json()) : Json();
     return value.is_number() ? value.get<double>() : std::nan("");
   };
-  std::string text =
-      beside["name"].get<std::string>() + " beside it: " + std::to_string(views.size()) + " views";
+  std::string text = beside["name"].get<std::string>() +
+                     " for comparison: " + std::to_string(views.size()) + " views";
   if (const double visible = last("coverage_visible"); !std::isnan(visible)) {
     text += formatted(", %.2f %% visible, RMS %.2f mm", 100 * visible, 1e3 * last("rms_error"));
   }
@@ -134,7 +135,7 @@ void commit(RunFolder& folder, const Json& run, const App& app) {
 }
 
 void print_left(const RunOutputs& outputs, const char* files) {
-  std::printf("left in %s: %s%s%s%s\n", outputs.out.c_str(), files,
+  std::printf("written to %s: %s%s%s%s\n", outputs.out.c_str(), files,
               outputs.with_pictures() ? ", views/" : "", outputs.saves_maps() ? ", maps/" : "",
               outputs.with_report() ? ", report.html" : "");
 }
@@ -273,24 +274,20 @@ std::string RunReport::text(StopReason reason) const {
                       counts_text(dropped).c_str(), help.empty() ? "" : "; ", help.c_str());
   }
   text += formatted(
-      "coverage at %g mm %.2f %% of all, %.2f %% of the visible (by points %.2f %%, by triangles "
-      "%.2f %%); at 2.5 mm %.2f %%\n",
+      "coverage at %g mm: %.2f %% of the object, %.2f %% of its visible part (points %.2f %%, "
+      "triangles %.2f %%); at 2.5 mm: %.2f %%\n",
       1e3 * tolerance_, 100 * q.coverage, 100 * q.coverage_visible, 100 * q.coverage_points,
       100 * q.coverage_triangles, 100 * q.coverage_2_5mm);
   text += formatted(
-      "error of the surface: RMS %.2f mm, 95 %% under %.2f mm; of the points: %.2f, %.2f\n",
+      "error: surface RMS %.2f mm, 95 %% below %.2f mm; points RMS %.2f mm, 95 %% below %.2f mm\n",
       1e3 * q.surface_error.rms, 1e3 * q.surface_error.p95, 1e3 * q.points_error.rms,
       1e3 * q.points_error.p95);
-  text += formatted(
-      "consistency %.2f (1 if honest), median %.2f (0.455), above 9: %.3f (0.003); "
-      "%zu outliers of %zu points\n",
-      q.consistency.mean_clipped, q.consistency.median, q.consistency.above_9,
-      q.consistency.outliers, q.consistency.points + q.consistency.outliers);
+  text += consistency_text(q.consistency);
   if (!registrations_.empty()) {
     text += registration_text(registration_counts(registrations_)) + "\n";
   }
   text +=
-      formatted("entropy removed %.6g %s, unknown voxels %s, travelled %.2f m\n",
+      formatted("entropy removed %.6g %s, unknown voxels %s, path length %.2f m\n",
                 last.record.progress.entropy_removed, entropy_unit_.data(),
                 with_commas(last.record.progress.unknown_voxels).c_str(), last.record.travelled);
   double sum = 0;

@@ -36,13 +36,13 @@ namespace {
 using Options = ScoreOptions;
 
 void check_feasibility(const Options& options) {
-  if (options.deadline && !options.race) refuse("--deadline goes with --race");
+  if (options.deadline && !options.race) refuse("--deadline requires --race");
   if (options.deadline) check_at_least_0("--deadline", *options.deadline);
-  if (!options.body.empty() && options.feasible == "off") refuse("--body goes with --feasible on");
+  if (!options.body.empty() && options.feasible == "off") refuse("--body requires --feasible on");
   if (options.support_plane) check_finite("--support-plane", *options.support_plane);
   check(options.costs);
   if (options.set && !options.costs.none()) {
-    refuse("--costs and --cost-per-metre do not go with --set");
+    refuse("--costs and --cost-per-metre cannot be used with --set");
   }
 }
 
@@ -50,13 +50,13 @@ GainConfig gain_config(const Options& options) {
   GainConfig config;
   config.model = parse_gain_model(options.gain);
   if (config.model == GainModel::paper && !options.hazard.empty()) {
-    refuse("--hazard goes with --gain surface or combined");
+    refuse("--hazard requires --gain surface or combined");
   }
   if (config.model == GainModel::paper && options.support_plane && options.feasible == "off") {
-    refuse("--support-plane goes with --feasible on, and with --gain surface or combined");
+    refuse("--support-plane requires --feasible on, or --gain surface or combined");
   }
   if (config.model != GainModel::paper && options.criterion != "log_diagonal") {
-    refuse("--criterion " + options.criterion + " goes with --gain paper, not " + options.gain);
+    refuse("--criterion " + options.criterion + " requires --gain paper, not " + options.gain);
   }
   config.criterion = parse_criterion(options.criterion);
   config.posterior_entropy = true;  // a column of what is written
@@ -212,8 +212,8 @@ void warn_of_prior(const GainEvaluator& evaluator, const Sensor& sensor) {
   if (evaluator.prior_sigma() >= axial) return;
   std::fprintf(
       stderr,
-      "viewgain: warning: the prior sigma, %.3g m, is below the sensor's along the ray, %.3g "
-      "m at %g m: what is unknown counts as surer than a reading (--prior-sigma)\n",
+      "viewgain: warning: the prior sigma, %.3g m, is below the sensor's along the ray, %.3g m at "
+      "%g m: unknown space would be more certain than a reading (--prior-sigma)\n",
       evaluator.prior_sigma(), axial, sensor.working_distance);
 }
 
@@ -305,75 +305,74 @@ Command add_score(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "score",
-      "Candidate poses by expected information gain against a map: the best ones, and how "
-      "fast it went.");
+      "Score candidate poses against a map by expected information gain and print the best.");
   app->add_option("MAP", options->map, kMapHelp)->required();
   add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kMapSensorHelp);
   begin_group(*app, "Gain");
   app->add_option("--gain", options->gain,
-                  "paper (entropy removed) [nat], surface (new surface to be expected) "
-                  "[m^2] or combined (both) [nat]; or gains of the literature, several "
-                  "with commas, ranked by the first")
+                  "paper (entropy removed) [nat], surface (expected new surface) [m^2] or combined "
+                  "[nat]; or gains of the literature with commas, ranked by the first")
       ->check(several_of(all_gain_names(), "gain"));
   app->add_option("--hazard", options->hazard, kHazardHelp);
-  begin_group(*app, "What is in the way");
+  explain_values(*app, kHazardValues);
+  begin_group(*app, "Obstacles");
   app->add_option("--support-plane", options->support_plane,
-                  "height z of a table [m], at which rays of surface and combined end and which "
-                  "--feasible on keeps the body above; default: none");
+                  "height z of a table [m]: ends rays of surface and combined; --feasible on keeps "
+                  "the body above it (default: none)");
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
-  app->add_option("--reach", options->reach,
-                  "TOML file: boxes, shells, half-spaces, poses in reach; other poses are dropped");
+  app->add_option(
+      "--reach", options->reach,
+      "TOML file of reachable boxes, shells, half-spaces and poses; other poses are dropped");
   add_switch(*app, "--feasible", options->feasible,
-             "drop poses where the sensor's body would touch the map, an obstacle or the table, "
-             "where much of the scene is too near to measure, or where the map already has a view");
+             "drop poses where the body touches the map, an obstacle or the table, where the scene "
+             "is largely too near, or where the map already has a view");
   app->add_option("--body", options->body, kBodyHelp);
   begin_group(*app, "Gain");
   app->add_option("--criterion", options->criterion,
-                  "of the paper's gain: log_diagonal (the paper's), log_determinant [nat] "
+                  "criterion of the paper gain: log_diagonal (as published), log_determinant [nat] "
                   "or trace [m^2]")
       ->check(one_of(criterion_names(), "criterion"));
-  app->add_option(
-         "--weight", options->weights,
-         "x0,y0,z0,x1,y1,z1,W: task weight W >= 0 of a box in the grid's frame [m]; may be "
-         "repeated, the last box that holds a voxel counts, 1 outside")
+  app->add_option("--weight", options->weights,
+                  "x0,y0,z0,x1,y1,z1,W: task weight W >= 0 in a box, grid frame [m]; 1 outside; "
+                  "the last box that holds a voxel counts; may be repeated")
       ->allow_extra_args(false);
   app->add_option("--prior-sigma", options->prior_sigma,
-                  "sigma of an unknown voxel [m]; default: the map's");
+                  "sigma of an unknown voxel [m] (default: from the map)");
   begin_group(*app, "Order");
   add_cost_options(*app, options->costs, "the poses");
-  app->add_option("--top", options->top, "how many of the best to print")
+  app->add_option("--top", options->top, "number of poses to print, best first")
       ->check(counted(0, 1'000'000'000));
   auto* selection = app->add_option_group("selection", "at most one of; default: score all poses");
-  selection->add_flag(
-      "--race", options->race,
-      "score all poses with about 400 rays each, then the best of them with all rays; a best pose "
-      "is rarely missed (only one of --race, --approximate, --set)");
+  selection->add_flag("--race", options->race,
+                      "score all poses with about 400 rays, then the best with all rays; rarely "
+                      "misses a best pose (cannot be used with --approximate, --set)");
   selection
       ->add_option("--approximate", options->approximate,
-                   "SHARE: estimate gains, with standard errors, from at most this share of each "
-                   "view's rays")
+                   "SHARE: estimate gains and standard errors from at most this share of each "
+                   "view's rays (cannot be used with --race, --set)")
       ->check(CLI::Range(1e-6, 1.0, "share in (0, 1]"));
   selection
       ->add_option("--set", options->set,
-                   "choose K views that are best together; print the marginal gain of each")
+                   "K: choose K views that are best together and print their marginal gains "
+                   "(cannot be used with --race, --approximate)")
       ->check(counted(1, 1'000'000));
   selection->require_option(0, 1);
-  app->add_option("--deadline", options->deadline,
-                  "SECONDS: --race ends with the best that it can say by then; default: none");
+  app->add_option(
+      "--deadline", options->deadline,
+      "SECONDS: end --race with the best ranking by then (requires --race) (default: none)");
   add_seed_option(*app, options->seed,
-                  "of a shell of poses, --race (the paper's gain) and --approximate");
+                  "seed of a shell of poses, of --race with the paper gain, and of --approximate");
   begin_group(*app, "Output");
   app->add_option("--out", options->out,
-                  "CSV or .npy file (same columns) of all poses that were not dropped, in input "
-                  "order; with --race: those scored in full; with --approximate: the estimates; "
-                  "with --set: the set, in order");
+                  "CSV or .npy file of all poses not dropped, in input order; --race: those scored "
+                  "in full; --approximate: estimates; --set: the set, in order");
   app->add_option("--picture", options->picture,
-                  "PNG file: map, the best view's frustum and the voxels where its rays end "
-                  "(surface, combined: where they may end; larger is likelier)");
-  app->add_option("--report", options->report,
-                  "HTML file: map, candidates by gain, ranking and what the best ones see, to look "
-                  "at in a browser");
+                  "PNG file: map, frustum of the best view and voxels where its rays end (surface, "
+                  "combined: may end; larger: likelier)");
+  app->add_option(
+      "--report", options->report,
+      "HTML file for a browser: map, candidates by gain, ranking and what the best views see");
   most_need(*app, {"--sensor", "--gain", "--top", "--out", "--reach", "--feasible", "--race",
                    "--report"});
   add_help(*app, kViewsGroup,

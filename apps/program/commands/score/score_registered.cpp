@@ -32,7 +32,7 @@ void check_flags(const ScoreOptions& options) {
        {"--prior-sigma", options.prior_sigma.has_value()}}};
   for (const auto& [flag, is_given] : given) {
     if (!is_given) continue;
-    refuse(std::string(flag) + " does not go with the gains of the literature (--gain " +
+    refuse(std::string(flag) + " cannot be used with a gain of the literature (--gain " +
            options.gain + ")");
   }
 }
@@ -48,7 +48,7 @@ std::optional<std::vector<std::string>> registered_gains_of(const ScoreOptions& 
       gains.push_back(name);
     } else if (asked.size() > 1) {
       refuse("--gain " + options.gain + ": " + name +
-             " stands alone; several are gains of the literature");
+             " must be given alone; only gains of the literature can be combined");
     }
   }
   if (gains.empty()) return std::nullopt;

@@ -227,8 +227,8 @@ void ScoreReport::print_table() const {
     print_rows(scores.best, source, model);
   }
   if (scores.set_gain) {
-    std::printf("together: %.6g; each place by its best view alone: %.6g\n", *scores.set_gain,
-                scores.set_gain_by_best_alone);
+    std::printf("set gain: %.6g; lower bound, each voxel by its best view alone: %.6g\n",
+                *scores.set_gain, scores.set_gain_by_best_alone);
   }
   const std::size_t poses = scores.candidates, in_full = scores.scored.gains.size();
   const int threads = evaluator.num_threads();

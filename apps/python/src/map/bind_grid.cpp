@@ -143,10 +143,10 @@ void bind_grid(py::module_& module) {
 
   GridClass grid_class = bound_class<SharedGrid, std::shared_ptr<SharedGrid>>(
       module, "BeliefGrid",
-      R"(What is known of a workspace, voxel by voxel.
+      R"(The state of a workspace, voxel by voxel.
 
-Voxel (i, j, k) is [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid's frame. A new
-grid is unknown throughout, and takes little memory. Grids are equal if their ``content_hash()`` is, and
+Voxel (i, j, k) is [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid frame. A new grid
+is unknown everywhere and takes little memory. Grids are equal if their ``content_hash()`` is, and
 can be pickled.
 
 Parameters
@@ -154,22 +154,21 @@ Parameters
 voxel_size : float
     [m]
 workspace : array_like, (2, 3)
-    Lowest and highest corner, grid frame [m]; grown outward to whole voxels, at most 65,536 along an axis
-    and 2**40 in all.
+    Lowest and highest corner, grid frame [m]; extended to whole voxels, at most 65,536 along an
+    axis and 2**40 in total.
 prior_sigma : float, optional
     Standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional
-    Whose frames the map is for; needed unless ``prior_sigma`` is given, which is then
-    ``default_prior_sigma`` of the sensor.
+    Sensor of the map's frames; sets ``prior_sigma`` to ``default_prior_sigma``. Required unless
+    ``prior_sigma`` is given.
 T_world_grid : array_like, (4, 4), optional
-    Places the grid's frame in the world.
+    Pose of the grid frame in the world.
 
 Notes
 -----
-Methods leave the GIL while they work. Threads of Python may share a grid: many read it at once, one
-changes it, and they wait for each other. Cost: methods that give or change voxels are linear in what
-they give or change, some ms for 128**3 voxels with 40,000 occupied ones; properties are constant but for
-a copy of a few numbers.)");
+Methods release the GIL. Python threads may share a grid: many read it at once, one changes it, and
+they wait for each other. Cost: linear in the returned or changed voxels, some ms for 128**3 voxels
+with 40,000 occupied ones; properties take constant time.)");
   bind_grid_files(grid_class);
   bind_voxels(grid_class);
   grid_class
@@ -193,25 +192,26 @@ a copy of a few numbers.)");
 Parameters
 ----------
 labels : array_like, (nx, ny, nz), whole numbers
-    0 unknown, 1 free, 2 occupied. uint8 is read in place if it is C-contiguous, other integers and nested
-    lists are converted once. Masked entries of a masked array are unknown; bools are refused, which do not
-    say what is unknown.
+    0 unknown, 1 free, 2 occupied. C-contiguous uint8 is read in place, other integers and nested
+    lists are converted once. Masked entries of a masked array are unknown; bools raise ValueError,
+    because they have no unknown state.
 voxel_size : float
     [m]
 origin : array_like, (3,)
-    Lowest corner of voxel (0, 0, 0), world frame [m]; the grid's frame has its origin there.
+    Lowest corner of voxel (0, 0, 0), world frame [m]; origin of the grid frame.
 T_world_grid : array_like, (4, 4), optional
-    Places that corner and the axes; takes the place of origin.
+    Pose of that corner and the axes; replaces origin.
 prior_sigma : float, optional
     Standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional
-    As for a new grid: one of the two is needed. Only frames make it the map's ``sensor``.
+    As for a new grid; one of the two is required. It becomes the map's ``sensor`` only with frames.
 
 Returns
 -------
 BeliefGrid)")
       .def("clone", &clone_of,
-           "A deep copy; beliefs are shared until one is written.\n\nReturns\n-------\nBeliefGrid")
+           "A deep copy. Beliefs are shared until one copy is "
+           "written.\n\nReturns\n-------\nBeliefGrid")
       .def("__copy__", &clone_of)
       .def("__deepcopy__", [](const SharedGrid& grid, const py::dict&) { return clone_of(grid); })
       .def_property_readonly(
@@ -233,7 +233,7 @@ BeliefGrid)")
             const Index3 min = grid.layout().min_index();
             return py::make_tuple(min.x, min.y, min.z);
           },
-          "tuple of 3 int: the lattice's index of the voxel that is (0, 0, 0) in arrays")
+          "tuple of 3 int: lattice index of the voxel (0, 0, 0) of arrays")
       .def_property_readonly(
           "workspace",
           [](const SharedGrid& grid) {
@@ -244,36 +244,37 @@ BeliefGrid)")
       .def_property_readonly(
           "T_world_grid",
           [](const SharedGrid& grid) { return to_array(grid.layout().T_world_grid()); },
-          "ndarray, (4, 4), float64: places the grid's frame in the world")
-      .def("states", &states_of, R"(All voxels' states.
+          "ndarray, (4, 4), float64: pose of the grid frame in the world")
+      .def("states", &states_of, R"(States of all voxels.
 
 Returns
 -------
 ndarray, (nx, ny, nz), uint8
     0 unknown, 1 free, 2 occupied. A copy.)")
       .def("update_box", &update_box, "first"_a, "labels"_a,
-           R"(Makes the voxels of a box what labels say, for a planner whose own map grows.
+           R"(Sets the voxels of a box from labels, for planners with their own growing map.
 
-Voxels that are that already keep log-odds and belief, the others have no belief afterwards. Cost: linear in the labels.
+Voxels that already have the state keep log-odds and belief; others lose their belief. Cost: linear
+in the labels.
 
 Parameters
 ----------
 first : array_like, (3,), whole numbers
-    The box's lowest voxel, on the lattice: ``min_index`` for a box that begins where the arrays do.
+    Lowest voxel of the box, on the lattice; ``min_index`` for a box at the origin of arrays.
 labels : array_like, (nx, ny, nz), whole numbers
     0 unknown, 1 free, 2 occupied, as in ``from_labels``.
 
 Returns
 -------
 int
-    How many voxels have changed.)")
+    Number of changed voxels.)")
       .def(
           "views",
           [](const SharedGrid& grid) {
             const auto views = grid.read([](const BeliefGrid& g) { return g.views(); });
             return to_array(views, {static_cast<py::ssize_t>(views.size())});
           },
-          R"(Where every frame integrated so far was taken, in order.
+          R"(Poses of all integrated frames, in order.
 
 Returns
 -------
@@ -290,38 +291,38 @@ ndarray, (n, 4, 4), float64
             }
             return py::array_t<double>(static_cast<py::ssize_t>(factors.size()), factors.data());
           },
-          R"(ndarray, (8,), float64: factors, what frames have said of the hazard of unknown space.
+          R"(ndarray, (8,), float64: factors of the hazard of unknown space, learnt from frames.
 
-By class of distance from known surface, the nearest first: what the start values are multiplied by
-(before rates are made to fall with the distance); ones before ``FrameIntegrator.calibrate_hazard`` was called.)")
+One per class of distance from known surface, nearest first; they multiply the start values, before
+rates are made to decrease with distance. Ones until ``FrameIntegrator.calibrate_hazard`` is called.)")
       .def(
           "beliefs",
           [](const SharedGrid& grid) {
             const auto rows = grid.read(belief_rows);
             return to_array_1d<BeliefRow>(rows);
           },
-          R"(What readings have said of the voxels that were ever hit.
+          R"(Accumulated readings of the voxels that were ever hit.
 
 Returns
 -------
 ndarray, (n,), structured
-    voxel (int32, 3; on the lattice, minus ``min_index`` for arrays), hits (a count), information (float32, 6:
-    xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3 [1/m], about the voxel's centre).)")
+    voxel (int32, 3; on the lattice, subtract ``min_index`` for arrays), hits (a count), information
+    (float32, 6: xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3 [1/m], about the
+    voxel's centre).)")
       .def("points", &points_of, py::kw_only(), "min_hits"_a = 2, "scale_sigma"_a = 0.0,
            "num_threads"_a = 0,
-           R"(The points of the surface as the map knows it.
+           R"(The surface points of the map.
 
-Cost: linear in the voxels that were ever hit, some µs each, 0.25 s for 40,000 occupied ones on two
-threads.
+Cost: some µs per voxel that was ever hit, 0.25 s for 40,000 occupied ones on two threads.
 
 Parameters
 ----------
 min_hits : int
-    Points of fewer readings are left out.
+    Omits points with fewer readings.
 scale_sigma : float
-    The sensor's: what all readings of a point share is added to its covariance.
+    The sensor's; adds the common scale error of a point's readings to its covariance.
 num_threads : int
-    0: all hardware threads. Never changes the result.
+    0: all hardware threads. Does not affect the result.
 
 Returns
 -------
@@ -329,19 +330,19 @@ ndarray, (n,), structured
     position (float64, 3, world frame [m]), covariance (float64, 6: xx yy zz xy xz yz [m**2]),
     toward_free (float64, 3: unit normal towards free space, world frame), hits.)")
       .def("pooling_length", &pooling_length_of,
-           R"(How far apart the map's points are. Cost: that of a snapshot.
+           R"(Spacing of the map's points. Cost: a snapshot.
 
 Returns
 -------
 float
-    The voxel size, or the sensor's footprint where that is longer [m].)")
+    The voxel size or the sensor's footprint, whichever is larger [m].)")
       .def("statistics", &statistics_of, "criterion"_a = "log_diagonal",
            R"(Voxel counts and progress.
 
 Parameters
 ----------
 criterion : {"log_diagonal", "log_determinant", "trace"}
-    By which entropy is measured.
+    Measure of entropy.
 
 Returns
 -------
@@ -351,8 +352,8 @@ GridStatistics)")
           [](const SharedGrid& grid) {
             return grid.read([](const BeliefGrid& g) { return g.content_hash(); });
           },
-          "16 hexadecimal digits, the same for equal maps however they came about.\n\n"
-          "Returns\n-------\nstr")
+          "Hash of the map, 16 hexadecimal digits; equal maps have equal "
+          "hashes.\n\nReturns\n-------\nstr")
       .def(
           "__eq__",
           [](const SharedGrid& a, const SharedGrid& b) {

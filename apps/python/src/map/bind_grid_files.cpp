@@ -32,7 +32,7 @@ class TemporaryFolder {
   TemporaryFolder() {
     std::string pattern = (std::filesystem::temp_directory_path() / "viewgain-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) {
-      throw Error(ErrorCode::io, pattern + ": no temporary folder can be made");
+      throw Error(ErrorCode::io, pattern + ": cannot create a temporary folder");
     }
     path_ = pattern;
   }
@@ -69,7 +69,7 @@ std::shared_ptr<SharedGrid> from_bytes(const py::bytes& data) {
     return std::make_shared<SharedGrid>(load_vdb(folder.map()));
   } catch (const Error& error) {
     if (error.code() != ErrorCode::format) throw;
-    throw Error(ErrorCode::format, "these bytes are no map that to_bytes() made");
+    throw Error(ErrorCode::format, "these bytes are not a map from to_bytes()");
   }
 }
 
@@ -92,9 +92,8 @@ void bind_grid_files(GridClass& grid_class) {
           [](const SharedGrid& grid) {
             return grid.read([](const BeliefGrid& g) { return map_sensor(g); });
           },
-          "Sensor or None: that all readings come from; None if they are of several sensors or it "
-          "is "
-          "not known. Kept in files, copies and pickles.")
+          "Sensor or None: the sensor of all readings; None if there are several or it is unknown. "
+          "Kept in files, copies and pickles.")
       .def_property_readonly(
           "frames",
           [](const SharedGrid& grid) {
@@ -103,21 +102,21 @@ void bind_grid_files(GridClass& grid_class) {
               return std::vector<std::string>(frames.begin(), frames.end());
             });
           },
-          "list of str: identities of the frames of folders that are in the map, which "
-          "``viewgain integrate --map`` skips. Kept in files, copies and pickles.");
+          "list of str: identities of the folder frames in the map, which ``viewgain integrate "
+          "--map`` skips. Kept in files, copies and pickles.");
   grid_class
       .def(
           "to_bytes", &bytes_of,
-          R"(The map as bytes, for ``from_bytes`` and pickles: those of the file that ``save`` writes.
+          R"(The map as bytes, for ``from_bytes`` and pickles: the contents of the file from ``save``.
 
-Goes through a file in the folder for temporary files. Cost: linear in the blocks of voxels, 0.1 s for
-128**3 voxels with 40,000 occupied ones; ``from_bytes`` takes half of it.
+Uses a temporary file. Cost: linear in the blocks of voxels, 0.1 s for 128**3 voxels with 40,000
+occupied ones; ``from_bytes`` takes half as long.
 
 Returns
 -------
 bytes)")
       .def_static("from_bytes", &from_bytes, "data"_a,
-                  R"(The map that ``to_bytes`` wrote, equal to it.
+                  R"(The map from the bytes of ``to_bytes``, equal to the original.
 
 Parameters
 ----------
@@ -138,8 +137,8 @@ BeliefGrid)")
               require_prior(prior_sigma, sensor);
             } else if (!workspace.is_none() || prior_sigma || occupied_from) {
               refuse(file +
-                     ": workspace, prior_sigma and occupied_from are for OctoMap's .ot and "
-                     ".bt; a .vdb has its own");
+                     ": workspace, prior_sigma and occupied_from require an OctoMap .ot or .bt; a "
+                     ".vdb has its own");
             }
             if (occupied_from) config.occupied_from = static_cast<float>(*occupied_from);
             config.prior_sigma = prior_sigma;
@@ -150,20 +149,21 @@ BeliefGrid)")
           "sensor"_a = py::none(), "occupied_from"_a = py::none(),
           R"(Reads a map: a .vdb of ``save`` or the program viewgain, or OctoMap's .ot or .bt.
 
-Of OctoMap's, states are kept, and the log-odds of a .ot. Cost: linear in the file, 50 ms for 4 MB of a
-.vdb, 20 ms for a tree of 128**3 voxels with 40,000 occupied ones. Runs without the GIL.
+An OctoMap keeps states and, in a .ot, log-odds. Runs without the GIL. Cost: 50 ms for a .vdb of
+4 MB, 20 ms for a tree of 128**3 voxels with 40,000 occupied ones.
 
 Parameters
 ----------
 path : path-like
 workspace : array_like, (2, 3), optional
-    OctoMap: lowest and highest corner [m], in the tree's frame; default: the box of its known voxels.
+    OctoMap: lowest and highest corner [m], in the tree's frame; default: the box of its known
+    voxels.
 prior_sigma : float, optional
     OctoMap: standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional
-    OctoMap: as for a new grid; this or prior_sigma is needed.
+    OctoMap: as for a new grid; this or prior_sigma is required.
 occupied_from : float, optional
-    OctoMap: log-odds from which a voxel of a .ot is occupied; 0 unless given.
+    OctoMap: log-odds above which a voxel of a .ot is occupied; default: 0.
 
 Returns
 -------
@@ -175,18 +175,17 @@ BeliefGrid)")
             grid.read([&](const BeliefGrid& g) { return save_map(g, file, {with_covariance}); });
           },
           "path"_a, py::kw_only(), "with_covariance"_a = false,
-          R"(Writes the map as an OpenVDB file, or as an OctoMap .ot, whole or not at all.
+          R"(Writes the map as an OpenVDB file, or as an OctoMap .ot. Atomic.
 
-A .ot has states and log-odds alone, in the world's frame where T_world_grid is a shift by whole voxels,
-else in the grid's own. Cost: linear in the blocks of voxels, 80 ms for 128**3 voxels with 40,000 occupied
-ones, 4 MB.
+A .ot only has states and log-odds, in the world frame if T_world_grid is a shift by whole voxels,
+otherwise in the grid frame. Cost: 80 ms for 128**3 voxels with 40,000 occupied ones, 4 MB.
 
 Parameters
 ----------
 path : path-like
     Must end in .vdb or .ot.
 with_covariance : bool
-    Adds covariances and mean places to a .vdb, for viewers.)");
+    Adds covariances and mean positions to a .vdb, for viewers.)");
 }
 
 }  // namespace viewgain::python

@@ -30,26 +30,26 @@ namespace {
 // What the docstrings of both integrators have in common: parameters of the constructors.
 constexpr const char* kIntegratorSettings =
     R"(occupancy : {"probabilistic", "literal"}
-    Log-odds, changed once per voxel and call, or crossed -> free and hit -> occupied.
+    Log-odds, changed once per voxel and call; or crossed -> free and hit -> occupied.
 support_plane : float, optional
-    Height z [m] of the table that the object stands on; its readings carve but do not hit.
+    Height z [m] of the table under the object; its readings mark free space but do not hit.
 coarsest : int
-    Where a pixel covers that much, cells of up to 2**coarsest voxels an edge are known as one, 0 to 3;
-    a nearer look makes them finer.
+    0 to 3: merges voxels into cells of up to 2**coarsest voxels per edge where a pixel covers them;
+    closer views refine them.
 fine : array_like, (n, 2, 3), optional
-    Boxes in the grid's frame [m] in which voxels stay single.
+    Boxes in the grid frame [m] that keep single voxels.
 finest : int
-    Outside of these, cells are of 2**finest voxels an edge or more; at most ``coarsest``.
+    Outside these boxes, cells have at least 2**finest voxels per edge; at most ``coarsest``.
 num_threads : int
-    0: all hardware threads. Never changes the map.)";
+    0: all hardware threads. Does not affect the map.)";
 
 // What holds for the methods.
 constexpr const char* kIntegratorNotes = R"(
 
 Notes
 -----
-One call at a time: others wait. The GIL is left while a frame or cloud goes in. Maps are the same
-bits for any number of threads.)";
+One call at a time: others wait. Releases the GIL during integration. Maps are bit-identical for any
+number of threads.)";
 
 // What integrate() returns and raises.
 constexpr const char* kIntegrateReturns =
@@ -62,13 +62,13 @@ IntegrationReport
 Raises
 ------
 ValueError
-    Beside what is usual: all readings, or 19 in 20 that are not alike, are beyond 10 times max_range, as
-    where they are in millimetres. The grid is unchanged then.)";
+    Also if all readings, or 19 in 20 unequal ones, are beyond 10 times max_range, as in
+    millimetres. The grid then does not change.)";
 
 IntegrationConfig::Occupancy parse_occupancy(const std::string& name) {
   if (name == "probabilistic") return IntegrationConfig::Occupancy::probabilistic;
   if (name == "literal") return IntegrationConfig::Occupancy::literal;
-  throw py::value_error("occupancy is \"" + name + "\"; valid are probabilistic literal");
+  throw py::value_error("occupancy is \"" + name + "\"; valid values: probabilistic, literal");
 }
 
 py::object to_python(const IntegrationReport& r) {
@@ -153,29 +153,29 @@ py::object load(const py::object& path) {
 void bind_cloud(py::module_& module) {
   const std::string doc = std::string(R"(Puts point clouds of one sensor into a belief grid.
 
-Each point is a reading along the line from the sensor's origin: it carves the voxels that the line
-passes through and hits the one that holds the point, with the sensor's noise at that range and frontal
-incidence. All points of a call count as one frame.
+Each point is a reading along the line from the sensor's origin: it marks the voxels on the line as
+free and hits the voxel that contains the point, with the sensor's noise at that range and frontal
+incidence. All points of a call are one frame.
 
 Parameters
 ----------
 sensor : Sensor
-    Only its noise, fx (where the noise across the ray is a pixel's footprint) and range limits matter.
+    Only its noise, fx (if the lateral noise is a pixel's footprint) and range limits matter.
 )") + kIntegratorSettings +
                           kIntegratorNotes;
   const std::string integrate_doc = std::string(R"(Updates the grid by one cloud.
 
-Cost: grows with the points and with the voxels that their lines cross: 25 ms for 25,000 points and voxels
-of 5 mm on two threads.
+Cost: grows with the points and the voxels on their lines: 25 ms for 25,000 points and voxels of
+5 mm on two threads.
 
 Parameters
 ----------
 grid : BeliefGrid
 points : array_like, (n, 3)
-    In the sensor's frame [m]; any axes do, its origin is where the rays start. Points that are masked
-    or not finite, or nearer than min_range, say nothing; beyond max_range they carve as far as that.
+    Sensor frame [m], with any axes; rays start at its origin. Points that are masked, not finite or
+    nearer than min_range are ignored; beyond max_range they mark free space up to it.
 T_world_sensor : array_like, (4, 4)
-    Rotations that are off by up to 1e-3 are orthonormalised.
+    Rotations that deviate by up to 1e-3 are orthonormalised.
 
 )") + kIntegrateReturns;
   auto type = bound_class<Clouds>(module, "CloudIntegrator", doc.c_str());
@@ -201,9 +201,9 @@ T_world_sensor : array_like, (4, 4)
 
   module.def("cloud_bounds", &bounds, "sensor"_a, "points"_a, "T_world_sensor"_a, py::kw_only(),
              "support_plane"_a = py::none(),
-             R"(As ``reading_bounds``, of a cloud.
+             R"(As ``reading_bounds``, for a cloud.
 
-Runs without the GIL. Cost: linear in the points, 1.5 ms for 25,000.
+Runs without the GIL. Cost: 1.5 ms for 25,000 points.
 
 Parameters
 ----------
@@ -227,7 +227,7 @@ path : path-like
 Returns
 -------
 Cloud
-    The viewpoint is a PCD's VIEWPOINT; points of the world become the sensor's by its inverse.)");
+    The viewpoint is a PCD's VIEWPOINT; its inverse maps points of the world to the sensor frame.)");
 }
 
 namespace {
@@ -245,7 +245,7 @@ IntegrationConfig config_of(const std::string& carve, const std::string& occupan
   if (carve == "lines") {
     config.carve = IntegrationConfig::Carve::lines;
   } else if (carve != "cones") {
-    throw py::value_error("carve is \"" + carve + "\"; valid are cones lines");
+    throw py::value_error("carve is \"" + carve + "\"; valid values: cones, lines");
   }
   config.occupancy = parse_occupancy(occupancy);
   config.support_plane = support_plane;
@@ -284,27 +284,27 @@ Parameters
 ----------
 sensor : Sensor
 carve : {"cones", "lines"}
-    What counts as crossed by a pixel: voxels whose centre lies in its pyramid, or on its ray.
+    Which voxels a pixel crosses: those whose centre lies in its pyramid, or those on its ray.
 )") + kIntegratorSettings +
                           kIntegratorNotes;
   const std::string integrate_doc = std::string(R"(Updates the grid by one frame.
 
-Cost: linear in the pixels and grows with the voxels that they carve: 4 ms for 176x144 pixels and voxels
-of 5 mm on two threads.
+Cost: grows with the pixels and the crossed voxels: 4 ms for 176x144 pixels and voxels of 5 mm on
+two threads.
 
 Parameters
 ----------
 grid : BeliefGrid
 depth : array_like, (height, width), floating point
-    Along the optical axis (z, not range) [m]. 0, negative, NaN or masked: says nothing; inf: nothing
-    up to the sensor's max_range.
+    Along the optical axis (z, not range) [m]. 0, negative, NaN or masked: ignored; inf: free up to
+    the sensor's max_range.
 T_world_camera : array_like, (4, 4)
-    Rotations that are off by up to 1e-3 are orthonormalised.
+    Rotations that deviate by up to 1e-3 are orthonormalised.
 pose_sigma : array_like, (2,), optional
-    What this pose may be off beside the sensor's own pose_sigma [m], [rad].
+    Uncertainty of this pose in addition to the sensor's pose_sigma [m], [rad].
 amplitude : array_like, (height, width), floating point, optional
-    cos / range**2 [1/m**2], from which the angle of incidence is taken; else from the depth, also
-    where it is inf: saturated. NaN or masked: the least information.
+    cos / range**2 [1/m**2], which gives the angle of incidence; default: from the depth, also where
+    it is inf (saturated). NaN or masked: the least information.
 
 )") + kIntegrateReturns;
   auto type = bound_class<Integrator>(module, "FrameIntegrator", doc.c_str());
@@ -327,17 +327,17 @@ amplitude : array_like, (height, width), floating point, optional
            integrate_doc.c_str())
       .def("calibrate_hazard", &calibrate_hazard, "grid"_a, "scene"_a, "depth"_a,
            "T_world_camera"_a,
-           R"(Counts how often a frame meets the surface in unknown space, before it is integrated.
+           R"(Counts how often a frame meets the surface in unknown space, before its integration.
 
-The surface and the combined gain of the grid's later scenes go by what was counted. Nothing happens
-while no surface is known, and where the scene's hazard was given. Cost: about 5 ms for 176x144 pixels.
+Surface and combined gains of the grid's later scenes use the counts. Has no effect while no surface
+is known, or if the scene's hazard was given. Cost: about 5 ms for 176x144 pixels.
 
 Parameters
 ----------
 grid : BeliefGrid
     The map before the frame is integrated.
 scene : VoxelScene
-    The scene of the grid as it stands.
+    The scene of the current grid.
 depth, T_world_camera
     As ``integrate``.)")
       .def("__repr__", [](const Integrator& self) {
@@ -355,9 +355,9 @@ depth, T_world_camera
                                         support_plane));
       },
       "sensor"_a, "depth"_a, "T_world_camera"_a, py::kw_only(), "support_plane"_a = py::none(),
-      R"(The box that holds every reading of a depth frame, for choosing a workspace.
+      R"(The box that contains all readings of a depth frame, for choosing a workspace.
 
-Holds the GIL. Cost: linear in the pixels, 2 ms for 176x144.
+Holds the GIL. Cost: 2 ms for 176x144 pixels.
 
 Parameters
 ----------
@@ -365,7 +365,7 @@ sensor : Sensor
 depth, T_world_camera
     As ``FrameIntegrator.integrate``.
 support_plane : float, optional
-    Height z [m] of the table, whose readings do not count.
+    Height z [m] of the table, whose readings are ignored.
 
 Returns
 -------

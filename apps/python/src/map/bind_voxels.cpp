@@ -35,7 +35,7 @@ std::int32_t index_number(double number) {
     return static_cast<std::int32_t>(number);
   }
   std::ostringstream text;
-  text << "voxels holds " << number << "; an index is a whole number of 32 bits";
+  text << "voxels holds " << number << "; an index must be a whole number of 32 bits";
   throw py::value_error(text.str());
 }
 
@@ -98,10 +98,9 @@ void set(SharedGrid& grid, const py::object& voxels, const py::object& log_odds)
   const Shape wanted = leading_shape(array, 1);
   if (!is_one &&
       !std::equal(wanted.begin(), wanted.end(), values.shape(), values.shape() + values.ndim())) {
-    throw py::value_error(
-        "log_odds has the shape " + shape_text(values) +
-        "; it must be one number, or one for each of voxels, which has the shape " +
-        shape_text(array));
+    throw py::value_error("log_odds has the shape " + shape_text(values) +
+                          "; it must be one number, or one per voxel; voxels has the shape " +
+                          shape_text(array));
   }
   std::vector<BeliefGrid::VoxelValue> changes;
   changes.reserve(indices.size());
@@ -129,7 +128,7 @@ void bind_voxels(GridClass& grid_class) {
   PYBIND11_NUMPY_DTYPE(OccupiedRow, voxel, log_odds, hits);
   grid_class
       .def("index_of", &index_of, "points"_a,
-           R"(The voxels that hold points. Cost: linear in the points, some 20 ns each.
+           R"(The voxels that contain points. Cost: about 20 ns per point.
 
 Parameters
 ----------
@@ -139,31 +138,30 @@ points : array_like, (..., 3)
 Returns
 -------
 ndarray, (..., 3), int32
-    On the lattice, minus ``min_index`` for arrays. -2**31 in all three places, which is no index of any
-    array, for a point that is outside the workspace or not finite.)")
+    On the lattice; subtract ``min_index`` for arrays. -2**31 in all three places, which is never a
+    valid index, for a point outside the workspace or not finite.)")
       .def("center", &center, "voxels"_a,
-           R"(Where the centres of voxels are. Cost: linear in the voxels, some 25 ns each.
+           R"(Centres of voxels. Cost: about 25 ns per voxel.
 
 Parameters
 ----------
 voxels : array_like, (..., 3), whole numbers
-    On the lattice; they need not lie in the workspace.
+    On the lattice, also outside the workspace.
 
 Returns
 -------
 ndarray, (..., 3), float64
     World frame [m].)")
-      .def(
-          "set", &set, "voxels"_a, "log_odds"_a,
-          R"(Sets voxels of the workspace, in their order, all or none. Cost: linear in the voxels, some 0.25 µs each.
+      .def("set", &set, "voxels"_a, "log_odds"_a,
+           R"(Sets voxels of the workspace in order, all or none. Cost: about 0.25 µs per voxel.
 
 Parameters
 ----------
 voxels : array_like, (..., 3), whole numbers
     On the lattice.
 log_odds : float or array_like, (...)
-    Log-odds, without a unit: occupied above 0, else free; rounded to the nearest step of 0.05 and clamped to -2..3.5. A voxel has
-    no belief afterwards.)")
+    Occupied above 0, otherwise free; rounded to the nearest step of 0.05 and clamped to -2..3.5.
+    Removes the belief.)")
       .def(
           "forget",
           [](SharedGrid& grid, const py::object& region) {
@@ -173,22 +171,22 @@ log_odds : float or array_like, (...)
             return count;
           },
           "region"_a,
-          R"(Makes voxels unknown again, for what has moved and for maps that follow a robot; views stay.
+          R"(Resets voxels to unknown, for moved objects and maps that follow a robot; views remain.
 
 Cost: grows with the map's blocks of voxels, 0.4 ms for 128**3 voxels.
 
 Parameters
 ----------
 region : array_like, (2, 3)
-    Lowest and highest corner of a box in the grid's frame [m]; bounds may be infinite. A voxel belongs to
-    it if its centre does.
+    Lowest and highest corner of a box in the grid frame [m]; bounds may be infinite. Applies to
+    voxels whose centre lies in it.
 
 Returns
 -------
 int
-    How many of the voxels were known.)")
+    Number of voxels that were known.)")
       .def("scale", &scale, "voxels"_a,
-           R"(How large the cells are as which voxels are known. Cost: linear in the voxels.
+           R"(Scales of the cells that contain voxels. Cost: linear in the voxels.
 
 Parameters
 ----------
@@ -198,7 +196,7 @@ voxels : array_like, (..., 3), whole numbers
 Returns
 -------
 ndarray, (...), uint8
-    s, 0 to 3: a cell of 2**s voxels an edge has one state and one belief; 0 outside the workspace.)")
+    s, 0 to 3: a cell of 2**s voxels per edge has one state and one belief; 0 outside the workspace.)")
       .def(
           "resample",
           [](SharedGrid& grid, const py::object& region, int to) {
@@ -208,31 +206,32 @@ ndarray, (...), uint8
             return count;
           },
           "region"_a, "scale"_a,
-          R"(Gives leaves of 8**3 voxels cells of another size; hits and information of larger cells are sums.
+          R"(Sets the scale of leaves of 8**3 voxels; larger cells sum hits and information.
 
-What goes to smaller cells goes to the one that holds the mean of the readings; what else was occupied
-with it becomes unknown. Cost: grows with the map's blocks of voxels.
+Of smaller cells, the one that contains the mean of the readings gets everything; the rest of an
+occupied cell becomes unknown. Cost: grows with the map's blocks of voxels.
 
 Parameters
 ----------
 region : array_like, (2, 3)
-    Lowest and highest corner of a box in the grid's frame [m]; bounds may be infinite. All leaves that it
-    touches.
+    Lowest and highest corner of a box in the grid frame [m]; bounds may be infinite. Applies to all
+    leaves that it touches.
 scale : int
-    0 to 3: of 2**scale voxels an edge.
+    0 to 3: cells of 2**scale voxels per edge.
 
 Returns
 -------
 int
-    How many leaves have changed.)")
-      .def("occupied", &occupied,
-           R"(The occupied voxels, of a larger cell the lowest; equal maps give the same order.
+    Number of changed leaves.)")
+      .def(
+          "occupied", &occupied,
+          R"(The occupied voxels, for larger cells their lowest voxel; equal maps give the same order.
 
 Returns
 -------
 ndarray, (n,), structured
-    voxel (int32, 3; on the lattice, minus ``min_index`` for arrays), log_odds (float32, log-odds without a
-    unit), hits (readings that ended in it).)");
+    voxel (int32, 3; on the lattice, subtract ``min_index`` for arrays), log_odds (float32), hits
+    (readings that ended in it).)");
 }
 
 }  // namespace viewgain::python

@@ -29,9 +29,10 @@ std::vector<float> image(const py::object& value, const std::string& name, const
 
 DepthFrame depth_frame_of_any_unit(const Sensor& sensor, const py::object& depth) {
   const int width = sensor.camera.width, height = sensor.camera.height;
-  DepthFrame frame{width, height,
-                   image(depth, "depth", "[m] (millimetres: depth.astype(numpy.float32) / 1000)",
-                         height, width)};
+  DepthFrame frame{
+      width, height,
+      image(depth, "depth", "in metres (from millimetres: depth.astype(numpy.float32) / 1000)",
+            height, width)};
   for (float& z : frame.depth) {
     if (!(z > 0)) z = DepthFrame::kInvalid;
   }
@@ -73,7 +74,7 @@ void MetresCheck::require(const char* name) const {
     text << far_ << " of its " << near_ + far_ << " readings are beyond";
   }
   text << " 10 times the sensor's max_range of " << max_range_
-       << " m (where there is nothing up to max_range a depth is inf)";
+       << " m (use inf where there is nothing up to max_range)";
   throw py::value_error(text.str());
 }
 

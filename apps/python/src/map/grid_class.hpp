@@ -25,8 +25,8 @@ void bind_voxels(GridClass& grid_class);
 inline void require_prior(std::optional<double> prior_sigma, const Sensor* sensor) {
   if (prior_sigma || sensor != nullptr) return;
   refuse(
-      "give the sensor that the map is for, or prior_sigma, the standard deviation of an "
-      "unknown voxel's position [m]");
+      "give the sensor of the map, or prior_sigma, the standard deviation of an unknown voxel's "
+      "position [m]");
 }
 
 /// The prior sigma [m] of a grid: the one given, else what suits the sensor; throws as

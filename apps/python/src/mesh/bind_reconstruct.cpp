@@ -127,14 +127,13 @@ Reconstruction reconstruct(
   policy_config.policy = parse_policy(policy);
   if (policy_config.policy == Policy::fibonacci) {
     throw py::value_error(
-        "policy \"fibonacci\" is a set of poses: give them as candidates of policy \"sequence\"");
+        "policy \"fibonacci\" is a set of poses; give them as candidates of policy \"sequence\"");
   }
   const GenerationConfig generation_settings = generation_config(
       sensor, voxel_size, boundary.value_or(is_of_boundaries(policy_config.policy)), candidates,
       reach, policy_config.policy);
   if (!generation_settings.at_boundaries && candidates.is_none()) {
-    throw py::value_error("give candidates: without boundary, policy \"" + policy +
-                          "\" has nothing to choose from");
+    throw py::value_error("policy \"" + policy + "\" requires candidates if there is no boundary");
   }
   policy_config.criterion = map_config.gain.criterion;
   policy_config.model = parse_gain_model(gain);
@@ -175,15 +174,14 @@ Reconstruction reconstruct(
 void bind_reconstruct(py::module_& module) {
   auto type = bound_class<Reconstruction>(
       module, "Reconstruction",
-      R"(What ``reconstruct`` came to: its views, why it ended, the surface and the map.)");
+      R"(Result of ``reconstruct``: views, stop reason, surface and map.)");
   refuse_pickling(type);
   type.def_readonly("reason", &Reconstruction::reason,
-                    "str: why it ended: gain, area, cost, no_candidates, unreachable, idle, "
-                    "promises, max_views, "
-                    "interrupted")
+                    "str: stop reason: gain, area, cost, no_candidates, unreachable, idle, "
+                    "promises, max_views, interrupted")
       .def_readonly("views", &Reconstruction::views, "list of ViewRecord: one per view")
       .def_readonly("grid", &Reconstruction::grid, "viewgain.BeliefGrid: the map")
-      .def_readonly("surface", &Reconstruction::surface, "Surface: of the whole map")
+      .def_readonly("surface", &Reconstruction::surface, "Surface: surface of the whole map")
       .def("__repr__", [](const Reconstruction& r) {
         return "<Reconstruction " + std::to_string(r.views.size()) + " views, ended by " +
                r.reason + ", " + std::to_string(r.surface.triangles.size()) + " triangles>";
@@ -198,64 +196,65 @@ void bind_reconstruct(py::module_& module) {
              "stop_area"_a = py::none(), "idle_views"_a = defaults.idle_views,
              "broken_promises"_a = defaults.broken_promises, "observer"_a = py::none(),
              "control"_a = py::none(), "tracer"_a = "automatic", "num_threads"_a = 0,
-             R"(The whole loop: measure, update map and surface, propose views, rank them, go on.
+             R"(The whole loop: measure, update map and surface, propose views, rank them, repeat.
 
-The paper's Algorithm 1 with your camera, or your simulator, in it. The GIL is left but while your
-functions are called, on the calling thread.
+Algorithm 1 of the paper with your camera or simulator. Releases the GIL except while your functions
+run, on the calling thread.
 
 Parameters
 ----------
 acquire : callable
-    Given T_world_camera (4, 4) of the wanted view, moves the camera there and returns depth
-    (height, width), floating point, along the optical axis [m] (0, NaN or masked: nothing known, inf:
-    nothing up to max_range), or (depth, amplitude), a ``SimulatedFrame``, or (depth, T_world_camera, amplitude), a
-    ``Frame``, with the pose it really got to; amplitude may be None. Called on the calling thread; what it raises ends the loop and
-    passes through.
+    Takes T_world_camera (4, 4) of the next view, moves the camera there and returns depth (height,
+    width), floating point, along the optical axis [m] (0, NaN or masked: no reading, inf: free up
+    to max_range); or (depth, amplitude), a ``SimulatedFrame``; or (depth, T_world_camera,
+    amplitude), a ``Frame``, with the pose that it reached. amplitude may be None. Runs on the
+    calling thread; its exceptions end the loop and pass through.
 sensor : viewgain.Sensor
 start : array_like, (4, 4)
-    T_world_camera of the first view, which must have a reading in the workspace.
+    T_world_camera of the first view, which must have readings in the workspace.
 voxel_size : float
     [m]
 workspace : array_like, (2, 3)
-    Lowest and highest corner of what is mapped, world frame [m].
+    Lowest and highest corner of the mapped space, world frame [m].
 criterion : {"log_diagonal", "log_determinant", "trace"}
 policy : {"gain", "kriegel", "random", "frontier", "sequence"}
-    How the next view is chosen; "frontier" counts unknown voxels in view, "sequence" takes the candidates in their order.
+    How to choose the next view; "frontier" counts unknown voxels in view, "sequence" takes the
+    candidates in order.
 gain : {"combined", "surface", "paper"}
-    Of policy "gain": expected new surface and refinement, new surface alone, entropy removed.
+    Gain of policy "gain": expected new surface and refinement, expected new surface, or entropy
+    removed.
 boundary : bool, optional
-    Propose views at the surface's open boundaries and where more of it is expected, before the
-    candidates. Default: not for the
-    policies "sequence" and "random".
+    Propose views at open surface boundaries and where more surface is expected, before the
+    candidates; default: True, except for the policies "sequence" and "random".
 candidates : array_like, (n, 4, 4), optional
-    T_world_camera of further poses, proposed after every view; needed without boundary.
+    T_world_camera of further poses to propose after every view; required without boundary.
 reach : viewgain.ReachRegion, optional
-    Where the camera can be put.
+    Reachable camera poses.
 support_plane : float, optional
     Height z of the table [m].
 jump_edges : bool
     Remove flying pixels.
 max_views : int
 stop_gain : float, optional
-    By gain "paper": end when the best candidate promises less than this per touched voxel [nat, m**2
-    for trace]. Default: 1.2; for trace 0.01 of the first decision's.
+    With gain "paper": stop when the best candidate's gain per touched voxel is below this [nat,
+    m**2 for trace]. Default: 1.2; for trace 0.01 of the first decision's.
 stop_area : float, optional
-    By gain "surface" and "combined": end when the best candidate promises less than this share of
-    the surface so far as new surface, on the mean of three decisions; 0: never. Default: that of the
-    program's ``reconstruct``.
+    With gain "surface" and "combined": stop when the best candidate's expected new surface is below
+    this share of the surface so far, mean of three decisions; 0: never. Default: as the program's
+    ``reconstruct``.
 idle_views : int
-    End after so many views in a row that brought nothing; 0: never.
+    Stop after this many views in a row that brought nothing; 0: never.
 broken_promises : int
-    Of policy "gain": end after so many views in a row that brought less than a fifth of the new
-    surface (by gain "paper" the entropy) that they promised; 0: never.
+    With policy "gain": stop after this many views in a row that brought less than a fifth of the
+    predicted new surface (with gain "paper": entropy); 0: never.
 observer : callable, optional
-    Given the ViewRecord of each view, when the next one has been chosen.
+    Called with the ViewRecord of each view when the next one has been chosen.
 control : viewgain.BatchControl, optional
     Its stop() ends the loop with the reason "interrupted"; its progress function is not called.
 tracer : {"automatic", "embree", "sweep"}
-    How rays meet voxels, as in ``viewgain.GainEvaluator``. Never changes the result.
+    Tracer, as in ``viewgain.GainEvaluator``. Does not affect the result.
 num_threads : int
-    0: all hardware threads. Never changes the result.
+    0: all hardware threads. Does not affect the result.
 
 Returns
 -------

@@ -95,23 +95,23 @@ void bind_boundary(py::module_& module) {
              py::kw_only(), "spacing"_a, "working_distance"_a = py::none(),
              "overlap"_a = py::none(), "distances"_a = py::none(), "tilts"_a = py::none(),
              "rolls"_a = py::none(),
-             R"(Views that look past the open boundaries of a surface, and why.
+             R"(Views past the open boundaries of a surface, with the reasons.
 
-Runs without the GIL. Cost: grows with the boundary's edges and the views, 3 ms for a surface of 19,000
-vertices that 12 views saw.
+Runs without the GIL. Cost: grows with the boundary's edges and the views, 3 ms for a surface of
+19,000 vertices and 12 views.
 
 Parameters
 ----------
 surface : Surface
 views : array_like, (n, 4, 4)
-    T_world_camera of the views that saw it, in order; at least one.
+    T_world_camera of the views of the surface, in order; at least one.
 sensor : Sensor
 spacing : float
-    How far apart its points are [m]: ``grid.pooling_length()`` of the map.
+    Spacing of its points [m]: ``grid.pooling_length()`` of the map.
 working_distance : float, optional
-    From the surface [m]; the sensor's unless given.
+    Distance from the surface [m]; default: the sensor's.
 overlap : float, optional
-    Share of the next view that shows known surface, in (0, 1).
+    Share of known surface in the next view, in (0, 1).
 distances : sequence of float, (n,), optional
     Multiples of the working distance.
 tilts, rolls : sequence of float, (n,), optional
@@ -120,9 +120,10 @@ tilts, rolls : sequence of float, (n,), optional
 Returns
 -------
 BoundaryCandidates
-    What stands in their way is for ``FeasibilityChecker`` to say. Of their reasons: boundary_class (index into ``BOUNDARY_CLASS_NAMES``), run (of boundary edges), run_length [m],
-    patch, target (the extrapolated point looked at, 3, world [m]), distance from it [m], tilt, roll [rad],
-    nominal (neither tilted nor rolled, at the first distance).)");
+    Check them with ``FeasibilityChecker``. Fields of reasons: boundary_class (index into
+    ``BOUNDARY_CLASS_NAMES``), run (of boundary edges), run_length [m], patch, target (the
+    extrapolated point, 3, world [m]), distance from it [m], tilt, roll [rad], nominal (neither
+    tilted nor rolled, at the first distance).)");
 }
 
 namespace {
@@ -136,8 +137,8 @@ SurfaceMesh surface_of_points(const py::object& positions, const py::object& tow
   if (!toward_free.is_none()) {
     const auto hints = points(toward_free, "toward_free");
     if (hints.size() != where.size()) {
-      throw py::value_error("toward_free has " + std::to_string(hints.size()) + " rows for " +
-                            std::to_string(where.size()) + " points");
+      throw py::value_error("toward_free has " + std::to_string(hints.size()) +
+                            " rows, but there are " + std::to_string(where.size()) + " points");
     }
     for (std::size_t i = 0; i < where.size(); ++i) oriented[i].toward_free = hints[i];
   }
@@ -197,24 +198,25 @@ void bind_surface(py::module_& module) {
       R"(An open, oriented triangle surface. Made by ``reconstruct_surface``,
 ``surface_of_grid`` and ``reconstruct``.
 
-Faces turn counter-clockwise seen from free space. Lengths are [m], in the frame of the points that
-it was made of: the world's, of a map. Surfaces are equal by value.
+Faces are counter-clockwise seen from free space. Lengths are in metres, in the frame of the points
+(the world frame for a map). Surfaces are equal by value.
 
 Notes
 -----
-Cost: linear in vertices and triangles: each property is a copy, 30 µs for 20,000 vertices. ``save``
-leaves the GIL, the rest holds it.)");
+Cost: each property is a copy, 30 µs for 20,000 vertices. ``save`` releases the GIL, the rest holds
+it.)");
   refuse_pickling(type);
   type.def_property_readonly(
           "vertices", [](const SurfaceMesh& s) { return to_array_3(s.vertices); },
-          "ndarray, (n, 3), float64: in the surface's frame, of a map the world's [m]")
+          "ndarray, (n, 3), float64: positions in the surface frame (the world frame for a map) "
+          "[m]")
       .def_property_readonly(
           "normals", [](const SurfaceMesh& s) { return to_array_3(s.normals); },
-          "ndarray, (n, 3), float64: unit vectors in the surface's frame, of a map the world's; "
-          "towards free space")
+          "ndarray, (n, 3), float64: unit normals towards free space, in the same frame as the "
+          "vertices")
       .def_property_readonly(
           "triangles", [](const SurfaceMesh& s) { return to_array_3(s.triangles); },
-          "ndarray, (m, 3), uint32: indices of vertices")
+          "ndarray, (m, 3), uint32: vertex indices")
       .def_property_readonly(
           "source", [](const SurfaceMesh& s) { return to_array_1d<std::uint32_t>(s.source); },
           "ndarray, (n,), uint32: the input point of each vertex")
@@ -226,7 +228,7 @@ leaves the GIL, the rest holds it.)");
             write_ply(file, {self.vertices, self.normals, {}, self.triangles});
           },
           "path"_a,
-          R"(Writes vertices, normals and triangles as binary PLY, whole or not at all.
+          R"(Writes vertices, normals and triangles as binary PLY. Atomic.
 
 Parameters
 ----------
@@ -237,7 +239,7 @@ path : path-like
 Returns
 -------
 trimesh.Trimesh
-    A copy [m]; no vertex is merged or dropped.)")
+    A copy [m] with all vertices.)")
       .def("to_open3d", &to_open3d, R"(The surface for Open3D, with its normals.
 
 Returns
@@ -261,46 +263,45 @@ open3d.geometry.TriangleMesh
              py::kw_only(), "spacing"_a, "smoothing_neighbors"_a = defaults.smoothing_neighbors,
              "max_edge"_a = defaults.max_edge, "join_distance"_a = defaults.join_distance,
              "min_component"_a = defaults.min_component, "num_threads"_a = 0,
-             R"(The open surface through points; no hole is filled beyond max_edge.
+             R"(The open surface through points; holes larger than max_edge stay open.
 
-Runs without the GIL. Cost: grows with the points, some 20 µs each on two threads.
+Runs without the GIL. Cost: about 20 µs per point on two threads.
 
 Parameters
 ----------
 points : array_like, (n, 3)
-    In any frame, of a map the world's [m].
+    Any frame (the world frame for a map) [m].
 toward_free : array_like, (n, 3), optional
-    On which side of the surface free space lies: a direction each in the points' frame, a hint
-    whose length, without a unit, does not matter; zero where not known.
+    Hint on the side of free space: one direction per point, of any length; zero if unknown.
 spacing : float
     Typical distance of neighbouring points [m].
 smoothing_neighbors : int
-    Of the jet fit; 0: no smoothing.
+    Neighbours in the jet fit; 0: no smoothing.
 max_edge, join_distance : float
-    Longest edge; how near points of one component are [spacings].
+    Longest edge; distance within which points belong to one component [spacings].
 min_component : int
-    Components of fewer points are dropped.
+    Drops components with fewer points.
 num_threads : int
-    0: all hardware threads. Never changes the result.
+    0: all hardware threads. Does not affect the result.
 
 Returns
 -------
 Surface
-    Empty for no points, or nothing but outliers.)");
+    Empty for no points, or outliers only.)");
   module.def("surface_of_grid", &surface_of_grid, "grid"_a, py::kw_only(), "min_hits"_a = 2,
              "num_threads"_a = 0,
              R"(The surface through ``grid.points(min_hits=min_hits)``.
 
-Runs without the GIL; other threads may read the grid meanwhile, not write it. Cost: grows
-with the voxels that were ever hit: 0.7 s for 40,000 occupied ones on two threads.
+Runs without the GIL; other threads may read the grid meanwhile, but not write it. Cost: 0.7 s for
+40,000 occupied voxels on two threads.
 
 Parameters
 ----------
 grid : viewgain.BeliefGrid
 min_hits : int
-    Points of fewer readings are left out.
+    Omits points with fewer readings.
 num_threads : int
-    0: all hardware threads. Never changes the result.
+    0: all hardware threads. Does not affect the result.
 
 Returns
 -------

@@ -11,7 +11,7 @@ void bind_surface(pybind11::module_&), bind_boundary(pybind11::module_&),
 }  // namespace viewgain::python
 
 PYBIND11_MODULE(_mesh, module) {
-  module.doc() = "The C++ part of viewgain.mesh; import viewgain.mesh instead.";
+  module.doc() = "The C++ part of viewgain.mesh. Import viewgain.mesh instead.";
   // Sensors, grids and what errors become are defined there.
   pybind11::module_::import("viewgain._viewgain");
   const pybind11::object name = module.attr("__name__");

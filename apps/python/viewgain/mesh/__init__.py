@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces, views at their open boundaries, and the whole reconstruction loop.
 
-Stands on parts of CGAL that are GPL-3.0-or-later, and so is what imports it; ``import viewgain`` alone
-is Apache-2.0 and loads none of this.
+Uses parts of CGAL that are GPL-3.0-or-later, so programs that import it must be too; ``import viewgain``
+alone is Apache-2.0 and loads none of this.
 """
 
 try:

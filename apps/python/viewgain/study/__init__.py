@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Compares policies and gains: a run of ``viewgain reconstruct`` for every object, policy, seed, sensor, voxel and size of a
+"""Compares policies and gains: one run of ``viewgain reconstruct`` per object, policy, seed, sensor, voxel and size of a
 spec, in one table. ``python3 -m viewgain.study SPEC.toml --out DIR``; the keys of a spec are in the tutorial "Compare methods".
 
 Needs the program ``viewgain``, numpy and scipy, but not the extension module. Frames and units are those of the program.
 
 >>> from viewgain import study                                  # doctest: +SKIP
 >>> spec = study.read_spec("spec.toml")
->>> rows = study.make_runs(spec, "out", jobs=4)                 # one dict a run; those that are there are not made again
+>>> rows = study.make_runs(spec, "out", jobs=4)                 # one dict per run; skips finished runs
 >>> print(study.table(rows, spec.against, spec.max_views, spec.tolerance))
 """
 from .rows import SpecError, row_of

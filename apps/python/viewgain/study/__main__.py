@@ -43,12 +43,12 @@ def _arguments(words):
 
 
 def _check_folder(out, spec):
-    """A study's folder has runs/.lock; another one that holds more than the spec is somebody else's."""
+    """Refuses a folder that has other files than the spec and no runs/.lock of a study."""
     if out.exists() and not out.is_dir():
-        raise SpecError(f"--out {out}: is a file; name a new folder")
+        raise SpecError(f"--out {out}: is a file; choose a new folder")
     others = [path for path in out.iterdir() if path.resolve() != spec.resolve()] if out.is_dir() else []
     if others and not (out / "runs/.lock").is_file():
-        raise SpecError(f"--out {out}: has files, but no runs/ of a study; name a new folder")
+        raise SpecError(f"--out {out}: has files, but no runs/ of a study; choose a new folder")
 
 
 def _csv(rows):
@@ -65,7 +65,7 @@ def _study(options):
     _check_folder(options.out, options.spec)
     voxel = max(run.voxel for run in spec.runs)
     if voxel > spec.tolerance:
-        _warn(f"coverage is counted to {1e3 * spec.tolerance:g} mm, finer than voxels of {1e3 * voxel:g} mm (tolerance = {voxel:g} in the spec)")
+        _warn(f"coverage is measured at {1e3 * spec.tolerance:g} mm, less than a voxel of {1e3 * voxel:g} mm (set tolerance = {voxel:g} in the spec)")
     said = (lambda line: None) if options.quiet else (lambda line: print(line, file=sys.stderr, flush=True))
     rows = make_runs(spec, options.out, options.jobs, options.scheduler, program, said)
     for line in early_ends(rows, spec.max_views):

@@ -24,7 +24,7 @@ def _label(name):
 
 
 def _figure(groups, height):
-    """A panel for each group, four beside one another."""
+    """One panel per group, four per row."""
     import matplotlib.figure  # not pyplot: no window, no state
 
     columns = min(4, len(groups))
@@ -47,7 +47,7 @@ def _png(figure):
 
 
 def coverage(rows: list[dict]) -> bytes:
-    """A PNG: mean coverage by view of each policy, with the standard error of the table; a panel for each sensor, voxel and size."""
+    """A PNG: mean coverage by view of each policy, with the standard error of the table; one panel per sensor, voxel and size."""
     from matplotlib import colormaps
 
     groups, names = list(dict.fromkeys(map(_group, rows))), list(dict.fromkeys(map(name_of, rows)))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a study compares of a run, and the statistics of its tables."""
+"""Figures of a run that a study compares, and the statistics of its tables."""
 from __future__ import annotations
 
 import collections
@@ -17,7 +17,7 @@ GOALS = (0.80, 0.90, 0.95)  # shares of the visible surface to which views are c
 
 
 class SpecError(ValueError):
-    """A spec, or a file that belongs to a study, is not what it should be. The text names the file and the cure."""
+    """A spec, or a file that belongs to a study, is invalid. The text names the file and the cure."""
 
 
 def _number(value):
@@ -28,12 +28,12 @@ def _figure(value):
     """A number or null of a record. Raises ValueError for anything else."""
     if value is None or (isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)):
         return value
-    raise ValueError(f"{value!r} is no finite number")
+    raise ValueError(f"{value!r} is not a finite number")
 
 
 def row_of(run, record, max_views):
     """The row of ``results.json`` for a `Run` of a spec and its run.json, a dict. Raises LookupError, TypeError, ValueError or AttributeError
-    where something in it is missing or is no number."""
+    if something in it is missing or not a number."""
     views = record["per_view"]
     covered = [float(_figure(view["coverage_visible"]) or 0.0) for view in views][:max_views]
     covered += [covered[-1]] * (max_views - len(covered))  # a run that ended early keeps its last over the rest of the budget
@@ -60,7 +60,7 @@ def name_of(row):
 
 
 def early_ends(rows, max_views) -> list[str]:
-    """A line for each policy with runs that ended before the budget was used up."""
+    """One line per policy with runs that stopped before the budget was used up."""
     lines = []
     for name in dict.fromkeys(map(name_of, rows)):
         of = [row for row in rows if name_of(row) == name]
@@ -77,7 +77,7 @@ def values_of(rows, key, factor=1.0):
 
 
 def counted_views(rows, goal, max_views):
-    """Views to a goal as means count them: one more than the budget where it was never reached."""
+    """Views to a goal for means: one more than the budget if it was never reached."""
     return np.array([row[f"views_to_{100 * goal:.0f}"] or max_views + 1 for row in rows], float)
 
 

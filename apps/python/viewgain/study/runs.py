@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the runs of a study, by processes of this machine or on a Dask cluster."""
+"""Makes the runs of a study in processes of this machine or on a Dask cluster."""
 from __future__ import annotations
 
 import concurrent.futures
@@ -30,7 +30,7 @@ _ENDS_WITH_US = ["setpriv", "--pdeathsig", "KILL", "--"] if shutil.which("setpri
 
 
 class RunError(RuntimeError):
-    """A run that failed; the text names it and says what the program said. `code` is the program's exit code."""
+    """A failed run; the text names it and quotes the program's message. `code` is the program's exit code."""
 
     def __init__(self, text: str, code: int = 1):
         super().__init__(text, code)
@@ -41,7 +41,7 @@ class RunError(RuntimeError):
 
 
 class _Children:
-    """The processes of one study here, so that none of them outlives a wish to stop."""
+    """The processes of one study on this machine, so that a stop ends all of them."""
 
     def __init__(self):
         self._lock, self._running, self._is_over = threading.Lock(), set(), False
@@ -79,19 +79,19 @@ class _Children:
 
 def find_program(name: Optional[str] = None) -> str:
     """The program ``viewgain``: `name` if given, else that of the build or prefix that this package lies in, else that on PATH.
-    Raises SpecError where there is none."""
+    Raises SpecError if there is none."""
     if name is None:
         for folder in pathlib.Path(__file__).resolve().parents[2:]:
             if (folder / "bin/viewgain").is_file() and os.access(folder / "bin/viewgain", os.X_OK):
                 return str(folder / "bin/viewgain")
     found = shutil.which(name or "viewgain")
     if found is None:
-        raise SpecError(f"there is no program {name or 'viewgain'}; put its folder into PATH, or name it by --program")
+        raise SpecError(f"program {name or 'viewgain'} not found; add its folder to PATH, or give --program")
     return os.path.abspath(found)
 
 
 def version_of(program: str) -> str:
-    """What the program says. Raises SpecError where it is another one."""
+    """The program's version. Raises SpecError if it is another program."""
     try:
         said = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace").stdout
     except OSError as error:
@@ -105,7 +105,7 @@ def version_of(program: str) -> str:
 def make_run(words, title, kept, beside, is_own=False, folder=None, children=None):
     """Makes one run in a temporary folder inside `folder` (default: the system's), which it removes. Returns run.json as a dict, up to
     `kept` candidates per view, evenly sampled, as TUM lines whose time stamp is the number of views so far, and the seconds it took.
-    Raises RunError. Of a program of one's own (`is_own`) the seconds are those of the whole call."""
+    Raises RunError. For a custom program (`is_own`) the seconds are those of the whole call."""
     begin = time.monotonic()
     with tempfile.TemporaryDirectory(prefix=".run-", dir=folder) as work:
         split = words.index("--")
@@ -115,7 +115,7 @@ def make_run(words, title, kept, beside, is_own=False, folder=None, children=Non
             record = json.loads(pathlib.Path(work, "run/run.json").read_text(encoding="utf-8"))
             record["seconds"] = {"total": seconds} if is_own else record["seconds"]
         except FileNotFoundError:
-            raise RunError(f"{title}: {words[0]} left no run.json in the folder that --out names", 2) from None
+            raise RunError(f"{title}: {words[0]} wrote no run.json to the folder of --out", 2) from None
         except (LookupError, TypeError, ValueError) as error:
             raise RunError(f"{title}: run.json of {words[0]}: {type(error).__name__}: {error}", 2) from None
         lines = []
@@ -127,8 +127,8 @@ def make_run(words, title, kept, beside, is_own=False, folder=None, children=Non
 
 
 def write_file(path, content):
-    """Writes a file as a whole or not at all; of one that is there the mode stays."""
-    temporary = path.with_name(f".{path.name}.tmp")  # one study at a time is in a folder: a killed one's is written anew
+    """Writes a file atomically and keeps the mode of an existing one."""
+    temporary = path.with_name(f".{path.name}.tmp")  # one study at a time uses a folder; overwrites that of a killed one
     try:
         with open(temporary, "wb") as file:
             file.write(content if isinstance(content, bytes) else content.encode())
@@ -142,7 +142,7 @@ def write_file(path, content):
 
 @contextlib.contextmanager
 def _study_folder(out):
-    """Makes DIR/runs for one study at a time, and clears what a killed one has left. Of a study without a run nothing stays."""
+    """Creates DIR/runs for one study at a time, and clears leftovers of a killed one. A study without a run leaves nothing."""
     runs = out / "runs"
     try:
         runs.mkdir(parents=True, exist_ok=True)
@@ -153,7 +153,7 @@ def _study_folder(out):
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise SpecError(f"--out {out}: another study is at work there; to use several machines, give --scheduler") from None
+            raise SpecError(f"--out {out}: another study is running there; to use several machines, give --scheduler") from None
         except OSError:
             pass  # a file system without locks
         for left in runs.glob(".run-*"):
@@ -184,14 +184,13 @@ def _first_of_each(runs):
 
 
 def _one_view(words):
-    """The same call with a budget of one view: whether its words and files are right, before hours of work."""
+    """The same call with a budget of one view, to check its arguments and files before hours of work."""
     return [word if not word.startswith("--max-views=") else "--max-views=1" for word in words]
 
 
 @contextlib.contextmanager
 def _here(jobs, folder):
-    """A function that makes a run by a process of this machine, as a future. What is under way is killed if the block is left by an
-    exception."""
+    """A function that makes a run in a process of this machine, as a future. An exception in the block kills running ones."""
     children = _Children()
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:  # each thread waits for a process
         try:
@@ -204,13 +203,13 @@ def _here(jobs, folder):
 
 @contextlib.contextmanager
 def _on_cluster(scheduler, progress):
-    """The same by the workers of a Dask cluster."""
+    """The same on the workers of a Dask cluster."""
     try:
         import distributed
     except ImportError as error:
         raise SpecError(f"--scheduler needs Dask (Debian: python3-distributed), which cannot be imported: {error}") from error
     if not re.fullmatch(r"(\w+://)?\S+:\d+", scheduler):
-        raise SpecError(f"--scheduler {scheduler}: no address of a scheduler; one is tcp://HOST:8786")
+        raise SpecError(f"--scheduler {scheduler}: not the address of a scheduler, such as tcp://HOST:8786")
     for name in ("asyncio", "distributed", "tornado"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said here
     try:
@@ -223,7 +222,7 @@ def _on_cluster(scheduler, progress):
         try:
             client.wait_for_workers(1, timeout=_WORKERS_WITHIN)
         except (OSError, TimeoutError, distributed.TimeoutError) as error:
-            raise SpecError(f"--scheduler {scheduler}: has no workers; start some by: dask worker {scheduler}") from error
+            raise SpecError(f"--scheduler {scheduler}: has no workers; start some with: dask worker {scheduler}") from error
         futures = []
 
         def submit(*run):
@@ -239,7 +238,7 @@ def _on_cluster(scheduler, progress):
 
 
 def _results(futures, title, scheduler):
-    """The futures' keys with what they have made, or with the RunError, as they are done."""
+    """The futures' keys with their results, or with the RunError, as they finish."""
     if scheduler is None:
         done = concurrent.futures.as_completed(futures)
     else:
@@ -310,7 +309,7 @@ def _gather(spec, folder, futures, scheduler, rows, progress):
         left = (time.monotonic() - begin) / done * (len(futures) - done)
         progress(f"run {total - len(futures) + done} of {total}: {spec.title(run)}, {seconds:.1f} s; {_time_text(left)} left")
     if failures:
-        raise RunError(f"{len(failures)} of {total} runs failed, the first: {failures[0]}; the same call makes them again", failures[0].code)
+        raise RunError(f"{len(failures)} of {total} runs failed, the first: {failures[0]}; repeat the call to make them again", failures[0].code)
 
 
 def _row_of(spec, run, record, max_views):

@@ -122,11 +122,11 @@ class _Reader:
         except OSError as error:
             raise SpecError(f"{path}: {error.strerror}") from error
         except (ValueError, RecursionError) as error:  # also of bytes that are no UTF-8
-            raise SpecError(f"{path}: is no TOML: {error}") from error
+            raise SpecError(f"{path}: is not TOML: {error}") from error
         for key in self.table:
             if key not in _KEYS:
                 near = difflib.get_close_matches(key, _KEYS, 1)
-                self.fail(key, f"is no key of a study; {f'did you mean {near[0]}? There' if near else 'there'} are {', '.join(_KEYS)}")
+                self.fail(key, f"is not a key of a study; {f'did you mean {near[0]}? Valid' if near else 'valid'}: {', '.join(_KEYS)}")
 
     def fail(self, key, message):
         found = re.search(rf"^\s*\"?{re.escape(key)}\"?\s*=", self.text, re.MULTILINE)
@@ -139,7 +139,7 @@ class _Reader:
             raise SpecError(f"{self.path}: {key} is missing; it {must}")
         values = self.table[key]
         if not isinstance(values, list) or not values:
-            self.fail(key, "must be a list that is not empty")
+            self.fail(key, "must be a list with at least one entry")
         seen = set()
         for value in values:
             if isinstance(value, bool) or not isinstance(value, kind) or not is_right(value):
@@ -164,18 +164,18 @@ class _Reader:
     def flags(self, key, values):
         """Further flags of reconstruct; files in them from where the program is called."""
         if not isinstance(values, list):
-            self.fail(key, 'must be a list of texts like "--up=y"')
+            self.fail(key, 'must be a list of strings like "--up=y"')
         flags = []
         for flag in values:
             if not isinstance(flag, str) or not re.match(r"--\w", flag):
-                self.fail(key, f'holds {flag!r}; it must be a list of texts like "--up=y"')
+                self.fail(key, f'holds {flag!r}; it must be a list of strings like "--up=y"')
             name, equals, value = flag.partition("=")
             if "\0" in flag:
-                self.fail(key, f"holds {flag!r}, with a byte that no argument has")
+                self.fail(key, f"holds {flag!r}, with a byte that arguments cannot contain")
             if name in _OWN_FLAGS and not (key == "objects" and name == "--size"):
                 self.fail(key, f"holds {name}, which the study sets itself")
             if name == "--help":
-                self.fail(key, "holds --help, which is no setting of a run")
+                self.fail(key, "holds --help, which is not a setting of a run")
             before, file = _file_of(name, value)
             flags.append(name + equals + before + (os.path.abspath(file) if file else ""))
         return flags
@@ -200,15 +200,15 @@ def _object(reader, value):
     entry = {"mesh": value} if isinstance(value, str) else value
     for key in entry:
         if key not in _OBJECT_KEYS:
-            reader.fail("objects", f"holds an object with the key {key!r}; there are {', '.join(_OBJECT_KEYS)}")
+            reader.fail("objects", f"holds an object with the key {key!r}; valid: {', '.join(_OBJECT_KEYS)}")
     mesh = reader.file("objects", entry.get("mesh"))
     name = entry.get("name", mesh.stem)
     if not _is_name(name):
-        reader.fail("objects", f"holds {value!r}, whose name a table cannot show; rename it with {{mesh = ..., name = ...}}")
+        reader.fail("objects", f"holds {value!r}, whose name cannot be shown in a table; rename it with {{mesh = ..., name = ...}}")
     words = [f"--reach={reader.file('objects', entry['reach'])}"] if "reach" in entry else []
     obstacles = entry.get("obstacles", [])
     if not isinstance(obstacles, list):
-        reader.fail("objects", f"holds {value!r}; obstacles must be a list of files and of boxes \"x0,y0,z0,x1,y1,z1\"")
+        reader.fail("objects", f"holds {value!r}; obstacles must be a list of files and boxes \"x0,y0,z0,x1,y1,z1\"")
     for obstacle in obstacles:
         numbers = re.fullmatch(r"[-+.\deE]+(,[-+.\deE]+)+", str(obstacle))
         if numbers and str(obstacle).count(",") != 5:
@@ -216,7 +216,7 @@ def _object(reader, value):
         words.append(f"--obstacle={obstacle if numbers else reader.file('objects', obstacle)}")
     words += reader.flags("objects", entry.get("flags", []))
     if "sizes" in reader.table and any(word.startswith("--size=") for word in words):
-        reader.fail("objects", f"holds {value!r}; give either sizes for all or --size for each object")
+        reader.fail("objects", f"holds {value!r}; give either sizes for all objects or --size for each object")
     return Object(name, mesh, tuple(words))
 
 
@@ -224,23 +224,23 @@ def _policy(reader, value):
     if isinstance(value, dict):
         name, command = value.get("name"), value.get("command")
         if set(value) != {"name", "command"} or not _is_name(name) or ":" in name or not isinstance(command, str) or "\0" in command:
-            reader.fail("policies", f"holds {value!r}; a policy of your own is {{name = \"...\", command = \"...\"}}, its name without : and |")
+            reader.fail("policies", f"holds {value!r}; your own policy must be {{name = \"...\", command = \"...\"}}, its name without : and |")
         try:
             words = shlex.split(command)
         except ValueError as error:
             reader.fail("policies", f"holds {value!r}: {error}")
         if not words:
-            reader.fail("policies", f"holds {value!r}, without a command")
+            reader.fail("policies", f"holds {value!r}, which has no command")
         # Files of the spec's folder by their names there.
         return Policy(name, name, command=tuple(os.path.abspath(reader.folder / word) if _is_file(reader.folder / word) else word for word in words))
     if value.startswith("tour:") or value == "tour":
         counts = re.fullmatch(r"tour:([1-9]\d{0,3}):([1-9]\d{0,3})", value)
         if not counts or not 2 <= int(counts[1]) <= 1000 or int(counts[2]) > int(counts[1]):
-            reader.fail("policies", f"holds {value!r}; a tour is \"tour:K:M\": plan K views (2..1000), take M of them before replanning")
+            reader.fail("policies", f"holds {value!r}; a tour must be \"tour:K:M\": plan K views (2..1000), replan after M of them")
         return Policy(value, value, words=("--policy=gain", f"--plan={counts[1]},{counts[2]}"))
     policy, colon, gain = value.partition(":")
     if (policy == "gain") != bool(gain) or (colon and not gain) or not policy:
-        reader.fail("policies", f"holds {value!r}; a policy is \"gain:NAME\" (\"gain:combined\") or another one of reconstruct's (\"frontier\")")
+        reader.fail("policies", f"holds {value!r}; a policy must be \"gain:NAME\" (\"gain:combined\") or another policy of reconstruct (\"frontier\")")
     return Policy(value, policy, gain or None, (f"--policy={policy}", *([f"--gain={gain}"] if gain else [])))
 
 
@@ -280,14 +280,14 @@ def read_spec(path, version: str = "") -> Spec:
     against = reader.table.get("against", policies[0].name)
     policy_names = [policy.name for policy in policies]
     if against not in policy_names:
-        reader.fail("against", f"is {against!r}, none of the policies {', '.join(policy_names)}")
+        reader.fail("against", f"is {against!r}; valid policies: {', '.join(policy_names)}")
     for key, given in (("policies", policy_names), ("sensors", sensors)):
         twice = next((one for i, one in enumerate(given) if one in given[:i]), None)
         if twice is not None:
             reader.fail(key, f"holds {twice!r} twice")
     count = len(sensors) * len(voxels) * len(sizes) * len(objects) * len(seeds) * len(policies)
     if count > _MOST_RUNS:
-        reader.fail("seeds", f"make {count:,} runs with the other lists; {_MOST_RUNS:,} at most")
+        reader.fail("seeds", f"make {count:,} runs with the other lists; the maximum is {_MOST_RUNS:,}")
 
     shared = {"version": version, "format": _FORMAT, "max_views": max_views, "tolerance": tolerance, "kept_candidates": kept,
               "flags": [_flag_identity(flag) for flag in flags]}

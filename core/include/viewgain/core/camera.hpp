@@ -11,9 +11,9 @@
 
 namespace viewgain {
 
-/// Pinhole camera with OpenCV's distortion model, optical frame: x right, y down, z forward. Pixel
-/// (0,0) has its centre at (0,0), as in OpenCV. A value type. Unless they say otherwise members
-/// check nothing: the camera must be one that validate() takes.
+/// Pinhole camera with OpenCV's distortion model. Optical frame: x right, y down, z forward. Pixel
+/// (0,0) has its centre at (0,0), as in OpenCV. A value type. Members require a camera that passes
+/// validate() and check nothing unless stated otherwise.
 struct VIEWGAIN_EXPORT PinholeCamera {
   int width = 0;                       ///< [px]
   int height = 0;                      ///< [px]
@@ -21,45 +21,44 @@ struct VIEWGAIN_EXPORT PinholeCamera {
   double cx = 0, cy = 0;               ///< principal point [px]
   std::array<double, 5> distortion{};  ///< coefficients k1 k2 p1 p2 k3
 
-  /// Does any of the coefficients differ from 0?
+  /// Whether any coefficient differs from 0.
   [[nodiscard]] bool has_distortion() const { return distortion != std::array<double, 5>{}; }
 
-  /// Throws Error(invalid_argument), naming the field, unless sizes are in 1..16384 and make at
-  /// most 2^24 pixels (a table of rays takes 24 bytes per pixel), focal lengths are positive and
-  /// all numbers are finite.
+  /// Throws Error(invalid_argument) naming the field unless sizes are in 1..16384, there are at
+  /// most 2^24 pixels, focal lengths are positive and all numbers are finite. A table of rays takes
+  /// 24 bytes per pixel.
   void validate() const;
 
-  /// Direction (x, y, 1) in the camera frame of the ray through pixel coordinates (u, v) [px],
-  /// distortion undone (fixed-point then Newton to 1e-12; NaN where the model has no solution that
-  /// is joined to the optical axis without a fold). Exact, and cheap, without distortion.
+  /// Direction (x, y, 1) in the camera frame of the ray through pixel coordinates (u, v) [px], with
+  /// the distortion removed. Solved by fixed-point and Newton iterations to 1e-12; NaN where no
+  /// solution connects to the optical axis without a fold. Exact and cheap without distortion.
   [[nodiscard]] Eigen::Vector3d ray(double u, double v) const;
 
-  /// Pixel coordinates (u, v) [px] of the camera-frame point p [m], distortion applied; NaN unless
-  /// p.z > 0. As in OpenCV a strong distortion may fold a point far outside the view back into it.
-  /// Inline on purpose: Eigen aligns a Vector2d or not by the caller's compiler flags.
+  /// Pixel coordinates (u, v) [px] of the camera-frame point p [m], with distortion; NaN unless p.z
+  /// > 0. As in OpenCV, a strong distortion can fold a point far outside the view into the image.
+  /// Inline, because the alignment of an Eigen Vector2d depends on the caller's compiler flags.
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_camera) const {
     Eigen::Vector2d pixel;
     project(p_camera, pixel.x(), pixel.y());
     return pixel;
   }
-  /// The same into u and v.
+  /// As above, written to u and v.
   void project(const Eigen::Vector3d& p_camera, double& u, double& v) const;
 
-  /// Whether the camera-frame point p [m] is in the image: p.z > 0, its pixel coordinates are in
-  /// [-0.5, width - 0.5) x [-0.5, height - 0.5), and it lies on the ray of those. With distortion
-  /// that last leaves out what is folded into the image from far outside the view. What is in
-  /// between, and the sensor's range limits, are not looked at.
+  /// Whether the camera-frame point p [m] projects into the image: p.z > 0, its pixel coordinates
+  /// lie in [-0.5, width - 0.5) x [-0.5, height - 0.5), and it lies on the ray of those
+  /// coordinates. The last condition excludes points that the distortion folds into the image.
+  /// Ignores occlusion and the sensor's range limits.
   [[nodiscard]] bool sees(const Eigen::Vector3d& p_camera) const;
 
-  /// ray() of every pixel centre, row by row: directions (x, y, 1) [1] in the camera frame, width *
-  /// height of them. Costs a ray() each.
+  /// Directions (x, y, 1) [1] of ray() at all pixel centres in the camera frame, row-major, width *
+  /// height entries. Cost: one ray() per pixel.
   [[nodiscard]] std::vector<Eigen::Vector3d> ray_table() const;
 
-  /// The solid angle of every pixel [sr], row by row: cos³α / (fx fy) for a ray at α from the
-  /// optical axis, and with a lens cos³α |∂(x, y) / ∂(u, v)|; 0 where a pixel has no ray. The
-  /// derivatives are central differences between pixels, at the image's edge and beside pixels
-  /// without a ray one-sided. `rays` [1] is ray_table(), which takes longer than this. Throws
-  /// Error(invalid_argument) for another number of rays.
+  /// Solid angle of every pixel [sr], row-major: cos³α / (fx fy) for a ray at angle α to the
+  /// optical axis, with distortion cos³α |∂(x, y) / ∂(u, v)|; 0 where a pixel has no ray. `rays` is
+  /// ray_table(). Derivatives are central differences between pixels, one-sided at the image edge
+  /// and next to pixels without a ray. Throws Error(invalid_argument) for a wrong number of rays.
   [[nodiscard]] std::vector<double> solid_angles(std::span<const Eigen::Vector3d> rays) const;
 
   bool operator==(const PinholeCamera&) const = default;

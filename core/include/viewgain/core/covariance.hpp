@@ -10,13 +10,13 @@
 
 namespace viewgain {
 
-/// Symmetric 3x3 matrix, six numbers in the order of the map files: diagonal, then xy, xz, yz. Used
-/// for information matrices Λ = Σ⁻¹ [m⁻²] and covariances Σ [m²], in whatever frame its use names.
-/// A value type. Members check nothing and never throw.
+/// Symmetric 3x3 matrix, six numbers in the order of the map files: the diagonal, then xy, xz, yz.
+/// Used for information matrices Λ = Σ⁻¹ [m⁻²] and covariances Σ [m²]; each use states the frame. A
+/// value type. Members check nothing and never throw.
 struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;  ///< its entries [m⁻² or m²]
 
-  /// `scale`, in the matrix's unit, times the unit matrix.
+  /// The unit matrix times `scale`, in the matrix's unit.
   [[nodiscard]] static SymmetricMatrix3 identity(double scale = 1.0) {
     return {scale, scale, scale, 0, 0, 0};
   }
@@ -28,16 +28,16 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   [[nodiscard]] Eigen::Matrix3d matrix() const {
     return (Eigen::Matrix3d() << xx, xy, xz, xy, yy, yz, xz, yz, zz).finished();
   }
-  /// Entry by entry.
+  /// Entrywise sum.
   SymmetricMatrix3& operator+=(const SymmetricMatrix3& o) {
     xx += o.xx, yy += o.yy, zz += o.zz, xy += o.xy, xz += o.xz, yz += o.yz;
     return *this;
   }
-  /// Fusion of independent measurements in information form is this sum: the paper's eq. (4).
+  /// Entrywise sum: fusion of independent measurements in information form, eq. (4) of the paper.
   friend SymmetricMatrix3 operator+(SymmetricMatrix3 a, const SymmetricMatrix3& b) {
     return a += b;
   }
-  /// The matrix times the vector `v`, whatever unit it has.
+  /// Product with the vector `v` of any unit.
   [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& v) const {
     return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
             xz * v.x() + yz * v.y() + zz * v.z()};
@@ -46,19 +46,19 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   [[nodiscard]] SymmetricMatrix3 operator*(double s) const {
     return {xx * s, yy * s, zz * s, xy * s, xz * s, yz * s};
   }
-  /// Sum of the diagonal, in the matrix's unit.
+  /// Sum of the diagonal, in the unit of the matrix.
   [[nodiscard]] double trace() const { return xx + yy + zz; }
-  /// Expanded along the first row; in the cube of the matrix's unit [m⁻⁶ or m⁶].
+  /// Determinant by expansion along the first row, in the cube of the matrix's unit [m⁻⁶ or m⁶].
   [[nodiscard]] double determinant() const {
     return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
   }
-  /// By cofactors where they are good to about 1e-12, else by a factorisation, so that condition
-  /// numbers of 1e10 do no harm. NaN unless positive definite.
+  /// Inverse by cofactors where they are accurate to about 1e-12, otherwise by a factorisation.
+  /// Handles condition numbers of 1e10. NaN unless positive definite.
   [[nodiscard]] SymmetricMatrix3 inverse() const {
     double ignored;
     return inverse(ignored);
   }
-  /// The same, and the determinant of this matrix [m⁻⁶ or m⁶].
+  /// The inverse, and the determinant of this matrix [m⁻⁶ or m⁶].
   [[nodiscard]] SymmetricMatrix3 inverse(double& determinant) const {
     // determinant / (xx yy zz) is in (0, 1] and bounds the cancellation in cofactors.
     constexpr double kWellScaled = 1e-4;
@@ -103,9 +103,9 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   }
 };
 
-/// Information of one reading along the unit direction d, in d's frame:
-/// Λ_r = a I + (b - a) d dᵀ, a = σ_lat⁻², b = σ_ax⁻² (apps/docs/guide/equations.md). Checks
-/// nothing: sigmas of 0 give infinities.
+/// Information of one reading along the unit direction d, in the frame of d: Λ_r = a I + (b - a) d
+/// dᵀ, a = σ_lat⁻², b = σ_ax⁻² (apps/docs/guide/equations.md). Checks nothing: sigmas of 0 give
+/// infinities.
 [[nodiscard]] inline SymmetricMatrix3 measurement_information(const Eigen::Vector3d& d,
                                                               const MeasurementSigmas& sigmas) {
   const double a = 1.0 / (sigmas.lateral * sigmas.lateral);

@@ -9,22 +9,22 @@
 
 namespace viewgain {
 
-/// What kind of thing went wrong; the message says which value, line or file.
+/// Kind of error; the message names the value, line or file.
 enum class ErrorCode {
   invalid_argument,  ///< a value outside its documented range
   io,                ///< a file cannot be opened, read or written
-  format,            ///< a file's contents are not what they should be
-  capacity,          ///< more voxels, primitives or memory than the data structures can hold
+  format,            ///< a file's contents are invalid
+  capacity,          ///< more voxels, primitives or memory than the data structures support
   backend,           ///< Embree or OpenVDB reported a failure
 };
 
-/// The one exception type of the library. Thrown at set-up and by file readers and writers, never
-/// from the scoring of a pose. Thread safety: a value type.
+/// The only exception type of the library. Set-up and file functions throw it; scoring a pose never
+/// does. A value type.
 class VIEWGAIN_EXPORT Error : public std::runtime_error {
  public:
-  /// `message` names the offending value. Both are unchecked.
+  /// `message` names the offending value. Both arguments are unchecked.
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-  /// What kind of error it is.
+  /// The kind of error.
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
 
  private:

@@ -14,33 +14,34 @@
 
 namespace viewgain {
 
-/// What changes only speed, never an answer.
+/// Settings that affect speed, never results.
 struct VIEWGAIN_EXPORT ExecConfig {
-  /// How a view's rays find the first voxel that is not free. Results are the same bits.
+  /// How to find the first voxel on a ray that is not free. All tracers give identical bits.
   enum class Tracer : std::uint8_t {
-    automatic,  ///< the sweep: full images are faster by it, and there is no BVH to make
+    automatic,  ///< the sweep: faster for full images, and needs no BVH
     embree,  ///< a BVH of leaves and boxes: for few rays and many views (perf/results/tracers.md)
-    sweep,   ///< the scene's cells from near to far, each over the rays that it can end
+    sweep,   ///< the scene's cells from near to far, each against the rays that can end in it
   };
 
-  int num_threads = 0;  ///< 0: all hardware threads; 1: the caller alone; n: caller and n - 1 more
-  Tracer tracer = Tracer::automatic;  ///< of gain evaluators; others do not trace voxels
+  int num_threads = 0;                ///< including the calling thread; 0: all hardware threads
+  Tracer tracer = Tracer::automatic;  ///< of gain evaluators; other classes trace no voxels
 };
 
-/// The number of threads that ExecConfig::num_threads stands for: all hardware threads if 0. Throws
-/// Error(invalid_argument) if it is negative or over 1024.
+/// Number of threads for ExecConfig::num_threads: all hardware threads if it is 0. Throws
+/// Error(invalid_argument) if it is negative or above 1024.
 [[nodiscard]] VIEWGAIN_EXPORT int thread_count(int num_threads);
-/// Names of the tracers, in their order.
+/// Names of the tracers, in enumeration order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& tracer_names();
-/// Throws Error(invalid_argument) that lists the valid names.
+/// Parses a name. Throws Error(invalid_argument) listing the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT ExecConfig::Tracer parse_tracer(std::string_view name);
 
-/// Watches one long call, or ends it early: two ways to do so with one effect, see the call.
+/// Observes one long call or stops it early. Both ways to stop have the same effect, which the call
+/// documents.
 struct VIEWGAIN_EXPORT BatchControl {
-  std::stop_token stop{};  ///< for ending it from another thread; looked at between poses
+  std::stop_token stop{};  ///< stops the call from another thread; checked between poses
   std::function<void(std::size_t done, std::size_t total)>
-      progress{};  ///< from any worker, one at a time
-  /// For a caller that is to be asked: between poses, by any worker, one at a time; true ends it.
+      progress{};  ///< called by any worker, one at a time
+  /// Called between poses by any worker, one at a time; true stops the call.
   std::function<bool()> is_cancelled{};
 };
 

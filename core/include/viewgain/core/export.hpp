@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What the shared libraries show: the libraries are compiled with hidden visibility, and every
-/// class and function of a public header carries this. Enumerations and wholly inline functions
-/// need it not. On the exception type and the interfaces it also makes their type information one
-/// and the same on both sides of the boundary, so that `catch` and `dynamic_cast` work across it.
-/// core/README.md says what a version promises of the binary interface.
+/// Exports a symbol from the shared libraries, which are compiled with hidden visibility. All
+/// classes and functions of public headers carry it, except enumerations and fully inline
+/// functions. On the exception type and the interfaces it also makes type information unique, so
+/// `catch` and `dynamic_cast` work across libraries. core/README.md documents the stability of the
+/// binary interface.
 #define VIEWGAIN_EXPORT __attribute__((visibility("default")))

@@ -11,48 +11,48 @@
 
 namespace viewgain {
 
-/// What became of a frame on its way into a map.
+/// What became of a frame that was to go into a map.
 enum class FrameVerdict : std::uint8_t {
-  used,    ///< the map has readings of it; of one that is only read so far: nothing is against it
-  carved,  ///< in the map; it has shown free space alone
-  lost_pose,         ///< its pose is no rigid transform of finite numbers
-  no_pose,           ///< it has none
-  unreadable,        ///< a file is missing, cut off, damaged or of another kind
-  wrong_size,        ///< its image or mask has another size than the sensor's
-  nothing_in_range,  ///< no pixel says anything
+  used,        ///< the map has readings of it; for a frame that is only read so far: no fault found
+  carved,      ///< in the map; it showed only free space
+  lost_pose,   ///< its pose is not a rigid transform of finite numbers
+  no_pose,     ///< it has no pose
+  unreadable,  ///< a file is missing, truncated, damaged or of another kind
+  wrong_size,  ///< its image or mask differs in size from the sensor
+  nothing_in_range,  ///< all pixels are invalid
   outside,           ///< it shows nothing of the workspace
-  contradicts,       ///< registered, it contradicts the map or the other frames
-  changed,           ///< its number, or its image in a recording's list, was taken before
-  no_mask,           ///< the mask that it needs never came
+  contradicts,       ///< after registration it contradicts the map or the other frames
+  changed,           ///< another frame had its number, or its image in a recording's list
+  no_mask,           ///< its mask never arrived
   not_metres,        ///< nearly all depths are beyond 10 times the sensor's max_range
 };
 
-/// Names of the verdicts, in their order.
+/// Names of the verdicts, in enumeration order.
 inline constexpr std::array<std::string_view, 12> kFrameVerdictNames{
     "used",        "carved",     "lost_pose",        "no_pose",
     "unreadable",  "wrong_size", "nothing_in_range", "outside",
     "contradicts", "changed",    "no_mask",          "not_metres"};
 
-/// Its name. Throws std::out_of_range for a number that is none of them.
+/// Name of the verdict. Throws std::out_of_range for an invalid value.
 [[nodiscard]] constexpr std::string_view frame_verdict_name(FrameVerdict verdict) {
   return kFrameVerdictNames.at(static_cast<std::size_t>(verdict));
 }
 
-/// Has the map changed by the frame? Constant time; never throws.
+/// Whether the frame changed the map. Constant time; never throws.
 [[nodiscard]] constexpr bool is_in_map(FrameVerdict verdict) noexcept {
   return verdict <= FrameVerdict::carved;
 }
 
-/// How many frames had each verdict; what is not there had none.
+/// Number of frames per verdict. Missing verdicts had none.
 using FrameCounts = std::map<FrameVerdict, std::size_t>;
 
-/// Those of one verdict. Never throws.
+/// Count of one verdict. Never throws.
 [[nodiscard]] inline std::size_t count_of(const FrameCounts& counts, FrameVerdict verdict) {
   const auto found = counts.find(verdict);
   return found == counts.end() ? 0 : found->second;
 }
 
-/// Those that are not in the map, by the verdict's name.
+/// Counts of the frames that are not in the map, by name of the verdict.
 [[nodiscard]] inline std::map<std::string, std::size_t> bad_frames(const FrameCounts& counts) {
   std::map<std::string, std::size_t> bad;
   for (const auto& [verdict, count] : counts) {

@@ -13,35 +13,35 @@
 
 namespace viewgain {
 
-/// Removes flying pixels, the mixtures of two surfaces at a jump of depth (after May et al.,
-/// "Three-dimensional mapping with time-of-flight cameras", J. Field Robotics 26, 2009). A reading
-/// p goes when, for one of its 8 neighbours q that is a reading nearer to the camera, the angle
-/// between p's viewing ray and the edge from p to q is under the threshold. All pixels are judged
-/// by the frame as it came. Thread safety: const members may run from many threads.
+/// Removes flying pixels, which mix two surfaces at a depth discontinuity (after May et al.,
+/// "Three-dimensional mapping with time-of-flight cameras", J. Field Robotics 26, 2009). Removes a
+/// reading p if one of its 8 neighbours q is a reading nearer to the camera and the angle between
+/// p's viewing ray and the edge from p to q is below the threshold. Judges all pixels in the
+/// original frame. Thread safety: const members may run from many threads.
 class VIEWGAIN_EXPORT JumpEdgeFilter {
  public:
   /// Which pixels count as flying.
   struct Config {
     double angle = 5.0 * std::numbers::pi / 180;  ///< threshold, in 1°..10° [rad]
-    bool two_sided = false;  ///< the literal form: nearer and farther neighbours alike
+    bool two_sided = false;  ///< as published: compare with nearer and farther neighbours alike
   };
 
-  /// Undoes the lens distortion once. Throws Error(invalid_argument) for a camera that is not valid
-  /// or an angle outside its bounds.
+  /// Computes the undistorted rays once. Throws Error(invalid_argument) for an invalid camera or an
+  /// angle outside its bounds.
   JumpEdgeFilter(const PinholeCamera& camera, const Config& config);
-  /// By the default configuration.
+  /// Uses the default configuration.
   explicit JumpEdgeFilter(const PinholeCamera& camera) : JumpEdgeFilter(camera, Config{}) {}
 
-  /// Turns flying pixels into DepthFrame::kInvalid (their amplitude 0); returns how many. Throws
-  /// Error(invalid_argument) if the frame's size is not the camera's. Cost: a pass over the pixels
-  /// and the 8 neighbours of each.
+  /// Sets flying pixels to DepthFrame::kInvalid and their amplitude to 0; returns their number.
+  /// Throws Error(invalid_argument) if frame and camera differ in size. Cost: one pass over the
+  /// pixels and their 8 neighbours.
   std::size_t apply(DepthFrame& frame) const;
 
  private:
   PinholeCamera camera_;
   Config config_;
   std::vector<Eigen::Vector3d> rays_;
-  double smooth_ = 1;  ///< squared ranges of neighbours whose ratio is below this are no jump
+  double smooth_ = 1;  ///< a ratio of squared ranges below this is not a discontinuity
 };
 
 }  // namespace viewgain

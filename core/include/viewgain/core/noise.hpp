@@ -8,31 +8,33 @@
 
 namespace viewgain {
 
-/// Smallest cosine of incidence that the noise models accept; below it they stay at this value.
+/// Smallest cosine of incidence in the noise models; smaller values are clamped to it.
 inline constexpr double kMinCosIncidence = 0.1;
 
-/// Smallest range [m] that the noise models accept; nearer readings count as this far, so that a
-/// sigma is never 0 and an information matrix never infinite.
+/// Smallest range [m] in the noise models; nearer readings are clamped to it, so that a sigma is
+/// never 0 and an information matrix never infinite.
 inline constexpr double kMinNoiseRange = 1e-3;
 
-/// Time-of-flight shot noise: sigma_ax = reference_sigma * (t / reference_range)
-/// * sqrt(reference_integration_time / integration_time) / sqrt(max(cos, 0.1)); the amplitude falls
-/// with cos / t². sigma_lat is the pixel footprint t / fx.
-/// The last two fields do not change the sigmas.
+/// Time-of-flight shot noise. The amplitude decreases with cos / t².
+/// - sigma_ax = reference_sigma * (t / reference_range) * sqrt(reference_integration_time /
+/// integration_time) / sqrt(max(cos, 0.1))
+/// - sigma_lat = t / fx, the pixel footprint
+///
+/// The last two fields do not affect the sigmas.
 struct VIEWGAIN_EXPORT ShotNoise {
   double reference_sigma = 4.0e-3;             ///< [m]
   double reference_range = 1.30;               ///< [m]
   double reference_integration_time = 8.5e-3;  ///< [s]
   double integration_time = 1.0e-3;            ///< [s]
   double modulation_frequency = 30e6;          ///< of the light [Hz]; 0: ranges are unambiguous
-  double min_amplitude = 0.01;  ///< cos / t² under which a reading is invalid [m⁻²]
+  double min_amplitude = 0.01;  ///< cos / t² below which a reading is invalid [m⁻²]
   bool operator==(const ShotNoise&) const = default;
 };
 
-/// Structured light (Nguyen, Izadi, Lovell, 3DIMPVT 2012), z taken as the range along the ray:
-/// sigma_ax = offset + quadratic (z - vertex)² + grazing / sqrt(z) * theta² / (pi/2 - theta)², the
-/// last term beyond 60°; sigma_lat = (lateral_px + lateral_grazing_px * theta / (pi/2 - theta)) * z
-/// / fx.
+/// Structured light (Nguyen, Izadi, Lovell, 3DIMPVT 2012), with z as the range along the ray:
+/// - sigma_ax = offset + quadratic (z - vertex)² + grazing / sqrt(z) * theta² / (pi/2 - theta)²,
+/// the last term beyond 60°
+/// - sigma_lat = (lateral_px + lateral_grazing_px * theta / (pi/2 - theta)) * z / fx
 struct VIEWGAIN_EXPORT StructuredLightNoise {
   double offset = 1.2e-3;             ///< [m]
   double quadratic = 1.9e-3;          ///< [1/m]
@@ -43,14 +45,14 @@ struct VIEWGAIN_EXPORT StructuredLightNoise {
   bool operator==(const StructuredLightNoise&) const = default;
 };
 
-/// Stereo: sigma_ax = t² * subpixel / (focal * baseline); sigma_lat = t / fx. Both images have the
-/// camera's focal length fx unless `focal` says otherwise.
+/// Stereo: sigma_ax = t² * subpixel / (focal * baseline); sigma_lat = t / fx. The focal length of
+/// both images is fx, unless `focal` is set.
 struct VIEWGAIN_EXPORT StereoNoise {
   double subpixel = 0.08;  ///< matching error [px]
-  double focal = 0;        ///< [px]; 0: that of the camera, fx
+  double focal = 0;        ///< [px]; 0: the camera's fx
   double baseline = 0.05;  ///< [m]
 
-  /// The focal length that counts [px], for a camera with fx [px]; checks nothing.
+  /// Effective focal length [px] for a camera with fx [px]. Checks nothing.
   [[nodiscard]] double focal_with(double fx) const { return focal > 0 ? focal : fx; }
   bool operator==(const StereoNoise&) const = default;
 };
@@ -63,7 +65,7 @@ struct VIEWGAIN_EXPORT QuadraticNoise {
   bool operator==(const QuadraticNoise&) const = default;
 };
 
-/// The same everywhere; equal sigmas make an isotropic sensor.
+/// Constant sigmas; equal ones make an isotropic sensor.
 struct VIEWGAIN_EXPORT ConstantNoise {
   double sigma_axial = 1.0e-3;    ///< [m]
   double sigma_lateral = 1.0e-3;  ///< [m]
@@ -72,42 +74,42 @@ struct VIEWGAIN_EXPORT ConstantNoise {
 
 inline constexpr double kSpeedOfLight = 299'792'458.0;  ///< [m/s]
 
-/// Standard deviations of one measurement, along the ray and across it [m].
+/// Standard deviations of one reading, along and across the ray [m].
 struct VIEWGAIN_EXPORT MeasurementSigmas {
   double axial = 0;    ///< along the ray [m]
   double lateral = 0;  ///< across it [m]
 };
 
-/// How a sensor's readings scatter.
+/// Noise model of a sensor's readings.
 using NoiseModel =
     std::variant<ShotNoise, StructuredLightNoise, StereoNoise, QuadraticNoise, ConstantNoise>;
 
-/// Sigmas of a reading at range t >= 0 [m] along the ray, for a camera with focal length fx [px]
-/// and a surface whose normal makes an angle with the cosine cos_incidence (1: frontal) with the
-/// ray. Thread safe; costs a few flops. Checks nothing: a range below kMinNoiseRange counts as
-/// that, a cosine outside [kMinCosIncidence, 1] as the nearest one inside.
+/// Sigmas of a reading at range t >= 0 [m] along the ray, for a camera with focal length fx [px].
+/// cos_incidence is the cosine of the angle between surface normal and ray (1: frontal). Thread
+/// safe; takes a few flops. Checks nothing: a range below kMinNoiseRange and a cosine outside
+/// [kMinCosIncidence, 1] are clamped.
 [[nodiscard]] VIEWGAIN_EXPORT MeasurementSigmas sigmas(const NoiseModel&, double t, double fx,
                                                        double cos_incidence = 1.0);
 
-/// The standard deviation of a reading along the surface's normal [m], whose angle θ with the
-/// ray has the cosine cos_incidence; checks nothing. On a surface seen at a slant the lateral
-/// one counts, too, since a reading beside its place is of another depth. √((σ_ax cosθ)² + (σ_lat
-/// sinθ)²).
+/// Standard deviation of a reading along the surface normal [m]: √((σ_ax cosθ)² + (σ_lat sinθ)²),
+/// where cosθ is cos_incidence. The lateral sigma matters on slanted surfaces, where a lateral
+/// shift changes the depth. Checks nothing.
 [[nodiscard]] VIEWGAIN_EXPORT double sigma_along_normal(const MeasurementSigmas& sigmas,
                                                         double cos_incidence);
 
-/// Readings this near before a surface that is known, in standard deviations along its normal, are
-/// taken for readings of it.
+/// Readings closer than this to a known surface count as readings of it, in standard deviations
+/// along its normal.
 inline constexpr double kKnownSigmas = 3;
 
-/// Is a reading one of a known plane: `height` [m] above it, with `rise` [m] along the plane's
-/// normal a metre along its ray? It is where it lies under the plane, or where its ray comes down
-/// and it lies less than kKnownSigmas above it. Checks nothing; false for a height of NaN.
+/// Whether a reading shows a known plane. The reading lies `height` [m] above the plane; `rise` [m]
+/// is the climb along the plane's normal per metre of ray. True if the reading lies below the
+/// plane, or if the ray descends and the reading lies less than kKnownSigmas above it. Checks
+/// nothing; false for a height of NaN.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_of_plane(double height, double rise,
                                                const MeasurementSigmas& sigmas);
 
-/// c / (2 modulation_frequency) [m]: the phase of the light repeats after it. Infinity for models
-/// without a modulation frequency.
+/// Unambiguous range c / (2 modulation_frequency) [m], after which the phase of the light repeats.
+/// Infinity for models without a modulation frequency.
 [[nodiscard]] VIEWGAIN_EXPORT double unambiguous_range(const NoiseModel&);
 
 }  // namespace viewgain

@@ -21,18 +21,18 @@
 #include "viewgain/core/sensor.hpp"
 
 /// @file
-/// The paper's Algorithm 1, stated once over four interfaces in its words. Replace any of them.
+/// Algorithm 1 of the paper, written once over four replaceable interfaces named as in the paper.
 ///
-/// active_view_planning() calls the parts one at a time, on its own thread. What the parts throw
-/// passes through it. A call costs what the part that was put in takes.
+/// active_view_planning() calls the parts one at a time on the calling thread and passes on their
+/// exceptions. The parts determine the cost of a call.
 
 namespace viewgain {
 
-/// S_i: what the sensor delivered from x_i.
+/// S_i: the sensor's measurements from x_i.
 struct VIEWGAIN_EXPORT Measurements {
-  Pose T_world_camera;             ///< where they were taken from
-  std::vector<DepthFrame> frames;  ///< one or several, in the order in which they were taken
-  PoseSigma pose_sigma{};          ///< by which the pose may be off; adds to the sensor's own
+  Pose T_world_camera;             ///< camera pose of the measurements
+  std::vector<DepthFrame> frames;  ///< one or several, in acquisition order
+  PoseSigma pose_sigma{};          ///< uncertainty of the pose; adds to the sensor's own
 };
 
 /// DATAACQUISITION: moves the sensor to x_i and measures.
@@ -43,173 +43,172 @@ class VIEWGAIN_EXPORT DataAcquisition {
   virtual Measurements acquire(const Pose& T_world_camera, std::size_t view) = 0;
 };
 
-/// Wall time by stage [s].
+/// Wall-clock time per stage [s].
 using StageSeconds = std::map<std::string, double>;
 
-/// How far the representations are, for the stopping rules.
+/// State of the representations, for the stopping rules.
 struct VIEWGAIN_EXPORT ModelProgress {
   double entropy_removed = 0;        ///< of the whole map [nat, or m² for trace]
   std::uint64_t unknown_voxels = 0;  ///< of the workspace
-  std::optional<double> coverage{};  ///< in [0, 1], where a ground truth is known
+  std::optional<double> coverage{};  ///< in [0, 1], if a reference mesh is known
   double surface_area = 0;           ///< of the model's surface [m²]
-  /// New surface that the last view showed, to be held against Decision::area [m²]; NaN: not known.
+  /// New surface shown by the last view, compared with Decision::area [m²]; NaN: unknown.
   double new_area = std::numeric_limits<double>::quiet_NaN();
-  StageSeconds seconds{};  ///< what the update's stages took; may be empty
+  StageSeconds seconds{};  ///< duration of the stages of the update; may be empty
 };
 
-/// UPDATEREPRESENTATIONS: the model and the occupancy grid (the paper's M and O).
+/// UPDATEREPRESENTATIONS: the model and the occupancy grid (M and O in the paper).
 class VIEWGAIN_EXPORT RepresentationUpdate {
  public:
   virtual ~RepresentationUpdate() = default;
-  /// Puts them into the model; says how far it is.
+  /// Adds the measurements to the model and returns its state.
   virtual ModelProgress update(const Measurements& measurements) = 0;
 };
 
-/// A pose that could be the next view.
+/// A candidate for the next view.
 struct VIEWGAIN_EXPORT Candidate {
-  Pose T_world_camera;                            ///< where the camera would be
-  std::string generator;                          ///< who proposed it
-  std::optional<BoundaryClass> boundary_class{};  ///< of the boundary that it looks beyond, if any
-  std::optional<std::size_t> number{};            ///< the generator's own number for it, if any
+  Pose T_world_camera;    ///< camera pose
+  std::string generator;  ///< name of the generator
+  std::optional<BoundaryClass>
+      boundary_class{};                 ///< class of the boundary that it looks beyond, if any
+  std::optional<std::size_t> number{};  ///< the generator's number of the candidate, if any
 };
 
-/// c_m: the feasible candidates, and how many were dropped and why.
+/// c_m: the feasible candidates, and the number of dropped ones by reason.
 struct VIEWGAIN_EXPORT Proposal {
   std::vector<Candidate> candidates;           ///< feasible ones, in the order of the generators
-  std::map<std::string, std::size_t> dropped;  ///< reason -> count
+  std::map<std::string, std::size_t> dropped;  ///< number by reason
 };
 
-/// The reason in Proposal::dropped that means "outside the reachable region".
+/// Reason in Proposal::dropped for poses outside the reachable region.
 inline constexpr std::string_view kUnreachable = "unreachable";
 
 /// VIEWPOINTSGENERATION.
 class VIEWGAIN_EXPORT ViewpointGeneration {
  public:
   virtual ~ViewpointGeneration() = default;
-  /// Proposes what may come after the view from `T_world_camera`.
+  /// Proposes candidates for the view after the one from `T_world_camera`.
   virtual Proposal generate(const Pose& T_world_camera) = 0;
 };
 
-/// DECISIONMAKER: picks x_{i+1}. Returns nothing if none of the candidates will do.
+/// DECISIONMAKER: chooses x_{i+1}, or nothing if no candidate is suitable.
 class VIEWGAIN_EXPORT DecisionMaking {
  public:
-  /// The choice among the candidates.
+  /// The chosen candidate.
   struct Decision {
-    std::size_t candidate = 0;  ///< index of the chosen one
-    double gain =
-        std::numeric_limits<double>::quiet_NaN();  ///< its expected gain [nat, m² for trace]
-    /// Its expected gain per touched voxel [nat, m² for trace], held against
-    /// PlanningConfig::stop_gain; NaN: this policy has none and never stops for it.
+    std::size_t candidate = 0;  ///< its index
+    /// Its expected gain [nat, m² for trace].
+    double gain = std::numeric_limits<double>::quiet_NaN();
+    /// Expected gain per touched voxel [nat, m² for trace], compared with
+    /// PlanningConfig::stop_gain; NaN: the policy has no such gain, and this rule never stops the
+    /// run.
     double gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
-    /// The new surface that it is expected to show [m²]; NaN: not known.
+    /// Expected new surface [m²]; NaN: unknown.
     double area = std::numeric_limits<double>::quiet_NaN();
-    /// The most that any of the candidates that were looked at closely is expected to show [m²],
-    /// held against PlanningConfig::stop_area; NaN: not known, and never stops for it.
+    /// Largest expected new surface of all candidates evaluated in full [m²], compared with
+    /// PlanningConfig::stop_area; NaN: unknown, and this rule never stops the run.
     double best_area = std::numeric_limits<double>::quiet_NaN();
-    /// Its gain less what it costs to go there, in the gain's unit; NaN: nothing has a cost, and it
-    /// never stops for it.
+    /// Gain minus path cost, in the gain's unit; NaN: there is no cost, and this rule never stops
+    /// the run.
     double worth = std::numeric_limits<double>::quiet_NaN();
   };
 
   virtual ~DecisionMaking() = default;
-  /// One of the candidates, by its place in their order, or nothing. `T_world_camera`: where the
-  /// camera is now.
+  /// Returns one of the candidates by index, or nothing. `T_world_camera` is the current camera
+  /// pose.
   virtual std::optional<Decision> decide(const Pose& T_world_camera,
                                          std::span<const Candidate> candidates) = 0;
 };
 
-/// Default of PlanningConfig::stop_gain [nat]: about what is left when the information of a touched
-/// voxel cannot be doubled any more (3/2 ln 2 = 1.04 nat). With 0.15 nat no run on the camel ended:
-/// each view meets voxels of the noise shell, and unknown ones behind it, for the first time.
+/// Default of PlanningConfig::stop_gain [nat]: about the gain that is left once a further view
+/// cannot double the information of a touched voxel (3/2 ln 2 = 1.04 nat); see
+/// perf/results/loop.md.
 inline constexpr double kStopGain = 1.2;  // [nat]
-/// The same for the criterion trace, as a share of the first decision's.
+/// Default for the criterion trace, relative to the gain of the first decision.
 inline constexpr double kStopGainShare = 0.01;
 
-/// Default of PlanningConfig::stop_area, a share of the surface so far; perf/results/loop.md says
-/// where the camel stops by it.
+/// Default of PlanningConfig::stop_area, a share of the surface so far (perf/results/loop.md).
 inline constexpr double kStopArea = 4e-3;
 
-/// A view that brings less than this share of what was promised breaks the promise.
+/// A view that brings less than this share of its prediction breaks its promise.
 inline constexpr double kKeptShare = 0.2;
 
-/// When to stop.
+/// Stopping rules.
 struct VIEWGAIN_EXPORT PlanningConfig {
-  std::size_t max_views = 20;  ///< budget, the first one included
-  /// Stop when the best candidate's gain per touched voxel is under this [nat, m² for trace].
+  std::size_t max_views = 20;  ///< view budget, including the first view
+  /// Stops when the best candidate's gain per touched voxel is below this [nat, m² for trace].
   double stop_gain = kStopGain;
-  /// stop_gain is a share of the first decision's gain per voxel instead (for trace:
-  /// kStopGainShare).
+  /// stop_gain is relative to the gain per voxel of the first decision (for trace: kStopGainShare).
   bool stop_gain_is_relative = false;
-  /// Stop when the most that any candidate is expected to show (Decision::best_area), as a share of
-  /// the model's surface (ModelProgress::surface_area), is under this on the mean of the last three
-  /// decisions: a single one is often high or low by chance. 0: never.
+  /// Stops when the largest expected new surface (Decision::best_area) is below this share of the
+  /// model's surface (ModelProgress::surface_area), averaged over the last three decisions, because
+  /// single decisions scatter. 0: never.
   double stop_area = kStopArea;
-  std::size_t idle_views = 3;  ///< stop after so many views in a row that brought nothing; 0: never
-  /// Nothing: the view adds less than this share to entropy_removed and takes less than this share
-  /// off the unknown voxels (or nothing at all). The first view is never idle.
+  std::size_t idle_views = 3;  ///< stops after this many idle views in a row; 0: never
+  /// A view is idle if it changes entropy_removed and the number of unknown voxels by less than
+  /// this share, or not at all. The first view is never idle.
   double idle_fraction = 1e-3;
-  /// Stop after so many views in a row that brought less than kKeptShare of what was promised; 0:
-  /// never. Promised is the chosen view's Decision::area, against which ModelProgress::new_area is
-  /// held; where one of them is not known, and there is a gain per voxel, its gain, against which
-  /// the growth of ModelProgress::entropy_removed is held. Other views neither count nor break the
-  /// row.
+  /// Stops after this many views in a row that brought less than kKeptShare of their prediction; 0:
+  /// never. Compares Decision::area with ModelProgress::new_area. If one of them is unknown and
+  /// there is a gain per voxel, compares the gain with the increase of
+  /// ModelProgress::entropy_removed. Other views neither count nor reset the count.
   std::size_t broken_promises = 3;
-  std::optional<double> stop_coverage{};  ///< stop at this coverage, in [0, 1]
-  /// Asked after each step but the acquisition: what was measured goes into the model. Ends with
-  /// `interrupted`.
+  std::optional<double> stop_coverage{};  ///< stops at this coverage, in [0, 1]
+  /// Polled after each step except the acquisition, since measurements always go into the model.
+  /// Ends the run with `interrupted`.
   std::stop_token stop{};
 };
 
 /// Why a run ended.
 enum class StopReason : std::uint8_t {
   gain,           ///< the best candidate promises too little
-  area,           ///< no candidate promises enough new surface
-  cost,           ///< going to the best candidate costs more than it promises
-  no_candidates,  ///< nothing is left to look at
-  unreachable,    ///< candidates are left, all of them out of reach
-  idle,           ///< views in a row brought nothing new
-  promises,       ///< views in a row brought far less than was promised
+  area,           ///< no candidate is expected to show enough new surface
+  cost,           ///< reaching the best candidate costs more than its gain
+  no_candidates,  ///< no candidates are left
+  unreachable,    ///< all remaining candidates are out of reach
+  idle,           ///< several views in a row brought nothing new
+  promises,       ///< several views in a row brought far less than predicted
   max_views,
   coverage,
   interrupted,
 };
-/// Its name, as JSON has it; "interrupted" for a number that is none of them: never throws.
+/// Name as used in JSON; "interrupted" for an invalid value. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view stop_reason_name(StopReason reason);
 
-/// One turn of the loop: the view taken, and the choice of the one after it.
+/// One iteration of the loop: the view taken and the choice of the next one.
 struct VIEWGAIN_EXPORT ViewRecord {
   std::size_t index = 0;                 ///< from 0
-  Pose T_world_camera;                   ///< where the measurements say it was taken
-  std::optional<Candidate> chosen_as{};  ///< what this view was as a candidate; none for x_0
-  /// When it was chosen [nat, m² for trace].
+  Pose T_world_camera;                   ///< camera pose according to the measurements
+  std::optional<Candidate> chosen_as{};  ///< this view as a candidate; empty for x_0
+  /// Predicted gain when it was chosen [nat, m² for trace].
   double predicted_gain = std::numeric_limits<double>::quiet_NaN();
-  double realised_gain = 0;  ///< what it added to entropy_removed [nat, m² for trace]
+  double realised_gain = 0;  ///< increase of entropy_removed [nat, m² for trace]
   double predicted_area = std::numeric_limits<double>::quiet_NaN();  ///< Decision::area [m²]
-  ModelProgress progress;                                            ///< after it
-  double travelled = 0;  ///< distance between camera centres so far [m]
-  Proposal proposal{};   ///< for the next view; empty if the run ended before it was asked for
-  /// The next view; empty if there was none. With StopReason::gain, area and cost it is the one
-  /// that promised too little and is not taken.
+  ModelProgress progress;                                            ///< state after the view
+  double travelled = 0;  ///< path length between camera centres so far [m]
+  Proposal proposal{};   ///< candidates for the next view; empty if the run ended before
+  /// The choice of the next view, or empty. With StopReason::gain, area and cost it is the rejected
+  /// choice.
   std::optional<DecisionMaking::Decision> decision{};
-  /// What the turn's steps took: acquire; the update's own stages, or, where it names none, update;
+  /// Duration of the steps: acquire; the stages of the update, or update if it names none;
   /// candidates; score.
   StageSeconds seconds{};
 };
 
-/// How a run went.
+/// Result of a run.
 struct VIEWGAIN_EXPORT PlanningResult {
   StopReason reason = StopReason::max_views;  ///< why it ended
-  std::vector<ViewRecord> views;              ///< in their order
+  std::vector<ViewRecord> views;              ///< in order
 };
 
-/// The paper's Algorithm 1 from x_0, a T_world_camera. Calls the parts in turn on the calling
-/// thread and `observer`, if given, once a view, when its record is complete. Exceptions of the
-/// parts pass through. Throws Error(invalid_argument) if max_views is 0, a limit is not finite, or
-/// a decision names a candidate that is not there.
+/// Runs Algorithm 1 of the paper from x_0, a T_world_camera. Calls the parts on the calling thread,
+/// and `observer`, if given, after each complete record. Passes on exceptions of the parts. Throws
+/// Error(invalid_argument) if max_views is 0, a limit is not finite, or a decision refers to a
+/// missing candidate.
 ///
-/// Order of the rules after each view: interrupted; coverage; max_views; idle; promises; then, with
-/// the candidates, no_candidates or unreachable (none left, or the decision maker took none, and
-/// some were dropped as unreachable); gain; area; cost.
+/// Order of the rules after each view: interrupted; coverage; max_views; idle; promises; then with
+/// the candidates no_candidates or unreachable (none was chosen, and some were dropped as
+/// unreachable); gain; area; cost.
 [[nodiscard]] VIEWGAIN_EXPORT PlanningResult active_view_planning(
     const Pose& x_0, DataAcquisition& acquisition, RepresentationUpdate& representation,
     ViewpointGeneration& generation, DecisionMaking& decision, const PlanningConfig& config = {},

@@ -10,25 +10,24 @@
 
 namespace viewgain {
 
-/// Rigid transform, for a camera T_world_camera: maps points of the camera's optical frame (x
-/// right, y down, z forward) to the world. Twelve doubles, the rows of [R | t] with t in [m]. Size
-/// and alignment do not depend on compiler flags, so it may cross a library boundary, which
-/// Eigen::Isometry3d may not (its alignment follows -march). A value type. Members check nothing
-/// and never throw.
+/// Rigid transform. For a camera, T_world_camera maps points of the optical frame (x right, y down,
+/// z forward) to the world. Twelve doubles, the rows of [R | t] with t in metres. Unlike
+/// Eigen::Isometry3d, its size and alignment do not depend on compiler flags, so it can cross
+/// library boundaries. A value type. Members check nothing and never throw.
 struct VIEWGAIN_EXPORT Pose {
-  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< [R | t] by rows, t in [m]
+  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< [R | t], row-major, t in [m]
 
   /// The identity.
   Pose() = default;
 
-  /// From Eigen; inline on purpose, so that the caller's alignment rules apply to the argument.
+  /// From Eigen. Inline, because the argument's alignment depends on the caller's compiler flags.
   Pose(const Eigen::Isometry3d& T) {  // NOLINT(google-explicit-constructor): vectors convert
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 4; ++c) m[static_cast<std::size_t>(4 * r + c)] = T.matrix()(r, c);
     }
   }
 
-  /// From a rotation matrix and a translation [m]; not checked.
+  /// From a rotation matrix and a translation [m], unchecked.
   Pose(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) m[static_cast<std::size_t>(4 * r + c)] = R(r, c);
@@ -36,7 +35,7 @@ struct VIEWGAIN_EXPORT Pose {
     }
   }
 
-  /// As Eigen's transform.
+  /// Converts to an Eigen transform.
   [[nodiscard]] Eigen::Isometry3d isometry() const {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = rotation();
@@ -44,15 +43,15 @@ struct VIEWGAIN_EXPORT Pose {
     return T;
   }
 
-  /// R, a copy.
+  /// The rotation R, as a copy.
   [[nodiscard]] Eigen::Matrix3d rotation() const {
     return (Eigen::Matrix3d() << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]).finished();
   }
 
-  /// t, the camera's centre in the world [m].
+  /// The translation t, the camera centre in the world [m].
   [[nodiscard]] Eigen::Vector3d translation() const { return {m[3], m[7], m[11]}; }
 
-  /// R p + t: a point `p` [m] of the camera's frame in the world [m].
+  /// R p + t: maps the camera-frame point `p` [m] to the world [m].
   [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p) const {
     return rotation() * p + translation();
   }
@@ -62,7 +61,7 @@ struct VIEWGAIN_EXPORT Pose {
     return {rotation() * other.rotation(), rotation() * other.translation() + translation()};
   }
 
-  /// Inverse of a rigid transform; the rotation must be orthonormal.
+  /// Inverse; the rotation must be orthonormal.
   [[nodiscard]] Pose inverse() const {
     const Eigen::Matrix3d R_inverse = rotation().transpose();
     return {R_inverse, -(R_inverse * translation())};
@@ -72,25 +71,23 @@ struct VIEWGAIN_EXPORT Pose {
 };
 static_assert(sizeof(Pose) == 96 && alignof(Pose) == 8);
 
-/// How far the rotation is from orthonormal and right-handed: the largest absolute entry of RᵀR - I
-/// [1], infinity if any of the twelve numbers is not finite or det R <= 0. In any frame.
+/// Deviation of the rotation from orthonormal and right-handed: the largest absolute entry of RᵀR -
+/// I [1], or infinity if any number is not finite or det R <= 0.
 [[nodiscard]] VIEWGAIN_EXPORT double orthonormality_error(const Pose& pose);
 
-/// The nearest rotation (polar decomposition by SVD) with the same translation. Deterministic. A
-/// pose with a number that is not finite comes back as it is: never throws. In the same frame.
+/// Nearest rotation (polar decomposition by SVD) with the same translation. Deterministic. Returns
+/// a pose with a number that is not finite unchanged. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT Pose orthonormalized(const Pose& pose);
 
-/// The pose that all who ask for a rigid transform take a given one for: itself if
-/// orthonormality_error() is at most 1e-9, orthonormalized() if it is at most kMaxPoseError, else
-/// none. Never throws. In the same frame.
+/// The rigid transform used for a given pose: the pose itself if orthonormality_error() is at most
+/// 1e-9, orthonormalized() if it is at most kMaxPoseError, otherwise none. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Pose> rigid_pose(const Pose& pose);
 inline constexpr double kMaxPoseError = 1e-3;  ///< [1]
 
-/// T_world_camera of a camera at `eye` [m] whose optical axis passes through `target` [m] and whose
-/// image-up direction (minus y) is as near to `up`, of whatever unit, as it can be. Where the view
-/// direction is parallel to `up`, +x of the world (then +y) takes its place. Throws
-/// Error(invalid_argument) if eye equals target, if up is zero, or if a number is not finite.
-/// Orthonormal to 1e-15.
+/// T_world_camera of a camera at `eye` [m] whose optical axis passes through `target` [m]. Image up
+/// (minus y) is as close as possible to `up`, a vector of any length; if the view direction is
+/// parallel to `up`, to +x of the world (then +y). Throws Error(invalid_argument) if eye equals
+/// target, up is zero, or a number is not finite. Orthonormal to 1e-15.
 [[nodiscard]] VIEWGAIN_EXPORT Pose look_at(const Eigen::Vector3d& eye,
                                            const Eigen::Vector3d& target,
                                            const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());

@@ -14,53 +14,53 @@
 
 namespace viewgain {
 
-/// Where a robot can put the camera. World frame. A camera pose is reachable if its centre lies in
-/// at least one of the boxes (where there are any), in at least one of the shells (where there are
-/// any) and in every half-space, limits included; if it is among the poses (where there are any);
-/// and if the predicate, where there is one, says so. Empty: everything is reachable.
+/// Region of camera poses that a robot can reach, world frame. A pose is reachable if all
+/// conditions that are present hold: its centre lies in one of the boxes, in one of the shells and
+/// in all half-spaces (limits included); it is one of the poses; and the predicate returns true. An
+/// empty region contains all poses.
 struct VIEWGAIN_EXPORT ReachRegion {
-  /// Between two spheres round a centre [m], world frame.
+  /// Space between two spheres with a common centre [m], world frame.
   struct Shell {
     Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the spheres [m]
     double min_radius = 0;                             ///< [m]
     double max_radius = 0;                             ///< [m]
     bool operator==(const Shell&) const = default;
   };
-  /// The points p of the world [m] with normal · p >= offset.
+  /// Points p of the world [m] with normal · p >= offset.
   struct HalfSpace {
-    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< points inward; need not be unit
-    double offset = 0;  ///< normal · p of the plane, in the unit of both [m]
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< points inward, any length
+    double offset = 0;  ///< normal · p on the plane, in the unit of both [m]
     bool operator==(const HalfSpace&) const = default;
   };
 
-  /// When two camera poses count as the same view.
+  /// Tolerance for two camera poses to count as the same view.
   struct Tolerance {
     double distance = 0.010;                      ///< between the camera centres [m]
-    double angle = 2.0 * std::numbers::pi / 180;  ///< of the rotation between them [rad]
+    double angle = 2.0 * std::numbers::pi / 180;  ///< angle of the rotation between them [rad]
     bool operator==(const Tolerance&) const = default;
   };
 
-  std::vector<Box> boxes{};     ///< the centre lies in one of them, if there are any; in any order
-  std::vector<Shell> shells{};  ///< likewise, in any order
-  std::vector<HalfSpace> half_spaces{};  ///< the centre lies in all of them, in any order
-  std::vector<Pose> poses{};             ///< T_world_camera, in any order
-  Tolerance tolerance{};                 ///< of the poses
+  std::vector<Box> boxes{};              ///< the centre lies in one of them, if any
+  std::vector<Shell> shells{};           ///< likewise
+  std::vector<HalfSpace> half_spaces{};  ///< the centre lies in all of them
+  std::vector<Pose> poses{};             ///< T_world_camera
+  Tolerance tolerance{};                 ///< tolerance for the poses
   std::function<bool(const Pose& T_world_camera)> predicate{};  ///< must be thread safe
 
   /// Throws Error(invalid_argument) naming the part for numbers that are not finite, boxes or
-  /// shells inside out, a zero normal.
+  /// shells that are inside out, and zero normals.
   void validate() const;
 
-  /// Is there no limit at all?
+  /// Whether there is no limit at all.
   [[nodiscard]] bool is_everywhere() const;
 
-  /// May the camera be there? Calls the predicate, if there is one; what it throws passes through.
-  /// Checks nothing. Costs O(parts).
+  /// Whether the camera can reach the pose. Calls the predicate, if any, and passes on its
+  /// exceptions. Checks nothing. Cost: O(parts).
   [[nodiscard]] bool contains(const Pose& T_world_camera) const;
 };
 
-/// True if `pose` is within the tolerance of one of `poses`, all T_world_camera, in any order.
-/// Checks nothing: NaN is near nothing. Costs O(poses).
+/// Whether `pose` is within the tolerance of one of `poses`, all T_world_camera. Checks nothing;
+/// false for NaN. Cost: O(poses).
 [[nodiscard]] VIEWGAIN_EXPORT bool is_among(const Pose& pose, std::span<const Pose> poses,
                                             const ReachRegion::Tolerance& tolerance = {});
 

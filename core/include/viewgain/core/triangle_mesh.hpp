@@ -10,15 +10,15 @@
 
 namespace viewgain {
 
-/// A triangle soup as plain arrays, in any order and in the frame of its user. Who takes one checks
-/// the indices.
+/// Triangle soup as plain arrays, in the frame of its user. Functions that take a mesh check its
+/// indices.
 struct VIEWGAIN_EXPORT TriangleMesh {
-  std::vector<std::array<double, 3>> vertices;  ///< [m], or in a file's own unit; in any order
+  std::vector<std::array<double, 3>> vertices;          ///< [m], or in a file's own unit
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three vertex indices each
 };
 
-/// The faces of a box, two triangles each, that look outward. Corner i is at max along x if bit 0
-/// of i is set, along y by bit 1, along z by bit 2.
+/// Outward faces of a box, two triangles each. Corner i is at max along x if bit 0 of i is set,
+/// along y with bit 1, along z with bit 2.
 inline constexpr std::array<std::array<std::uint32_t, 3>, 12> kBoxTriangles{{{0, 2, 1},
                                                                              {1, 2, 3},
                                                                              {4, 5, 6},

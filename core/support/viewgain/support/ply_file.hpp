@@ -114,7 +114,8 @@ class PlyAsciiNumbers {
   void require(double count, ScalarType) const {
     // The shortest number is a digit, and each but the last has something behind it.
     const std::size_t most = line_.words().size() - word_ + line_.rest().size() / 2 + 1;
-    if (count > static_cast<double>(most)) line_.fail("a list's count is more than the file holds");
+    if (count > static_cast<double>(most))
+      line_.fail("a list's count exceeds the rest of the file");
   }
   void end_row() const {
     if (word_ == line_.words().size()) return;
@@ -127,7 +128,7 @@ class PlyAsciiNumbers {
   }
   void end_file() const {
     while (line_.next()) {
-      if (!line_.words().empty()) line_.fail("the file goes on behind its last element");
+      if (!line_.words().empty()) line_.fail("the file continues after its last element");
     }
   }
   [[noreturn]] void fail(const std::string& what) const { line_.fail(what); }
@@ -162,7 +163,7 @@ class PlyBinaryNumbers {
   void end_row() const {}
   void end_file() const {
     if (rest_.find_first_not_of(" \t\r\n") == std::string_view::npos) return;
-    fail(std::to_string(rest_.size()) + " bytes stand behind the last element");
+    fail(std::to_string(rest_.size()) + " bytes follow the last element");
   }
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(ErrorCode::format, name_ + ": " + what);
@@ -209,10 +210,10 @@ class PlyFile {
 
   void read_header() {
     if (!line_.next() || line_.words().empty() || line_.words()[0] != "ply") {
-      fail("is no PLY file: it does not begin with \"ply\"");
+      fail("is not a PLY file: it does not begin with \"ply\"");
     }
     for (;;) {
-      if (!line_.next()) fail("the header is cut: it has no line end_header");
+      if (!line_.next()) fail("the header is truncated: it has no line end_header");
       const auto& words = line_.words();
       if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
       if (words[0] == "end_header") break;
@@ -223,18 +224,18 @@ class PlyFile {
         elements_.push_back(
             {words[1], line_.count(2, std::numeric_limits<std::uint32_t>::max()), {}});
       } else if (words[0] == "property") {
-        if (elements_.empty()) fail("a property stands before the first element");
+        if (elements_.empty()) fail("a property precedes the first element");
         std::vector<PlyProperty>& all = elements_.back().properties;
         all.push_back(read_property());
         if (std::any_of(all.begin(), all.end() - 1,
                         [&](const PlyProperty& p) { return p.name == all.back().name; })) {
-          fail("the property " + quoted(all.back().name) + " stands there twice");
+          fail("the property " + quoted(all.back().name) + " is declared twice");
         }
       } else {
         fail("the header's word " + quoted(words[0]) + " is unknown");
       }
     }
-    if (format_ == Format::none) fail("the header has no line format");
+    if (format_ == Format::none) fail("the header has no format line");
   }
 
   [[nodiscard]] Format read_format() const {

@@ -126,8 +126,8 @@ class VIEWGAIN_EXPORT LineReader {
                                                std::string_view what) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  refuse(std::string("unknown ").append(what).append(" '") + std::string(name) + "', valid are " +
-         listed(names));
+  refuse(std::string("unknown ").append(what).append(" '") + std::string(name) +
+         "'; valid values: " + listed(names));
 }
 
 }  // namespace viewgain

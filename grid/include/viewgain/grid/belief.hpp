@@ -11,18 +11,18 @@
 #include "viewgain/grid/voxel.hpp"
 
 /// @file
-/// What readings have said, voxel by voxel. Functions and members check nothing: an offset must be
-/// below 512.
+/// Accumulated readings per voxel. Functions and members check nothing: an offset must be below
+/// 512.
 
 namespace viewgain {
 
-/// What readings have said about one voxel, or a cell of them, in single precision as in the map
-/// files, grid frame.
+/// Accumulated readings of a voxel, or of a cell of voxels, in single precision as in the map
+/// files; grid frame.
 struct VIEWGAIN_EXPORT Belief {
   std::array<float, 6> information{};  ///< Λ_v: xx yy zz xy xz yz [m⁻²]
   /// η_v = Σ Λ_r (p_r - centre of the voxel, or of its cell) [m⁻¹]
   std::array<float, 3> information_vector{};
-  std::uint32_t hits = 0;  ///< readings that ended here
+  std::uint32_t hits = 0;  ///< number of readings that ended here
 
   /// Λ_v in double precision [m⁻²].
   [[nodiscard]] SymmetricMatrix3 information_matrix() const {
@@ -32,33 +32,33 @@ struct VIEWGAIN_EXPORT Belief {
   bool operator==(const Belief&) const = default;
 };
 
-/// The voxel at an offset (x << 6 | y << 3 | z) in the leaf whose lowest voxel is `origin`.
+/// The voxel at offset (x << 6 | y << 3 | z) in the leaf with the lowest voxel `origin`.
 [[nodiscard]] inline Index3 offset_voxel(Index3 origin, unsigned offset) {
   return {origin.x + static_cast<std::int32_t>(offset >> 6U),
           origin.y + static_cast<std::int32_t>(offset >> 3U & 7U),
           origin.z + static_cast<std::int32_t>(offset & 7U)};
 }
 
-/// The offset (x << 6 | y << 3 | z) of a voxel of the grid in its 8³ leaf.
+/// Offset (x << 6 | y << 3 | z) of a grid voxel in its 8³ leaf.
 [[nodiscard]] inline unsigned block_offset(Index3 voxel) {
   return static_cast<unsigned>((voxel.x & 7) << 6 | (voxel.y & 7) << 3 | (voxel.z & 7));
 }
 
-/// The offset of the lowest voxel of the cell that holds the voxel at `offset`: a leaf of scale s,
-/// 0 to 3, has one belief for each cell of 2^s voxels an edge, kept at that voxel.
+/// Offset of the lowest voxel of the cell that contains the voxel at `offset`. A leaf of scale s, 0
+/// to 3, has one belief per cell of 2^s voxels per edge, stored at that voxel.
 [[nodiscard]] inline unsigned cell_offset(unsigned offset, int scale) {
   const unsigned kept = 7U << static_cast<unsigned>(scale) & 7U;
   return offset & (kept << 6U | kept << 3U | kept);
 }
 
-/// What each voxel has of its cell's information, as far as the cell is a piece of surface, of
-/// 4^scale voxels.
+/// Share of a cell's information per voxel: the cell is treated as a piece of surface of 4^scale
+/// voxels.
 [[nodiscard]] inline double surface_share(int scale) { return 1.0 / (1 << 2 * scale); }
 
 /// One bit per voxel of an 8³ leaf: word x, bit y << 3 | z (OpenVDB's order).
 using LeafMask = std::array<std::uint64_t, 8>;
 
-/// Is the voxel's bit set?
+/// Whether the voxel's bit is set.
 [[nodiscard]] inline bool test_bit(const LeafMask& mask, unsigned offset) {
   return ((mask[offset >> 6U] >> (offset & 63U)) & 1U) != 0;
 }
@@ -68,7 +68,7 @@ inline void set_bit(LeafMask& mask, unsigned offset) {
   mask[offset >> 6U] |= std::uint64_t{1} << (offset & 63U);
 }
 
-/// Calls f(offset) for every set bit, in rising order.
+/// Calls f(offset) for every set bit, in increasing order.
 template <typename F>
 void for_each_bit(const LeafMask& mask, F&& f) {
   for (unsigned w = 0; w < 8; ++w) {

@@ -17,20 +17,21 @@
 namespace viewgain {
 class DisplacementFit;
 
-/// How well a frame agrees with the others, counted on a sample of readings.
+/// Agreement of a frame with the others, counted on a sample of readings.
 struct VIEWGAIN_EXPORT FrameContradiction {
-  std::size_t readings = 0;   ///< of this frame, in the workspace and on smooth surface
-  std::size_t in_free = 0;    ///< of these, in space that other frames saw as free
-  std::size_t others = 0;     ///< readings of earlier frames that this frame sees or sees past
-  std::size_t seen_past = 0;  ///< of these, in this frame's own free space
-  std::size_t compared = 0;   ///< readings of earlier frames that fall on flat parts of this one
-  /// How far this frame would have to move to fit them: RMS along the normals, without what noise
-  /// adds [m]; 0 where too few were compared.
+  std::size_t readings = 0;   ///< of this frame, in the workspace and on a smooth surface
+  std::size_t in_free = 0;    ///< of these, those in space that other frames saw as free
+  std::size_t others = 0;     ///< readings of earlier frames that this frame sees, or sees past
+  std::size_t seen_past = 0;  ///< of these, those in this frame's own free space
+  /// Readings of earlier frames that project onto flat parts of this one.
+  std::size_t compared = 0;
+  /// Displacement of this frame from the earlier ones, RMS along the normals, without the share of
+  /// noise [m]; 0 if too few readings were compared.
   double displacement = 0;
-  /// The displacement that declared errors explain [m]: the standard deviation of a reading (at
-  /// most 0.35 % of the range), the scale's, and √2 times those of both poses.
+  /// Displacement explained by declared errors [m]: the standard deviation of a reading (at most
+  /// 0.35 % of the range), the scale's, and √2 times those of both poses.
   double expected = 0;
-  /// An earlier frame with the same image from another pose, if there is one.
+  /// An earlier frame with the same image from another pose, if any.
   std::optional<std::size_t> same_image_as{};
 
   /// in_free / readings; 0 without readings.
@@ -43,12 +44,12 @@ struct VIEWGAIN_EXPORT FrameContradiction {
   }
 };
 
-/// Holds frames against one another while they go into a map: which readings lie in space that
-/// other frames saw as free? A reading counts if its voxel is free, and all others within three
-/// standard deviations along its ray, before its frame was integrated or after all frames. And how
-/// far do surfaces lie apart, as if frames had moved?
+/// Compares frames while they go into a map. Which readings lie in space that other frames saw as
+/// free? How far apart are the surfaces, as if frames had moved? A reading counts as in free space
+/// if its voxel and all voxels within three standard deviations along its ray are free, before its
+/// frame was integrated or after all frames.
 ///
-/// Thread safety: one call at a time. Deterministic. Cost: 0.3 ms a frame; keeps 4 MB at most.
+/// Thread safety: one call at a time. Deterministic. Cost: 0.3 ms per frame; at most 4 MB.
 /// @code
 /// FrameAgreement agreement(sensor);
 /// for (const auto& [frame, T_world_camera] : frames) {
@@ -59,27 +60,27 @@ struct VIEWGAIN_EXPORT FrameContradiction {
 /// @endcode
 class VIEWGAIN_EXPORT FrameAgreement {
  public:
-  /// `support_plane`: IntegrationConfig's. Throws Error(invalid_argument) if the sensor is not
-  /// valid.
+  /// `support_plane`: as in IntegrationConfig. Throws Error(invalid_argument) if the sensor is
+  /// invalid.
   explicit FrameAgreement(const Sensor& sensor, std::optional<double> support_plane = {});
 
-  /// Takes a frame that is about to be integrated into the map `before`, without flying pixels,
-  /// with known depths marked. `pose_sigma`: FrameIntegrator::integrate()'s. Throws
-  /// Error(invalid_argument) as check_frame_size(), for a pose that is not rigid, and for a sigma
-  /// that is negative or not finite; nothing has changed then.
+  /// Takes a frame that is about to be integrated into the map `before`, without flying pixels and
+  /// with known depths marked. `pose_sigma`: as in FrameIntegrator::integrate(). Throws
+  /// Error(invalid_argument) and changes nothing as check_frame_size(), for a pose that is not
+  /// rigid, and for a sigma that is negative or not finite.
   void look(const BeliefGrid& before, const DepthFrame& frame, const Pose& T_world_camera,
             const PoseSigma& pose_sigma = {});
 
-  /// One per call of look(), by the map with all of them.
+  /// Results, one per call of look(), given the map with all frames.
   [[nodiscard]] std::vector<FrameContradiction> frames(const BeliefGrid& after) const;
 
  private:
   struct Reading {
     Eigen::Vector3d p_world;
     Eigen::Vector3f ray;           ///< unit, world
-    float axial = 0, lateral = 0;  ///< standard deviations along the ray and across it [m]
-    MeasurementSigmas of_pose{};   ///< of these the part that all of a frame's readings share
-    Eigen::Vector3f normal;        ///< of the surface, away from the camera, world; 0: not flat
+    float axial = 0, lateral = 0;  ///< standard deviations along and across the ray [m]
+    MeasurementSigmas of_pose{};   ///< of these, the part common to all readings of a frame
+    Eigen::Vector3f normal;        ///< surface normal away from the camera, world; 0: not flat
     std::uint32_t frame = 0;
     bool in_free = false;
   };
@@ -89,9 +90,9 @@ class VIEWGAIN_EXPORT FrameAgreement {
     Pose T_world_camera{};
   };
 
-  /// Of readings of a frame, the errors of its pose and of the scale among them.
+  /// Standard deviations of a frame's readings, including its pose and the scale.
   [[nodiscard]] MeasurementSigmas sigmas(double range, const PoseSigma& pose_sigma) const;
-  /// Readings of smooth surface in the workspace, at each stride-th pixel of rows and columns.
+  /// Readings of smooth surface in the workspace, at every stride-th pixel of rows and columns.
   [[nodiscard]] std::vector<Reading> sampled(const BeliefGrid& map, const DepthFrame& frame,
                                              const Pose& T_world_camera,
                                              const PoseSigma& pose_sigma, std::size_t stride) const;
@@ -103,7 +104,7 @@ class VIEWGAIN_EXPORT FrameAgreement {
                       const PoseSigma& pose_sigma, FrameContradiction& found) const;
   void compare(const DepthFrame& frame, std::size_t u, std::size_t v, const Reading& earlier,
                const Pose& T_camera_world, const PoseSigma& pose_sigma, DisplacementFit& fit) const;
-  /// The sensor's own errors of poses and these.
+  /// Pose uncertainty of the sensor combined with the given one.
   [[nodiscard]] PoseSigma both(const PoseSigma& pose_sigma) const;
   void look_for_copy(const DepthFrame& frame, const Pose& T_world_camera,
                      FrameContradiction& found);
@@ -114,9 +115,9 @@ class VIEWGAIN_EXPORT FrameAgreement {
   std::optional<double> support_plane_;
   std::vector<Eigen::Vector3d> rays_;
   std::vector<FrameContradiction> frames_;
-  std::vector<Reading> kept_;  ///< of all frames, thinned as they grow
+  std::vector<Reading> kept_;  ///< of all frames; thinned out as their number grows
   std::size_t keep_every_ = 1;
-  std::vector<Image> images_;  ///< the last ones that differ
+  std::vector<Image> images_;  ///< the latest ones that differ
 };
 
 }  // namespace viewgain

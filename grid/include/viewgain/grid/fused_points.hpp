@@ -17,85 +17,78 @@
 
 namespace viewgain {
 
-/// A point of the surface as the map knows it, world frame.
+/// A surface point of the map, world frame.
 struct VIEWGAIN_EXPORT FusedPoint {
   std::array<double, 3> position{};     ///< [m]
-  SymmetricMatrix3 covariance{};        ///< of the position, with the floor F [m²]
-  std::array<double, 3> toward_free{};  ///< unit surface normal on the side of free space
-  std::uint32_t hits = 0;               ///< readings that support it
-  double spacing = 0;  ///< how far apart points of its leaf's scale are: the pooling length [m]
+  SymmetricMatrix3 covariance{};        ///< covariance of the position, including the floor F [m²]
+  std::array<double, 3> toward_free{};  ///< unit surface normal towards free space
+  std::uint32_t hits = 0;               ///< number of readings that support it
+  double spacing = 0;  ///< spacing of points of its leaf's scale: the pooling length [m]
 };
 
-/// Lengths are in pooling lengths (pooling_of: a voxel, or the sensor's footprint where that is
-/// longer) unless said otherwise.
+/// Lengths are in pooling lengths unless stated otherwise: the voxel size or the sensor's
+/// footprint, whichever is larger (pooling_of).
 struct VIEWGAIN_EXPORT FusedPointsConfig {
-  /// Noise spreads the readings of one place over a shell of voxels across the surface, so that the
-  /// beliefs of the voxels in a short column along the surface normal are fused into one point.
-  /// True: the paper's literal rule, each occupied voxel is a point, centre + Λ_v⁻¹ η_v.
+  /// False: fuses the beliefs of a short column of voxels along the surface normal into one point,
+  /// because noise spreads readings of one place over several voxels. True: makes each occupied
+  /// voxel a point, centre + Λ_v⁻¹ η_v, as the paper does.
   bool per_voxel = false;
-  std::uint32_t min_hits = 2;  ///< points with fewer readings are left out
-  /// Pooled points with less than this share of the upper quartile of the evidence of the points
-  /// within 4 lengths that face the same way (normals within 60°) are left out: the halo that
-  /// silhouettes leave beside the surface. 0 keeps all. Evidence is readings divided by those
-  /// expected from one frontal view at the same range, so that surface seen from afar stays beside
-  /// surface seen from near; as only one side is compared, so does the less seen face of a thin
-  /// wall.
+  std::uint32_t min_hits = 2;  ///< points with fewer readings are omitted
+  /// Omits pooled points with less than this share of the upper quartile of the evidence of points
+  /// within 4 lengths and normals within 60°: the halo at silhouettes. 0 keeps all. Evidence is the
+  /// number of readings relative to one frontal view at the same range, so that surface seen from
+  /// afar and the less seen side of a thin wall are kept.
   double min_relative_evidence = 0.25;
-  double normal_radius = 5.0;   ///< of the ball whose beliefs give the surface normal, at most 8
-                                ///< [pooling lengths]
-  double column_radius = 1.0;   ///< of the column whose beliefs are pooled [pooling lengths]
-  double column_sigmas = 1.75;  ///< its half height, in sigmas of one reading across the surface
-  /// Least distance between pooled points whose normals are within 90° [pooling lengths]; 0 keeps
-  /// all. A nearer point, down to 0.4 lengths, is kept if dropping it would leave a hole. Holes are
-  /// judged by discs of one length, or of min_distance if that is more; rare small gaps remain.
+  double normal_radius = 5.0;  ///< radius of the ball whose beliefs give the surface normal, at
+                               ///< most 8 [pooling lengths]
+  double column_radius = 1.0;  ///< radius of the pooled column [pooling lengths]
+  /// Half height of the column, in sigmas of one reading across the surface.
+  double column_sigmas = 1.75;
+  /// Minimum distance between pooled points whose normals are within 90° [pooling lengths]; 0 keeps
+  /// all. A nearer point, down to 0.4 lengths, is kept if its removal would leave a hole, judged by
+  /// discs of one length or min_distance. Rare small gaps remain.
   double min_distance = 0.75;
-  /// Square root of F [m], the variance that is added in all directions for errors that a point's
-  /// readings share and for blur by pooling. Default F: edge² / 12 with per_voxel; else
-  /// min(1, 0.2 + 2 / e) · ((0.19 σ)² + (0.43 s)² + (0.02 edge)²), e the evidence in frontal views,
-  /// σ of one reading along the normal, s the scatter of the voxels' means in the column, edge that
-  /// of the voxels or cubes that are pooled.
+  /// Square root of F [m], the variance added in all directions for errors common to a point's
+  /// readings and for blur from pooling. Default F: edge² / 12 with per_voxel; otherwise min(1, 0.2
+  /// + 2 / e) · ((0.19 σ)² + (0.43 s)² + (0.02 edge)²) with the evidence e in frontal views, the σ
+  /// of one reading along the normal, the scatter s of the voxel means in the column, and the edge
+  /// of the pooled voxels or cubes.
   std::optional<double> floor_sigma{};
-  /// Sensor::scale_sigma of the camera. What an error of that size moves a point by, once for all
-  /// its readings, is added to its covariance: scale_sigma² w wᵀ, w the mean way [m] to it from the
-  /// map's views that have it before them on its free side, each by the readings it makes of a
-  /// piece of surface there; what hides the point from a view is not asked. A map without views has
-  /// none.
+  /// Sensor::scale_sigma of the camera. Adds the effect of such a scale error, common to all
+  /// readings of a point, to its covariance: scale_sigma² w wᵀ. w [m] is the mean vector from the
+  /// views on the point's free side, weighted by their number of readings, ignoring occlusion. Maps
+  /// without views have no such term.
   double scale_sigma = 0;
-  /// Points begin only at voxels, or cubes, of whose centre [m, world frame] this is true; empty:
-  /// at all. Those within some lengths of its border may differ from those of the whole map.
+  /// Starts points only at voxels, or cubes, whose centre [m, world frame] satisfies this; empty:
+  /// at all. Points within a few lengths of the border can differ from those of the whole map.
   std::function<bool(const Eigen::Vector3d&)> where{};
 };
 
-/// The surface points of a map, with honest covariances. A pooled point starts at each occupied
-/// voxel, or cube of voxels (pooling_of), moves along the local normal to the mean of the readings
-/// in its column, those of voxels that have turned free included (leaving them out would bias the
-/// mean away from the camera). Voxels whose free side points the other way are a thin wall's other
-/// face: they count only where the means of both are less than a reading's sigma apart (over 0.2
-/// voxels more, less and less), which is one sheet. Redundant points are thinned out
-/// (min_distance). A pooled point has the covariance of the column's mean, in which every reading
-/// counts once, one of per_voxel Λ_v⁻¹; F and the term of scale_sigma are added to both. Points are
-/// ordered by scale, finest first, then by the voxel or cube that they start at; each scale is
-/// pooled by itself, and columns of finer leaves do not reach into coarser ones. A belief whose
-/// fused position is more than 24 voxels away from its voxel makes no point. Deterministic for any
-/// number of threads; a function of the map alone. Costs about 1 µs a voxel that was ever hit where
-/// config.where is true, and 0.3 µs elsewhere. Throws Error(invalid_argument) naming a setting that
-/// is negative, not finite or too large.
+/// Surface points of a map, with covariances. A pooled point starts at an occupied voxel, or a cube
+/// of voxels (pooling_of), and moves along the local normal to the mean of the readings in its
+/// column, including those of voxels that became free. Its covariance is that of the mean, plus F
+/// and the term of scale_sigma. Thin walls keep both sides; redundant points are thinned out
+/// (min_distance). grid/README.md ("Surface points") has the details.
+///
+/// Points are ordered by scale, finest first, then by the starting voxel or cube; each scale is
+/// pooled separately. Deterministic for any number of threads. Cost: about 1 µs per voxel that was
+/// ever hit where config.where is true, 0.3 µs elsewhere. Throws Error(invalid_argument) naming a
+/// setting that is negative, not finite or too large.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<FusedPoint> fused_points(
     const BeliefGrid& grid, const FusedPointsConfig& config = {}, const ExecConfig& exec = {});
 
-/// Over what length the readings of one place count together. Voxels that are finer than the
-/// sensor's footprint hold too few readings each, however often the place was seen.
+/// The length over which readings of one place are combined. Voxels finer than the sensor's
+/// footprint hold too few readings each, however often a place was seen.
 struct VIEWGAIN_EXPORT Pooling {
-  int shift = 0;      ///< beliefs are added up in cubes of 2^shift voxels an edge, at most 3
-  double length = 0;  ///< the cubes' edge or the footprint, whichever is longer [m]
+  int shift = 0;      ///< beliefs are summed in cubes of 2^shift voxels per edge, at most 3
+  double length = 0;  ///< edge of the cubes or the footprint, whichever is longer [m]
 };
 
-/// The pooling of a map: its footprint is the median over the occupied voxels of a reading's sigma
-/// across its ray, read off Λ_v / hits as if a voxel's readings came along one direction. The cubes
-/// are as large as they can be under 1.42 footprints, so that a map with voxels of at least that
-/// size pools nothing (shift 0, length the voxel size or the footprint). With a scale, 0 to 3, that
-/// of the leaves of this scale, whose cubes are at least their cells. Costs about 20 ns an
-/// occupied voxel. Never throws. Thread safe.
+/// Pooling of a map. The footprint is the median over the occupied voxels of a reading's sigma
+/// across its ray, estimated from Λ_v / hits. Cubes are as large as possible below 1.42 footprints;
+/// a map with voxels of at least that size has shift 0. With a scale, 0 to 3: the pooling of its
+/// leaves, with cubes of at least their cell size. Never throws. Thread safe. Cost: about 20 ns per
+/// occupied voxel.
 [[nodiscard]] VIEWGAIN_EXPORT Pooling pooling_of(const GridSnapshot& snapshot,
                                                  std::optional<int> scale = {});
 

@@ -10,29 +10,28 @@
 
 namespace viewgain {
 
-/// How often real rays met the surface in unknown space, against how often the hazard model said
-/// that they would, by class of distance from known surface. Part of a map. Integers, so that every
-/// machine has the same. Members check nothing: a class must be below kClasses.
+/// Counts, per class of distance from known surface, how often real rays met the surface in unknown
+/// space, and how often the hazard model predicted it. Part of a map. Integers, so that all
+/// machines agree. Members check nothing: a class must be below kClasses.
 struct VIEWGAIN_EXPORT HazardCounters {
-  /// Classes of distance from known surface.
+  /// Number of distance classes.
   static constexpr std::size_t kClasses = 8;
-  /// Where the classes end [decay lengths]; the last has no end.
+  /// Upper limits of the classes [decay lengths]; the last class has none.
   static constexpr std::array<double, kClasses - 1> kEnds{0.5, 1, 1.5, 2, 3, 4, 5};
-  /// What a frame counts for in all. Its rays say much the same, so their number does not count.
+  /// Total weight of a frame, whatever its number of rays, because they are strongly correlated.
   static constexpr std::int64_t kFrame = 1'000'000;
-  /// What earlier frames are left with when one is added, as late hazards are lower than early
-  /// ones.
+  /// Factor for earlier frames when one is added, because hazards decrease as the map grows.
   static constexpr std::int64_t kKeptOf10 = 7;
-  /// Weight of the prior in each class [1 / kFrame].
+  /// Weight of the prior per class [1 / kFrame].
   static constexpr double kPrior = 2.0 * kFrame / kClasses;
 
-  /// What was counted at one class of distance.
+  /// Counts of one distance class.
   struct Class {
-    std::int64_t expected = 0;  ///< meetings by the model [1 / kFrame]
-    std::int64_t met = 0;       ///< meetings
+    std::int64_t expected = 0;  ///< meetings predicted by the model [1 / kFrame]
+    std::int64_t met = 0;       ///< observed meetings
     bool operator==(const Class&) const = default;
   };
-  std::array<Class, kClasses> classes{};  ///< the nearest first
+  std::array<Class, kClasses> classes{};  ///< nearest class first
 
   /// Class of a distance [decay lengths].
   [[nodiscard]] static constexpr std::size_t class_of(double distance) {
@@ -41,17 +40,17 @@ struct VIEWGAIN_EXPORT HazardCounters {
     return k;
   }
 
-  /// What the model's rates in a class are multiplied by: mean of the Gamma posterior, with a prior
-  /// at 1 that is worth two frames over all classes.
+  /// Factor for the model's rates in a class: the mean of the Gamma posterior, with a prior at 1
+  /// worth two frames over all classes.
   [[nodiscard]] double factor(std::size_t k) const {
     return (kPrior + static_cast<double>(classes[k].met)) / weight(k);
   }
-  /// What it is worth: meetings expected, with the prior's.
+  /// Weight of the factor: expected meetings including the prior.
   [[nodiscard]] double weight(std::size_t k) const {
     return kPrior + static_cast<double>(classes[k].expected);
   }
 
-  /// Has nothing been counted?
+  /// Whether nothing has been counted.
   [[nodiscard]] bool empty() const { return *this == HazardCounters{}; }
   bool operator==(const HazardCounters&) const = default;
 };

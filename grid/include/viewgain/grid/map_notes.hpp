@@ -10,14 +10,14 @@
 
 namespace viewgain {
 
-/// Where a map comes from. A value type.
+/// Origin of a map. A value type.
 struct VIEWGAIN_EXPORT MapNotes {
-  /// The one sensor that all readings come from, as sensor_toml() writes it. Empty: several
-  /// sensors, or an unknown one. map_sensor() of viewgain::formats reads it.
+  /// The sensor of all readings, as written by sensor_toml(); map_sensor() of viewgain::formats
+  /// reads it. Empty: several sensors, or an unknown one.
   std::string sensor{};
-  /// The DepthFrame::identity of each frame in the map; frames without one are not listed.
+  /// DepthFrame::identity of each frame in the map that has one.
   std::set<std::string> frames{};
-  /// Notes of programs, by name.
+  /// Notes of other programs, by name.
   std::map<std::string, std::string> others{};
   bool operator==(const MapNotes&) const = default;
 };

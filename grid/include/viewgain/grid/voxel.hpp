@@ -12,33 +12,33 @@
 
 namespace viewgain {
 
-/// Voxel state; the numbers are those of dense arrays in every language.
+/// Voxel state; dense arrays use these numbers in all languages.
 enum class VoxelState : std::uint8_t { unknown = 0, free = 1, occupied = 2 };
 
-/// Index of a voxel on the grid's lattice (through the origin of the grid's frame).
+/// Index of a voxel on the grid's lattice, whose origin is that of the grid frame.
 struct VIEWGAIN_EXPORT Index3 {
   std::int32_t x = 0, y = 0, z = 0;  ///< of the voxel [x, x+1) × [y, y+1) × [z, z+1), in voxels
   bool operator==(const Index3&) const = default;
 };
 
-/// A box of voxels: [min, max). It is empty if a side is not positive. Members take any voxel and
-/// never throw.
+/// A box of voxels, [min, max); empty if a side is not positive. Members accept any voxel and never
+/// throw.
 struct VIEWGAIN_EXPORT VoxelBox {
   Index3 min;  ///< lowest voxel
   Index3 max;  ///< one past the highest
 
-  /// dims voxels along x, y, z from the lowest voxel on.
+  /// The box of dims voxels along x, y, z, starting at the lowest voxel.
   [[nodiscard]] static VoxelBox from_dims(Index3 min, Index3 dims) {
     return {min, {min.x + dims.x, min.y + dims.y, min.z + dims.z}};
   }
 
-  /// Is the voxel in it?
+  /// Whether the box contains the voxel.
   [[nodiscard]] bool contains(Index3 v) const {
     return v.x >= min.x && v.x < max.x && v.y >= min.y && v.y < max.y && v.z >= min.z &&
            v.z < max.z;
   }
-  /// The voxel of the box that holds a point `p` [voxels] (grid frame, divided by the voxel size);
-  /// nothing if the point lies outside or is not finite.
+  /// The voxel of the box that contains a point `p` [voxels] (grid frame, divided by the voxel
+  /// size); empty if the point lies outside or is not finite.
   [[nodiscard]] std::optional<Index3> voxel_at(const Eigen::Vector3d& p) const {
     const double x = std::floor(p.x()), y = std::floor(p.y()), z = std::floor(p.z());
     if (!(x >= min.x && x < max.x && y >= min.y && y < max.y && z >= min.z && z < max.z)) {
@@ -55,7 +55,7 @@ struct VIEWGAIN_EXPORT VoxelBox {
     };
     return side(min.x, max.x) * side(min.y, max.y) * side(min.z, max.z);
   }
-  /// What both boxes hold.
+  /// The intersection of both boxes.
   [[nodiscard]] VoxelBox intersection(const VoxelBox& other) const {
     return {
         {std::max(min.x, other.min.x), std::max(min.y, other.min.y), std::max(min.z, other.min.z)},
@@ -64,8 +64,8 @@ struct VIEWGAIN_EXPORT VoxelBox {
   bool operator==(const VoxelBox&) const = default;
 };
 
-/// Centre of a voxel in the grid's frame [m], voxel_size [m] being its edge; with a scale that of a
-/// cell of 2^scale voxels an edge, whose lowest voxel it is. Checks nothing.
+/// Centre of a voxel in the grid frame [m], with edge voxel_size [m]; with a scale, the centre of
+/// the cell of 2^scale voxels per edge that starts at the voxel. Checks nothing.
 [[nodiscard]] inline Eigen::Vector3d voxel_center(Index3 voxel, double voxel_size, int scale = 0) {
   return (Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5 * (1 << scale)) * voxel_size;
 }

@@ -28,14 +28,13 @@ void for_each_in_cell(unsigned lowest, int scale, F&& f) {
 }
 
 /// The beliefs of one leaf: those of the voxels in `mask`, or of the cells whose lowest voxels they
-/// are, in order of their offsets.
+/// are, by offset.
 struct BeliefBlock {
-  LeafMask mask{};              ///< which voxels have one
+  LeafMask mask{};              ///< voxels with a belief
   std::uint8_t scale = 0;       ///< of the leaf
-  std::vector<Belief> beliefs;  ///< of those, in offset order
+  std::vector<Belief> beliefs;  ///< of those, by offset
 
-  /// Position in `beliefs` of the voxel with this offset (x << 6 | y << 3 | z); the bit must be
-  /// set.
+  /// Index in `beliefs` of the voxel with this offset (x << 6 | y << 3 | z); the bit must be set.
   [[nodiscard]] std::size_t rank(unsigned offset) const {
     int below = 0;
     for (unsigned word = 0; word < offset >> 6U; ++word) below += std::popcount(mask[word]);
@@ -64,8 +63,8 @@ struct BeliefBlockAt {
   }
 };
 
-/// All beliefs of a map, those of free voxels too, by block in a fixed order; shared, not copied.
-/// Costs a look at each block.
+/// All beliefs of a map, including those of free voxels, by block in a fixed order; shared, not
+/// copied. Cost: one step per block.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<BeliefBlockAt> belief_blocks(const BeliefGrid& grid);
 
 }  // namespace viewgain

@@ -17,7 +17,7 @@
 namespace viewgain::detail {
 
 inline constexpr int kBlockSize = 8;    ///< an OpenVDB leaf
-inline constexpr int kRegionSize = 32;  ///< what one thread updates at a time
+inline constexpr int kRegionSize = 32;  ///< unit of work of a thread
 inline constexpr int kNodeSize = 128;   ///< an OpenVDB node of leaves
 
 /// The voxels of the block at `origin` that lie in the box.
@@ -36,8 +36,8 @@ inline constexpr int kNodeSize = 128;   ///< an OpenVDB node of leaves
   return mask;
 }
 
-/// The lattices of 8³ blocks, 32³ regions and 128³ nodes over a workspace, and numbers for them. A
-/// key names a block: node, then region in the node, then block in the region, so blocks sorted by
+/// The lattices of 8³ blocks, 32³ regions and 128³ nodes over a workspace, with keys. A key
+/// identifies a block: node, then region in the node, then block in the region, so blocks sorted by
 /// key are grouped by region and by node.
 ///
 /// The box is the workspace.
@@ -54,7 +54,7 @@ struct BlockLattice : VoxelBox {
     nodes = {count(node_min.x, max.x), count(node_min.y, max.y), count(node_min.z, max.z)};
   }
 
-  /// Does the cube [origin, origin + size) share a voxel with the workspace?
+  /// Whether the cube [origin, origin + size) shares a voxel with the workspace.
   [[nodiscard]] bool overlaps(Index3 origin, int size) const {
     return origin.x < max.x && origin.x + size > min.x && origin.y < max.y &&
            origin.y + size > min.y && origin.z < max.z && origin.z + size > min.z;
@@ -68,7 +68,7 @@ struct BlockLattice : VoxelBox {
     return std::uint64_t{nodes[0]} * nodes[1] * nodes[2];
   }
 
-  /// Key of the block that holds the voxel, which must lie in the nodes' range.
+  /// Key of the block that contains the voxel, which must lie in the nodes' range.
   [[nodiscard]] std::uint64_t key(Index3 v) const {
     const auto x = static_cast<std::uint32_t>(v.x - node_min.x);
     const auto y = static_cast<std::uint32_t>(v.y - node_min.y);
@@ -123,30 +123,30 @@ struct BlockLattice : VoxelBox {
 
 namespace viewgain {
 
-// The voxels of a grid by blocks, for importers and exporters that do not include OpenVDB. Codes
-// are those of log_odds_code.hpp; what lies outside the workspace holds no meaning.
+// Voxels of a grid by blocks, for importers and exporters that do not include OpenVDB. Codes are
+// those of log_odds_code.hpp; voxels outside the workspace are undefined.
 
 /// Writes the 512 codes of the block at `origin`, which must overlap the workspace. Beliefs and
-/// scales stay. Marks the block as changed, as fill_cube() does, for snapshots and scenes.
+/// scales remain. Marks the block as changed for snapshots and scenes, as fill_cube() does.
 VIEWGAIN_EXPORT void put_block(BeliefGrid& grid, Index3 origin, const std::uint8_t* codes);
 
-/// Sets all voxels of a cube to one code; `size` is a power of two, 8 or more, and `origin` a
-/// multiple of it. Costs a tile where that is possible: for free and unknown, not for occupied.
+/// Sets all voxels of a cube to one code; `size` is a power of two, at least 8, and `origin` a
+/// multiple of it. Cost: a tile where possible: for free and unknown, not for occupied.
 VIEWGAIN_EXPORT void fill_cube(BeliefGrid& grid, Index3 origin, std::int32_t size,
                                std::uint8_t code);
 
-/// Calls block(origin, codes), codes being valid as long as the grid is not changed, and
-/// cube(origin, size, code) for all parts that overlap the workspace, in no certain order. Cubes
-/// are aligned to their size, a power of two from 8 to 2048.
+/// Calls block(origin, codes), with codes valid until the grid changes, and cube(origin, size,
+/// code) for all parts that overlap the workspace, in any order. Cubes are aligned to their size, a
+/// power of two from 8 to 2048.
 VIEWGAIN_EXPORT void visit_grid(
     const BeliefGrid& grid, const std::function<void(Index3, const std::uint8_t*)>& block,
     const std::function<void(Index3, std::int32_t, std::uint8_t)>& cube);
 
 namespace detail {
 
-// For this module alone.
+// For this module only.
 
-/// The beliefs of the block that holds a voxel of the workspace; null if it has none.
+/// Beliefs of the block that contains a voxel of the workspace; null if there are none.
 [[nodiscard]] const BeliefBlock* find_beliefs(const BeliefGrid& grid, Index3 voxel);
 
 /// Memory of the grid.

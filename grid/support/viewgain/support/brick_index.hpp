@@ -16,12 +16,11 @@
 
 namespace viewgain::detail {
 
-/// The bricks of a workspace, of 8³ voxels, found by place: nodes of 128³ voxels have 16³ entries,
-/// one for each brick. What an entry says is up to the table that is made of it. Nodes that are the
-/// same throughout share entries.
+/// The bricks of a workspace, of 8³ voxels, indexed by place: nodes of 128³ voxels have 16³
+/// entries, one per brick. The table that uses it defines the entries. Uniform nodes share entries.
 ///
 /// Table coordinates count voxels from the lowest voxel of the workspace's lowest brick, where the
-/// first node begins too; the workspace's lowest voxel is `offset`, in 0..7 along each axis.
+/// first node starts too; the workspace's lowest voxel is `offset`, in 0..7 along each axis.
 struct BrickIndex {
   static constexpr std::int32_t kBrick = 8, kNode = 128;   ///< edges [voxels]
   static constexpr std::uint32_t kEntries = 16 * 16 * 16;  ///< of a node
@@ -31,9 +30,9 @@ struct BrickIndex {
   std::array<std::int32_t, 3> offset{}, size{};  ///< of the workspace
   std::array<std::int32_t, 3> nodes{};           ///< along x, y, z
   std::vector<std::uint32_t> node_entries;       ///< first entry of each node, x-major
-  std::vector<std::uint32_t> entries;            ///< kEntries a node, x-major
+  std::vector<std::uint32_t> entries;            ///< kEntries per node, x-major
 
-  /// All nodes share entries that are `fill`. Throws Error(capacity) beyond 2^24 nodes.
+  /// All nodes share entries of `fill`. Throws Error(capacity) above 2^24 nodes.
   BrickIndex(Index3 min_index, Index3 dims, std::uint32_t fill)
       : base{min_index.x & -kBrick, min_index.y & -kBrick, min_index.z & -kBrick},
         offset{min_index.x - base.x, min_index.y - base.y, min_index.z - base.z},
@@ -46,20 +45,20 @@ struct BrickIndex {
       if (count > kMostNodes) {
         throw Error(ErrorCode::capacity, "the workspace has more than " +
                                              std::to_string(kMostNodes) +
-                                             " cubes of 128 voxels: too many for this gain");
+                                             " cubes of 128 voxels, the limit of this gain");
       }
     }
     node_entries.assign(count, shared_node(fill));
   }
 
-  /// Throws Error(capacity) if gathers, whose indices have 32 bits with a sign, cannot reach all.
+  /// Throws Error(capacity) if gathers, which have signed 32-bit indices, cannot reach all.
   static void check_capacity(std::size_t count) {
     if (count > std::size_t{std::numeric_limits<std::int32_t>::max()}) {
       throw Error(ErrorCode::capacity, "the map is too large for this gain");
     }
   }
 
-  /// Of a voxel in table coordinates.
+  /// Entry of a voxel in table coordinates.
   [[nodiscard]] std::size_t node_index(std::int32_t x, std::int32_t y, std::int32_t z) const {
     return (static_cast<std::size_t>(x >> 7) * static_cast<std::size_t>(nodes[1]) +
             static_cast<std::size_t>(y >> 7)) *
@@ -79,7 +78,7 @@ struct BrickIndex {
     return VoxelBox::from_dims({offset[0], offset[1], offset[2]}, {size[0], size[1], size[2]});
   }
 
-  /// The first of entries that are all `fill`, for any number of nodes.
+  /// First of the entries that are all `fill`, shared by any number of nodes.
   std::uint32_t shared_node(std::uint32_t fill) {
     const auto found = std::find_if(shared_.begin(), shared_.end(),
                                     [&](const Shared& node) { return node.fill == fill; });
@@ -87,7 +86,7 @@ struct BrickIndex {
     shared_.push_back({fill, add_node(fill)});
     return shared_.back().first;
   }
-  /// The entry of the brick of a voxel in table coordinates, in a node with entries of its own.
+  /// Entry of the brick of a voxel in table coordinates, in a node with its own entries.
   std::uint32_t& own_entry(std::int32_t x, std::int32_t y, std::int32_t z) {
     std::uint32_t& node = node_entries[node_index(x, y, z)];
     const auto found = std::find_if(shared_.begin(), shared_.end(),
@@ -95,9 +94,9 @@ struct BrickIndex {
     if (found != shared_.end()) node = add_node(found->fill);
     return entries[entry_index(x, y, z)];
   }
-  /// Makes all bricks of a box of table coordinates, within which a workspace's part counts whole,
-  /// what `entry(x, y, z)` says of the one that begins there. Where a whole node has
-  /// `fill(x, y, z)` it shares entries.
+  /// Sets all bricks of a box of table coordinates, within which a workspace's part counts as
+  /// whole, to `entry(x, y, z)` of the brick that starts there. A whole node with `fill(x, y, z)`
+  /// shares entries.
   template <typename Fill, typename Entry>
   void put(const VoxelBox& box, Fill&& fill, Entry&& entry) {
     const VoxelBox part = box.intersection(workspace());
@@ -117,7 +116,7 @@ struct BrickIndex {
       });
     });
   }
-  /// Calls visit(first entry) for each node with entries of its own.
+  /// Calls visit(first entry) for each node with its own entries.
   template <typename Visit>
   void for_each_own_node(Visit&& visit) {
     for (std::uint32_t first = 0; first < entries.size(); first += kEntries) {
@@ -144,7 +143,7 @@ struct BrickIndex {
     entries.resize(first + kEntries, fill);
     return static_cast<std::uint32_t>(first);
   }
-  // The aligned cubes that a box has a part of, x-major.
+  // The aligned cubes that overlap a box, x-major.
   template <typename Visit>
   static void for_each_cube(const VoxelBox& box, std::int32_t edge, Visit&& visit) {
     for (std::int32_t x = box.min.x & -edge; x < box.max.x; x += edge) {
@@ -159,9 +158,9 @@ struct BrickIndex {
   std::vector<Shared> shared_;
 };
 
-/// Tells each of cells³ cells how large the aligned cube of alike ones is round it: at(x, y, z) is
-/// a cell, widened(cell, edge) what it is in a cube of `edge` cells, given that it said half of
-/// that; nothing if it did not, or can be in none.
+/// Sets for each of cells³ cells the size of the aligned uniform cube around it: at(x, y, z) is a
+/// cell, widened(cell, edge) its value in a cube of `edge` cells if it had half of that, or empty
+/// if it cannot grow.
 template <typename At, typename Widened>
 void widen_cubes(unsigned cells, unsigned largest, const At& at, const Widened& widened) {
   for (unsigned edge = 2; edge <= largest; edge *= 2) {

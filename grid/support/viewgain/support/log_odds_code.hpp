@@ -10,17 +10,17 @@
 
 namespace viewgain::detail {
 
-// A voxel in one byte: 0 is unknown, else its log-odds in steps of 0.05, plus kZeroCode.
+// A voxel in one byte: 0 is unknown, otherwise its log-odds in steps of 0.05, plus kZeroCode.
 inline constexpr std::uint8_t kUnknownCode = 0;
 inline constexpr std::uint8_t kMinCode = 1;    ///< log-odds -2
 inline constexpr std::uint8_t kZeroCode = 41;  ///< log-odds 0; occupied above
 inline constexpr std::uint8_t kMaxCode = 111;  ///< log-odds 3.5
 inline constexpr double kLogOddsStep = 0.05;
 
-// What one frame says about a voxel, in steps.
-inline constexpr std::int8_t kNoDelta = -128;  ///< nothing
+// Effect of one frame on a voxel, in steps.
+inline constexpr std::int8_t kNoDelta = -128;  ///< none
 inline constexpr std::int8_t kMissDelta = -8;  ///< crossed, far from the reading: -0.4
-inline constexpr std::int8_t kHitDelta = 17;   ///< holds a reading: +0.85
+inline constexpr std::int8_t kHitDelta = 17;   ///< contains a reading: +0.85
 
 inline constexpr int kBlockVoxels = 512;
 inline constexpr std::uint8_t kLiteralFreeCode = kZeroCode + kMissDelta;
@@ -35,8 +35,8 @@ inline constexpr std::uint8_t kLiteralOccupiedCode = kZeroCode + kHitDelta;
          : is_occupied(code)  ? VoxelState::occupied
                               : VoxelState::free;
 }
-/// Uniform blocks of such a code are kept as tiles; an occupied voxel lies in a leaf, or in the one
-/// cell of a block of the largest scale.
+/// Whether uniform blocks with this code are stored as tiles; an occupied voxel lies in a leaf, or
+/// in the single cell of a block of the largest scale.
 [[nodiscard]] inline bool may_be_tile(std::uint8_t code) { return code <= kZeroCode; }
 
 [[nodiscard]] inline float code_log_odds(std::uint8_t code) {
@@ -48,7 +48,7 @@ inline constexpr std::uint8_t kLiteralOccupiedCode = kZeroCode + kHitDelta;
   return static_cast<std::uint8_t>(static_cast<int>(steps) + static_cast<int>(kZeroCode));
 }
 
-/// The code after one frame said `delta`.
+/// The code after one frame with this `delta`.
 [[nodiscard]] inline std::uint8_t updated_code(std::uint8_t code, std::int8_t delta, bool literal) {
   if (delta == kNoDelta) return code;
   if (literal) return delta > 0 ? kLiteralOccupiedCode : kLiteralFreeCode;
@@ -57,9 +57,8 @@ inline constexpr std::uint8_t kLiteralOccupiedCode = kZeroCode + kHitDelta;
       std::clamp(before + delta, static_cast<int>(kMinCode), static_cast<int>(kMaxCode)));
 }
 
-/// Steps that a crossing takes off, 0..8: full strength from `taper` before the reading on
-/// outwards. gap > 0 is the distance to the reading; taper is 3 sigma_ax, 0 where there is no
-/// reading.
+/// Steps that a crossing subtracts, 0..8: full strength from `taper` before the reading. gap > 0 is
+/// the distance to the reading; taper is 3 sigma_ax, or 0 without a reading.
 [[nodiscard]] inline int miss_weight(double gap, double taper) {
   if (gap >= taper) return -kMissDelta;
   return static_cast<int>(std::floor(-kMissDelta * (gap / taper) + 0.5));

@@ -11,17 +11,17 @@
 
 namespace viewgain::detail {
 
-/// Occupied voxels that a file states by whole cubes. In memory each costs more than a byte, in the
-/// file a cube of any size costs a few: without a limit a forged file of a hundred bytes would fill
-/// the memory.
+/// Counts occupied voxels that a file states as whole cubes. In memory each costs more than a byte,
+/// in the file a cube of any size costs a few: without a limit a forged file of a hundred bytes
+/// would fill the memory.
 class SolidVoxels {
  public:
-  /// For the message: the file, and what its reader can do about it.
+  /// For the message: the file, and the cure for its reader.
   explicit SolidVoxels(std::string name, std::string advice = {})
       : name_(std::move(name)), advice_(std::move(advice)) {}
 
-  /// Counts the box [min, max), at most 65,536 voxels a side. Throws Error(capacity) once there are
-  /// more than 2^27 in all.
+  /// Adds the box [min, max), at most 65,536 voxels per side. Throws Error(capacity) above 2^27 in
+  /// total.
   void add(Index3 min, Index3 max) {
     const auto length = [](std::int32_t from, std::int32_t to) {
       return static_cast<std::uint64_t>(to - from);

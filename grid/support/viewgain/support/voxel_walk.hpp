@@ -13,10 +13,10 @@
 
 namespace viewgain::detail {
 
-/// A half-line, and what its intersections with boxes need.
+/// A half-line, with data for its intersections with boxes.
 struct HalfLine {
   Eigen::Vector3d origin;
-  Eigen::Vector3d direction;  ///< of any length but zero
+  Eigen::Vector3d direction;  ///< any length except zero
   Eigen::Vector3d inverse;    ///< 1 / direction; zero counts as a small positive number
 
   HalfLine(const Eigen::Vector3d& from, const Eigen::Vector3d& along)
@@ -25,8 +25,8 @@ struct HalfLine {
     for (int k = 0; k < 3; ++k) inverse[k] = 1.0 / (std::abs(along[k]) < kTiny ? kTiny : along[k]);
   }
 
-  /// Where its line is inside a box: from the first to the second, nowhere if the first is not
-  /// less. In units of the direction.
+  /// Interval of its line inside a box, empty if the first value is not less than the second. In
+  /// units of the direction.
   [[nodiscard]] std::array<double, 2> inside(const Box& box) const {
     std::array<double, 2> t{-1e300, 1e300};
     for (int k = 0; k < 3; ++k) {
@@ -40,7 +40,7 @@ struct HalfLine {
   }
 };
 
-/// Walks along a half-line from one cube of voxels into the next.
+/// Walks along a half-line from one cube of voxels to the next.
 class VoxelWalk {
  public:
   VoxelWalk(const HalfLine& line, double from, const VoxelBox& box) : line_(line), from_(from) {
@@ -50,11 +50,10 @@ class VoxelWalk {
   }
 
   [[nodiscard]] Index3 voxel() const { return {voxel_[0], voxel_[1], voxel_[2]}; }
-  /// Where it has come in.
+  /// Entry point.
   [[nodiscard]] double from() const { return from_; }
 
-  /// Leaves the cube of this many voxels an edge that it is in; false if it was in there for no
-  /// length.
+  /// Leaves the current cube of this many voxels per edge; false if the length inside was zero.
   template <std::int32_t size>
   bool leave() {
     std::array<std::int32_t, 3> low{};

@@ -12,43 +12,42 @@
 
 namespace viewgain {
 
-/// What read_mesh() changed in a file's faces.
+/// Changes that read_mesh() made to a file's faces.
 struct VIEWGAIN_EXPORT MeshRepairs {
-  std::size_t mended_faces = 0;   ///< cross themselves; split where their edges cross
-  std::size_t dropped_faces = 0;  ///< have three corners or more and no area; left out
+  std::size_t mended_faces = 0;   ///< self-crossing faces, split at their crossings
+  std::size_t dropped_faces = 0;  ///< faces with three corners or more but no area, omitted
 };
 
-/// Reads OFF, OBJ, STL or PLY by the file's ending, in its unit and axes. Polygons, concave or
-/// self-crossing, become triangles that fill all that their edges go round; faces without area and
-/// unused vertices are left out. Colours, normals and lines are ignored. Throws Error(io) if the
-/// file cannot be read, Error(format) with file and line if it is malformed, Error(capacity) as
-/// file_bytes(). Thread safe. Costs O(file); O(n log n) for a polygon of n corners that is no fan,
-/// up to a limit per file, beyond which it is refused.
+/// Reads OFF, OBJ, STL or PLY, chosen by the file name's ending, in the file's unit and axes.
+/// Triangulates polygons, also concave and self-crossing ones; omits faces without area and unused
+/// vertices; ignores colours, normals and lines. Throws Error(io) if the file cannot be read,
+/// Error(format) with file and line if it is malformed or its polygons exceed a limit of work,
+/// Error(capacity) as file_bytes(). Thread safe. Cost: O(file); O(n log n) for a polygon of n
+/// corners that is not a fan.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path,
                                                      MeshRepairs* repairs = nullptr);
 
-/// The least box with all vertices in it [m]; zero without any. Never throws. Costs O(vertices).
+/// Bounding box of the vertices [m]; zero without any. Never throws. Cost: O(vertices).
 [[nodiscard]] VIEWGAIN_EXPORT Box bounds_of(const TriangleMesh& mesh);
-/// The length of a box's longest side [m]. Never throws.
+/// Longest side of a box [m]. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT double longest_side(const Box& box);
 
-/// Which axis of the mesh file points up.
+/// The axis of the mesh file that points up.
 enum class UpAxis : std::uint8_t { x, y, z };
 
-/// How a file's mesh is placed in the world.
+/// Placement of a file's mesh in the world.
 struct VIEWGAIN_EXPORT MeshPlacement {
-  UpAxis up = UpAxis::z;  ///< this axis is turned to +z by a cyclic permutation of the axes
-  bool center = false;    ///< moves the bounding box's centre to the origin
-  double longest_side =
-      0;  ///< scales so that the bounding box's longest side is this [m]; 0: as it is
+  UpAxis up = UpAxis::z;    ///< axis to turn to +z, by a cyclic permutation of the axes
+  bool center = false;      ///< move the bounding box's centre to the origin
+  double longest_side = 0;  ///< scale the bounding box's longest side to this [m]; 0: as it is
 };
 
-/// Applies turn, then scale about the origin, then centring. Throws Error(invalid_argument) if
-/// longest_side is negative or not finite, or the mesh has no extent to scale. Costs O(vertices).
+/// Turns, then scales about the origin, then centres the mesh. Throws Error(invalid_argument) if
+/// longest_side is negative or not finite, or the mesh has no extent to scale. Cost: O(vertices).
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh placed(TriangleMesh mesh,
                                                   const MeshPlacement& placement);
 
-/// Reads a mesh and places it; throws and costs as both, and the errors name the file.
+/// Reads and places a mesh; throws and costs as both functions. Errors name the file.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path,
                                                      const MeshPlacement& placement,
                                                      MeshRepairs* repairs = nullptr);

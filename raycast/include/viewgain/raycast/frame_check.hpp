@@ -17,49 +17,50 @@
 
 namespace viewgain {
 
-/// Whether the frames of a map fit one another.
+/// Agreement of the frames of a map.
 struct VIEWGAIN_EXPORT FrameConsistency {
-  std::vector<FrameContradiction> frames{};  ///< one per frame in the map, in their order
-  std::size_t in_free = 0;     ///< of all their readings, those that others saw as free
-  std::size_t seen_past = 0;   ///< of readings of earlier frames, those that later ones see past
-  double share_in_free = 0;    ///< of all their readings, those that others saw as free
-  double share_seen_past = 0;  ///< of readings of earlier frames, those that later ones see past
-  /// Median over the frames of FrameContradiction's [m]; NaN if no frame could be compared.
+  std::vector<FrameContradiction> frames{};  ///< one per frame in the map, in order
+  std::size_t in_free = 0;     ///< number of readings in space that other frames saw as free
+  std::size_t seen_past = 0;   ///< number of readings of earlier frames that later frames see past
+  double share_in_free = 0;    ///< in_free as a share of all readings
+  double share_seen_past = 0;  ///< seen_past as a share of the readings of earlier frames
+  /// Median of FrameContradiction::displacement over the frames [m]; NaN if no frame could be
+  /// compared.
   double displacement = 0;
-  double expected = 0;  ///< likewise
-  /// Which frames contradict the others, ascending; empty unless something is suspected.
+  double expected = 0;  ///< median of FrameContradiction::expected [m]
+  /// Frames that contradict the others, ascending; empty unless something is suspected.
   std::vector<std::size_t> contradicting{};
-  Suspicion suspicion{};  ///< the likely cause; its kind is empty where the frames agree
+  Suspicion suspicion{};  ///< likely cause; its kind is empty if the frames agree
 };
 
-/// Collects, while frames go into a map, what tells whether they fit one another.
-/// Thread safety: one call at a time. Cost: 0.4 ms a frame; keeps a dozen images.
+/// Collects data while frames go into a map, to decide whether they agree. Thread safety: one call
+/// at a time. Cost: 0.4 ms per frame; keeps about twelve images.
 class VIEWGAIN_EXPORT FrameCheck {
  public:
-  /// `support_plane`: IntegrationConfig's. Throws Error(invalid_argument) if the sensor is not
-  /// valid.
+  /// `support_plane`: as in IntegrationConfig. Throws Error(invalid_argument) if the sensor is
+  /// invalid.
   explicit FrameCheck(const Sensor& sensor, std::optional<double> support_plane = {});
 
-  /// A frame has come at this pose, whether it can be used or not. Ignores one of another size.
+  /// Records a frame and its pose, usable or not. Ignores frames of another size.
   void see(const DepthFrame& frame, const Pose& T_world_camera);
-  /// A frame is about to go into the map, as FrameAgreement::look().
+  /// Records a frame that is about to go into the map, as FrameAgreement::look().
   void look(const BeliefGrid& before, const DepthFrame& frame, const Pose& T_world_camera,
             const PoseSigma& pose_sigma = {});
 
-  /// What the frames so far come to, by the map with all of them. Cost: suspect_frames().
+  /// Result for all frames so far, given the map with them. Cost: suspect_frames().
   [[nodiscard]] FrameConsistency result(const BeliefGrid& after) const;
 
  private:
   Sensor sensor_;
   std::optional<double> support_plane_;
   FrameAgreement agreement_;
-  std::vector<Pose> sequence_;  ///< of all frames that have come
+  std::vector<Pose> sequence_;  ///< of all recorded frames
   std::vector<DepthFrame> kept_;
   std::vector<std::size_t> places_;  ///< of those in the sequence
   std::size_t keep_every_ = 1;
 };
 
-/// "3, 5-9" for frames 3 and 5 to 9, which are in ascending order.
+/// Text such as "3, 5-9" for ascending frames 3 and 5 to 9.
 [[nodiscard]] VIEWGAIN_EXPORT std::string ranges_text(const std::vector<std::size_t>& numbers);
 
 }  // namespace viewgain

@@ -30,118 +30,120 @@ namespace detail {
 struct EvaluatorAccess;
 }
 
-/// What a view's gain counts (apps/docs/guide/equations.md).
+/// What a view's gain measures (apps/docs/guide/equations.md).
 enum class GainModel : std::uint8_t {
-  paper,     ///< the paper's: entropy removed where rays first meet what is not free [nat]
-  surface,   ///< new surface to be expected, where rays go on through unknown voxels [m²]
-  combined,  ///< that in nats, and what refining known surface brings [nat]
+  paper,     ///< the paper's: entropy removed where rays first meet voxels that are not free [nat]
+  surface,   ///< expected new surface, where rays continue through unknown voxels [m²]
+  combined,  ///< expected new surface in nats, and refinement of known surface [nat]
 };
-/// What views are ranked by unless another model is named, here, in the planner, in every program
-/// and binding: of the models it finds the surface in the fewest views.
+/// Default model everywhere: here, in the planner, and in every program and binding. Of the models
+/// it finds the surface with the fewest views.
 inline constexpr GainModel kDefaultGain = GainModel::combined;
-/// Names of the models, in their order.
+/// Names of the models, in enumeration order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& gain_model_names();
-/// The model's name, as parse_gain_model() reads it. It must be one of them: unchecked.
+/// Name of the model, as parse_gain_model() reads it. Unchecked.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view gain_model_name(GainModel model);
-/// Unit of ViewGain::gain: "nat", or "m^2" of the surface gain and of the paper's by the trace.
+/// Unit of ViewGain::gain: "nat", or "m^2" for the surface gain and the paper's gain with criterion
+/// trace.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view gain_unit(
     GainModel model, Criterion criterion = Criterion::log_diagonal) noexcept;
-/// Throws Error(invalid_argument) that lists the valid names.
+/// Parses a name. Throws Error(invalid_argument) listing the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT GainModel parse_gain_model(std::string_view name);
 
-/// What changes the answer.
+/// Settings that affect the gain.
 struct VIEWGAIN_EXPORT GainConfig {
-  /// A task weight for a part of the workspace: the paper's "selected parts".
+  /// Task weight of a part of the workspace: the paper's "selected parts".
   struct WeightRegion {
-    Box box;            ///< grid frame [m]; a voxel belongs to it if its centre does
-    double weight = 1;  ///< w_v >= 0; the last region that holds a voxel counts, 1 outside all
+    Box box;            ///< grid frame [m]; applies to voxels whose centre lies in it
+    double weight = 1;  ///< w_v >= 0; the last region that contains a voxel counts, 1 outside all
   };
 
-  GainModel model = kDefaultGain;  ///< what is counted
-  /// Of the paper's gain. The combined gain's refinement is by log_diagonal whatever it says, but
-  /// not trace.
+  GainModel model = kDefaultGain;  ///< what the gain measures
+  /// Criterion of the paper's gain. The refinement of the combined gain always uses log_diagonal;
+  /// trace cannot be used with it.
   Criterion criterion = Criterion::log_diagonal;
-  int pixel_stride = 1;                 ///< every s-th pixel of every s-th row, from pixel (0,0)
-  std::optional<double> prior_sigma{};  ///< sigma_0 [m]; the map's unless given
-  /// Along the ray [m]; the sensor's unless given. Nothing nearer gains, but known surface that a
-  /// ray enters before it blocks the ray, as an obstacle does at any range.
+  int pixel_stride = 1;  ///< traces every s-th pixel of every s-th row, from pixel (0,0)
+  std::optional<double> prior_sigma{};  ///< sigma_0 [m]; defaults to the map's
+  /// Along the ray [m]; defaults to the sensor's. Nothing nearer gains. Known surface that a ray
+  /// enters before it blocks the ray; obstacles block at any range.
   std::optional<double> min_range{};
-  std::optional<double> max_range{};    ///< along the ray [m]; the sensor's unless given
-  std::vector<WeightRegion> weights{};  ///< task weights; in their order later ones count
-  double refinement_weight = 1.0;       ///< combined: w, of refining against finding new surface
-  bool posterior_entropy = false;       ///< paper: ViewGain::posterior_entropy too; some 4 % slower
+  std::optional<double> max_range{};    ///< along the ray [m]; defaults to the sensor's
+  std::vector<WeightRegion> weights{};  ///< task weights; later ones override earlier ones
+  double refinement_weight = 1.0;  ///< combined: weight w of refinement relative to new surface
+  /// Paper: also compute ViewGain::posterior_entropy; about 4 % slower.
+  bool posterior_entropy = false;
 };
 
-/// What a view is expected to bring. Gains in nats, in m² for the criterion trace and for the
-/// surface gain. Each part says which models have it; of the others it is NaN, a count 0, and null
-/// in JSON.
+/// Expected gain of a view, in nats, or in m² for the criterion trace and the surface gain. Each
+/// member names its models; for other models it is NaN, a count 0, and null in JSON.
 struct VIEWGAIN_EXPORT ViewGain {
-  /// Whether a view could be scored.
+  /// Whether the view could be scored.
   enum class Status : std::uint8_t {
     ok,
-    bad_pose,  ///< a number that is not finite, or a rotation off by more than 1e-3: gain NaN
-    camera_in_occupied,  ///< the camera's centre lies in an occupied voxel: gain 0
+    bad_pose,            ///< not finite, or a rotation that deviates by more than 1e-3: gain NaN
+    camera_in_occupied,  ///< the camera centre lies in an occupied voxel: gain 0
   };
 
-  /// By GainConfig::model: exploration + refinement; area; or area · ΔH_new / voxel² + w ·
-  /// refinement_saturated. NaN: a bad pose, or sensor sigmas beyond what double precision can
-  /// weigh.
+  /// Depends on GainConfig::model: exploration + refinement; area; or area · ΔH_new / voxel² + w ·
+  /// refinement_saturated. NaN for an invalid pose, or for sensor sigmas outside the range of
+  /// double precision.
   double gain = std::numeric_limits<double>::quiet_NaN();
-  double exploration = std::numeric_limits<double>::quiet_NaN();  ///< paper: unknown voxels' share
-  double refinement = std::numeric_limits<double>::quiet_NaN();   ///< paper: occupied voxels' share
-  /// surface, combined: new surface to be expected, measured across the rays [m²].
+  /// Paper: share of unknown voxels.
+  double exploration = std::numeric_limits<double>::quiet_NaN();
+  /// Paper: share of occupied voxels.
+  double refinement = std::numeric_limits<double>::quiet_NaN();
+  /// surface, combined: expected new surface, measured perpendicular to the rays [m²].
   double area = std::numeric_limits<double>::quiet_NaN();
-  /// combined: entropy removed from the points at occupied voxels that have readings, each pooling
-  /// those of the voxels around, with a floor (apps/docs/guide/surface_gain.md) [nat]. Labelled
-  /// voxels have none.
+  /// combined: entropy removed from points at occupied voxels with readings, each pooled with the
+  /// surrounding voxels, with a floor (apps/docs/guide/surface_gain.md) [nat]. Labelled voxels have
+  /// none.
   double refinement_saturated = std::numeric_limits<double>::quiet_NaN();
-  /// If GainConfig asks for it: the paper's eq. (6) over the touched voxels, Σ_v Σ_k ln[(Λ_v +
+  /// If enabled in GainConfig: eq. (6) of the paper over the touched voxels, Σ_v Σ_k ln[(Λ_v +
   /// ΣΛ_r)⁻¹]_kk, lengths in metres.
   double posterior_entropy = std::numeric_limits<double>::quiet_NaN();
-  std::uint32_t rays = 0;             ///< of the view
+  std::uint32_t rays = 0;             ///< rays of the view
   std::uint32_t hits = 0;             ///< rays that end in a voxel
-  std::uint32_t unknown_voxels = 0;   ///< distinct; paper
-  std::uint32_t occupied_voxels = 0;  ///< distinct; paper, combined
+  std::uint32_t unknown_voxels = 0;   ///< distinct voxels; paper
+  std::uint32_t occupied_voxels = 0;  ///< distinct voxels; paper, combined
   Status status = Status::bad_pose;   ///< whether it could be scored
 };
 
-/// Name of a status, as JSON has it; never throws.
+/// Name of the status as used in JSON; never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view view_status_name(ViewGain::Status status);
 
-/// Where one ray of a view ends.
+/// The end of one ray of a view.
 struct VIEWGAIN_EXPORT RayHit {
-  /// What a ray ends in. A ray that enters known surface before min_range ends there as at an
+  /// What the ray ends in. A ray that enters known surface before min_range ends there as at an
   /// obstacle.
   enum class Kind : std::uint8_t { none, unknown, occupied, obstacle };
-  Kind kind = Kind::none;  ///< what it ends in
-  Index3 voxel{};          ///< the voxel it ends in (unknown, occupied)
-  double range =
-      std::numeric_limits<double>::infinity();  ///< max(range of the entry point, min_range) [m]
+  Kind kind = Kind::none;  ///< kind of end
+  Index3 voxel{};          ///< voxel of the end (unknown, occupied)
+  /// Max(range of the entry point, min_range) [m].
+  double range = std::numeric_limits<double>::infinity();
 };
 
-/// What one voxel adds to the gain of a view; see GainEvaluator::contributions().
+/// Contribution of one voxel to the gain of a view; see GainEvaluator::contributions().
 struct VIEWGAIN_EXPORT VoxelContribution {
-  Index3 voxel{};                          ///< of the map
+  Index3 voxel{};                          ///< index in the map
   VoxelState state = VoxelState::unknown;  ///< unknown or occupied
-  std::uint32_t rays = 0;                  ///< that end in it; surface, combined: that reach it
-  /// Rays that are expected to end in it: as many as `rays` for the paper's gain, else the sum of
-  /// their chances.
+  std::uint32_t rays = 0;  ///< rays that end in it; surface, combined: rays that reach it
+  /// Expected number of rays that end in it: `rays` for the paper's gain, otherwise the sum of
+  /// their probabilities.
   double expected_rays = 0;
-  double gain = 0;  ///< its task weight included, in the gain's unit
+  double gain = 0;  ///< including its task weight, in the gain's unit
 };
 
 /// Scores camera poses against a scene by expected information gain (apps/docs/guide/equations.md).
+/// A camera more than 1e6 voxels away from the workspace has gain 0.
 ///
-/// A camera that is more than 1e6 voxels away from the workspace sees nothing of it: gain 0.
+/// Thread safety: all const members may run from many threads at once on one evaluator. Each
+/// thread's buffers grow to the largest view and are kept; then no pose allocates. Identical bits
+/// for any number of threads.
 ///
-/// Thread safety: all const members may run from many threads at once on one evaluator. Allocation:
-/// none per pose in the steady state: each thread's buffers grow to the largest view that it has
-/// scored and are kept. Determinism: the same bits for any number of threads, run after run.
-///
-/// Cost of evaluate(): grows with the rays; the surface and the combined gain cost some 4 times the
-/// paper's (perf/README.md). That of approximate() grows with the rays that it traces.
-/// The constructor costs a PinholeCamera::ray() a pixel and, by the surface and the combined gain,
-/// the hazard of a scene that has none yet, by the combined gain also what is known of its surface.
+/// Cost of evaluate(): grows with the rays; surface and combined gains cost about 4 times the
+/// paper's (perf/README.md). The constructor calls PinholeCamera::ray() per pixel and, for surface
+/// and combined gains, computes the hazard (combined: also the known surface) of a scene without
+/// it.
 /// @code
 /// const GainEvaluator evaluator(VoxelScene::build(grid), sensor);
 /// const std::vector<ViewGain> gains = evaluator.evaluate(poses);
@@ -149,168 +151,150 @@ struct VIEWGAIN_EXPORT VoxelContribution {
 /// @endcode
 class VIEWGAIN_EXPORT GainEvaluator {
  public:
-  /// What becomes of a view's rays, for asking why its gain is what it is. Each ray counts once, so
-  /// that the counts below `rays` add up to it.
+  /// Where a view's rays end, to explain its gain. Each ray counts once: the counts after `rays`
+  /// add up to it.
   struct RayOutcomes {
-    std::uint32_t rays = 0;           ///< of the view
-    std::uint32_t too_near = 0;       ///< meet known surface or an obstacle before min_range
-    std::uint32_t unknown = 0;        ///< come to unknown space: what may be new
-    std::uint32_t known_surface = 0;  ///< end in known surface, with free space before it
-    std::uint32_t obstacle =
-        0;  ///< end at an obstacle or, but by the paper's gain, on the support plane
-    std::uint32_t out_of_range = 0;  ///< are in known free space to max_range
-    std::uint32_t out_of_map = 0;    ///< leave the workspace, or never come into it
+    std::uint32_t rays = 0;           ///< rays of the view
+    std::uint32_t too_near = 0;       ///< hit known surface or an obstacle before min_range
+    std::uint32_t unknown = 0;        ///< reach unknown space: possible new surface
+    std::uint32_t known_surface = 0;  ///< end on known surface after free space
+    /// End on an obstacle or, except for the paper's gain, on the support plane.
+    std::uint32_t obstacle = 0;
+    std::uint32_t out_of_range = 0;  ///< stay in known free space up to max_range
+    std::uint32_t out_of_map = 0;    ///< leave the workspace, or never enter it
   };
 
-  /// Undoes the lens distortion once. By ExecConfig::tracer `embree` the first evaluator of a scene
-  /// builds the scene's BVH, 0.5 ms per 1,000 primitives. Throws Error(backend)
-  /// if it cannot be built, Error(invalid_argument), naming the value, for a null scene, a sensor
-  /// that is not valid or whose sigmas are below 1e-8 m or a factor over 1e3 apart, a stride below
-  /// 1, a prior outside 1e-6..1e3 m, a weight or range that is negative or not finite, min_range >=
-  /// max_range, or a weight box inside out.
+  /// Removes the lens distortion once. With ExecConfig::tracer `embree`, the first evaluator of a
+  /// scene builds its BVH, 0.5 ms per 1,000 primitives; throws Error(backend) on failure. Throws
+  /// Error(invalid_argument) naming the value for a null scene, an invalid sensor, sigmas below
+  /// 1e-8 m or a factor above 1e3 apart, a stride below 1, a prior outside 1e-6..1e3 m, a weight or
+  /// range that is negative or not finite, min_range >= max_range, or a weight box inside out.
   GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
                 const GainConfig& config = {}, const ExecConfig& exec = {});
   ~GainEvaluator();
   GainEvaluator(GainEvaluator&&) noexcept;
   GainEvaluator& operator=(GainEvaluator&&) noexcept;
 
-  /// The evaluator of another scene, for following a map as it grows: the same sensor and
-  /// configuration, and shared with this one the ray table, the threads and what they work in.
-  /// Takes microseconds. If the gain is surface or combined and the scene is new, its hazard and
-  /// pooled information are computed first (some milliseconds). Results have the bits of an
-  /// evaluator made for that scene. sigma_0 is the configuration's or, unless given, that of the
-  /// new scene's map. This evaluator stays as it is, with its scene. Thread safety: both may be
-  /// used, moved and destroyed at the same time; while one's call has the threads, a call of the
-  /// other runs on its caller. Throws Error(invalid_argument) for a null scene or a map whose prior
-  /// sigma is outside 1e-6..1e3 m, Error(backend), Error(capacity) as VoxelScene::build().
+  /// An evaluator with the same sensor and configuration for another scene, to follow a growing
+  /// map. Shares ray table, threads and buffers; takes microseconds. For surface and combined gains
+  /// of a new scene it first computes hazard and pooled information, some milliseconds. Results are
+  /// bit-identical to a new evaluator; sigma_0 is the new map's unless configured. Both evaluators
+  /// may be used, moved and destroyed concurrently; while one uses the threads, a call of the other
+  /// runs on its calling thread. Throws Error(invalid_argument) for a null scene or a prior sigma
+  /// outside 1e-6..1e3 m; Error(backend) and Error(capacity) as VoxelScene::build().
   [[nodiscard]] GainEvaluator with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
-  /// The expected gain of one pose: the paper's on all threads of the evaluator, the others on the
-  /// calling one. A bad pose is told by ViewGain::status and not thrown.
+  /// Expected gain of one pose. The paper's gain uses all threads of the evaluator, the others the
+  /// calling thread. ViewGain::status reports an invalid pose; nothing is thrown.
   [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera) const;
 
-  /// The expected gains of a batch, result i for pose i, on all threads of the evaluator. A bad
-  /// pose spoils only its own result. Returns how many poses were scored: all, or fewer if
-  /// `control` ended the call, when the results not reached keep status bad_pose and NaN. Throws
+  /// Expected gains of a batch, result i for pose i, on all threads of the evaluator. An invalid
+  /// pose affects only its own result. Returns the number of scored poses: fewer than all if
+  /// `control` ended the call; the other results have status bad_pose and NaN. Throws
   /// Error(invalid_argument) if the sizes differ.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<ViewGain> results,
                        const BatchControl& control = {}) const;
-  /// The same, into a new array.
+  /// As above, into a new array.
   [[nodiscard]] std::vector<ViewGain> evaluate(std::span<const Pose> T_world_camera) const;
 
-  /// The user's own gain of a batch, result i for pose i, on all threads of the evaluator, which
-  /// call `measure` at once. `results` are in the measure's unit. Bad poses: NaN; a camera in an
-  /// occupied voxel: 0; `measure` is asked about neither. Returns how many poses were measured, as
-  /// the call above; the results not reached are NaN. What `measure` throws ends the batch and is
-  /// thrown again here, and the results are then unspecified. Costs 1.4 times as much as evaluate()
-  /// without it, and what `measure` takes. Throws Error(invalid_argument) if the sizes differ.
+  /// A custom gain of a batch, result i for pose i in the unit of `measure`, which all threads of
+  /// the evaluator call concurrently. Invalid poses get NaN and cameras in an occupied voxel 0
+  /// without a call. Returns the number of measured poses, as above; the others are NaN. An
+  /// exception of `measure` ends the batch and is rethrown; results are then unspecified. Throws
+  /// Error(invalid_argument) if the sizes differ. Cost: 1.4 times evaluate(), plus `measure`.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                        const ViewMeasure& measure, const BatchControl& control = {}) const;
 
-  /// The same for a measure, `results` in its unit, that sees what rays pass on their way through
-  /// unknown voxels, whatever the evaluator's model. Lists take 80 bytes for each voxel that a ray
-  /// of the view passes and each thread, at full resolution up to 200 MB; a pixel stride makes them
-  /// smaller. Costs some times evaluate()'s surface gain. Throws Error(capacity) and
-  /// Error(backend), too.
+  /// As above for a measure that sees what rays pass in unknown voxels, with any model of the
+  /// evaluator. Lists take 80 bytes per thread and voxel that a ray passes, up to 200 MB at full
+  /// resolution; a pixel stride reduces them. Also throws Error(capacity) and Error(backend). Cost:
+  /// several times evaluate() with the surface gain.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                        const RunMeasure& measure, const BatchControl& control = {}) const;
 
-  /// Why a view is good: one entry for each voxel in which rays of the pose end, the largest gain
-  /// first, ties by the voxel's x, y, z. The gains add up to evaluate()'s gain to rounding (1e-9 of
-  /// it; surface, combined: 1e-5), the rays to its hits; for surface and combined there is an entry
-  /// for each unknown voxel that rays reach, however unlikely they end there. Empty for a bad pose
-  /// and for a camera in an occupied voxel: nothing is thrown for them. On the calling thread;
-  /// takes three times as long as evaluate().
+  /// Explains a gain: one entry per voxel in which rays of the pose end, largest gain first, ties
+  /// by the voxel's x, y, z. For surface and combined, one entry per unknown voxel that rays reach.
+  /// Gains add up to evaluate()'s to 1e-9 relative (surface, combined: 1e-5), rays to its hits.
+  /// Empty for an invalid pose and for a camera in an occupied voxel; does not throw for them. Runs
+  /// on the calling thread; takes three times as long as evaluate().
   [[nodiscard]] std::vector<VoxelContribution> contributions(const Pose& T_world_camera) const;
 
-  /// Where the rays of a pose end, in pixel order (row by row, strided); the hits that evaluate()
-  /// uses. Empty for a bad pose: nothing is thrown for it. Costs a trace of the pose.
+  /// Ends of the rays that evaluate() uses, in pixel order (row-major, strided). Empty for an
+  /// invalid pose; does not throw for it. Cost: one trace of the pose.
   [[nodiscard]] std::vector<RayHit> trace(const Pose& T_world_camera) const;
 
-  /// Why a view's gain is what it is: what becomes of each of the rays that evaluate() uses. A
-  /// camera in an occupied voxel sees from there. All counts are 0 for a bad pose: nothing is
-  /// thrown for it. Costs a trace of the pose and a PinholeCamera::ray() for each ray.
+  /// Counts where the rays that evaluate() uses end. A camera in an occupied voxel sees out of it.
+  /// All counts are 0 for an invalid pose; does not throw for it. Cost: one trace of the pose and
+  /// one PinholeCamera::ray() per ray.
   [[nodiscard]] RayOutcomes outcomes(const Pose& T_world_camera) const;
 
-  /// The k best poses and evaluate()'s results of them, ties to the lower index; fewer where fewer
-  /// have a gain: bad poses, and those of which a measure says NaN, are never chosen. `config` may
-  /// subtract costs and put a measure of the user's own in the gain's place. All poses are scored,
-  /// so it costs what evaluate() does. If a stop is requested or the deadline passes the result is
-  /// the best of those scored so far, and not `complete`. Throws Error(invalid_argument) if there
-  /// are costs but not one a pose, for one that is not finite, for a deadline that is not >= 0 and
-  /// for two measures; and as evaluate() with the measure.
+  /// The k best poses with their results of evaluate(), ties to the lower index. Never chooses
+  /// invalid poses or a measure of NaN, and may return fewer. `config` can subtract costs and
+  /// replace the gain by a measure. Scores all poses, so it costs as evaluate(). After a stop or
+  /// the deadline it returns the best so far, not `complete`. Throws as evaluate() with the
+  /// measure, and Error(invalid_argument) for a wrong number of costs, one that is not finite, a
+  /// deadline that is not >= 0, or two measures.
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BestConfig& config = {},
                                const BatchControl& control = {}) const;
 
-  /// The k best poses, very probably, in two stages: all poses are scored by about 400 of their
-  /// rays, every s-th pixel and row, as approximate() does, and the best max(24, 4 k, 5 %) of
-  /// them in full (by the other gains and measures 1.6 %), so gains reported are exact; best first,
-  /// ties to the lower index. A view is lost if its 400 rays make it look worse than that many
-  /// others: by the paper's gain the best of 2,000 poses on 3 to 6 of 200 maps of objects, 0.4 % of
-  /// its gain at most (perf/results/choosing.md). Images of under 900 rays are all scored in full.
-  /// A measure of the user's own is asked about few rays in the first stage; where there are costs
-  /// it is brought to the scale of all rays by the median ratio of eight poses that are measured by
-  /// both. Works with obstacles, weights and distortion. Without a deadline deterministic for a
-  /// seed and any number of threads. With one, the best that can be said by then: poses from all
-  /// over the list are estimated in half of the time, then the most promising ones scored in full;
-  /// `estimated` and `scored_indices` say how many of each, the others were not looked at.
-  /// control.progress counts poses that are out or scored in full. Stopped in the first stage it
-  /// returns nothing, in the second the best of those that were scored; either is not `complete`.
-  /// Of 2,000 poses it costs 0.22 times what scoring all takes, by the paper's gain
-  /// (perf/README.md). Throws as best().
+  /// The k best poses with high probability, in two stages: scores all poses with about 400 rays
+  /// each, as approximate() does, then the best max(24, 4 k, 5 %) of them (other gains and
+  /// measures: 1.6 %) in full. Reported gains are exact, ties go to the lower index.
+  /// perf/results/choosing.md has the probability of a miss: with the paper's gain the best of
+  /// 2,000 poses on 3 to 6 of 200 maps. raycast/README.md has the details.
+  ///
+  /// Images of fewer than 900 rays are scored in full. A measure is scaled to full rays if there
+  /// are costs. Deterministic for a seed and any number of threads, unless there is a deadline:
+  /// then half of the time goes to estimates of poses from all over the list, and `estimated` and
+  /// `scored_indices` report the rest. control.progress counts poses that are eliminated or scored
+  /// in full. A stop returns nothing in the first stage and the best so far in the second, not
+  /// `complete`. Cost for 2,000 poses with the paper's gain: 0.22 times scoring all. Throws as
+  /// best().
   [[nodiscard]] BestViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BestConfig& config = {},
                                const BatchControl& control = {}) const;
 
-  /// Up to k different poses of T_world_camera, in the order of their choice, that are good
-  /// together on the map as it stands, greedily: each is the one that adds most to those before it.
-  /// By the paper's gain the expected information ΣΛ_r of those is then part of the voxels' (an
-  /// unknown voxel goes on blocking rays as unknown). By surface and combined a set is worth
-  /// Σ_c a_c p_c [1 - Π_v (1 - R_vc)] over hazard cells c: a_c p_c is the new surface to be
-  /// expected there, R_vc the share of it that view v shows, 1 at most, so that one view is worth
-  /// no more than its gain but for rounding; combined adds the refinement by all information
-  /// together. Ties go to the lower index, bad poses are never chosen, k is clamped. By surface,
-  /// combined and log_determinant poses whose earlier gain cannot win are not scored anew. That
-  /// gives the same choice for surface and log_determinant, which are submodular; by combined a
-  /// refinement may, rarely, grow after another view and then be missed. By log_diagonal and trace
-  /// all are scored in every round. control.progress counts those chosen. A stop returns those
-  /// chosen so far. Costs by the paper's gain up to k batches of about twice the time of
-  /// evaluate(), by the others one batch and some ten times evaluate() for each pose that is scored
-  /// anew for the first time; memory for the voxels touched and at most 256 MB of what views reach.
+  /// Up to k different poses of T_world_camera that are good together on the current map, chosen
+  /// greedily: each adds most to those before it. raycast/README.md ("Choosing views") defines the
+  /// gain of a set. Ties go to the lower index; invalid poses are never chosen; k is clamped. A
+  /// stop returns those chosen so far; control.progress counts the chosen poses.
+  ///
+  /// For surface, combined and log_determinant, poses whose earlier gain cannot win are not scored
+  /// again. That is exact for surface and log_determinant, which are submodular; with combined a
+  /// refinement can, rarely, grow after another view and be missed. log_diagonal and trace score
+  /// all poses in every round. Cost: with the paper's gain up to k batches of about twice
+  /// evaluate(); otherwise one batch, and about ten times evaluate() per pose that is scored again
+  /// for the first time; up to 256 MB.
   [[nodiscard]] ViewSet best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                  const BatchControl& control = {}) const;
 
-  /// Estimates of the gains from a lattice of each view's rays, the same for all poses, with
-  /// standard errors, result i for pose i. Traced is every s-th ray of every s-th row, s² the least
-  /// that keeps to the share; of images of few rays more, 100 if there are as many. At a share of 1
-  /// the result is the gain itself, bit for bit, standard error 0. A ray stands for s². In a voxel
-  /// that is wider than s pixels rays meet in the sample as they do in the view. Of narrower ones
-  /// few are met: each counts as often as its exposed faces, seen from the camera, fit into s × s
-  /// pixels, and is seen by as many rays as they cover pixels. What the surface gain counts are
-  /// areas, which simply add up. The standard error has three parts: the scatter of sixteen coarser
-  /// lattices, the estimate of how much is seen of narrow voxels, and larger voxels that one ray
-  /// met where several should, as they are partly hidden. It is fitted so that 90 to 97 % of the
-  /// gains lie within two of them over maps of objects and of a room; on one map or lattice 86 %
-  /// was seen (perf/results/choosing.md). No pose's estimate depends on others. Bad poses: NaN.
-  /// Same for a seed and any number of threads. Returns how many poses were estimated: fewer than
-  /// all if a stop was requested. Throws Error(invalid_argument) for a share out of range or if the
-  /// sizes differ; Error(backend), Error(capacity) as race().
+  /// Estimates gains and standard errors from a lattice of each view's rays, the same for all
+  /// poses, result i for pose i. Traces every s-th ray of every s-th row, with the smallest s² that
+  /// keeps to the share, but at least 100 rays if there are as many. At a share of 1 the result is
+  /// the exact gain with standard error 0. raycast/README.md ("Choosing views") describes the
+  /// estimator.
+  ///
+  /// Over maps of objects and of a room, 90 to 97 % of the gains lie within two standard errors; on
+  /// one map or lattice 86 % was seen (perf/results/choosing.md). Estimates of poses are
+  /// independent of each other and of the number of threads. Invalid poses: NaN. Returns the number
+  /// of estimated poses, fewer than all after a stop. Throws Error(invalid_argument) for a share
+  /// out of range or if the sizes differ; Error(backend) and Error(capacity) as race().
   std::size_t approximate(std::span<const Pose> T_world_camera, std::span<ApproximateGain> results,
                           const ApproximateConfig& config = {},
                           const BatchControl& control = {}) const;
 
-  /// One for each pixel of the strided image.
+  /// Rays per pose: one per pixel of the strided image.
   [[nodiscard]] std::size_t rays_per_pose() const noexcept;
   [[nodiscard]] const PinholeCamera& camera() const noexcept;  ///< the sensor's
-  /// What a view's gain counts.
+  /// The model of the gain.
   [[nodiscard]] GainModel model() const noexcept;
-  /// s, where every s-th pixel of every s-th row has a ray.
+  /// The pixel stride s.
   [[nodiscard]] int pixel_stride() const noexcept;
-  /// Threads that a batch runs on.
+  /// Number of threads of a batch.
   [[nodiscard]] int num_threads() const noexcept;
   [[nodiscard]] double prior_sigma() const noexcept;  ///< [m]
-  /// What poses are scored against.
+  /// The scene of the evaluator.
   [[nodiscard]] const VoxelScene& scene() const noexcept;
 
  private:
@@ -320,17 +304,17 @@ class VIEWGAIN_EXPORT GainEvaluator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Indices of the k best results, which are one a pose: larger gain first, ties to the lower index,
-/// NaN last. k is clamped; never throws. Costs O(n log n).
+/// Indices of the k best results, one per pose: larger gain first, ties to the lower index, NaN
+/// last. k is clamped; never throws. Cost: O(n log n).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::size_t> best_indices(
     std::span<const ViewGain> results, std::size_t k);
 
-/// The depths along the optical axis [m] at which the rays that evaluate() uses end, row by row,
-/// for looking at what a gain comes from: every s-th pixel of every s-th row for a pixel stride s;
-/// DepthFrame::kOutOfRange where a ray meets nothing. `labels`, if given, becomes what each meets.
-/// A camera in an occupied voxel sees from there. Costs a trace of the pose and, with lens
-/// distortion, its undoing for every pixel. Thread safe. Throws Error(invalid_argument) for a pose
-/// that is not finite or off by more than 1e-3.
+/// Depths along the optical axis [m] at which the rays of evaluate() end, row-major, to look at the
+/// origin of a gain: every s-th pixel of every s-th row for a pixel stride s;
+/// DepthFrame::kOutOfRange where a ray hits nothing. `labels`, if given, receives what each ray
+/// hits. A camera in an occupied voxel sees out of it. Thread safe. Throws Error(invalid_argument)
+/// for a pose that is not finite or not rigid within 1e-3. Cost: one trace of the pose and, with
+/// distortion, its removal per pixel.
 [[nodiscard]] VIEWGAIN_EXPORT DepthFrame depth_image(const GainEvaluator& evaluator,
                                                      const Pose& T_world_camera,
                                                      std::vector<RayHit::Kind>* labels = nullptr);

@@ -24,13 +24,13 @@
 
 namespace viewgain {
 
-/// Scores poses on one map by the gains of a GainFamily that were asked for.
+/// Scores poses on one map with the requested gains of a GainFamily.
 class VIEWGAIN_EXPORT FamilyEvaluator {
  public:
   virtual ~FamilyEvaluator() = default;
-  /// results[i * gains + g] for pose i and gain g, by every s-th pixel of every s-th row; NaN for a
-  /// bad pose. `statuses` is empty or has one element per pose. Throws Error(invalid_argument) if
-  /// sizes do not fit.
+  /// results[i * gains + g] for pose i and gain g, from every s-th pixel of every s-th row; NaN for
+  /// an invalid pose. `statuses` is empty or has one element per pose. Throws
+  /// Error(invalid_argument) if the sizes do not match.
   virtual void evaluate(std::span<const Pose> T_world_camera, int pixel_stride,
                         std::span<double> results, std::span<ViewGain::Status> statuses,
                         const BatchControl& control) = 0;
@@ -38,7 +38,8 @@ class VIEWGAIN_EXPORT FamilyEvaluator {
   [[nodiscard]] virtual std::size_t rays_per_pose() const = 0;
 };
 
-/// Gains of one kind, by name. Thread safety: const members may run from many threads at once.
+/// Gains of one kind, accessed by name. Thread safety: const members may run from many threads at
+/// once.
 class VIEWGAIN_EXPORT GainFamily {
  public:
   virtual ~GainFamily() = default;
@@ -46,20 +47,19 @@ class VIEWGAIN_EXPORT GainFamily {
   [[nodiscard]] virtual const std::vector<std::string>& names() const = 0;
   /// Unit of the named gain, such as "nat" or "voxels".
   [[nodiscard]] virtual std::string_view unit(std::string_view name) const = 0;
-  /// Evaluator for views of `sensor` on the current map, whose readings must come from `sensor`
-  /// too. Throws Error(invalid_argument) for an unknown name, and what the gains' own evaluator
-  /// throws.
+  /// Evaluator for views of `sensor` on the current map, whose readings must also come from
+  /// `sensor`. Throws Error(invalid_argument) for an unknown name, and as the gains' own evaluator.
   [[nodiscard]] virtual std::unique_ptr<FamilyEvaluator> evaluator(
       std::shared_ptr<const VoxelScene> scene, const BeliefGrid& grid, const Sensor& sensor,
       std::span<const std::string> names, const ExecConfig& exec) const = 0;
 };
 
 /// Registers the family for this process and replaces the previous one; null registers none. Call
-/// before other threads look gains up.
+/// before other threads look up gains.
 VIEWGAIN_EXPORT void register_gains(std::shared_ptr<const GainFamily> family);
-/// What was registered; a family without names where nothing was.
+/// The registered family; one without names if there is none.
 [[nodiscard]] VIEWGAIN_EXPORT const GainFamily& registered_gains() noexcept;
-/// Is it the name of a registered gain?
+/// Whether it is the name of a registered gain.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_registered_gain(std::string_view name);
 
 }  // namespace viewgain

@@ -15,27 +15,27 @@
 
 namespace viewgain {
 
-/// All obstacles as one mesh, boxes first, twelve triangles each. Throws Error(invalid_argument) as
-/// VoxelScene::build(). Costs a copy of the meshes.
+/// All obstacles as one mesh, boxes first with twelve triangles each. Throws
+/// Error(invalid_argument) as VoxelScene::build(). Cost: a copy of the meshes.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh mesh_of(const Obstacles& obstacles);
 
-/// Where a camera's pixels meet known obstacles: what keeps a bin's walls out of the map, though
-/// they stand in the workspace.
+/// Finds where a camera's pixels hit known obstacles. Keeps, for example, a bin's walls inside the
+/// workspace out of the map.
 ///
 /// Thread safety: one call at a time.
 class VIEWGAIN_EXPORT ObstacleView {
  public:
-  /// Undoes the lens distortion once. Throws Error(invalid_argument) for a sensor or obstacles that
-  /// are not valid, Error(backend) if Embree fails.
+  /// Removes the lens distortion once. Throws Error(invalid_argument) for an invalid sensor or
+  /// invalid obstacles, Error(backend) if Embree fails.
   ObstacleView(const Obstacles& obstacles, const Sensor& sensor, const ExecConfig& exec = {});
   ~ObstacleView();
   ObstacleView(ObstacleView&&) noexcept;
   ObstacleView& operator=(ObstacleView&&) noexcept;
 
-  /// Sets DepthFrame::known_depth, in the place of what was there: on each pixel's ray from
-  /// T_world_camera kKnownSigmas, along its normal, before the first obstacle; empty where there
-  /// are no obstacles. Throws Error(invalid_argument) as check_frame_size(), and for a pose that is
-  /// not rigid (1e-3). About 0.2 µs a pixel and thread.
+  /// Sets DepthFrame::known_depth: on each pixel's ray from T_world_camera, kKnownSigmas along its
+  /// normal before the first obstacle; empty if there are no obstacles. Throws
+  /// Error(invalid_argument) as check_frame_size(), and for a pose that is not rigid (1e-3). Cost:
+  /// about 0.2 µs per pixel and thread.
   void mark(DepthFrame& frame, const Pose& T_world_camera) const;
 
  private:

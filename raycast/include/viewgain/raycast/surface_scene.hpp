@@ -14,25 +14,25 @@
 
 namespace viewgain {
 
-/// Triangles to trace, for simulated depth and for pictures. Immutable; owns its copy of the mesh.
-/// Traced by Embree in single precision, relative to the middle of the mesh: how far off the
-/// world's origin is does not matter. Thread safety: const members may run from many threads. Cost
-/// of the constructor: Embree's BVH is built, O(n log n) of the triangles.
+/// A triangle mesh for ray tracing, for simulated depth and pictures. Immutable; owns a copy of the
+/// mesh. Embree traces in single precision relative to the centre of the mesh, so a distant world
+/// origin does not matter. Thread safety: const members may run from many threads. Cost of the
+/// constructor: Embree's BVH, O(n log n) of the triangles.
 class VIEWGAIN_EXPORT SurfaceScene {
  public:
-  /// A ray to trace, in the mesh's frame.
+  /// A ray to trace, mesh frame.
   struct Ray {
     Eigen::Vector3d origin = Eigen::Vector3d::Zero();            ///< [m]
-    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();        ///< of unit length
-    double max_range = std::numeric_limits<double>::infinity();  ///< it meets nothing beyond [m]
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();        ///< unit length
+    double max_range = std::numeric_limits<double>::infinity();  ///< hits beyond are ignored [m]
   };
-  /// Where a ray meets a triangle mesh.
+  /// Intersection of a ray with the mesh.
   struct Hit {
-    double range =
-        std::numeric_limits<double>::infinity();  ///< along the unit direction [m]; infinity: miss
-    std::uint32_t triangle = 0;                   ///< which one; 0 for a miss
-    Eigen::Vector3d normal =
-        Eigen::Vector3d::Zero();  ///< unit, in the mesh's frame, right-hand rule of the vertices
+    /// Along the unit direction [m]; infinity: miss.
+    double range = std::numeric_limits<double>::infinity();
+    std::uint32_t triangle = 0;  ///< index of the triangle; 0 for a miss
+    /// Unit, mesh frame, right-hand rule of the vertices.
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
 
   /// Throws Error(invalid_argument) for an empty mesh, a vertex that is not finite or an index out
@@ -42,19 +42,18 @@ class VIEWGAIN_EXPORT SurfaceScene {
   SurfaceScene(SurfaceScene&&) noexcept;
   SurfaceScene& operator=(SurfaceScene&&) noexcept;
 
-  /// First hits in (0, max_range], hit i of ray i; as many as rays. A ray that has a number that is
-  /// none, or comes from over 1e18 m away, meets nothing; else checks nothing. Fastest if rays
-  /// that follow on one another start and look alike, since 4 to 16 are traced together; O(log n)
-  /// of the triangles a ray.
+  /// First hits in (0, max_range], hit i for ray i. A ray with NaN, or from more than 1e18 m away,
+  /// hits nothing; otherwise unchecked. Traces 4 to 16 rays together, so it is fastest if
+  /// consecutive rays are similar; O(log n) of the triangles per ray.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
-  /// The same of one ray.
+  /// First hit of one ray.
   [[nodiscard]] Hit intersect(const Ray& ray) const;
 
-  /// Whether rays meet anything in (0, max_range], whatever it is, as it takes for shadows. Faster
-  /// than first hits, and rays may look anywhere. As many answers as rays; checks nothing.
+  /// Whether each ray hits anything in (0, max_range], as for shadows. Faster than first hits, for
+  /// rays in any order. Unchecked.
   void block(std::span<const Ray> rays, std::span<bool> blocked) const;
 
-  /// The triangles that are traced.
+  /// The triangles of the scene.
   [[nodiscard]] const TriangleMesh& mesh() const noexcept;
 
  private:

@@ -14,31 +14,30 @@
 
 namespace viewgain {
 
-/// What is probably wrong with frames or poses.
+/// A probable fault of frames or poses.
 struct VIEWGAIN_EXPORT Suspicion {
-  /// Empty: nothing. distortion, principal_point, focal_lengths (fx and fy far apart), depth_scale,
-  /// world_to_camera, quaternion_order, body_frame, upward_camera, rolled_camera, pose_millimetres,
-  /// mirrored, upside_down, numbering, time_offset, depth_along_ray, focal_length, same_image,
-  /// support_plane, contradiction (of another cause), displacement (frames lie beside one another,
-  /// see FrameCheck), those of suspect_set_up.hpp or, of poses
-  /// alone, no_voxel.
+  /// Empty: none. Otherwise distortion, principal_point, focal_lengths (fx and fy differ),
+  /// depth_scale, world_to_camera, quaternion_order, body_frame, upward_camera, rolled_camera,
+  /// pose_millimetres, mirrored, upside_down, numbering, time_offset, depth_along_ray,
+  /// focal_length, same_image, support_plane, contradiction (another cause), displacement (frames
+  /// are displaced, see FrameCheck), a kind of suspect_set_up.hpp or, for poses alone, no_voxel.
   std::string kind{};
-  std::string what{};  ///< a sentence with the figure that made it suspicious
+  std::string what{};  ///< a sentence with the figure that raised the suspicion
 };
 
-/// Do frames of one scene fit one another better if their poses, images or depths are read in
-/// another way? Readings of each frame are looked for in the others, as the poses are and under
-/// common mistakes; the one by which most lie close is suspected, or several that fit alike. Says
-/// nothing of frames that do not overlap. `T_world_camera`: one per frame. Throws
-/// Error(invalid_argument) as check_frame_size(), and for another count of poses. Thread safe.
-/// Cost: a pass over the pixels and 50 ms for a dozen frames, 0.5 s where they do not fit.
+/// Whether frames of one scene agree better if their poses, images or depths follow another
+/// convention. Searches for the readings of each frame in the others, as given and under common
+/// mistakes; suspects the mistake under which most readings are close, or several that fit equally.
+/// Ignores frames without overlap. `T_world_camera`: one per frame. Throws Error(invalid_argument)
+/// as check_frame_size(), and for a wrong number of poses. Thread safe. Cost: one pass over the
+/// pixels and 50 ms for a dozen frames, 0.5 s if they disagree.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_frames(const Sensor& sensor,
                                                        std::span<const DepthFrame> frames,
                                                        std::span<const Pose> T_world_camera);
 
-/// Do candidate poses look at the map? Where most of a hundred of them see none of its voxels, and
-/// by which mistake in poses that would come; no_voxel if by none. Thread safety: may run from many
-/// threads. Cost: some milliseconds. Throws as GainEvaluator().
+/// Whether candidate poses look at the map. If most of a hundred of them see none of its voxels,
+/// names the mistake in poses under which they would; no_voxel if there is none. Thread safe. Cost:
+/// some milliseconds. Throws as GainEvaluator().
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion
 suspect_poses(const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor,
               std::span<const Pose> T_world_camera);

@@ -30,20 +30,20 @@
 
 namespace viewgain {
 
-/// Settings of a ViewScorer. Each is set in one place; defaults suit an object on the origin.
+/// Settings of a ViewScorer. Defaults suit an object at the origin.
 struct VIEWGAIN_EXPORT ScorerConfig {
   double voxel_size = GridConfig{}.voxel_size;  ///< [m]
-  /// The part of the world that is mapped, in the grid's frame [m]; grown to whole voxels. If it
-  /// begins at the table, the paper's gain does not count the space under the table.
+  /// The mapped part of the world, in the grid frame [m]; extended to whole voxels. If it starts at
+  /// the table, the paper's gain ignores the space below the table.
   Box workspace = GridConfig{}.workspace;
-  Pose T_world_grid{};  ///< the grid's frame
+  Pose T_world_grid{};  ///< pose of the grid frame
   /// Standard deviation of the surface in an unknown voxel [m]. Unset: default_prior_sigma().
   std::optional<double> prior_sigma{};
   std::optional<double> support_plane{};  ///< height z of an infinite table plane [m], world
   /// Known obstacles, world frame. They block rays and bodies. Readings of them carve free space,
   /// but never make a voxel occupied.
   Obstacles obstacles{};
-  /// Removes flying pixels from frames; unset: frames are used as they are.
+  /// Removes flying pixels from frames; unset: no filter.
   std::optional<JumpEdgeFilter::Config> jump_edges = JumpEdgeFilter::Config{};
   // The next five are passed to IntegrationConfig, which explains them.
   IntegrationConfig::Carve carve = IntegrationConfig{}.carve;  ///< which voxels a pixel crosses
@@ -51,8 +51,8 @@ struct VIEWGAIN_EXPORT ScorerConfig {
   int coarsest = IntegrationConfig{}.coarsest;  ///< largest scale of a leaf, 0 to 3
   int finest = IntegrationConfig{}.finest;      ///< smallest scale of a leaf outside `fine`
   std::vector<Box> fine{};  ///< leaves that touch one of these boxes keep scale 0; grid's frame [m]
-  bool refine = true;       ///< false: readings in a voxel that already has one are ignored
-  HazardConfig hazard{};    ///< how likely rays are to meet the surface in unknown space
+  bool refine = true;       ///< false: ignores readings in a voxel that already has one
+  HazardConfig hazard{};    ///< rate at which rays meet the surface in unknown space
   /// Whether each frame updates the hazard and MapUpdate::new_area is measured. Costs some
   /// milliseconds per frame. Unset: true, but false for the paper's gain, which needs neither.
   std::optional<bool> learn_hazard{};
@@ -63,15 +63,15 @@ struct VIEWGAIN_EXPORT ScorerConfig {
   [[nodiscard]] GridConfig grid() const {
     return {voxel_size, workspace, T_world_grid, prior_sigma};
   }
-  /// How frames change the map.
+  /// The settings of the integration.
   [[nodiscard]] IntegrationConfig integration() const {
     return {carve, occupancy, support_plane, coarsest, fine, finest};
   }
-  /// What rays and bodies meet beside the map.
+  /// The surroundings of the map.
   [[nodiscard]] Surroundings surroundings() const { return {obstacles, support_plane}; }
 };
 
-/// What frames from one pose changed.
+/// Effect of the frames from one pose.
 struct VIEWGAIN_EXPORT MapUpdate {
   FrameVerdict verdict = FrameVerdict::used;  ///< unless is_in_map(), the map is unchanged
   IntegrationReport counts{};                 ///< of all frames together
@@ -80,19 +80,20 @@ struct VIEWGAIN_EXPORT MapUpdate {
   /// ViewGain::area. It is Σ ω t² ρ(t) over readings in unknown voxels that are more than 1.2
   /// pooling lengths from known surface. NaN without ScorerConfig::learn_hazard.
   double new_area = std::numeric_limits<double>::quiet_NaN();
-  StageSeconds seconds{};  ///< "integrate": filters and map; "snapshot": what scenes are made of
+  StageSeconds seconds{};  ///< "integrate": filters and map; "snapshot": data for scenes
 };
 
-/// Depth frames or labelled voxels in, gains of camera poses out. Keeps a map, its scene and its
-/// evaluator in step.
+/// Takes depth frames or labelled voxels and returns gains of camera poses. Keeps a map, its scene
+/// and its evaluator in step.
 ///
 /// Thread safety: evaluate(), best(), scene(), evaluator(), voxels(), sensor(), config() and exec()
 /// may run in any thread at any time. They do not wait for add(), set() or forget(): they use the
-/// map before or after that change. Of scoring calls at the same time, one uses all threads, the
-/// others only their caller's. Changes wait for one another. During a change do not call
-/// progress(), consistency(), grid_after() or save(), and do not read grid(). Cost: the first call
-/// after a change that needs the scene pays for VoxelScene::update() and, unless the gain is the
-/// paper's, for hazard and known surface: some milliseconds.
+/// map before or after that change. Of concurrent scoring calls one uses all threads, the others
+/// only their caller's. Changes wait for one another. During a change do not call progress(),
+/// consistency(), grid_after() or save(), and do not read grid().
+///
+/// Cost: the first call after a change that needs the scene runs VoxelScene::update() and, except
+/// for the paper's gain, computes hazard and known surface: some milliseconds.
 /// @code
 /// ViewScorer scorer(sensor, {.voxel_size = 0.005, .workspace = box, .support_plane = 0.0});
 /// scorer.add(frame, T_world_camera);
@@ -100,28 +101,28 @@ struct VIEWGAIN_EXPORT MapUpdate {
 /// @endcode
 class VIEWGAIN_EXPORT ViewScorer {
  public:
-  /// An empty map. Throws Error(invalid_argument), naming the value, for a sensor or a setting that
-  /// is not valid, for gain.prior_sigma, and for voxels as large as the workspace or larger than
-  /// the sensor's range; Error(backend) if Embree fails. Cost: PinholeCamera::ray_table() five
+  /// Starts with an empty map. Throws Error(invalid_argument) naming the value for an invalid
+  /// sensor or setting, for gain.prior_sigma, and for voxels as large as the workspace or larger
+  /// than the sensor's range; Error(backend) if Embree fails. Cost: PinholeCamera::ray_table() five
   /// times.
   explicit ViewScorer(const Sensor& sensor, const ScorerConfig& config = {},
                       const ExecConfig& exec = {});
-  /// Starts from a map. Layout and prior are the map's, whatever the config says. Throws as above.
+  /// Starts from a map, whose layout and prior replace those of the config. Throws as above.
   ViewScorer(BeliefGrid grid, const Sensor& sensor, const ScorerConfig& config = {},
              const ExecConfig& exec = {});
   ~ViewScorer();
-  /// One that was moved from can only be assigned to or destroyed.
+  /// A moved-from scorer can only be assigned to or destroyed.
   ViewScorer(ViewScorer&&) noexcept;
   ViewScorer& operator=(ViewScorer&&) noexcept;
 
   /// Filters a frame, marks obstacles in it, updates the hazard and integrates the frame. A frame
   /// that cannot be used does not throw; the verdict gives the reason. `pose_sigma` [m], [rad] is
-  /// the pose's uncertainty in addition to Sensor::pose_sigma. Throws Error(invalid_argument) for
-  /// an invalid sigma or frame identity, and as scene() if the hazard learns. Nothing has changed
-  /// then. Cost: FrameIntegrator::integrate(), and a snapshot.
+  /// the pose's uncertainty in addition to Sensor::pose_sigma. Throws Error(invalid_argument) and
+  /// changes nothing for an invalid sigma or frame identity, and as scene() if the hazard learns.
+  /// Cost: FrameIntegrator::integrate(), and a snapshot.
   MapUpdate add(const DepthFrame& frame, const Pose& T_world_camera,
                 const PoseSigma& pose_sigma = {});
-  /// The same of several frames from one pose.
+  /// As above, for several frames from one pose.
   MapUpdate add(const Measurements& measurements);
 
   /// Labels the voxels of a box, [x][y][z] with z fastest: 0 unknown, 1 free, 2 occupied. Returns
@@ -129,49 +130,50 @@ class VIEWGAIN_EXPORT ViewScorer {
   /// Throws as BeliefGrid::update_box(). Cost: a pass over the labels, and a snapshot.
   std::uint64_t set(const VoxelBox& box, std::span<const std::uint8_t> labels);
 
-  /// Makes a region of the grid's frame [m] unknown, for example after an object has moved. Returns
-  /// how many voxels were known. Throws as BeliefGrid::forget(). Cost: a pass over the map's
-  /// blocks.
+  /// Resets a region of the grid frame [m] to unknown, for example after an object has moved.
+  /// Returns how many voxels were known. Throws as BeliefGrid::forget(). Cost: one pass over the
+  /// map's blocks.
   std::uint64_t forget(const Box& region);
 
-  /// GainEvaluator::evaluate() on the current map: one gain per pose, in their order.
+  /// GainEvaluator::evaluate() on the current map: one gain per pose, in order.
   [[nodiscard]] std::vector<ViewGain> evaluate(std::span<const Pose> T_world_camera) const;
-  /// The same by a gain of the user's own, in its unit.
+  /// As above with a custom gain, in its unit.
   [[nodiscard]] std::vector<double> evaluate(std::span<const Pose> T_world_camera,
                                              const ViewMeasure& measure) const;
-  /// The same by one that sees what rays pass on their way.
+  /// As above with a custom gain that sees what rays pass.
   [[nodiscard]] std::vector<double> evaluate(std::span<const Pose> T_world_camera,
                                              const RunMeasure& measure) const;
 
-  /// The k best poses, very probably: GainEvaluator::race(). Indices refer to T_world_camera, best
-  /// first. If Sensor::body_size is set, poses are left out where the body has no room, or where
-  /// over 20 % of the rays that end in the map end within min_range. The deadline includes that
-  /// check. A gain of 0 says that nothing new would be seen. Throws as race(), and as scene().
-  /// Cost: race(), and FeasibilityChecker::check().
+  /// The k best poses with high probability: GainEvaluator::race(). Indices refer to
+  /// T_world_camera, best first. If Sensor::body_size is set, omits poses where the body has no
+  /// room, or where over 20 % of the rays that end in the map end within min_range. The deadline
+  /// includes that check. A gain of 0 means that nothing new would be seen. Throws as race(), and
+  /// as scene(). Cost: race(), and FeasibilityChecker::check().
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BestConfig& config = {},
                                const BatchControl& control = {}) const;
 
-  /// The current scene, a snapshot: later changes of the map do not affect it. Throws as
+  /// The current scene, a snapshot that later changes of the map do not affect. Throws as
   /// VoxelScene::build().
   [[nodiscard]] std::shared_ptr<const VoxelScene> scene() const;
-  /// The evaluator of the current scene. Later changes of the map do not affect it either.
+  /// The evaluator of the current scene, which later changes of the map do not affect.
   [[nodiscard]] std::shared_ptr<const GainEvaluator> evaluator() const;
   /// The map. Not a copy: do not read it while add(), set() or forget() runs. Valid until the
   /// scorer is assigned to or destroyed.
   [[nodiscard]] const BeliefGrid& grid() const noexcept;
-  [[nodiscard]] const VoxelBox& voxels() const noexcept;      ///< of the workspace; never changes
-  [[nodiscard]] const Sensor& sensor() const noexcept;        ///< that frames come from
+  [[nodiscard]] const VoxelBox& voxels() const noexcept;      ///< of the workspace, constant
+  [[nodiscard]] const Sensor& sensor() const noexcept;        ///< sensor of the frames
   [[nodiscard]] const ScorerConfig& config() const noexcept;  ///< with the map's layout and prior
   [[nodiscard]] const ExecConfig& exec() const noexcept;      ///< as constructed
 
-  /// Entropy removed and unknown voxels; no coverage, no surface. Cost: BeliefGrid::statistics().
+  /// Entropy removed and number of unknown voxels; no coverage, no surface. Cost:
+  /// BeliefGrid::statistics().
   [[nodiscard]] ModelProgress progress() const;
-  /// Whether the frames added so far fit one another. Cost: FrameCheck::result().
+  /// Agreement of the frames added so far. Cost: FrameCheck::result().
   [[nodiscard]] FrameConsistency consistency() const;
-  /// A copy of the map with these measurements integrated. The scorer does not change. Throws
+  /// A copy of the map with these measurements integrated; the scorer does not change. Throws
   /// Error(invalid_argument) for a wrong image size, a pose that is not rigid, and as add(). Cost:
-  /// a copy of the map, and FrameIntegrator::integrate() for each frame.
+  /// a copy of the map, and FrameIntegrator::integrate() per frame.
   [[nodiscard]] BeliefGrid grid_after(const Measurements& measurements) const;
 
   /// Writes the map with save_vdb(). A scorer loaded from it gives the same gains, but its

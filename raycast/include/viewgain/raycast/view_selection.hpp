@@ -16,55 +16,59 @@ struct ViewGain;
 class ViewMeasure;
 class RunMeasure;
 
-/// By what GainEvaluator::best() and race() choose, and how long they may take.
+/// Settings of GainEvaluator::best() and race().
 struct VIEWGAIN_EXPORT BestConfig {
-  /// One a pose, subtracted from its gain, in the gain's unit: say for the way there. Empty: none.
+  /// Cost of each pose, subtracted from its gain, in the gain's unit; for example for the path
+  /// there. Empty: none.
   std::span<const double> costs{};
-  const ViewMeasure* measure = nullptr;     ///< instead of the evaluator's gain; may be null,
-  const RunMeasure* run_measure = nullptr;  ///< as may this, of which only one can be given
-  /// From the call on [s]: the call ends with what it has by then, at latest when the views that
-  /// the threads are at are done. Half of it at most is the first stage's. Infinity: none.
+  const ViewMeasure* measure = nullptr;  ///< custom gain that replaces the evaluator's, or null
+  /// Custom gain with all that rays pass, or null; only one of both.
+  const RunMeasure* run_measure = nullptr;
+  /// Time limit [s] from the start of the call, which then returns its best result so far, as soon
+  /// as the current views are done. At most half of it goes to the first stage. Infinity: none.
   double deadline = std::numeric_limits<double>::infinity();
-  std::uint64_t seed = 1;  ///< which rays race()'s first stage takes, by the paper's gain
+  std::uint64_t seed = 1;  ///< selects the rays of race()'s first stage, with the paper's gain
 };
 
-/// Views chosen from a batch of poses, and what that took; see GainEvaluator::best() and race().
+/// Views chosen from a batch of poses, with statistics; see GainEvaluator::best() and race().
 struct VIEWGAIN_EXPORT BestViews {
-  std::vector<std::size_t> indices;  ///< into the poses, best first; of those scored in full
-  std::vector<ViewGain> gains;       ///< of those, as evaluate() has them; empty with a measure
-  /// Of each of them: the gain, or the measure, less the cost, in the gain's unit.
+  std::vector<std::size_t> indices;  ///< into the poses, best first; only those scored in full
+  std::vector<ViewGain> gains;       ///< their results of evaluate(); empty with a measure
+  /// Gain, or measure, minus cost of each of them, in the gain's unit.
   std::vector<double> worth;
-  /// False: a stop was requested or the deadline passed before all was done.
+  /// False: a stop or the deadline ended the call early.
   bool complete = true;
-  std::size_t estimated = 0;                ///< poses that were scored by some of their rays
+  std::size_t estimated = 0;                ///< number of poses scored with some of their rays
   std::vector<std::size_t> scored_indices;  ///< poses that were scored in full, ascending
-  std::vector<ViewGain> scored_gains;       ///< of those; empty with a measure
-  std::uint64_t rays_traced = 0;            ///< of both stages, those of bad poses among them
+  std::vector<ViewGain> scored_gains;       ///< results of these poses; empty with a measure
+  /// Number of rays of both stages, including those of invalid poses.
+  std::uint64_t rays_traced = 0;
 };
 
-/// Views that are good together, in the order of their choice; see GainEvaluator::best_set().
+/// Views that are good together, in the order chosen; see GainEvaluator::best_set().
 struct VIEWGAIN_EXPORT ViewSet {
-  std::vector<std::size_t> indices;  ///< into the poses, in the order of their choice
-  std::vector<ViewGain> marginal;    ///< of those: what each adds to the ones before it
-  double gain = 0;                   ///< of all together, in the gain's unit
-  /// The same if a hazard cell is reached by the one of them that reaches it best alone, as views
-  /// that are hindered by the same things may be: at most `gain`. By the paper's gain: `gain`.
+  std::vector<std::size_t> indices;  ///< into the poses, in the order chosen
+  std::vector<ViewGain> marginal;    ///< marginal gains: the increase over the views before
+  double gain = 0;                   ///< gain of the set, in the gain's unit
+  /// Lower bound of `gain` that counts only the best view per hazard cell, because views can be
+  /// hindered by the same objects. Equal to `gain` for the paper's gain.
   double gain_by_best_alone = 0;
-  std::size_t evaluations = 0;  ///< of single poses
+  std::size_t evaluations = 0;  ///< number of evaluations of single poses
   bool complete = true;         ///< false: a stop was requested before the last choice
 };
 
-/// How GainEvaluator::approximate() samples a view.
+/// Sampling of GainEvaluator::approximate().
 struct VIEWGAIN_EXPORT ApproximateConfig {
-  double share = 0.1;      ///< of a view's rays that are traced at most; in (0, 1]
-  std::uint64_t seed = 1;  ///< which rays
+  double share = 0.1;      ///< largest share of a view's rays to trace, in (0, 1]
+  std::uint64_t seed = 1;  ///< selects the rays
 };
 
-/// An estimate of a gain, in the unit of the gain.
+/// An estimated gain, in the gain's unit.
 struct VIEWGAIN_EXPORT ApproximateGain {
-  double gain = std::numeric_limits<double>::quiet_NaN();            ///< the estimate
-  double standard_error = std::numeric_limits<double>::quiet_NaN();  ///< of it, in the same unit
-  std::uint32_t rays = 0;                                            ///< that it is made of
+  double gain = std::numeric_limits<double>::quiet_NaN();  ///< the estimate
+  /// Standard error, in the same unit.
+  double standard_error = std::numeric_limits<double>::quiet_NaN();
+  std::uint32_t rays = 0;  ///< number of traced rays
 };
 
 }  // namespace viewgain

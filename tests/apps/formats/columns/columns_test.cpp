@@ -248,8 +248,8 @@ TEST_F(Columns, BadColumnsOfPosesAreNamed) {
   write_npy("row.npy", "'<f8'", "(1, 4, 4)", row);
   write_npy("nan.npy", "'<f8'", "(1, 4, 4)", nan);
   for (const auto& [name, word] :
-       std::vector<std::pair<std::string, std::string>>{{"none.npy", "no .npy"},
-                                                        {"short.npy", "cut off"},
+       std::vector<std::pair<std::string, std::string>>{{"none.npy", "not a .npy"},
+                                                        {"short.npy", "truncated"},
                                                         {"empty.npy", "no pose"},
                                                         {"half.npy", "<f4"},
                                                         {"big.npy", ">f8"},
@@ -259,10 +259,10 @@ TEST_F(Columns, BadColumnsOfPosesAreNamed) {
                                                         {"text.npy", "a of <U4611"},
                                                         {"nested.npy", "header"},
                                                         {"broken.npy", "header"},
-                                                        {"huge.npy", "cut off"},
+                                                        {"huge.npy", "truncated"},
                                                         {"real.npy", "header"},
                                                         {"wide.npy", "header"},
-                                                        {"fortran.npy", "cut off"},
+                                                        {"fortran.npy", "truncated"},
                                                         {"scaled.npy", "row 0: the matrix is not"},
                                                         {"row.npy", "last row"},
                                                         {"nan.npy", "row 0"},

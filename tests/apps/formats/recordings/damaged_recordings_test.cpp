@@ -38,7 +38,8 @@ TEST_F(DamagedRecordings, ChunksAreLeftOutAndWhatNeedsThemIsCounted) {
     const json report = import(text, {}, missing > 0 ? "; it is left out" : "");
     EXPECT_EQ(report["frames"], missing > 0 ? kImages : kImages + 1);
     if (missing == 0) continue;
-    EXPECT_NE(report.dump().find("1 messages without their channel"), std::string::npos) << report;
+    EXPECT_NE(report.dump().find("1 messages whose channel is missing"), std::string::npos)
+        << report;
   }
 }
 
@@ -79,7 +80,7 @@ TEST_F(DamagedRecordings, MessagesOfUnknownConnectionsAndTopicsAreCounted) {
   bytes[bytes.find("op=\7") + 3] = '\x8';
   write("some.bag", bytes);
   std::string said = import_file("some.bag").err;
-  EXPECT_NE(said.find("messages without their connection"), std::string::npos) << said;
+  EXPECT_NE(said.find("messages whose connection is missing"), std::string::npos) << said;
 
   fs::copy_file(data("arm.db3"), dir / "some.db3");
   sqlite3* db = nullptr;
@@ -114,11 +115,11 @@ TEST_F(DamagedRecordings, ImpossibleCamerasAreRefusedWithoutASensorToo) {
   refuse_camera({.k = {kInfinity, 62, 23, 17}}, "fx must be positive and finite");
   refuse_camera({.k = {61, 62, 23, kNan}}, "cy must be finite");
   refuse_camera({.size = {640, 480}, .roi = {4'000'000'000, 4, 36, 48}}, "far outside");
-  refuse_camera({.size = {0, 0}, .k = {61, 62, 1e9, 17}}, "far outside of the image of 48x36 px");
+  refuse_camera({.size = {0, 0}, .k = {61, 62, 1e9, 17}}, "far outside the image of 48x36 px");
 }
 
 TEST_F(DamagedRecordings, PosesOfSeveralBodiesAreRefused) {
-  refuse(good(), "/tf (tf2_msgs/TFMessage) has the transforms of all frames",
+  refuse(good(), "/tf (tf2_msgs/TFMessage) holds the transforms of all frames",
          {"--pose-topic", "/tf"});
   McapText text = good();
   for (const std::string body : {"link", "link", "wheel"}) {
@@ -126,7 +127,7 @@ TEST_F(DamagedRecordings, PosesOfSeveralBodiesAreRefused) {
     odometry.header(100, "odom").text(body).doubles(kStill);
     text.add("/odom", "nav_msgs/msg/Odometry", odometry);
   }
-  refuse(text, "/odom: has the poses of several bodies, 'link' and 'wheel'",
+  refuse(text, "/odom: holds the poses of several bodies, 'link' and 'wheel'",
          {"--pose-topic", "/odom"});
 }
 
@@ -141,7 +142,7 @@ TEST_F(DamagedRecordings, ByteOrderIsJudgedByTheFirstImageWithReadings) {
       text.image(kTopic, image_time(i), "optical", kWidth, kHeight, "16UC1", rows_mm(i, is_wrong),
                  2 * kWidth);
     }
-    EXPECT_EQ(import(text, {}, is_wrong ? "is its is_bigendian wrong?" : "")["frames"],
+    EXPECT_EQ(import(text, {}, is_wrong ? "Is its is_bigendian wrong?" : "")["frames"],
               kImages + 1);
   }
   // Where no image has readings nothing is said.

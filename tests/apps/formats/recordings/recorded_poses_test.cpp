@@ -46,16 +46,16 @@ TEST_F(MessageRecordings, PosesMayComeFromATopic) {
   EXPECT_NEAR(x_of(4), 0.45, 1e-9);
   EXPECT_EQ(import(text, {"--pose-topic", "/odom"})["world"], "odom");
   EXPECT_NEAR(x_of(1), 0.1 + 2 * 0.15, 1e-9);
-  refuse(text, "/pose does not say where the camera is on its body", {"--pose-topic", "/pose"});
+  refuse(text, "/pose does not state the camera's pose on its body", {"--pose-topic", "/pose"});
   Sensor mounted = read_sensor_toml(dir / "small.toml");
   mounted.T_flange_camera = Pose(Eigen::Matrix3d::Identity(), {0, 0, 0.3});
   write_sensor_toml(dir / "small.toml", mounted);
   EXPECT_EQ(import(text, {"--pose-topic", "/pose"})["frames"], kImages);
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.3, 1e-9);
-  refuse(text, "/none has no poses", {"--pose-topic", "/none"});
+  refuse(text, "/none holds no poses", {"--pose-topic", "/none"});
   (void)import(text, {}, "topics of poses (/odom, /pose, /tracker) are not used (--pose-topic)");
   refuse(text, "--pose-topic", {"--pose-topic", "/pose,0,0"});
-  refuse(text, "has no name before the pose", {"--pose-topic", ",0,0,0.2,0,0,0,1"});
+  refuse(text, "expected a name before the pose", {"--pose-topic", ",0,0,0.2,0,0,0,1"});
 }
 
 TEST_F(MessageRecordings, TheCamerasFrameMayBeGiven) {
@@ -134,13 +134,14 @@ TEST_F(MessageRecordings, WorldsAreTold) {
   expect_frames(open_frames(dir / "frames"));
   (void)import(text, {"--world", "marker"});
   EXPECT_NEAR(open_frames(dir / "frames").poses[0].m[7], -2, 1e-3);
-  refuse(text, "no transforms join the world 'moon' and the frame 'optical'", {"--world", "moon"});
+  refuse(text, "no transforms connect the world 'moon' and the frame 'optical'",
+         {"--world", "moon"});
   // Two worlds.
   McapText two = good();
   for (int i = 0; i < 11; ++i) {
     two.transform("/tf", 100 + 0.1 * i, "marker", "link", {0, 1, 0, 0, 0, 0, 1});
   }
-  refuse(two, "hangs below several worlds: 'base', 'marker'; choose one by --world");
+  refuse(two, "belongs to several worlds: 'base', 'marker'; choose one with --world");
   EXPECT_EQ(import(two, {"--world", "base"})["frames"], kImages);
   expect_frames(open_frames(dir / "frames"));
   two.transform("/tf_static", 0, "room", "base", kStill);

@@ -136,7 +136,7 @@ TEST_F(TransformsJson, FramesAndTheTopShareTheCamera) {
   for (json& frame : scene["frames"]) frame["cx"] = 20, frame["w"] = kWidth, frame["h"] = kHeight;
   EXPECT_EQ(import(scene)["intrinsics"], (json{60, 61, 19.5, 17.5}));
   scene["frames"][2]["cx"] = 21;
-  refuse(scene, "frame 2 has another camera");
+  refuse(scene, "frame 2 has a different camera");
   // Without a size it is the images'.
   scene = good();
   for (const char* key : {"w", "h", "cx", "cy", "fl_x", "fl_y"}) scene.erase(key);
@@ -161,7 +161,7 @@ TEST_F(TransformsJson, OneBadFrameIsOneLess) {
 TEST_F(TransformsJson, WhatCannotBeReadIsNamed) {
   json scene = good();
   scene["frames"][0]["depth_file_path"] = "../small.toml";
-  refuse(scene, "'../small.toml' is outside of the recording");
+  refuse(scene, "'../small.toml' is outside the recording");
   scene = good();
   scene["camera_model"] = "OPENCV_FISHEYE";
   refuse(scene, "'OPENCV_FISHEYE' is not supported");
@@ -184,16 +184,16 @@ TEST_F(TransformsJson, WhatCannotBeReadIsNamed) {
   refuse(scene, "fl_x is not a finite number");
   scene = good();
   scene["frames"][0]["fl_x"] = 60, scene["frames"][1]["fl_x"] = 61;
-  refuse(scene, "frame 1 has another camera");
+  refuse(scene, "frame 1 has a different camera");
   scene = good();
   scene["integer_depth_scale"] = 7;
   refuse(scene, "depth scale 7");
   refuse({{"frames", json::array()}}, "names no frame");
   write("scene/transforms.json", "{\"frames\": [");
-  expect_refused(call(), "is no JSON with a list");
+  expect_refused(call(), "is not JSON with a list");
   const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
   write("scene/transforms.json", R"({"frames": [], "deep": )" + deep + "}");
-  expect_refused(call(), "is no JSON with a list");
+  expect_refused(call(), "is not JSON with a list");
   for (const auto& [key, value] : {std::pair("fl_x", -60.0), std::pair("cx", 1e9)}) {
     scene = good();
     scene[key] = value;
@@ -204,7 +204,7 @@ TEST_F(TransformsJson, WhatCannotBeReadIsNamed) {
   expect_refused(call({"--world", "map"}), "--world map: is for recordings of messages");
   fs::remove(dir / "scene/depth/0.png");
   fs::create_symlink("/etc/passwd", dir / "scene/depth/0.png");
-  expect_refused(call(), "is a link out of the recording");
+  expect_refused(call(), "is a link that leaves the recording");
 }
 
 }  // namespace

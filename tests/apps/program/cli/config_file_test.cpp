@@ -148,7 +148,7 @@ TEST_F(ConfigFile, NamesOfAnyKind) {
   std::filesystem::copy_file(dir / "cube.off", dir / "lat\xe9.off");
   run_well({"simulate", "lat\xe9.off", "--poses", "orbit:1,6,27", "--sensor", "tof.toml", "--out",
             "frames", "--save-config", "saved.toml"});
-  EXPECT_NE(read("saved.toml").find("# not UTF-8, to be given on the command line: mesh"),
+  EXPECT_NE(read("saved.toml").find("# not UTF-8; give it on the command line: mesh"),
             std::string::npos);
   run_well({"simulate", "--config", "saved.toml", "lat\xe9.off"});
 }
@@ -163,7 +163,7 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithFileAndLine) {
       {"\n\ntop = \"three\"\n", "c.toml: line 6: key \"top\" must be a whole number"},
       {"top = 2.5\n", "line 4: key \"top\" must be a whole number"},
       {"deadline = \"far\"\n", "line 4: key \"deadline\" must be a number"},
-      {"gain = true\n", "line 4: key \"gain\" must be a text"},
+      {"gain = true\n", "line 4: key \"gain\" must be a string"},
       {"feasible = 1\n", "line 4: key \"feasible\" must be true or false"},
       {"weight = \"0,0,0,1,1,1,2\"\n", "line 4: key \"weight\" must be a list"},
       {"weight = [0,0,0,1,1,1,2]\n", "--weight 0: needs 7"},
@@ -173,7 +173,7 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithFileAndLine) {
       {"[gain]\nmodel = 1\n", "line 4: key \"gain\" must be"},
       {"top = 1\ntop = 2\n", "c.toml: line 5"},
       {"dome = \"20,0.6\"\n",
-       "key \"dome\" is of a flag: --dome was removed; use --poses dome:N,RADIUS"}};
+       "key \"dome\" is of a removed flag: --dome was removed; use --poses dome:N,RADIUS"}};
   for (const auto& [text, word] : files) {
     write("c.toml", head + text);
     expect_refused({"score", "--config", "c.toml", "--out", "s.csv"}, word);

@@ -79,7 +79,7 @@ TEST_F(EndedCalls, ALimitOnTimeEndsACallWithAMessage) {
   ASSERT_EQ(::prlimit(child, RLIMIT_CPU, &limit, nullptr), 0);
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status;
-  EXPECT_EQ(said(), "viewgain: the limit on processor time is reached (ulimit -t)\n");
+  EXPECT_EQ(said(), "viewgain: processor time limit reached (ulimit -t)\n");
   EXPECT_TRUE(contents() == before);
 }
 

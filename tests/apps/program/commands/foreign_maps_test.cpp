@@ -63,7 +63,8 @@ TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
     call.emplace_back("--json");
     const auto result = run(call);
     EXPECT_EQ(result.exit_code, 0);
-    EXPECT_NE(result.err.find(call[1] + " has states alone"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(call[1] + " holds voxel states only"), std::string::npos)
+        << result.err;
     return json::parse(result.out);
   };
   const json prior =
@@ -92,7 +93,7 @@ TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
   const json continued = run_json({"integrate", "frames", "--map", "tree.ot", "--out", "again.ot"});
   EXPECT_EQ(continued.at("prior_sigma"), map.at("prior_sigma"));
   EXPECT_EQ(run_json({"info", "again.ot"}).at("free"), continued.at("free"));
-  EXPECT_NE(run_well({"convert", "map.vdb", "tree.ot"}).find("not in a tree: the beliefs of"),
+  EXPECT_NE(run_well({"convert", "map.vdb", "tree.ot"}).find("lost in the tree: beliefs of"),
             std::string::npos);
 }
 
@@ -107,7 +108,7 @@ TEST_F(ForeignMaps, EndingsAreLargeOrSmallAndOthersRefused) {
   }
   run_well({"convert", "a.OT", "b.VDB"});
   EXPECT_EQ(run_json({"info", "b.VDB"}).at("occupied"), 1);
-  expect_refused({"convert", "a.vdb", "a.BT"}, "can only be read");
+  expect_refused({"convert", "a.vdb", "a.BT"}, "files are read-only");
   for (const char* name : {"a.txt", "a", "a.vdb2", ".vdb", "a.vdb.gz"}) {
     expect_refused({"convert", "a.vdb", name}, "must end in .vdb or .ot");
   }
@@ -177,7 +178,7 @@ TEST_F(ForeignMaps, CloudsAreIntegrated) {
       run({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--voxel", "0.02", "--sensor",
            "small.toml", "--workspace", "-0.1,-1,-1,0.8,1,1", "--out", "carved.vdb"});
   EXPECT_EQ(carved.exit_code, 0);
-  EXPECT_NE(carved.err.find("they carve alone"), std::string::npos) << carved.err;
+  EXPECT_NE(carved.err.find("they only mark free space"), std::string::npos) << carved.err;
 }
 
 TEST_F(ForeignMaps, WrongUseIsRefused) {
@@ -200,7 +201,7 @@ TEST_F(ForeignMaps, WrongUseIsRefused) {
   expect_refused(integrate({}), "FRAMES_DIR or --cloud");
   expect_refused(with_cloud({"frames"}), "FRAMES_DIR or --cloud");
   expect_refused(with_cloud({}), "no VIEWPOINT");
-  expect_refused(integrate({"--cloud", "a.pcd", "--origin", "0,0,0"}), "--sensor is needed");
+  expect_refused(integrate({"--cloud", "a.pcd", "--origin", "0,0,0"}), "--cloud requires --sensor");
   expect_refused(with_cloud({"--origin", "0,0"}), "--origin");
   expect_refused(with_cloud({"--origin", "0,0,0", "--poses", "poses.txt"}), "--poses");
   expect_refused(with_cloud({"--poses", "poses.txt"}), "2 poses for 1 clouds");
@@ -211,10 +212,10 @@ TEST_F(ForeignMaps, WrongUseIsRefused) {
                  "cut.pcd:");
   expect_refused(integrate({"--cloud", "none.ply", "--sensor", "small.toml", "--origin", "0,0,0"}),
                  "none.ply");
-  expect_refused({"info", "cut.ot"}, "the tree is cut");
+  expect_refused({"info", "cut.ot"}, "the tree is truncated");
   expect_refused({"info", "none.bt"}, "none.bt");
-  expect_refused({"convert", "cut.ot", "new.vdb"}, "the tree is cut");
-  expect_refused({"convert", "map.vdb", "new.bt"}, "can only be read");
+  expect_refused({"convert", "cut.ot", "new.vdb"}, "the tree is truncated");
+  expect_refused({"convert", "map.vdb", "new.bt"}, "files are read-only");
   expect_refused({"convert", "map.vdb", "new.ot", "--workspace", "0,0,0,1,1,1"}, "--workspace");
   expect_refused({"convert", "map.vdb", "new.ot", "--prior-sigma", "1"}, "--prior-sigma");
   expect_refused({"convert", "map.vdb"}, "OUT");

@@ -131,7 +131,7 @@ TEST_F(Implausible, FlagsInOtherUnits) {
   }
   for (const Strings& call : commands(false)) {
     expect_said(test::joined(call, {"--obstacle", "400,-500,-300,500,500,-250"}),
-                "is it in metres?");
+                "Is it in metres?");
   }
   for (const Strings& call : commands(false)) {
     expect_said(test::joined(call, {"--support-plane", "-300"}), "--support-plane: ");
@@ -161,7 +161,7 @@ TEST_F(Implausible, ARoomsClosedMeshIsSolid) {
   for (Strings call : commands(true)) {
     if (call[0] == "score") call.insert(call.end(), {"--feasible", "on"});
     expect_said(test::joined(call, {"--obstacle", "room.off"}),
-                "views were taken inside of an obstacle");
+                "views were taken inside an obstacle");
   }
   // The map itself is as good with it.
   EXPECT_EQ(warnings(integrate({"--obstacle", "room.off"})), "");

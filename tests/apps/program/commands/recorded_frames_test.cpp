@@ -121,7 +121,7 @@ TEST_F(RecordedFrames, TheMapThatWasMadeIsTold) {
 
 // Frames that carve alone leave nothing to plan on, unless they show the table.
 TEST_F(RecordedFrames, AMapWithoutASurfaceIsToldOf) {
-  const std::string kWords = "no voxel is occupied: does the workspace hold the object";
+  const std::string kWords = "no voxel is occupied. Does the workspace contain the object";
   // Before the cube and beside it.
   const Strings beside{"--voxel", "0.02", "--workspace", "0.15,-0.1,0,0.3,0.1,0.15"};
   const test::ProgramResult integrated =
@@ -234,7 +234,7 @@ TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
   std::filesystem::create_directories(dir / "empty");
   const Strings frames = test::joined({"model", "frames", "--out", "new"}, kMapFlags);
   expect_refused(
-      {{test::joined(frames, {"--size", "0.2"}), "--size: no such flag of model"},
+      {{test::joined(frames, {"--size", "0.2"}), "--size: unknown flag for model"},
        {test::joined(frames, {"--policy", "random"}), "--policy"},
        {test::joined(frames, {"--max-views", "2"}), "--max-views"},
        {test::joined(frames, {"--noise", "on"}), "--noise"},
@@ -250,7 +250,7 @@ TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
        {{"reconstruct", "cube.off", "--voxel", "0.01", "--out", "new"}, "--sensor"},
        {{"reconstruct", "cube.off", "--voxel", "0.01", "--sensor", "tof.toml", "--size", "0.2",
          "--mask", "empty", "--out", "new"},
-        "--mask: no such flag of reconstruct"},
+        "--mask: unknown flag for reconstruct"},
        {{"reconstruct", "frames", "--voxel", "0.01", "--sensor", "tof.toml", "--out", "new"},
         "viewgain model frames"},
        {{"model", "frames", "--vxel", "0.01"}, "did you mean --voxel?"},

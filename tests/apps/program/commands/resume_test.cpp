@@ -148,7 +148,7 @@ TEST_F(Resume, OfFramesWhatWasDrawnIsKept) {
   const auto time = fs::last_write_time(left() / "views/01.png");
   const test::ProgramResult other = run(test::joined(of("out"), {"--scales", "1"}));
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.err.find("is of a run with other settings"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("comes from a run with other settings"), std::string::npos) << other.err;
   ASSERT_EQ(run(of("out")).exit_code, 0);
   EXPECT_EQ(fs::last_write_time(dir / "out/views/01.png"), time);
   EXPECT_TRUE(result("out") == result("whole"));
@@ -221,7 +221,7 @@ TEST_F(Resume, OfFramesEveryFlagThatChangesBytesIsCompared) {
     changed.insert(changed.end(), others.at(name).begin() + 1, others.at(name).end());
     const test::ProgramResult result = run(changed);
     EXPECT_EQ(result.exit_code, 2) << name;
-    EXPECT_NE(result.err.find("is of a run with other settings"), std::string::npos)
+    EXPECT_NE(result.err.find("comes from a run with other settings"), std::string::npos)
         << name << ": " << result.err;
     ++flags;
   }
@@ -229,7 +229,7 @@ TEST_F(Resume, OfFramesEveryFlagThatChangesBytesIsCompared) {
   // Files of the same names with other bytes.
   const auto refused = [&](const Strings& with) {
     const test::ProgramResult result = run(test::joined(call, with));
-    return result.err.find("is of a run with other settings") != std::string::npos;
+    return result.err.find("comes from a run with other settings") != std::string::npos;
   };
   EXPECT_FALSE(refused({"--threads", "1", "--quiet", "--json", "--report", "off"}));
 }
@@ -257,10 +257,10 @@ TEST_F(Resume, OfFramesFilesThatFlagsNameAreCompared) {
       call, SIGKILL, [&] { return !left().empty() && fs::exists(left() / "checkpoint.json"); });
   ASSERT_TRUE(WIFSIGNALED(status)) << status;
   write("reach.toml", "# wider\n" + reach);
-  expect_refused(call, "is of a run with other settings");
+  expect_refused(call, "comes from a run with other settings");
   write("reach.toml", reach);
   write_mask(1);
-  expect_refused(call, "is of a run with other settings");
+  expect_refused(call, "comes from a run with other settings");
   write_mask(0);
   EXPECT_EQ(run(call).exit_code, 0);
 }
@@ -271,7 +271,7 @@ TEST_F(Resume, AnothersCheckpointIsRefusedAndStays) {
   const std::string name = left().filename().string() + "/checkpoint.json";
   const std::string good = read(name);
   expect_refused(run_of("out", {"--seed", "2"}),
-                 "checkpoint.json: is of a run with other settings");
+                 "checkpoint.json: comes from a run with other settings");
   json newer = json::parse(good);
   newer["format"] = 7;
   json otherwise = json::parse(good);
@@ -283,11 +283,11 @@ TEST_F(Resume, AnothersCheckpointIsRefusedAndStays) {
   real["decisions"][0]["candidate"] = 3e31;
   std::size_t cases = 0;
   for (const auto& [text, word] :
-       {std::pair{newer.dump(), "is of format 7; this program reads up to format 1"},
-        std::pair{cut.dump(), "checkpoint.json: no checkpoint: "},
-        std::pair{real_format.dump(), "checkpoint.json: no checkpoint: "},
-        std::pair{real.dump(), "checkpoint.json: no checkpoint: "},
-        std::pair{good.substr(0, good.size() / 2), "checkpoint.json: no checkpoint: "}}) {
+       {std::pair{newer.dump(), "has format 7; this program reads up to format 1"},
+        std::pair{cut.dump(), "checkpoint.json: not a checkpoint: "},
+        std::pair{real_format.dump(), "checkpoint.json: not a checkpoint: "},
+        std::pair{real.dump(), "checkpoint.json: not a checkpoint: "},
+        std::pair{good.substr(0, good.size() / 2), "checkpoint.json: not a checkpoint: "}}) {
     write(name, text);
     expect_refused(run_of("out"), word);
     ++cases;
@@ -296,7 +296,7 @@ TEST_F(Resume, AnothersCheckpointIsRefusedAndStays) {
   write(name, otherwise.dump());
   const test::ProgramResult result = run(run_of("out"));
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("the map after view 0 was another"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("the map after view 0 differs"), std::string::npos) << result.err;
   // Without the flag it is cleared away.
   Strings anew = run_of("out");
   std::erase(anew, "--resume");

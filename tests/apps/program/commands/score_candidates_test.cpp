@@ -70,7 +70,7 @@ TEST_F(ScoreCandidates, ObstaclesFarFromTheMapAreNamed) {
                                                  {"room_mm.off", true}}) {
     const std::string said = run(arguments({"--obstacle", box})).err;
     EXPECT_EQ(said.find("--obstacle " + box) != std::string::npos, is_far) << said;
-    EXPECT_EQ(said.find("is it in metres?") != std::string::npos, is_far) << said;
+    EXPECT_EQ(said.find("Is it in metres?") != std::string::npos, is_far) << said;
   }
 }
 
@@ -91,7 +91,9 @@ TEST_F(ScoreCandidates, PosesOfAFileThatSeeNothingAreExplained) {
     EXPECT_EQ(away.err,
               "viewgain: warning: poses.txt: 100 % of the poses see no voxel of the map\n");
     if (call == "next") {
-      EXPECT_NE(away.out.find("none of the 40 candidate views has a positive gain"), std::string::npos) << away.out;
+      EXPECT_NE(away.out.find("none of the 40 candidate views has a positive gain"),
+                std::string::npos)
+          << away.out;
     }
   }
 }
@@ -294,13 +296,14 @@ TEST_F(ScoreClassic, RefusesWhatDoesNotGoTogether) {
                              {{"--prior-sigma", "0.1"}, "--prior-sigma"},
                              {{"--hazard", "size=0.1"}, "--hazard"}};
   expect_refused_with(arguments({"--gain", "unknown_count"}), flags);
-  expect_refused_with(arguments({}), {{{"--gain", "paper,unknown_count"}, "paper stands alone"},
-                                      {{"--gain", "unknown_count,unknown_count"}, "twice"},
-                                      {{"--gain", "unknwn_count"}, "unknown_count"}});
-  // A map that remembers no views.
+  expect_refused_with(arguments({}),
+                      {{{"--gain", "paper,unknown_count"}, "paper must be given alone"},
+                       {{"--gain", "unknown_count,unknown_count"}, "twice"},
+                       {{"--gain", "unknwn_count"}, "unknown_count"}});
+  // A map that records no views.
   BeliefGrid blank({0.02, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.02});
   save_vdb(blank, dir / "map.vdb");
-  expect_refused(arguments({"--gain", "proximity_count"}), "remembers no views");
+  expect_refused(arguments({"--gain", "proximity_count"}), "records no views");
 }
 
 }  // namespace

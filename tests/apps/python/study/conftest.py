@@ -36,7 +36,7 @@ def program(tmp_path):
         with open({str(tmp_path / "calls")!r}, "a") as calls:
             calls.write(" ".join(sys.argv[1:]) + "\\n")
         if flags.get("policy") == "nonsense":
-            sys.exit("viewgain: --policy: nonsense is no policy")
+            sys.exit("viewgain: --policy: unknown policy nonsense")
         if flags["max-views"] != "1":
             time.sleep(float(flags.get("distance", 0)))
         policy = f"gain:{{flags['gain']}}" if flags.get("policy") == "gain" else flags.get("policy", "own")

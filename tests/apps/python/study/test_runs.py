@@ -101,7 +101,7 @@ def test_keeps_candidates_of_each_view(folder, program):
 def test_wrong_words_are_known_before_the_first_run(folder, program, calls):
     (folder / "spec.toml").write_text(SPEC.replace('"frontier"', '"nonsense"'))
     error = study("spec.toml", "--out", "out", code=1, program=program)
-    assert "spec.toml: cube, nonsense, seed 1: --policy: nonsense is no policy; a gain is written \"gain:nonsense\"" in error
+    assert "spec.toml: cube, nonsense, seed 1: --policy: unknown policy nonsense; a gain is written \"gain:nonsense\"" in error
     assert calls() == [] and not (folder / "out").exists()
     (folder / "spec.toml").write_text(SPEC.replace("max_views", "max_view"))
     assert "line 7" in study("spec.toml", "--out", "other", code=2, program=program) and not (folder / "other").exists()
@@ -152,7 +152,7 @@ def test_one_study_at_a_time_in_a_folder(folder, program):
     while runs_in("out") < 1:
         assert process.poll() is None
         time.sleep(0.01)
-    assert "another study is at work there" in study("spec.toml", "--out", "out", code=2, program=program)
+    assert "another study is running there" in study("spec.toml", "--out", "out", code=2, program=program)
     process.terminate()
     process.communicate()
 
@@ -194,7 +194,7 @@ exec {program} reconstruct "$@"
 """)
     (folder / "spec.toml").write_text(SPEC.replace('"frontier"', '{name = "mine", command = "sh mine.sh"}'))
     error = study("spec.toml", "--out", "out", "--jobs", "1", code=1, program=program)
-    assert "1 of 6 runs failed, the first: cube, mine, seed 1: no luck; the same call makes them again" in error
+    assert "1 of 6 runs failed, the first: cube, mine, seed 1: no luck; repeat the call to make them again" in error
     assert runs_in("out") == 5 and not (folder / "out/results.csv").exists()
     (folder / "mine.sh").write_text(f'exec {program} reconstruct "$@"\n')
     study("spec.toml", "--out", "out", program=program)
@@ -231,7 +231,7 @@ def test_without_matplotlib_there_are_no_plots(folder, program):
 def test_voxels_larger_than_the_tolerance_are_said(folder, program):
     (folder / "spec.toml").write_text(SPEC.replace("tolerance = 0.0125", "tolerance = 0.005"))
     process = start("spec.toml", "--out", "out", "--quiet", program=program)
-    assert "warning: coverage is counted to 5 mm, finer than voxels of 12.5 mm (tolerance = 0.0125 in the spec)" in process.communicate()[1]
+    assert "warning: coverage is measured at 5 mm, less than a voxel of 12.5 mm (set tolerance = 0.0125 in the spec)" in process.communicate()[1]
 
 
 def test_a_cluster_gives_what_this_machine_gives(folder, program, calls):
@@ -251,7 +251,7 @@ def test_a_cluster_gives_what_this_machine_gives(folder, program, calls):
     assert process.returncode == 0, error
     assert rows_in("there") == rows_in("here") and names("there/runs") == names("here/runs")
     assert (folder / "there/table.md").read_text().splitlines()[:10] == (folder / "here/table.md").read_text().splitlines()[:10]
-    assert "no address of a scheduler" in study("spec.toml", "--out", "there2", "--scheduler", "tcp://127.0.0.1", code=2, program=program)
+    assert "not the address of a scheduler" in study("spec.toml", "--out", "there2", "--scheduler", "tcp://127.0.0.1", code=2, program=program)
     assert "no scheduler answers" in study("spec.toml", "--out", "there2", "--scheduler", "tcp://127.0.0.1:9", code=2, program=program)
 
 

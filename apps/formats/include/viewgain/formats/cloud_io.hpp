@@ -12,22 +12,22 @@
 
 namespace viewgain {
 
-/// The points of a file.
+/// Contents of a point cloud file.
 struct VIEWGAIN_EXPORT PointCloud {
-  /// In file order, as they stand there, in the file's frame and in whatever unit it has; an
-  /// organised cloud's pixels without a reading are NaN.
+  /// Points in file order, in the file's frame and unit; pixels of an organised cloud without a
+  /// reading are NaN.
   std::vector<std::array<double, 3>> points;
-  /// A PCD's VIEWPOINT: the sensor's pose in the points' frame, not turned if its quaternion is 0.
+  /// A PCD's VIEWPOINT: the sensor's pose in the points' frame, without rotation if its quaternion
+  /// is 0.
   std::optional<Pose> viewpoint;
 };
 
-/// Reads a .pcd (ascii, binary) or .ply (ascii, binary of either byte order),
-/// chosen by the name's ending; PLY's points are the element "vertex". Fields other than x, y, z
-/// are left out. Throws Error(io) if the file cannot be opened and Error(format), naming the file
-/// and, in text, the line, if a field is missing, a count contradicts the file's length, a word is
-/// no number, the viewpoint's quaternion is off by more than 1e-2, or the name ends otherwise.
-/// Points need not be finite. Throws Error(capacity) for a file over 16 GiB. Cost: O(points); the
-/// file is read once.
+/// Reads a .pcd (ascii, binary) or .ply (ascii, binary of either byte order), chosen by the file
+/// name's ending; the points of a PLY are the element "vertex". Ignores fields other than x, y, z.
+/// Points need not be finite. Throws Error(io) if the file cannot be opened; Error(format) with
+/// file and, in text, line for a missing field, a count that contradicts the file's length, an
+/// invalid number, a viewpoint's quaternion that deviates by more than 1e-2, or another ending;
+/// Error(capacity) above 16 GiB. Cost: O(points).
 [[nodiscard]] VIEWGAIN_EXPORT PointCloud load_cloud(const std::filesystem::path& path);
 
 }  // namespace viewgain

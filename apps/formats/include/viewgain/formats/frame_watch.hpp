@@ -20,101 +20,95 @@
 
 namespace viewgain {
 
-/// How a folder is watched.
+/// Settings for watching a folder.
 struct VIEWGAIN_EXPORT FrameWatchConfig {
-  std::string sensor{};                              ///< as of open_frames()
-  std::optional<double> depth_scale{};               ///< likewise [m per unit]
-  std::optional<Sensor::OutOfRange> out_of_range{};  ///< nothing: the folder's own
-  /// Each frame needs its mask in every one of them, in any order; somebody may be writing into
-  /// these, too.
+  std::string sensor{};                              ///< as in open_frames()
+  std::optional<double> depth_scale{};               ///< as in open_frames() [m per unit]
+  std::optional<Sensor::OutOfRange> out_of_range{};  ///< empty: the folder's own
+  /// Folders of masks; each frame needs a mask in all of them. They may be written to as well.
   std::vector<MaskFolder> masks{};
-  /// Frames that are not to be given out again, each as frame_identity() has it.
+  /// Identities (frame_identity()) of frames that are not returned again.
   std::set<std::string> taken{};
-  /// Somebody may be writing files that are younger: what is wrong with them is not yet wrong.
+  /// Faults of files younger than this do not count, because they may still be written.
   std::chrono::milliseconds settle{2000};
 };
 
-/// A frame whose files are all there and whole.
+/// A complete frame.
 struct VIEWGAIN_EXPORT WatchedFrame {
-  std::uint64_t number = 0;         ///< in its files' names
-  std::filesystem::path image;      ///< the depth image
-  DepthFrame frame;                 ///< as load_frame() has it, without what masks take
-  Pose T_world_camera;              ///< where it was taken
-  std::uint64_t masked_pixels = 0;  ///< with a depth, that masks took
+  std::uint64_t number = 0;         ///< from its file names
+  std::filesystem::path image;      ///< depth image
+  DepthFrame frame;                 ///< as from load_frame(), without masked pixels
+  Pose T_world_camera;              ///< camera pose
+  std::uint64_t masked_pixels = 0;  ///< masked pixels that had a depth
 };
 
-/// A frame that cannot be used as its files are.
+/// A frame whose files cannot be used.
 struct VIEWGAIN_EXPORT BadFrame {
-  std::uint64_t number = 0;  ///< in its files' names
-  /// unreadable, wrong_size, lost_pose, changed; no_pose and no_mask of give_up(). Of two images
-  /// of one number one is `changed`, and so is one whose number needs more than 64 bits.
+  std::uint64_t number = 0;  ///< from its file names
+  /// unreadable, wrong_size, lost_pose or changed; no_pose and no_mask come from give_up().
+  /// `changed` also marks one of two images with the same number, and a number of more than 64
+  /// bits.
   FrameFault fault{};
-  std::string name{};                    ///< of its depth image
-  std::optional<Pose> T_world_camera{};  ///< where it was taken, if that is known
+  std::string name{};                    ///< file name of its depth image
+  std::optional<Pose> T_world_camera{};  ///< camera pose, if known
 };
 
-/// What a look at the folder found.
+/// Result of a look at the folder.
 struct VIEWGAIN_EXPORT FolderLook {
-  std::optional<WatchedFrame>
-      frame{};  ///< the complete one that is next in the list, if there is one
-  /// Bad since the look before; numbers rising, those first whose number another has.
+  std::optional<WatchedFrame> frame{};  ///< the next complete frame in the list, if any
+  /// New faults since the previous look, by number; those with a number of another frame first.
   std::vector<BadFrame> bad{};
 };
 
-/// A folder of frames of either layout (open_frames()) into which somebody else writes, file by
-/// file and in any order. Files may appear by a rename or be written in place, slowly: a frame is
-/// complete when its images end as PNG files do and can be read, and its pose is there, in the
-/// recorded layout with a line's end or unchanged for FrameWatchConfig::settle, in ours as a line
-/// of poses.txt with its end. Where any frame in the folder has an amplitude image, one without is
-/// waited for as long. With FrameWatchConfig::masks a mask must be there, end and be readable as
-/// well; one that is missing is waited for as a pose is. Masks are no part of what a frame is known
-/// by (frame_identity()): one that was taken stays taken, whatever becomes of its mask. What holds
-/// for all frames (sensor.toml, frames.toml, camera-intrinsics.txt) must be there before the
-/// first frame is complete.
+/// Watches a folder of frames of either layout (open_frames()) that another program writes to, file
+/// by file, in any order. Files may be renamed into place or written slowly. A frame is complete
+/// when its images end as PNG files do and can be read, its masks too, and its pose is there: a
+/// line in poses.txt with its line end, or a pose file that has a line end or is unchanged for
+/// FrameWatchConfig::settle. If any frame of the folder has an amplitude image, the others need one
+/// too. sensor.toml, frames.toml and camera-intrinsics.txt must exist before the first frame. Masks
+/// are not part of a frame's identity.
 ///
-/// Whether files have changed is told by what the file system says of them; none is read twice for
-/// nothing. Nothing is remembered beyond the object but what FrameWatchConfig::taken says. Thread
-/// safety: one call at a time. Members that throw say so.
+/// Detects changes from the file system's data and reads no file twice without need. Remembers
+/// nothing beyond the object except FrameWatchConfig::taken. Thread safety: one call at a time.
 class VIEWGAIN_EXPORT FrameWatch {
  public:
-  /// Of a look.
+  /// Time of a look.
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Does not look at the folder yet: takes constant time.
+  /// Does not look at the folder; constant time.
   FrameWatch(std::filesystem::path dir, FrameWatchConfig config);
   ~FrameWatch();
   FrameWatch(FrameWatch&&) noexcept;
   FrameWatch& operator=(FrameWatch&&) noexcept;
 
-  /// Looks at the folder; `now` must not go back. A frame that is given out counts as taken; the
-  /// next one comes with the next look. The folder is listed when a look has come to the end of the
-  /// last list, or after 256 of them. Throws Error(io) if the folder cannot be read, Error(format)
-  /// if the first numbers of images and poses.txt do not fit for as long as `settle`, and with the
-  /// first complete frame as open_frames() for what holds for all. Of frames that are taken or bad
-  /// 256 are looked at again, in turns. Takes some µs a file of these and of the new ones.
+  /// Looks at the folder; `now` must not decrease. A returned frame counts as taken; the next look
+  /// returns the next one. Lists the folder when the last list is used up, or after 256 looks.
+  /// Throws Error(io) if the folder cannot be read; Error(format) if the first numbers of images
+  /// and poses.txt disagree for `settle`; and with the first complete frame as open_frames() for
+  /// faults of the whole folder. Checks 256 taken or bad frames again per look, in turn. Cost: a
+  /// few µs per file of these and of new frames.
   [[nodiscard]] FolderLook look(Time now);
 
-  /// Nobody writes any more: frames that wait for a pose, a mask or, where poses.txt has a line
-  /// for one, an image, are bad (no_pose, no_mask, unreadable), as long as their files do not
-  /// change. These, numbers rising by what is missing. O(frames); files are not looked at.
+  /// Ends the wait: frames without a pose, a mask or an image that poses.txt lists become bad
+  /// (no_pose, no_mask, unreadable) while their files do not change. Returns them by number.
+  /// O(frames); does not look at files.
   [[nodiscard]] std::vector<BadFrame> give_up();
 
-  /// The caller has no use for the frame that the last look gave out: it is bad for this reason, as
-  /// long as its files do not change.
+  /// Rejects the frame of the last look: it is bad for this reason while its files do not change.
   void refuse(const WatchedFrame& frame, FrameVerdict verdict);
 
-  /// Sensor, scale and layout, without images and poses; nothing before the first complete frame.
+  /// Sensor, scale and layout, without images and poses; empty before the first complete frame.
   [[nodiscard]] const std::optional<FrameSequence>& folder() const noexcept;
-  /// Of the frames that were taken, here and before.
+  /// Identities of the taken frames, here and before.
   [[nodiscard]] std::set<std::string> taken() const;
-  /// How many these are.
+  /// Number of taken frames.
   [[nodiscard]] std::size_t taken_count() const;
-  /// Frames in the folder of which something is missing or may still be written.
+  /// Number of frames in the folder that are incomplete or may still be written.
   [[nodiscard]] std::size_t waiting() const;
-  /// Bad frames in the folder: verdict's name -> count.
+  /// Number of bad frames in the folder by name of the verdict.
   [[nodiscard]] std::map<std::string, std::size_t> bad() const;
-  /// Have the looks found that nothing has changed, for FrameWatchConfig::settle of the frames that
-  /// wait, since each of the others had its turn?
+  /// Whether nothing has changed: for FrameWatchConfig::settle among waiting frames, and since the
+  /// last check of each of the others.
   [[nodiscard]] bool is_settled() const;
 
  private:

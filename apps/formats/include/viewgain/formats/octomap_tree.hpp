@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Octrees in memory. The target viewgain::octomap brings OctoMap's headers and library along; this
-// header is all of it, so that it fits whichever OctoMap its user has.
+// Octrees in memory. Header-only, so it works with any version of OctoMap. The target
+// viewgain::octomap provides OctoMap's headers and library.
 
 #include <octomap/OcTree.h>
 
@@ -23,34 +23,34 @@
 
 namespace viewgain {
 
-/// A belief grid of the tree, by the rules of load_octomap; a voxel is occupied where the tree says
-/// so (its own occupancy threshold, instead of config.occupied_from). Passes through the tree's
-/// file form in memory: 5 bytes a node. Thread safety: reads the tree only. Throws as load_octomap.
-/// Cost: O(nodes).
+/// A belief grid from the tree, as load_octomap; the tree's own occupancy threshold replaces
+/// config.occupied_from. Uses the tree's file form in memory, 5 bytes per node. Thread safety: only
+/// reads the tree. Throws as load_octomap. Cost: O(nodes).
 [[nodiscard]] inline BeliefGrid grid_from_octree(const octomap::OcTree& tree,
                                                  OctomapConfig config = {}) {
   config.occupied_from = tree.getOccupancyThresLog();
   std::ostringstream file;
   file.imbue(std::locale::classic());
-  file.precision(17);  // so that the resolution is the tree's
+  file.precision(17);  // so that the resolution equals the tree's
   tree.write(file);
   return grid_from_octomap_bytes(file.str(), config, "octomap::OcTree");
 }
 
 /// Labels of a box of voxels, [x][y][z] with z fastest: 0 unknown, 1 free, 2 occupied.
 struct OctreeLabels {
-  VoxelBox box;                      ///< on the grid's lattice
-  std::vector<std::uint8_t> labels;  ///< one a voxel of the box
+  VoxelBox box;                      ///< on the lattice of the grid
+  std::vector<std::uint8_t> labels;  ///< one per voxel of the box
 };
 
-/// What the tree says of a map's voxels, of `voxel_size` [m]. `region`: in the tree's frame [m],
-/// for instance around what insertPointCloud() has changed; the part outside the workspace is left
-/// out. Throws Error(invalid_argument) unless the voxel sizes are equal. Cost: O(nodes and voxels
-/// in the box).
+/// Labels of a map's voxels, of `voxel_size` [m], from the tree. `region` is in the tree's frame
+/// [m], for example around the changes of insertPointCloud(); its part outside the workspace is
+/// ignored. Throws Error(invalid_argument) unless the voxel sizes are equal. Cost: O(nodes and
+/// voxels in the box).
 [[nodiscard]] inline OctreeLabels labels_of_octree(double voxel_size, const VoxelBox& workspace,
                                                    const octomap::OcTree& tree, const Box& region) {
   const double V = tree.getResolution();
-  if (std::abs(voxel_size - V) > 1e-9 * V) refuse("the tree's voxels are not the grid's");
+  if (std::abs(voxel_size - V) > 1e-9 * V)
+    refuse("the tree and the grid have different voxel sizes");
   const auto index = [&](double x) {
     return static_cast<std::int32_t>(std::clamp(std::floor(x / V), -32768.0, 32767.0));
   };
@@ -92,16 +92,15 @@ struct OctreeLabels {
   return {box, std::move(states)};
 }
 
-/// Makes a scorer's map what the tree says of it now, as ViewScorer::set(): for a tree that grows,
-/// frame by frame. Returns how many voxels have changed. Throws and costs as labels_of_octree()
-/// and ViewScorer::set().
+/// Updates a scorer's map from a growing tree, as ViewScorer::set(). Returns the number of changed
+/// voxels. Throws and costs as labels_of_octree() and ViewScorer::set().
 inline std::uint64_t update_from_octree(ViewScorer& scorer, const octomap::OcTree& tree,
                                         const Box& region) {
   const OctreeLabels now =
       labels_of_octree(scorer.config().voxel_size, scorer.voxels(), tree, region);
   return now.labels.empty() ? 0 : scorer.set(now.box, now.labels);
 }
-/// The same of a grid.
+/// As above for a grid.
 inline std::uint64_t update_from_octree(BeliefGrid& grid, const octomap::OcTree& tree,
                                         const Box& region) {
   const OctreeLabels now = labels_of_octree(
@@ -109,7 +108,7 @@ inline std::uint64_t update_from_octree(BeliefGrid& grid, const octomap::OcTree&
   return now.labels.empty() ? 0 : grid.update_box(now.box, now.labels);
 }
 
-/// The tree that save_octomap would write, with OctoMap's default settings but for the resolution.
+/// The tree that save_octomap would write, with OctoMap's default settings except the resolution.
 /// Throws as save_octomap. Cost: O(nodes).
 [[nodiscard]] inline std::unique_ptr<octomap::OcTree> octree_from_grid(const BeliefGrid& grid) {
   std::istringstream file(octomap_bytes(grid));

@@ -11,19 +11,18 @@
 
 namespace viewgain {
 
-/// A surface, or points where there are no triangles, as arrays of the caller's, in whatever frame:
-/// the file does not say.
+/// A surface, or points without triangles, as arrays of the caller in any frame; the file does not
+/// state the frame.
 struct VIEWGAIN_EXPORT PlyArrays {
-  std::span<const std::array<double, 3>> positions;  ///< [m], in any order
-  std::span<const std::array<double, 3>> normals{};  ///< unit vectors; empty, or one a position
-  std::span<const float> sigma{};                    ///< [m]; empty, or one a position
-  std::span<const std::array<std::uint32_t, 3>> triangles{};  ///< three indices each, in any order
+  std::span<const std::array<double, 3>> positions;  ///< [m]
+  std::span<const std::array<double, 3>> normals{};  ///< unit vectors; empty, or one per position
+  std::span<const float> sigma{};                    ///< [m]; empty, or one per position
+  std::span<const std::array<std::uint32_t, 3>> triangles{};  ///< three vertex indices each
 };
 
 /// Writes positions (double), normals (nx ny nz), standard deviations (sigma, [m]) and faces as
-/// binary PLY, in the machine's byte order. Atomic: a temporary file is renamed. Throws
-/// Error(invalid_argument), naming the file, if the sizes differ or a triangle has no such vertex,
-/// and Error(io). Costs O(positions + triangles).
+/// binary PLY in native byte order. Atomic. Throws Error(invalid_argument) naming the file if sizes
+/// differ or a triangle has an invalid vertex, and Error(io). Cost: O(positions + triangles).
 VIEWGAIN_EXPORT void write_ply(const std::filesystem::path& path, const PlyArrays& arrays);
 
 }  // namespace viewgain

@@ -10,52 +10,52 @@
 #include "viewgain/core/export.hpp"
 
 /// @file
-/// Images as PNG files. Cost: reading and writing take O(pixels), png_size() constant time.
+/// PNG images. Reading and writing take O(pixels), png_size() constant time.
 
 namespace viewgain {
 
-/// 16-bit grayscale image, row by row.
+/// 16-bit grayscale image.
 struct VIEWGAIN_EXPORT GrayImage {
   int width = 0;                      ///< [px]
   int height = 0;                     ///< [px]
-  std::vector<std::uint16_t> pixels;  ///< row by row
+  std::vector<std::uint16_t> pixels;  ///< row-major
 };
 
-/// 8-bit RGB image, row by row.
+/// 8-bit RGB image, row-major.
 struct VIEWGAIN_EXPORT RgbImage {
   int width = 0;                     ///< [px]
   int height = 0;                    ///< [px]
   std::vector<std::uint8_t> pixels;  ///< 3 * width * height
 };
 
-/// 8-bit grayscale image, row by row.
+/// 8-bit grayscale image.
 struct VIEWGAIN_EXPORT Gray8Image {
   int width = 0;                     ///< [px]
   int height = 0;                    ///< [px]
-  std::vector<std::uint8_t> pixels;  ///< row by row
+  std::vector<std::uint8_t> pixels;  ///< row-major
 };
 
 /// Reads a 16-bit grayscale PNG of exactly this size; raw values, no gamma. Throws Error(io) if the
-/// file cannot be read and Error(format), naming the file, if it is damaged or of another kind or
+/// file cannot be read and Error(format) with the file if it is damaged or has another kind or
 /// size.
 [[nodiscard]] VIEWGAIN_EXPORT GrayImage read_gray_png(const std::filesystem::path& path, int width,
                                                       int height);
 
-/// Reads a grayscale PNG of 1 to 8 bits of exactly this size; raw values, widened to 8 bits. Throws
-/// as read_gray_png().
+/// Reads a grayscale PNG of 1 to 8 bits of exactly this size; raw values, extended to 8 bits.
+/// Throws as read_gray_png().
 [[nodiscard]] VIEWGAIN_EXPORT Gray8Image read_gray8_png(const std::filesystem::path& path,
                                                         int width, int height);
 
-/// Width and height of a PNG [px], from the file's first bytes. Throws Error(io) if it cannot be
-/// read and Error(format), naming it, if it does not begin as a PNG does.
+/// Width and height of a PNG [px] from the file's first bytes. Throws Error(io) if it cannot be
+/// read and Error(format) with the file if it does not begin as a PNG.
 [[nodiscard]] VIEWGAIN_EXPORT std::array<int, 2> png_size(const std::filesystem::path& path);
 
-/// Atomic: a temporary file is renamed. Throws Error(io), and Error(invalid_argument) if the values
-/// are not as many as the pixels take.
+/// Writes a 16-bit image. Atomic. Throws Error(io), and Error(invalid_argument) for a wrong number
+/// of values.
 VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const GrayImage& image);
-/// As above, of 8 bits a channel.
+/// As above, 8 bits per channel.
 VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const RgbImage& image);
-/// As above, of 8 bits.
+/// As above, 8 bits.
 VIEWGAIN_EXPORT void write_png(const std::filesystem::path& path, const Gray8Image& image);
 
 }  // namespace viewgain

@@ -10,27 +10,25 @@
 #include "viewgain/core/pose_io.hpp"
 
 /// @file
-/// Files of poses, T_world_camera, whose ending says the format: .npy for numpy, else TUM text.
-/// Cost: a file is read or written once, O(poses) in time and memory.
+/// Pose files, T_world_camera; the name's ending determines the format: .npy for numpy, otherwise
+/// TUM text. Each call reads or writes the file once, with O(poses) time and memory.
 
 namespace viewgain {
 
-/// Reads TUM text (read_tum()), or for a name that ends in .npy an array that numpy wrote: rows
-/// with the columns tx, ty, tz, qx, qy, qz, qw and perhaps timestamp, or matrices (n, 4, 4), of
-/// float64 or float32, in C's or Fortran's order. Timestamps are 0, 1, 2, ... if there are none.
-/// Throws what read_tum() throws; of a .npy an error names the row.
+/// Reads TUM text (read_tum()) or a .npy array: rows with the columns tx, ty, tz, qx, qy, qz, qw
+/// and optionally timestamp, or (n, 4, 4) matrices; float64 or float32, C or Fortran order. Default
+/// timestamps are 0, 1, 2, ... Throws as read_tum(); errors of a .npy name the row.
 [[nodiscard]] VIEWGAIN_EXPORT PoseList load_poses(const std::filesystem::path& path);
 
-/// Writes what load_poses() reads: TUM text for .txt and .tum, for .npy rows with timestamp, tx,
-/// ty, tz, qx, qy, qz, qw. Throws what write_tum() throws, and Error(invalid_argument), naming the
-/// endings, for other names (not for pipes and devices).
+/// Writes a file for load_poses(): TUM text for .txt and .tum; for .npy rows with timestamp, tx,
+/// ty, tz, qx, qy, qz, qw. Throws as write_tum(), and Error(invalid_argument) with the valid
+/// endings for other names of regular files.
 VIEWGAIN_EXPORT void save_poses(const std::filesystem::path& path, std::span<const Pose> poses);
-/// The same with timestamps [s], one per pose.
+/// As above with timestamps [s], one per pose.
 VIEWGAIN_EXPORT void save_poses(const std::filesystem::path& path, std::span<const Pose> poses,
                                 std::span<const double> timestamps);
 
-/// What is wrong with the ending of a file that save_poses() is to write; empty: nothing. Never
-/// throws.
+/// Fault of the name's ending for save_poses(); empty if it is valid. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string fault_of_poses_name(const std::filesystem::path& path);
 
 }  // namespace viewgain

@@ -27,70 +27,67 @@ struct ClassicMapData;
 struct ClassicAccess;
 }  // namespace detail
 
-/// The gains of the literature, by name; apps/literature/README.md has equations and sources. Sums
-/// run over the rays of a view and the voxels v of each, in order; H is the entropy of a voxel's
-/// occupancy [nat] and P its visibility, the product of what the voxels before it on the ray let
-/// through.
+/// Gains of the literature; apps/literature/README.md has equations and sources. Sums run over the
+/// rays of a view and the voxels v of each ray, in order. H is the entropy of a voxel's occupancy
+/// [nat]; P is its visibility, the transmission of all voxels before it on the ray.
 enum class ClassicGain : std::uint8_t {
-  occlusion_aware,         ///< Σ P H [nat]
-  unobserved_voxel,        ///< Σ P H over unknown voxels [nat]
-  average_entropy,         ///< mean of H over the voxels passed [nat]
-  rear_side_voxel,         ///< rays that come to a surface through an unknown voxel [rays]
-  rear_side_entropy,       ///< Σ P H over the unknown voxels before such a surface [nat]
-  proximity_count,         ///< Σ (most - steps behind a measured surface) over unknown [voxels]
-  area_factor,             ///< of the shares of rays that meet surface, and what it hides [1]
-  unknown_volume,          ///< Σ of the rays' cones within unknown voxels [m³]
-  unknown_count,           ///< distinct unknown voxels [voxels]
-  surface_frontier_count,  ///< those of them with a free and an occupied neighbour [voxels]
+  occlusion_aware,    ///< Σ P H [nat]
+  unobserved_voxel,   ///< Σ P H over unknown voxels [nat]
+  average_entropy,    ///< mean of H over the crossed voxels [nat]
+  rear_side_voxel,    ///< rays that reach a surface through an unknown voxel [rays]
+  rear_side_entropy,  ///< Σ P H over the unknown voxels before such a surface [nat]
+  proximity_count,    ///< Σ (most - steps behind a measured surface) over unknown voxels [voxels]
+  area_factor,        ///< from the shares of rays that hit surface and space hidden by it [1]
+  unknown_volume,     ///< Σ of the volume of the rays' cones in unknown voxels [m³]
+  unknown_count,      ///< distinct unknown voxels [voxels]
+  surface_frontier_count,  ///< those with a free and an occupied neighbour [voxels]
 };
-/// Names of the gains, in their order.
+/// Names of the gains, in enumeration order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& classic_gain_names();
-/// The gain's name, as parse_classic_gain() reads it. Throws std::out_of_range for a number that is
-/// none of them.
+/// Name of the gain, as parse_classic_gain() reads it. Throws std::out_of_range for an invalid
+/// value.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view classic_gain_name(ClassicGain gain);
-/// Throws Error(invalid_argument) that lists the valid names.
+/// Parses a name. Throws Error(invalid_argument) listing the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT ClassicGain parse_classic_gain(std::string_view name);
-/// "nat", "rays", "voxels", "m^3" or "1". Throws std::out_of_range for a number that is none of
-/// them.
+/// Unit: "nat", "rays", "voxels", "m^3" or "1". Throws std::out_of_range for an invalid value.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view classic_gain_unit(ClassicGain gain);
-/// Does it need to know how far unknown voxels are behind what earlier views measured? Never
-/// throws.
+/// Whether it needs the distance of unknown voxels behind earlier measured surfaces. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool needs_occlusion(ClassicGain gain);
 
-/// These as a family for register_gains(), by ClassicGainEvaluator.
+/// These gains as a family for register_gains(), computed by ClassicGainEvaluator.
 [[nodiscard]] VIEWGAIN_EXPORT std::shared_ptr<const GainFamily> literature_gains();
 
-/// What changes the answer.
+/// Settings that affect the gains.
 struct VIEWGAIN_EXPORT ClassicConfig {
-  std::vector<ClassicGain> gains;     ///< results are in this order
-  int pixel_stride = 1;               ///< every s-th pixel of every s-th row, from pixel (0,0)
-  std::optional<double> min_range{};  ///< along the ray [m]; the sensor's unless given
-  std::optional<double> max_range{};  ///< along the ray [m]; the sensor's unless given
-  double unknown_prior = 0.5;         ///< probability p of a voxel that no reading told of
+  std::vector<ClassicGain> gains;  ///< gains to compute; results follow this order
+  int pixel_stride = 1;            ///< traces every s-th pixel of every s-th row, from pixel (0,0)
+  std::optional<double> min_range{};  ///< along the ray [m]; defaults to the sensor's
+  std::optional<double> max_range{};  ///< along the ray [m]; defaults to the sensor's
+  double unknown_prior = 0.5;         ///< occupancy probability p of an unobserved voxel
 };
 
-/// The sensor that a map's readings came from, and how far behind surfaces what it hid counts.
+/// The sensor of a map's readings, and the depth of occlusion behind surfaces.
 struct VIEWGAIN_EXPORT Acquisition {
-  Sensor sensor;                 ///< that the map's readings come from
-  double occlusion_depth = 0.3;  ///< along its rays, behind where they meet the surface [m]
+  Sensor sensor;                 ///< sensor of the map's readings
+  double occlusion_depth = 0.3;  ///< depth along its rays behind their hits [m]
 };
 
-/// What the classic gains read of a map: its scene, the log-odds of all voxels and, where they are
-/// asked for, the occlusion distances of unknown ones. An immutable value to be shared: members may
-/// be called from many threads. Members take any voxel and never throw; calls cost constant time.
+/// Data of a map for the classic gains: its scene, the log-odds of all voxels and, if requested,
+/// the occlusion distances of unknown ones. Immutable; members may be called from many threads,
+/// accept any voxel, never throw and take constant time.
 ///
-/// Occlusion distances: each ray of each view that the map remembers (BeliefGrid::views(), all
-/// pixels of `sensor`, from its min_range on) runs to the first occupied voxel within its
-/// max_range, unless an obstacle is before it. The k-th voxel behind that which the ray enters
-/// within occlusion_depth is k steps behind a measured surface, if it is unknown; the least of all
-/// rays counts.
+/// Occlusion distances: each ray of each view of the map (BeliefGrid::views(), all pixels of
+/// `sensor`, from its min_range on) runs to the first occupied voxel within its max_range, unless
+/// an obstacle is before it. The k-th voxel behind that voxel, within occlusion_depth, is k steps
+/// behind a measured surface if it is unknown. The minimum over all rays counts.
 class VIEWGAIN_EXPORT ClassicMap {
  public:
-  /// Obstacles are the scene's, voxels those of `grid` as it is. Throws Error(invalid_argument) for
-  /// a null scene or one of another workspace, a sensor that is not valid, or a depth that is
-  /// negative, not finite or over 140 voxels; Error(capacity) beyond 2^24 cubes of 128 voxels or
-  /// 2^31 voxels where blocks of 8³ are not uniform. One pass over the map (some milliseconds at
-  /// 128³) and, with `acquisition`, one over the rays of its views, on all threads of `exec`.
+  /// Uses the scene's obstacles and the voxels of the current `grid`. Throws
+  /// Error(invalid_argument) for a scene that is null or has another workspace, an invalid sensor,
+  /// or a depth that is negative, not finite or above 140 voxels; Error(capacity) above 2^24 cubes
+  /// of 128 voxels or 2^31 voxels in mixed blocks of 8³. Cost: one pass over the map (some
+  /// milliseconds at 128³) and, with `acquisition`, one over the rays of its views, on all threads
+  /// of `exec`.
   [[nodiscard]] static std::shared_ptr<const ClassicMap> build(
       std::shared_ptr<const VoxelScene> scene, const BeliefGrid& grid,
       const std::optional<Acquisition>& acquisition = {}, const ExecConfig& exec = {});
@@ -98,13 +95,14 @@ class VIEWGAIN_EXPORT ClassicMap {
   ClassicMap(const ClassicMap&) = delete;
   ClassicMap& operator=(const ClassicMap&) = delete;
 
-  /// The scene that the map was made of.
+  /// The scene of the map.
   [[nodiscard]] const VoxelScene& scene() const noexcept;
-  /// Steps behind a measured surface of an unknown voxel; 0: none known.
+  /// Steps of an unknown voxel behind a measured surface; 0: unknown.
   [[nodiscard]] int occlusion_steps(Index3 voxel) const;
-  /// Is it unknown, with a free and an occupied one among its 26 neighbours in the workspace?
+  /// Whether the voxel is unknown, with a free and an occupied one among its 26 neighbours in the
+  /// workspace.
   [[nodiscard]] bool is_surface_frontier(Index3 voxel) const;
-  /// Memory beside the scene's.
+  /// Memory in addition to the scene's.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
  private:
@@ -113,54 +111,53 @@ class VIEWGAIN_EXPORT ClassicMap {
   std::unique_ptr<const detail::ClassicMapData> data_;
 };
 
-/// Scores camera poses by any number of classic gains at once. A ray visits, for a positive length
-/// and in order, the voxels of the workspace from min_range on to the first occupied one (log-odds
-/// above 0), which it ends in, or to max_range, a known obstacle, the scene's support plane or the
-/// workspace's edge; none if it enters an occupied one before min_range. Nothing outside the
-/// workspace counts, and no ray twice; but a voxel that several rays pass counts with each of them,
-/// unless its gain says distinct.
+/// Computes any number of classic gains of camera poses at once. A ray visits, in order, the voxels
+/// of the workspace that it crosses from min_range to the first occupied one (log-odds above 0),
+/// where it ends, or to max_range, a known obstacle, the scene's support plane or the workspace's
+/// edge. A ray that enters an occupied voxel before min_range visits none. Each ray counts a voxel
+/// once; several rays count it several times, unless the gain counts distinct voxels.
 ///
-/// Rays are in single precision, as the tracer's: some in a hundred thousand go by the other side
-/// of a voxel's edge. Else gains agree with sums in double precision to 1e-5, counts of rays
-/// to 5e-4 and unknown_volume to 1e-3 (README.md). Thread safety: const
-/// members may run from many threads at once. Determinism: the same bits for any number of threads.
+/// Rays are in single precision, so a few in a hundred thousand pass a voxel's edge on the other
+/// side. Otherwise gains agree with sums in double precision to 1e-5, counts of rays to 5e-4 and
+/// unknown_volume to 1e-3 (README.md). Thread safety: const members may run from many threads at
+/// once. Bit-identical for any number of threads.
 ///
-/// Cost of evaluate(): all ten gains together take some 20 times the time of the paper's gain
-/// (perf/README.md). Cost of the constructor: a PinholeCamera::ray() a pixel; of with_map()
+/// Cost of evaluate(): all ten gains together take about 20 times the paper's gain
+/// (perf/README.md). Cost of the constructor: one PinholeCamera::ray() per pixel; with_map() takes
 /// constant time.
 class VIEWGAIN_EXPORT ClassicGainEvaluator {
  public:
-  /// Throws Error(invalid_argument), naming the value: no gain, one twice, a null map, a sensor
-  /// that is not valid, a stride below 1, ranges as GainConfig's, an unknown_prior outside 0..1, a
-  /// gain that needs occlusion distances of a map that was built without.
+  /// Throws Error(invalid_argument) naming the value: no gain, a duplicate gain, a null map, an
+  /// invalid sensor, a stride below 1, ranges as in GainConfig, an unknown_prior outside 0..1, or a
+  /// gain that needs occlusion distances with a map without them.
   ClassicGainEvaluator(std::shared_ptr<const ClassicMap> map, const Sensor& sensor,
                        const ClassicConfig& config, const ExecConfig& exec = {});
   ~ClassicGainEvaluator();
   ClassicGainEvaluator(ClassicGainEvaluator&&) noexcept;
   ClassicGainEvaluator& operator=(ClassicGainEvaluator&&) noexcept;
 
-  /// The evaluator of another map, for following one as it grows; rays and threads are shared.
-  /// Throws as the constructor does for a map.
+  /// An evaluator for another map, to follow a growing map; shares rays and threads. Throws as the
+  /// constructor for a map.
   [[nodiscard]] ClassicGainEvaluator with_map(std::shared_ptr<const ClassicMap> map) const;
 
-  /// Gains of a batch: `results` in the unit of each gain, results[i * gains + g] for pose i and
-  /// gain g of the configuration. A bad pose (see ViewGain::Status) has NaN, a camera in an
-  /// occupied voxel 0. `statuses` is empty or has one place a pose. Returns how many poses were
-  /// scored: all, or fewer if `control` ended the call, when the others keep NaN and bad_pose.
-  /// Throws Error(invalid_argument) if the sizes do not fit.
+  /// Gains of a batch: results[i * gains + g] for pose i and gain g, in the unit of each gain. An
+  /// invalid pose (see ViewGain::Status) has NaN, a camera in an occupied voxel 0. `statuses` is
+  /// empty or has one entry per pose. Returns the number of scored poses: fewer than all if
+  /// `control` ended the call; the others keep NaN and bad_pose. Throws Error(invalid_argument) if
+  /// the sizes do not match.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                        std::span<ViewGain::Status> statuses = {},
                        const BatchControl& control = {}) const;
-  /// The same, into a new array: row i for pose i.
+  /// As above, into a new array: row i for pose i.
   [[nodiscard]] std::vector<double> evaluate(std::span<const Pose> T_world_camera) const;
 
-  /// What it was made with.
+  /// The settings.
   [[nodiscard]] const ClassicConfig& config() const noexcept;
-  /// What poses are scored against.
+  /// The map of the evaluator.
   [[nodiscard]] const ClassicMap& map() const noexcept;
-  /// One for each pixel of the strided image.
+  /// Rays per pose: one per pixel of the strided image.
   [[nodiscard]] std::size_t rays_per_pose() const noexcept;
-  /// Threads that a batch runs on.
+  /// Number of threads of a batch.
   [[nodiscard]] int num_threads() const noexcept;
 
  private:

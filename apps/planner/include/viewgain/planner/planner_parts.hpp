@@ -14,9 +14,9 @@
 namespace viewgain {
 
 /// A planner as the parts of Algorithm 1: its map is the representation, its proposals are the
-/// candidates, its ranking is the choice. active_view_planning(start, camera, parts, parts, parts,
-/// planner.planning()) takes the views that add(), propose() and rank() take one after the other.
-/// Thread safety and costs as these.
+/// candidates, its ranking is the decision. active_view_planning(start, camera, parts, parts,
+/// parts, planner.planning()) takes the same views as add(), propose() and rank() in turn. Thread
+/// safety and cost as these.
 /// @code
 /// ViewPlanner planner(ViewScorer(sensor, {.voxel_size = 0.01, .workspace = box}));
 /// planner.add_poses({"sphere", poses});
@@ -30,8 +30,8 @@ class VIEWGAIN_EXPORT PlannerParts final : public RepresentationUpdate,
                                            public ViewpointGeneration,
                                            public DecisionMaking {
  public:
-  /// The planner must outlive it and stay where it is. `config`: as ViewPlanner::rank(); ways begin
-  /// where the loop says that the camera is.
+  /// Keeps a reference to the planner. `config`: as in ViewPlanner::rank(); paths start at the
+  /// loop's camera pose.
   explicit PlannerParts(ViewPlanner& planner, const RankConfig& config = {})
       : planner_(planner), config_(config) {}
 
@@ -39,7 +39,7 @@ class VIEWGAIN_EXPORT PlannerParts final : public RepresentationUpdate,
   ModelProgress update(const Measurements& measurements) override;
   /// ViewPlanner::propose().
   Proposal generate(const Pose& T_world_camera) override;
-  /// ViewPlanner::rank(); `candidates` must be those of the last generate().
+  /// ViewPlanner::rank(); `candidates` must come from the last generate().
   std::optional<Decision> decide(const Pose& T_world_camera,
                                  std::span<const Candidate> candidates) override;
 

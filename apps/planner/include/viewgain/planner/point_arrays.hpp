@@ -12,14 +12,14 @@
 
 namespace viewgain {
 
-/// Fused points as the arrays that quality and files ask for.
+/// Fused points as arrays, for quality figures and files.
 struct VIEWGAIN_EXPORT PointArrays {
-  std::vector<std::array<double, 3>> positions;  ///< entry i of point i, world [m]
-  std::vector<std::array<double, 3>> normals;    ///< likewise, unit vectors toward free space
-  std::vector<SymmetricMatrix3> covariances;     ///< entry i of point i [m²]
+  std::vector<std::array<double, 3>> positions;  ///< position of point i, world [m]
+  std::vector<std::array<double, 3>> normals;    ///< unit vector towards free space of point i
+  std::vector<SymmetricMatrix3> covariances;     ///< covariance of point i [m²]
 };
 
-/// Copies of the points' places, normals and covariances, in their order. Checks nothing. Costs
+/// Copies the positions, normals and covariances of the points, in order. Checks nothing. Cost:
 /// O(points).
 [[nodiscard]] inline PointArrays arrays_of(std::span<const FusedPoint> points) {
   PointArrays arrays;

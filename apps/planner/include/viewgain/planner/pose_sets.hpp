@@ -18,41 +18,40 @@
 
 namespace viewgain {
 
-/// A fixed set of poses with a name: sphere, dome, rings, sequence, file.
+/// A named set of fixed poses: sphere, dome, rings, sequence, file.
 struct VIEWGAIN_EXPORT PoseSet {
   std::string generator;    ///< its name
   std::vector<Pose> poses;  ///< T_world_camera, in the generator's order
 };
 
-/// The generators of candidates by name, in this order: boundary, sphere, dome, rings, shell,
-/// sequence.
+/// Names of the generators, in this order: boundary, sphere, dome, rings, shell, sequence.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& generator_names();
 
-/// What the pose sets are made for.
+/// Parameters of the pose sets.
 struct VIEWGAIN_EXPORT PoseSetRequest {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< what they look at, world [m]
-  double distance = 0;                               ///< from it [m]
-  /// 500 unless given; rings: 48, 80, 288 or 864, 48.
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< point they look at, world [m]
+  double distance = 0;                               ///< distance from it [m]
+  /// Number of poses: 500 by default; rings: 48 (default), 80, 288 or 864.
   std::optional<std::size_t> count{};
-  std::uint64_t seed = 1;       ///< shell
-  std::optional<Pose> start{};  ///< T_world_camera of the view before (sequence, spread_out)
-  /// Puts the set's poses into an order in which any number of the first ones are spread evenly:
-  /// each as far as can be from the start's direction and those before it, ties to the lower index.
+  std::uint64_t seed = 1;       ///< seed of the shell
+  std::optional<Pose> start{};  ///< T_world_camera of the previous view (sequence, spread_out)
+  /// Orders the poses so that any number of the first ones is spread evenly: each is as far as
+  /// possible from the start's direction and all earlier ones; ties go to the lower index.
   bool spread_out = false;
-  ReachRegion reach{};  ///< of the robot (shell); a list of poses says nothing here
+  ReachRegion reach{};  ///< reach of the robot (shell); lists of poses in it have no effect here
 };
 
-/// The workspace's centre, and the distance from which an object that the workspace has room for
-/// fills the image. Costs constant time.
+/// Centre of the workspace, and the distance from which an object as large as the workspace fills
+/// the image. Constant time.
 [[nodiscard]] VIEWGAIN_EXPORT PoseSetRequest around_workspace(const BeliefGrid& grid,
                                                               const Sensor& sensor);
 
-/// The set of a generator other than boundary. Shell: where the reach has shells
-/// or boxes at random in these, looking at the centre, fewer than asked for where few of a million
-/// lie in all that limits the reach; else between 0.8 and 1.25 times the distance.
-/// Sequence: eight views on the start's circle of latitude, in steps of 45°, then one from above.
-/// Throws Error(invalid_argument) for an unknown name, a count that the generator has not, and more
-/// than 20,000 poses to spread out.
+/// The set of a generator other than boundary. Shell: random poses that look at the centre, within
+/// the reach's shells or boxes if it has any (fewer than requested if few of a million samples are
+/// within all limits), otherwise between 0.8 and 1.25 times the distance. Sequence: eight views on
+/// the start's circle of latitude in steps of 45°, then one from above. Throws
+/// Error(invalid_argument) for an unknown name, an unsupported count, and more than 20,000 poses to
+/// spread out.
 [[nodiscard]] VIEWGAIN_EXPORT PoseSet make_pose_set(std::string_view generator,
                                                     const PoseSetRequest& request);
 

@@ -15,118 +15,114 @@
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 /// @file
-/// Which views are best, by one rule for the planner, `next`, `model`, `reconstruct` and studies
-/// by a gain. `score` ranks what it is given. Poses are T_world_camera.
+/// Ranking of views by one rule, used by the planner, `next`, `model`, `reconstruct` and studies
+/// with a gain; `score` ranks given poses. Poses are T_world_camera.
 
 namespace viewgain {
 
-/// By what views are ranked.
+/// Settings of the ranking.
 struct VIEWGAIN_EXPORT RankConfig {
-  /// One a pose, subtracted from its gain, in the gain's unit. Empty: none.
+  /// Cost of each pose, subtracted from its gain, in the gain's unit. Empty: none.
   std::span<const double> costs{};
-  /// Of the straight way from `current_pose`, likewise. The combined gain of a square metre of new
-  /// surface goes with 1 / voxel², so a cost per metre does, too.
+  /// Cost per metre of straight path from `current_pose`, likewise. The combined gain per square
+  /// metre of new surface is proportional to 1 / voxel², so choose the cost per metre accordingly.
   double cost_per_metre = 0;
-  /// Where the camera is now, T_world_camera; only its centre is used. If it is missing,
-  /// ViewPlanner::rank() uses the last pose that it was given, and the functions count no path from
-  /// it.
+  /// Current camera pose, T_world_camera; only its centre is used. If it is missing,
+  /// ViewPlanner::rank() uses the last pose that it was given, and the functions ignore paths.
   std::optional<Pose> current_pose{};
-  const ViewMeasure* measure = nullptr;     ///< instead of the gain, as in BestConfig
-  const RunMeasure* run_measure = nullptr;  ///< likewise
-  /// The views are good together: each is ranked by what it adds to those before it, so that no two
-  /// show the same (plan_tour() without ways). Not with measures.
+  const ViewMeasure* measure = nullptr;     ///< custom gain, as in BestConfig
+  const RunMeasure* run_measure = nullptr;  ///< custom gain, as in BestConfig
+  /// Ranks each view by its marginal gain given those before it, so that no two show the same
+  /// (plan_tour() without paths). Cannot be used with measures.
   bool together = false;
-  /// All poses are scored in full. Else, but by the paper's gain, where it is always so, by two
-  /// stages: see GainEvaluator::race(). Of views that go together the first is found so; the others
-  /// are chosen of few poses, 32 or more, by a quarter of their rays, and what they add is an
-  /// estimate.
+  /// Scores all poses in full. False: uses two stages, see GainEvaluator::race(), except with the
+  /// paper's gain. With `together` the first view is found so; the others are chosen among a few
+  /// poses, at least 32, with a quarter of their rays, and their marginal gains are estimates.
   bool exact = false;
 };
 
-/// How many views are planned together, in a short order, and how many of them are taken before
-/// anything is decided anew: K = M = 1 one view at a time, M = 1 a receding horizon, M = K all of
-/// them. After each frame views that have become impossible or that promise too little by then are
-/// left out; when none is left it is planned anew.
+/// Planning ahead: K views are planned together in a short order, and M of them are taken before
+/// replanning. K = M = 1: one view at a time; M = 1: receding horizon; M = K: the whole plan. After
+/// each frame, views that became impossible or no longer promise enough are dropped; if none is
+/// left, the planner replans.
 struct VIEWGAIN_EXPORT PlanAhead {
   std::size_t plan = 1;  ///< K
   std::size_t take = 1;  ///< M
-  /// A view that promises less of new surface, as a share of the surface so far, is not planned and
-  /// no longer taken; by the paper's gain one that gains nothing.
+  /// Minimum expected new surface of a view, as a share of the surface so far, to be planned and
+  /// taken; with the paper's gain any positive gain suffices.
   double least_share = kStopArea;
 
-  /// Is more than one view planned?
+  /// Whether more than one view is planned.
   [[nodiscard]] bool is_on() const noexcept { return plan > 1; }
   /// Throws Error(invalid_argument) unless 1 <= take <= plan <= 1000 and the share is in [0, 1).
   void check() const;
 };
 
-/// Who proposes views of a plan that are still to be taken.
+/// Generator name of the remaining views of a plan.
 inline constexpr std::string_view kPlanned = "plan";
 
-/// One of the best.
+/// One of the best views.
 struct VIEWGAIN_EXPORT RankedView {
-  std::size_t index = 0;  ///< of the candidate in the proposal, or of the pose that was given
-  Pose T_world_camera;    ///< where the camera would be
-  ViewGain gain;          ///< all NaN with a measure; what it adds if views go together
-  double worth = 0;       ///< gain or measure, less the cost, in the gain's unit
+  std::size_t index = 0;  ///< index of the candidate in the proposal, or of the given pose
+  Pose T_world_camera;    ///< camera pose
+  ViewGain gain;          ///< all NaN with a measure; marginal if views are ranked together
+  double worth = 0;       ///< gain or measure, minus the cost, in the gain's unit
 };
 
 /// The best views.
 struct VIEWGAIN_EXPORT Ranking {
   std::vector<RankedView> views;  ///< best first
-  bool complete = true;           ///< false: a stop was requested
-  /// Those that were scored in full, by index, and their gains: all, or what the second of two
-  /// stages took. Empty with a measure.
+  bool complete = true;           ///< false: stopped early
+  /// Indices of the views scored in full: all, or those of the second stage. Empty with a measure.
   std::vector<std::size_t> scored_indices{};
-  std::vector<ViewGain> scored_gains{};  ///< of these, in their order
-  double way = 0;                        ///< through the views of a plan, by straight ways [m]
-  /// Of what is decided on, the first view or all of a new plan, in the gain's unit; NaN: nothing
-  /// has a cost, or the views are left of a plan, which is not given up for its way.
+  std::vector<ViewGain> scored_gains{};  ///< their gains, in the same order
+  double way = 0;                        ///< straight-line path through the views of a plan [m]
+  /// Worth of the decision, of the first view or a whole new plan, in the gain's unit; NaN: there
+  /// are no costs, or the views are the rest of a plan, which is not abandoned because of paths.
   double worth = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What each pose costs by `config`, the way from its current_pose included; empty: nothing costs.
-/// Throws Error(invalid_argument) for a cost_per_metre that is negative or not finite, and for a
+/// Cost of each pose under `config`, including the path from current_pose; empty: none. Throws
+/// Error(invalid_argument) for a cost_per_metre that is negative or not finite, and for a
 /// current_pose that is not rigid (1e-3).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<double> view_costs(std::span<const Pose> T_world_camera,
                                                              const RankConfig& config);
 
-/// The k best of the poses, at least one of them wanted, whether they are possible or not. Ties go
-/// to the earlier one; bad poses are left out and, together, those that add nothing. Throws
-/// Error(invalid_argument) as view_costs() and GainEvaluator::best().
+/// The k best of the poses, k >= 1; ignores feasibility. Ties go to the earlier pose; omits invalid
+/// poses and, with `together`, those without marginal gain. Throws Error(invalid_argument) as
+/// view_costs() and GainEvaluator::best().
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  std::size_t k, const RankConfig& config,
                                                  const BatchControl& control = {});
 
-/// At most `ahead.plan` of the poses that are good together, in an order that is short to drive
-/// from config.current_pose on by straight ways (nothing: it begins anywhere), at
-/// config.cost_per_metre: plan_tour(). `surface_area` is what least_share is of [m²]. Poses must be
-/// finite. Throws Error(invalid_argument) as PlanAhead::check(), with a measure, and as
-/// view_costs() and plan_tour().
+/// At most `ahead.plan` poses that are good together, ordered for a short straight-line path from
+/// config.current_pose (empty: any start) at config.cost_per_metre; see plan_tour(). `surface_area`
+/// [m²] is the reference of least_share. Poses must be finite. Throws Error(invalid_argument) as
+/// PlanAhead::check(), with a measure, and as view_costs() and plan_tour().
 [[nodiscard]] VIEWGAIN_EXPORT Ranking plan_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  const PlanAhead& ahead, double surface_area,
                                                  const RankConfig& config,
                                                  const BatchControl& control = {});
 
-/// Takes the views of a plan out that promise too little on the map as it is now. `surface_area` as
+/// Removes the views of a plan that promise too little on the current map. `surface_area` as in
 /// plan_views().
 VIEWGAIN_EXPORT void keep_worth(const GainEvaluator& evaluator, const PlanAhead& ahead,
                                 double surface_area, Proposal& planned);
 
-/// What is left of a plan, in its order, each view with its gain by itself. Throws as plan_views().
+/// The rest of a plan, in order, with the individual gain of each view. Throws as plan_views().
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_in_turn(const GainEvaluator& evaluator,
                                                    std::span<const Pose> T_world_camera,
                                                    RankConfig config,
                                                    const BatchControl& control = {});
 
-/// What the stopping rules want to know of a ranking: of its first view what that promises by
-/// itself, whatever views it goes with; nothing where no view has a gain.
+/// The figures of a ranking for the stopping rules: individual gain and area of its first view,
+/// even in a plan; empty if no view has a gain.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<DecisionMaking::Decision> decision_of(
     const Ranking& ranking, GainModel model);
 
-/// Takes the views out that gain nothing, unless a measure of the user's own ranked them.
+/// Removes the views without gain, unless a custom measure ranked them.
 VIEWGAIN_EXPORT void leave_out_gainless(Ranking& ranking, const RankConfig& config);
 
 }  // namespace viewgain

@@ -15,14 +15,13 @@
 
 namespace viewgain {
 
-/// DATAACQUISITION of Algorithm 1 by a simulated camera: `frames_per_view` frames from each pose,
-/// numbered on, so that view and frame fix the noise. When a stop is requested a view ends after
-/// the frame that is being taken. Thread safety: one call at a time. Cost:
-/// SimulatedSensor::acquire() a frame. Calls throw as that.
+/// DATAACQUISITION of Algorithm 1 with a simulated camera: `frames_per_view` frames from each pose,
+/// numbered consecutively, so that view and frame determine the noise. A stop ends a view after the
+/// current frame. Thread safety: one call at a time. Throws and costs as SimulatedSensor::acquire()
+/// per frame.
 class VIEWGAIN_EXPORT SimulatedAcquisition : public DataAcquisition {
  public:
-  /// `stop` ends a view after the frame at hand. `frames_per_view` must be at least 1, which is not
-  /// checked.
+  /// `stop` ends a view after the current frame. `frames_per_view` must be at least 1 (unchecked).
   SimulatedAcquisition(SimulatedSensor camera, std::size_t frames_per_view, std::stop_token stop)
       : camera_(std::move(camera)), frames_per_view_(frames_per_view), stop_(std::move(stop)) {}
 
@@ -38,19 +37,17 @@ class VIEWGAIN_EXPORT SimulatedAcquisition : public DataAcquisition {
   DepthFrame last_frame_;
 };
 
-/// The pose that is reported for a camera at T_world_camera, off by `sigma`: Gaussian, independent,
-/// fixed by seed and view. That of view 0 is exact: it defines the world's frame, which nothing
-/// else could tell. Thread safe. Throws Error(invalid_argument), naming the value, if a sigma is
-/// negative or not finite.
+/// The reported pose of a camera at T_world_camera, with independent Gaussian errors `sigma`,
+/// determined by seed and view. View 0 is exact, because it defines the world frame. Thread safe.
+/// Throws Error(invalid_argument) naming the value if a sigma is negative or not finite.
 [[nodiscard]] VIEWGAIN_EXPORT Pose reported_pose(const Pose& T_world_camera, std::size_t view,
                                                  const PoseSigma& sigma, std::uint64_t seed);
 
-/// DATAACQUISITION that goes where it is sent and reports a pose that is a little off. Thread
-/// safety: one call at a time. A call throws what its camera's does and as reported_pose(), and
-/// costs what its camera's does.
+/// DATAACQUISITION that reports slightly wrong poses. Thread safety: one call at a time. Throws as
+/// its camera and reported_pose(); costs as its camera.
 class VIEWGAIN_EXPORT MisreportedAcquisition : public DataAcquisition {
  public:
-  /// Keeps the reference. The sigmas are checked by acquire().
+  /// Keeps a reference to the camera. acquire() checks the sigmas.
   MisreportedAcquisition(DataAcquisition& camera, const PoseSigma& sigma, std::uint64_t seed)
       : camera_(camera), sigma_(sigma), seed_(seed) {}
 

@@ -26,50 +26,49 @@
 
 namespace viewgain {
 
-/// Settings of a ViewPlanner that its ScorerConfig does not have.
+/// Settings of a ViewPlanner in addition to ScorerConfig.
 struct VIEWGAIN_EXPORT PlannerConfig {
-  ReachRegion reach{};  ///< where the camera may be; a list of poses in it adds candidates
-  ReachRegion::Tolerance taken_tolerance{};                    ///< when two poses are the same
+  ReachRegion reach{};  ///< reachable camera poses; a list of poses in it adds candidates
+  ReachRegion::Tolerance taken_tolerance{};  ///< tolerance for two poses to be the same
   double max_near_share = FeasibilityConfig{}.max_near_share;  ///< as in FeasibilityConfig
-  /// False: do not check body, obstacles and reach. Poses taken or tried are still left out.
+  /// False: ignores body, obstacles and reach. Poses taken or tried are still omitted.
   bool check_feasibility = true;
-  /// If PlanAhead::is_on(), rank() of a proposal plans PlanAhead::plan views. propose() then
+  /// If PlanAhead::is_on(), rank() of a proposal plans PlanAhead::plan views, and propose() then
   /// returns the rest of the plan.
   PlanAhead ahead{};
   std::size_t max_views = PlanningConfig{}.max_views;    ///< as in PlanningConfig
   std::size_t idle_views = PlanningConfig{}.idle_views;  ///< as in PlanningConfig
   /// As in PlanningConfig. Counts only views taken at the best pose of the last ranking.
   std::size_t broken_promises = PlanningConfig{}.broken_promises;
-  /// As in PlanningConfig [nat, m² for trace]; for the paper's gain only. See set_stop_rules().
+  /// As in PlanningConfig [nat, m² for trace]; only for the paper's gain. See set_stop_rules().
   std::optional<double> stop_gain{};
-  /// As in PlanningConfig; for the other gains only. The surface so far is the sum of
+  /// As in PlanningConfig; only for the other gains. The surface so far is the sum of
   /// MapUpdate::new_area over the views. See set_stop_rules() for the default.
   std::optional<double> stop_area{};
 };
 
-/// What a view brought.
+/// Result of a view.
 struct VIEWGAIN_EXPORT AddedView {
-  std::size_t view = 0;        ///< from 0; those that brought nothing count
-  MapUpdate update{};          ///< of the map
-  ModelProgress progress{};    ///< after it; surface_area: the sum of new areas so far [m²]
-  double entropy_removed = 0;  ///< by this view [nat, or m² for trace]
+  std::size_t view = 0;        ///< from 0, including views that brought nothing
+  MapUpdate update{};          ///< update of the map
+  ModelProgress progress{};    ///< state after it; surface_area: the sum of new areas so far [m²]
+  double entropy_removed = 0;  ///< increase of the removed entropy [nat, or m² for trace]
 };
 
-/// Next-best views, step by step: frames in, views out. It runs Algorithm 1 one step per call. To a
-/// ViewScorer it adds candidates, reach, stopping rules and a record of the poses tried.
+/// Next-best views step by step: runs Algorithm 1 with one call per step. Adds candidates, reach,
+/// stopping rules and a record of tried poses to a ViewScorer.
 ///
 /// One cycle: add() a frame, propose() candidates, rank() them and ask should_stop(). Then move the
 /// camera, report the result with tried(), and add() the next frame. If reported poses are inexact,
-/// add() each frame at the pose that register_frame() finds. With PlannerConfig::ahead, rank()
-/// plans several views. propose() then returns the rest of the plan, until PlanAhead::take views
-/// are taken.
+/// add() each frame at the pose from register_frame(). With PlannerConfig::ahead, rank() plans
+/// several views, and propose() returns the rest of the plan until PlanAhead::take views are taken.
 ///
 /// A call that throws Error(invalid_argument) changes nothing. Exceptions from user code (a
 /// generation, the reach predicate, a measure) pass through propose() and rank(). Thread safety:
 /// one call at a time. Deterministic for any number of threads. A moved-from planner can only be
-/// assigned to or destroyed. Costs: add() as ViewScorer::add(); propose() as
-/// FeasibilityChecker::check() of the candidates, and the generations; rank() as
-/// GainEvaluator::race() or best(); register_frame() as fused_points() and FrameAlignment.
+/// assigned to or destroyed. Cost: add() as ViewScorer::add(); propose() as
+/// FeasibilityChecker::check() and the generations; rank() as GainEvaluator::race() or best();
+/// register_frame() as fused_points() and FrameAlignment.
 /// @code
 /// ViewPlanner planner(ViewScorer(sensor, {.voxel_size = 0.005, .workspace = box}));
 /// planner.add_poses({"dome", dome_poses(500, 0.6)});
@@ -79,105 +78,102 @@ struct VIEWGAIN_EXPORT AddedView {
 /// @endcode
 class VIEWGAIN_EXPORT ViewPlanner {
  public:
-  /// `scorer`: an empty one or, to continue from a map, one with a map. Throws
-  /// Error(invalid_argument), naming the value, for settings out of their range.
+  /// `scorer`: with an empty map, or with a map to continue. Throws Error(invalid_argument) naming
+  /// the value for settings out of range.
   explicit ViewPlanner(ViewScorer scorer, const PlannerConfig& config = {});
   ~ViewPlanner();
   ViewPlanner(ViewPlanner&&) noexcept;
   ViewPlanner& operator=(ViewPlanner&&) noexcept;
 
-  /// A fixed set of candidates, proposed from the next propose() on; the last one is void. Throws
-  /// Error(invalid_argument) for a pose that is not rigid (1e-3).
+  /// Adds a fixed set of candidates for all later calls of propose(); invalidates the last
+  /// proposal. Throws Error(invalid_argument) for a pose that is not rigid (1e-3).
   void add_poses(PoseSet set);
-  /// Candidates that are made anew for each proposal, say at the boundaries of the surface
-  /// (BoundaryGeneration of viewgain::planner_mesh). Not part of what save() keeps.
+  /// Adds candidates that are recomputed for each proposal, such as those at surface boundaries
+  /// (BoundaryGeneration of viewgain::planner_mesh). save() does not include it.
   void add_generation(std::shared_ptr<ViewpointGeneration> generation);
 
-  /// Where the camera was, by what the frame shows of the map so far: see FrameAlignment. Changes
-  /// nothing. A frame that is registered is best put in at the pose that was found, one that is
-  /// refused not at all, one of which the map shows too little as reported. Throws
-  /// Error(invalid_argument) as FrameAlignment::register_frame().
+  /// Estimates the camera pose from the frame and the map; see FrameAlignment. Changes nothing. Add
+  /// a registered frame at the estimated pose, a frame with too little overlap as reported, and a
+  /// refused frame not at all. Throws Error(invalid_argument) as FrameAlignment::register_frame().
   [[nodiscard]] FrameRegistration register_frame(const DepthFrame& frame, const Pose& T_reported,
                                                  const PoseSigma& sigma = kUsualPoseSigma) const;
 
-  /// Puts a frame into the map and brings the scene up to date; the last proposal is void. What
-  /// became of it AddedView::update says by its verdict: a frame that cannot be used leaves the map
-  /// as it was, counts as a view that brought nothing, and its pose, if it is one, is tried. Throws
-  /// Error(invalid_argument) for a pose_sigma that is none. Error(capacity) and Error(backend) are
-  /// those of VoxelScene::build(): the frame is in the map then, the scene is the one before.
-  /// DepthFrame::known_depth is set anew by the planner's obstacles. `pose_sigma` [m], [rad] is
-  /// what the pose may be off beside the sensor's own pose_sigma, after register_frame() what
-  /// FrameRegistration::pose_sigma() says.
+  /// Integrates a frame and updates the scene; invalidates the last proposal. The verdict in
+  /// AddedView::update gives the outcome: a frame that cannot be used leaves the map unchanged and
+  /// counts as a view that brought nothing, with its pose tried. The planner's obstacles replace
+  /// DepthFrame::known_depth. `pose_sigma` [m], [rad] is the pose's uncertainty in addition to the
+  /// sensor's; after register_frame() use FrameRegistration::pose_sigma(). Throws
+  /// Error(invalid_argument) for an invalid pose_sigma; Error(capacity) and Error(backend) as
+  /// VoxelScene::build(), with the frame in the map and the previous scene.
   AddedView add(const DepthFrame& frame, const Pose& T_world_camera,
                 const PoseSigma& pose_sigma = {});
-  /// The same of several frames from one pose; there must be one.
+  /// As above, for one or more frames from one pose.
   AddedView add(std::span<const DepthFrame> frames, const Pose& T_world_camera,
                 const PoseSigma& pose_sigma = {});
 
-  /// A view that came to nothing before there was a frame to add, or whose frame is left out: it
-  /// counts as add() counts one that cannot be used. `T_world_camera`: where it was taken, if that
-  /// is known. Throws Error(invalid_argument) for a verdict of frames in the map.
+  /// Records a view that failed before there was a frame, or whose frame is left out; it counts as
+  /// a frame that cannot be used in add(). `T_world_camera`: its pose, if known. Throws
+  /// Error(invalid_argument) for the verdict of a frame in the map.
   AddedView drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera = {});
-  /// What became of the frames so far.
+  /// Verdicts of the frames so far.
   [[nodiscard]] const FrameCounts& frames() const noexcept;
 
-  /// The candidates of the reach region's poses, the sets and the generations, in this order, that
-  /// are possible now by the rules of ViewProposer, and how many are not and why. Valid until the
-  /// next add() or propose(). While views of a plan are left that are possible and still promise
-  /// enough, these alone, by kPlanned. An earlier ranking since the last view is void. Throws
-  /// Error(invalid_argument), as rank() does, if there were frames and none could be used: the
-  /// map says nothing, and what is wrong with the set-up would not be noticed.
+  /// Possible candidates from the reach region's poses, the sets and the generations, in this
+  /// order, under the rules of ViewProposer, and the number of dropped ones by reason. While views
+  /// of a plan are left that are possible and still promise enough, only these (generator
+  /// kPlanned). Valid until the next add() or propose(). Invalidates earlier rankings since the
+  /// last view. Throws Error(invalid_argument), as rank() does, if no frame so far could be used,
+  /// because that points to a wrong set-up.
   const Proposal& propose();
-  /// Behind the last proposal, in the order of the candidates, and valid as long.
+  /// Details of the last proposal, in the order of the candidates; valid as long.
   [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept;
-  /// Of the last proposal; 0 without one since the last view.
+  /// Number of candidates of the last proposal; 0 if there is none since the last view.
   [[nodiscard]] std::size_t candidate_count() const noexcept;
 
-  /// The k best of the proposal, fewer if there are fewer; without a measure of the user's own
-  /// those that gain nothing are left out, so none is an answer, too. Ties go to the earlier
-  /// candidate. With a plan ahead the next k of its views, in its order; it is the same for any k,
-  /// and goes by the gain alone. Paths start at RankConfig::current_pose. Default: the pose
-  /// of the last frame, usable or not, or of a later tried() that was reached; a lost pose changes
-  /// nothing. Throws Error(invalid_argument) without a proposal
-  /// since the last view, and as rank_views().
+  /// The k best of the proposal, or fewer. Views with no gain are omitted unless a measure ranks
+  /// them; the result may be empty. Ties go to the earlier candidate. With a plan ahead, the next k
+  /// of its views, in its order; the plan does not depend on k and uses only the gain. Paths start
+  /// at RankConfig::current_pose, by default the pose of the last frame, usable or not, or of a
+  /// later tried() that was reached. Throws Error(invalid_argument) without a proposal since the
+  /// last view, and as rank_views().
   [[nodiscard]] Ranking rank(std::size_t k = 1, const RankConfig& config = {},
                              const BatchControl& control = {});
-  /// The same of any poses, `T_world_camera` in any order; nobody looks whether they are possible.
-  /// Bad ones are left out. Says nothing to should_stop().
+  /// Ranks any poses, `T_world_camera`, without a check of feasibility. Omits invalid ones. Does
+  /// not affect should_stop().
   [[nodiscard]] Ranking rank(std::span<const Pose> T_world_camera, std::size_t k = 1,
                              const RankConfig& config = {}, const BatchControl& control = {});
 
-  /// The pose was commanded. `reached`: did the camera get there? It counts as taken then, else as
-  /// missed. In both cases it is not proposed again, and goes out of the proposal as it stands,
-  /// whose later candidates move up. Call it only for poses that were commanded. Throws
-  /// Error(invalid_argument) for a pose that is not rigid (1e-3).
+  /// Reports that the pose was commanded, and whether it was `reached`: then it counts as taken,
+  /// otherwise as missed. Either way it is not proposed again and leaves the current proposal,
+  /// whose later candidates move up. Throws Error(invalid_argument) for a pose that is not rigid
+  /// (1e-3).
   void tried(const Pose& T_world_camera, bool reached);
 
-  /// Why to end, if there is a reason: after add() max_views, idle or promises; after propose()
-  /// no_candidates or unreachable; after rank() of the proposal gain, area or, with costs, cost: no
-  /// view is worth its way. The last ranking of a view counts.
+  /// Reason to stop, if any: after add() max_views, idle or promises; after propose() no_candidates
+  /// or unreachable; after rank() of the proposal gain, area or, with costs, cost. Uses the last
+  /// ranking of a view.
   [[nodiscard]] std::optional<StopReason> should_stop() const noexcept;
 
-  /// The whole state in one file: a map that every program reads, with the rest in its note
-  /// "planner". Left out are what the constructor got, sets, generations and the last proposal.
-  /// Atomic: after a kill at any moment the file is the one before or this one. Throws Error(io).
+  /// Saves the state in one file: a map for any program, with the rest in its note "planner". Omits
+  /// the constructor's arguments, sets, generations and the last proposal. Atomic. Throws
+  /// Error(io).
   void save(const std::filesystem::path& path) const;
-  /// Continues where save() was called. With the same settings, sets and generations every later
-  /// answer has the same bits, from the next propose(), add() or rank() of given poses on. Throws
-  /// as the constructors; Error(invalid_argument) if the map has another layout than scorer.grid(),
-  /// or has grown since by other means than add(); Error(format) for a file of another kind; and as
-  /// load_vdb().
+  /// Continues after save(). With the same settings, sets and generations, all later results are
+  /// bit-identical, starting with the next propose(), add() or rank() of given poses. Throws as the
+  /// constructors; Error(invalid_argument) if the map's layout differs from scorer.grid(), or it
+  /// grew by other means than add(); Error(format) for another kind of file; and as load_vdb().
   [[nodiscard]] static ViewPlanner load(const std::filesystem::path& path, const Sensor& sensor,
                                         const ScorerConfig& scorer, const PlannerConfig& config,
                                         const ExecConfig& exec = {});
 
-  /// What the last rank() of the proposal decided on, for Algorithm 1; nothing: none will do.
+  /// Decision of the last rank() of the proposal, for Algorithm 1; empty: no candidate is suitable.
   [[nodiscard]] const std::optional<DecisionMaking::Decision>& decision() const noexcept;
-  /// When a run by these settings ends, for active_view_planning().
+  /// Stopping rules of these settings, for active_view_planning().
   [[nodiscard]] const PlanningConfig& planning() const noexcept;
-  /// The map, its scene and its evaluator. Its address stays the same when the planner is moved.
+  /// The map with its scene and evaluator. Moving the planner does not change its address.
   [[nodiscard]] const ViewScorer& scorer() const noexcept;
-  /// What the steps since the last add() took, it included: integrate, snapshot, candidates, score.
+  /// Duration of the steps since the last add(), including it: integrate, snapshot, candidates,
+  /// score.
   [[nodiscard]] const StageSeconds& seconds() const noexcept;
 
  private:

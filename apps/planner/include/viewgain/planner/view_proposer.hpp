@@ -21,72 +21,72 @@
 #include "viewgain/raycast/voxel_scene.hpp"
 
 /// @file
-/// Which views are possible, by one set of rules for all that propose: the program's next,
-/// model, reconstruct and score --feasible, studies, ViewPlanner, C and Python. Poses are
-/// T_world_camera. Functions keep the order of the poses.
+/// Rules for which views are possible, shared by next, model, reconstruct, score --feasible,
+/// studies, ViewPlanner, C and Python. Poses are T_world_camera. Functions keep the order of the
+/// poses.
 
 namespace viewgain {
 
-/// Why a candidate is dropped that was commanded and not reached.
+/// Reason for dropping a candidate that was commanded and not reached.
 inline constexpr std::string_view kMissed = "missed";
 
-/// A candidate that was not proposed.
+/// A dropped candidate.
 struct VIEWGAIN_EXPORT DroppedCandidate {
-  Candidate candidate;  ///< who was dropped
+  Candidate candidate;  ///< the candidate
   std::string reason;   ///< infeasibility_name() or kMissed
 };
 
-/// Their poses, in the same order.
+/// Their poses, in order.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> poses_of(std::span<const Candidate> candidates);
 
-/// What a ViewProposer lets through.
+/// Settings of a ViewProposer.
 struct VIEWGAIN_EXPORT ProposerConfig {
-  FeasibilityConfig feasibility{};  ///< what is possible, and what is taken
-  /// False: every candidate is possible but those that were taken or tried.
+  FeasibilityConfig feasibility{};  ///< feasibility, and tolerance for taken poses
+  /// False: accepts all candidates except those taken or tried.
   bool check_feasibility = true;
-  /// If the reach is limited, 1,200 reachable_hazard_views() from this distance [m] are added to
-  /// the candidates of generations; 0: none.
+  /// If the reach is limited, adds 1,200 reachable_hazard_views() from this distance [m] to the
+  /// candidates of generations; 0: none.
   double distance_in_reach = 0;
 };
 
-/// Candidates of sets and generations, and which of them are possible. Where the map's views were
-/// all taken inside its workspace, as in a room, and the region of reach is empty, generations'
-/// candidates stay inside it: nothing outside is mapped, so nothing there would be in the camera's
-/// way. Not thread safe.
+/// Collects candidates of sets and generations and checks which are possible. If all views of the
+/// map lie inside its workspace, as in a room, and the reach is unlimited, candidates of
+/// generations stay inside too, because obstacles outside are not mapped. Not thread safe.
 class VIEWGAIN_EXPORT ViewProposer {
  public:
-  /// The poses of the region of reach, if it has a list, are the set "reach". Throws as
+  /// The reach region's list of poses, if any, becomes the set "reach". Throws as
   /// FeasibilityChecker.
   ViewProposer(std::shared_ptr<const VoxelScene> scene, ProposerConfig config,
                const ExecConfig& exec = {});
 
-  /// A fixed set of candidates.
+  /// Adds a fixed set of candidates.
   void add_poses(PoseSet set);
-  /// Candidates that are made anew for each proposal.
+  /// Adds candidates that are recomputed for each proposal.
   void add_generation(std::shared_ptr<ViewpointGeneration> generation);
 
-  /// The candidates of the sets and then of the generations, each in their order, that are possible
-  /// in `scene`, which is the map's, now that `reached` and `missed` were tried; how many are not,
-  /// and why. `T_world_camera` is where the camera is, which generations are told. Costs as the
-  /// generations and FeasibilityChecker::check().
+  /// Candidates of the sets, then of the generations, in order, that are possible in `scene` of the
+  /// current map, given that `reached` and `missed` were tried; and the number of dropped ones by
+  /// reason. Generations receive the current camera pose `T_world_camera`. Cost: the generations,
+  /// and FeasibilityChecker::check().
   [[nodiscard]] Proposal propose(const BeliefGrid& grid, std::shared_ptr<const VoxelScene> scene,
                                  const Pose& T_world_camera, std::span<const Pose> reached = {},
                                  std::span<const Pose> missed = {});
 
-  /// Those of a set alone that are possible, by the same rules.
+  /// The possible poses of one set, under the same rules.
   [[nodiscard]] Proposal propose_these(const PoseSet& set, const BeliefGrid& grid,
                                        std::shared_ptr<const VoxelScene> scene,
                                        std::span<const Pose> reached = {},
                                        std::span<const Pose> missed = {});
 
-  /// Behind the last proposal, in the order of the candidates.
+  /// Details of the last proposal, in the order of the candidates.
   [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept { return dropped_; }
 
-  /// The pose was tried: what is the same view goes from `proposal` to the dropped, by `reason`.
+  /// Reports a tried pose: moves the same views from `proposal` to the dropped ones, with `reason`.
   void drop(const Pose& tried, std::string_view reason, Proposal& proposal);
 
  private:
-  /// Puts those that are possible into the proposal; the ones from `of_sets` on are of generations.
+  /// Adds the possible candidates to the proposal; those from index `of_sets` on come from
+  /// generations.
   void keep_possible(std::vector<Candidate> candidates, std::size_t of_sets, const BeliefGrid& grid,
                      std::span<const Pose> reached, std::span<const Pose> missed,
                      Proposal& proposal);

@@ -16,20 +16,19 @@
 
 namespace viewgain {
 
-/// Which points of a map's surface its views see past everything else in the map: what
-/// estimate_views asks for as `sees`. A view is traced when it is first asked about. Thread safety:
-/// one call at a time. Cost: a trace a view; then constant time a point.
+/// Tells which points of a map's surface its views see unoccluded: the `sees` of estimate_views.
+/// Traces a view on its first query. Thread safety: one call at a time. Cost: one trace per view,
+/// then constant time per point.
 class VIEWGAIN_EXPORT ViewSight {
  public:
-  /// Throws what GainEvaluator's constructor throws. `views`: T_world_camera, in the order of the
-  /// numbers by which they are asked about.
+  /// Throws as GainEvaluator's constructor. `views`: T_world_camera; queries use their indices.
   ViewSight(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
             std::span<const Pose> views, const ExecConfig& exec);
 
-  /// True if, of the pixel that shows the point and the eight round it, one has nothing that is not
-  /// free clearly before the point [m, world]: by more than two voxels and three sigmas of a
-  /// reading, since the point's own noise shell hides nothing. False outside the image. `view` is
-  /// not checked.
+  /// Whether the point [m, world] is unoccluded in at least one of the pixel that shows it and its
+  /// eight neighbours. Occluders must be closer than the point by more than two voxels and three
+  /// sigmas of a reading, so that the point's own noise does not hide it. False outside the image.
+  /// `view` is unchecked.
   [[nodiscard]] bool sees(std::size_t view, const Eigen::Vector3d& point);
 
  private:

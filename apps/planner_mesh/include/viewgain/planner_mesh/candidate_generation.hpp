@@ -20,109 +20,108 @@
 
 namespace viewgain {
 
-/// How views at the surface's open boundaries are made.
+/// Settings of the views at open surface boundaries.
 struct VIEWGAIN_EXPORT BoundaryViewsConfig {
-  EstimatorConfig estimator{};  ///< how views are estimated at a boundary
-  double working_distance = 0;  ///< from the surface [m]
-  /// A boundary is classed by the last view that has it in sight past the rest of the map, not only
-  /// in its image; a view is traced for that. Moves the ends of runs, and so the candidates.
+  EstimatorConfig estimator{};  ///< estimation of the views at a boundary
+  double working_distance = 0;  ///< distance from the surface [m]
+  /// Classifies a boundary by the last view that sees it unoccluded, not only in its image, which
+  /// requires a trace per view. Moves the ends of runs, and so the candidates.
   bool classes_by_sight = false;
 };
 
-/// A number of variants that makes a large batch: two distances, tilts of 15° to four sides, two
-/// rolls; a quarter of a view overlaps with what is known; regions of 80 mm. `spacing` of the
-/// surface's points [m]; Error(invalid_argument) unless it is positive.
+/// Settings for a large batch of variants: two distances, tilts of 15° to four sides, two rolls; an
+/// overlap of a quarter of a view; regions of 80 mm. `spacing` of the surface's points [m]; throws
+/// Error(invalid_argument) unless it is positive.
 [[nodiscard]] VIEWGAIN_EXPORT EstimatorConfig default_estimator(double spacing);
 
-/// default_estimator() for the surface that a map of these voxels (voxel_size [m]) will have, at
-/// the sensor's working distance. Throws as that.
+/// default_estimator() for the surface of a map with this voxel_size [m], at the sensor's working
+/// distance. Throws as that.
 [[nodiscard]] VIEWGAIN_EXPORT BoundaryViewsConfig default_boundary(const Sensor& sensor,
                                                                    double voxel_size);
 
-/// The views at the open boundaries of a map's surface, possible or not; `views`: T_world_camera of
-/// those so far, in their order. Throws and costs as estimate_views(), with classes_by_sight as
-/// ViewSight, too.
+/// Views at the open boundaries of a map's surface, feasible or not; `views`: T_world_camera so
+/// far, in order. Throws and costs as estimate_views(), and with classes_by_sight as ViewSight.
 [[nodiscard]] VIEWGAIN_EXPORT EstimatedViews
 boundary_views(const SurfaceMesh& surface, const std::shared_ptr<const VoxelScene>& scene,
                std::span<const Pose> views, const Sensor& sensor, const BoundaryViewsConfig& config,
                const ExecConfig& exec);
 
-/// These as candidates of the generator "boundary", in their order, numbered by it. Never throws.
-/// Costs O(candidates).
+/// The same as candidates of the generator "boundary", in order and numbered by it. Never throws.
+/// Cost: O(candidates).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Candidate> candidates_of(const EstimatedViews& estimated);
 
-/// VIEWPOINTSGENERATION at the boundaries of the surface in a map, made anew for each proposal.
-/// Where these are fewer than 200, hazard_views() are the rest: holes that no boundary names, and
-/// surface that is still expected where nothing is open. What ViewPlanner::add_generation() takes.
-/// Nothing is dropped; the planner looks what is possible. Where the map has no surface yet, or no
-/// views (as an OctoMap), a sphere round the workspace is proposed. Thread safety: one call at a
-/// time. Cost: the surface is made anew, fused_points() and reconstruct_surface(), estimate_views()
-/// and hazard_views().
+/// VIEWPOINTSGENERATION at the surface boundaries of a map, recomputed for each proposal, for
+/// ViewPlanner::add_generation(). Fills up to 200 candidates with hazard_views(), which cover holes
+/// without a boundary and surface expected where nothing is open. Does not check feasibility. A map
+/// without surface or views (such as an OctoMap) gets a sphere around the workspace. Thread safety:
+/// one call at a time. Cost: fused_points(), reconstruct_surface(), estimate_views() and
+/// hazard_views().
 class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
  public:
-  /// Of the surface in a map, say ViewPlanner::scorer(), which must outlive it; it is made anew for
-  /// each proposal.
+  /// Uses the surface in a map, such as that of ViewPlanner::scorer(), which must outlive it;
+  /// recomputes the surface for each proposal.
   BoundaryGeneration(const ViewScorer& scorer, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
-  /// Of a model's surface as it is; the model must outlive it.
+  /// Uses a model's current surface; the model must outlive it.
   BoundaryGeneration(const SurfaceModel& model, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
 
-  /// Those at the open boundaries of the surface as it is, and the hazard's. Throws as
+  /// The views at the open boundaries of the current surface, and those of the hazard. Throws as
   /// boundary_views().
   Proposal generate(const Pose& T_world_camera) override;
 
-  /// Behind the last proposal.
+  /// Details of the last proposal.
   [[nodiscard]] const EstimatedViews& estimated() const noexcept { return estimated_; }
 
  private:
   const ViewScorer& scorer_;
-  const SurfaceModel* model_ = nullptr;  // null: the surface is made of the map
+  const SurfaceModel* model_ = nullptr;  // null: the surface is computed from the map
   BoundaryViewsConfig config_;
   ExecConfig exec_;
   EstimatedViews estimated_;
 };
 
-/// Where candidates come from, and which are possible.
+/// Sources of candidates, and feasibility.
 struct VIEWGAIN_EXPORT GenerationConfig {
-  bool at_boundaries = true;        ///< candidates of BoundaryGeneration
-  BoundaryViewsConfig boundary{};   ///< views at the surface's open boundaries
-  std::vector<PoseSet> sets{};      ///< fixed poses, in the order of proposal
-  std::vector<Pose> tried{};        ///< views that brought nothing, beside the model's
-  FeasibilityConfig feasibility{};  ///< what is possible
+  bool at_boundaries = true;        ///< use candidates of BoundaryGeneration
+  BoundaryViewsConfig boundary{};   ///< settings of views at open surface boundaries
+  std::vector<PoseSet> sets{};      ///< fixed poses, in order
+  std::vector<Pose> tried{};        ///< views that brought nothing, in addition to the model's
+  FeasibilityConfig feasibility{};  ///< settings of the feasibility check
 };
 
-/// What every loop starts from: boundary candidates by default_boundary(), no sets, feasibility for
-/// the sensor and its body, no limits of reach. voxel_size [m] is the map's. Throws as
+/// Default settings of all loops: boundary candidates from default_boundary(), no sets, feasibility
+/// of the sensor's body, unlimited reach. voxel_size [m] is the map's. Throws as
 /// default_boundary().
 [[nodiscard]] VIEWGAIN_EXPORT GenerationConfig default_generation(const Sensor& sensor,
                                                                   double voxel_size);
 
 /// VIEWPOINTSGENERATION of Algorithm 1: a ViewProposer with fixed sets and views at the open
-/// boundaries of the model's surface. Thread safety: one call at a
-/// time. Cost: boundary_views(), and FeasibilityChecker::check() of all candidates.
+/// boundaries of the model's surface. Thread safety: one call at a time. Cost: boundary_views(),
+/// and FeasibilityChecker::check() of all candidates.
 class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
  public:
   /// The model must outlive it. Throws as FeasibilityChecker.
   CandidateGeneration(const SurfaceModel& model, const GenerationConfig& config,
                       const ExecConfig& exec);
 
-  /// The sets' poses and boundary views that are possible by the rules of ViewProposer. Throws as
-  /// boundary_views().
+  /// Poses of the sets and boundary views that are possible under the rules of ViewProposer. Throws
+  /// as boundary_views().
   Proposal generate(const Pose& T_world_camera) override;
 
-  /// Those of a set alone that are possible now.
+  /// The possible poses of one set.
   [[nodiscard]] Proposal propose_these(const PoseSet& set);
 
-  /// What it was made with.
+  /// The settings.
   [[nodiscard]] const GenerationConfig& config() const noexcept { return config_; }
 
-  /// Behind the last proposal: why its boundary candidates exist. The `number` of a candidate with
-  /// a class is its index in estimated().candidates, that of one of a set its index in the set.
+  /// Details of the last proposal: why its boundary candidates exist. The `number` of a candidate
+  /// with a class is its index in estimated().candidates; that of a set's candidate is its index in
+  /// the set.
   [[nodiscard]] const EstimatedViews& estimated() const noexcept {
     return boundaries_->estimated();
   }
-  /// Of the last proposal: the dropped candidates, in their order, each with its reason.
+  /// Dropped candidates of the last proposal, in order, each with its reason.
   [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept {
     return proposer_.dropped();
   }

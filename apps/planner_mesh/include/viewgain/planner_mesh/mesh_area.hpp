@@ -7,7 +7,7 @@
 
 namespace viewgain {
 
-/// The area of a mesh's triangles [m²]; indices must be in range.
+/// Total area of a mesh's triangles [m²]; indices must be valid.
 template <typename Mesh>
 [[nodiscard]] double mesh_area(const Mesh& mesh) {
   double area = 0;

@@ -22,58 +22,59 @@
 
 namespace viewgain {
 
-/// What changes the model.
+/// Settings of the model.
 struct VIEWGAIN_EXPORT SurfaceModelConfig {
-  /// How the map is kept. Its gain scores no view; choices have gains of their own.
+  /// Settings of the map. Its gain scores no views; policies have their own.
   ScorerConfig map{.learn_hazard = true, .gain = {.model = GainModel::paper}};
-  FusedPointsConfig points{};  ///< how beliefs become points; scale_sigma is the sensor's
+  FusedPointsConfig points{};  ///< computation of points from beliefs; scale_sigma is the sensor's
 };
 
-/// The surface through the points of a map; vertex i comes from point source[i]. Throws and costs
-/// as reconstruct_surface().
+/// Surface through the points of a map; vertex i comes from point source[i]. Throws and costs as
+/// reconstruct_surface().
 [[nodiscard]] VIEWGAIN_EXPORT SurfaceMesh surface_of(const std::vector<FusedPoint>& points,
                                                      const ExecConfig& exec);
 
-/// One a vertex, the standard deviation along the surface's normal [m], of the point that it comes
-/// from; `source` must index the points, which is not checked. Costs O(vertices).
+/// Standard deviation along the surface normal [m] per vertex, from the point that it comes from;
+/// `source` must index the points (unchecked). Cost: O(vertices).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<double> surface_sigmas(
     const SurfaceMesh& surface, const std::vector<FusedPoint>& points);
 
-/// The two representations of the scene, the belief grid and the surface seen so far
-/// (UPDATEREPRESENTATIONS of Algorithm 1), and what is derived from them after each view.
+/// The two representations of Algorithm 1 (UPDATEREPRESENTATIONS), the belief grid and the surface
+/// seen so far, and data derived from them after each view.
 ///
-/// Thread safety: const members may run from many threads at once; nothing may run beside the
-/// others. Cost of update(): ViewScorer::add(), fused_points() and reconstruct_surface(); 8 and
-/// 574 ms after eight views of the camel (perf/results/loop.md).
+/// Thread safety: const members may run from many threads at once; nothing may run next to the
+/// others. Cost of update(): ViewScorer::add(), fused_points() and reconstruct_surface()
+/// (perf/results/loop.md).
 class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
  public:
-  /// `truth` may be null: then there is no quality. Throws as ViewScorer.
+  /// `truth` may be null: then there are no quality figures. Throws as ViewScorer.
   SurfaceModel(const Sensor& sensor, const SurfaceModelConfig& config,
                std::shared_ptr<const Truth> truth, const ExecConfig& exec);
 
-  /// From an existing map: its surface and scene, ready for candidates. Throws as ViewScorer and
+  /// Starts from an existing map with its surface and scene. Throws as ViewScorer and
   /// fused_points().
   SurfaceModel(BeliefGrid grid, const Sensor& sensor, const SurfaceModelConfig& config,
                const ExecConfig& exec);
 
-  /// The stages of its seconds: integrate, snapshot, surface and, where there is a truth, quality.
-  /// Throws Error(invalid_argument) if the first view has no reading in the workspace.
+  /// Adds measurements. Stages of its seconds: integrate, snapshot, surface and, with a reference
+  /// mesh, quality. Throws Error(invalid_argument) if the first view has no reading in the
+  /// workspace.
   ModelProgress update(const Measurements& measurements) override;
 
-  /// The model as it would be had these measurements come to an empty map in this order, for poses
-  /// that became better known. Costs as many updates of the map; its quality is another view's.
-  /// Throws as update(); what was there is lost then.
+  /// Rebuilds the model from these measurements in order, for poses that became better known. Cost:
+  /// one update of the map per view; quality is computed once. Throws as update(); the previous
+  /// model is then lost.
   ModelProgress rebuild(std::span<const Measurements> measurements);
 
-  /// The points that the model would have after these measurements, which do not change it. Throws
-  /// as ViewScorer::add(). Costs a copy of the map beside what update() costs without a surface.
+  /// The points that the model would have after these measurements, without changing it. Throws as
+  /// ViewScorer::add(). Cost: a copy of the map, and update() without the surface.
   [[nodiscard]] std::vector<FusedPoint> points_after(const Measurements& measurements) const;
 
   /// The map behind the surface.
   [[nodiscard]] const ViewScorer& scorer() const noexcept { return scorer_; }
   /// The map.
   [[nodiscard]] const BeliefGrid& grid() const noexcept { return scorer_.grid(); }
-  /// The scene of the map as it is.
+  /// The scene of the current map.
   [[nodiscard]] std::shared_ptr<const VoxelScene> scene() const { return scorer_.scene(); }
   /// Surface points of the last update, in the order of fused_points().
   [[nodiscard]] const std::vector<FusedPoint>& points() const noexcept { return points_; }
@@ -81,7 +82,7 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
   /// Poses of views that brought nothing and are not among the map's.
   [[nodiscard]] const std::vector<Pose>& tried() const noexcept { return tried_; }
-  /// One a view, where there is a truth, in their order.
+  /// Quality after each view, if there is a reference mesh.
   [[nodiscard]] const std::vector<QualityFigures>& quality() const noexcept { return quality_; }
 
  private:
@@ -98,24 +99,23 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   std::vector<Pose> tried_;
 };
 
-/// UPDATEREPRESENTATIONS for poses that are a little wrong: each view's first frame is aligned with
-/// those of all views so far, which moves these, too, and the model is made anew from the poses
-/// that come of it. A view that is refused stays out of the model, for as long as it is. The first
-/// view's pose holds.
+/// UPDATEREPRESENTATIONS for slightly wrong poses: aligns each view's first frame with those of all
+/// views so far, which also moves these, and rebuilds the model from the resulting poses. A refused
+/// view stays out of the model while it is refused. The first view's pose is fixed.
 ///
-/// Keeps all frames. Thread safety: one call at a time. Cost of a view: what the alignment takes,
-/// and an update for every view so far.
+/// Keeps all frames. Thread safety: one call at a time. Cost of a view: the alignment, and an
+/// update for every view so far.
 class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
  public:
-  /// `model` must be empty and is kept by reference. `sigma`: by how much each reported pose may be
-  /// off. Throws Error(invalid_argument) as FrameAlignment.
+  /// `model` must be empty; a reference is kept. `sigma`: uncertainty of each reported pose. Throws
+  /// Error(invalid_argument) as FrameAlignment.
   RegisteredModel(SurfaceModel& model, const PoseSigma& sigma, const ExecConfig& exec = {});
 
-  /// Stages as SurfaceModel::update() and register. Throws as FrameAlignment::add() and
+  /// Stages: those of SurfaceModel::update(), and register. Throws as FrameAlignment::add() and
   /// SurfaceModel::rebuild().
   ModelProgress update(const Measurements& measurements) override;
 
-  /// One a view, what became of it, as known now.
+  /// Current registration of each view.
   [[nodiscard]] const std::vector<FrameRegistration>& registrations() const {
     return alignment_.registrations();
   }
@@ -127,16 +127,15 @@ class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
   std::vector<Measurements> views_;  ///< as reported
 };
 
-/// Writes a surface and the points that it goes through as PLY, each vertex with its normal and its
-/// standard deviation along it (`sigma` [m]). `points` are those that the surface was made of, in
-/// their order. Atomic, each file for itself; an empty name: not written. Throws Error(io). Costs
-/// O(vertices + triangles + points).
+/// Writes a surface and its points as PLY, each vertex with its normal and the standard deviation
+/// along it (`sigma` [m]). `points` are those of the surface, in order. Each file is written
+/// atomically; an empty name skips it. Throws Error(io). Cost: O(vertices + triangles + points).
 VIEWGAIN_EXPORT void write_surfaces(const SurfaceMesh& surface,
                                     const std::vector<FusedPoint>& points,
                                     const std::filesystem::path& surface_file,
                                     const std::filesystem::path& points_file);
 
-/// The same of a model.
+/// As above, for a model.
 VIEWGAIN_EXPORT void write_surfaces(const SurfaceModel& model,
                                     const std::filesystem::path& surface_file,
                                     const std::filesystem::path& points_file);

@@ -16,7 +16,8 @@
 
 namespace viewgain {
 
-static_assert(std::endian::native == std::endian::little, "columns are written as they lie");
+static_assert(std::endian::native == std::endian::little,
+              "columns are written in native byte order");
 
 /// What a column holds, little endian in .npy files.
 enum class ColumnType : std::uint8_t {
