@@ -5,8 +5,9 @@
 
     compare_runs.py FOLDER
 
-FOLDER has base.0.json, head.0.json, base.1.json and so on. Each file is the JSON of `viewgain-bench trace` or `bars`. A ratio above 1 means that head is
-better: head / base if larger is better, base / head if smaller is better.
+FOLDER has base.0.json, head.0.json, base.1.json and so on. Each file is the JSON of
+`viewgain-bench trace` or `bars`. A ratio above 1 means that head is better: it is head / base if
+larger is better, base / head if smaller is better.
 """
 import json
 import pathlib
