@@ -18,11 +18,10 @@ namespace viewgain::bench {
 
 struct ModelMapPlan {
   std::vector<std::filesystem::path> meshes = object_meshes();
-  std::uint64_t seeds = 10;  ///< seeds 1 to this, for start and noise
-  std::vector<int> views = {1, 2, 4,
-                            8};  ///< numbers of views after which there is a map, ascending
-  int voxels = 128;              ///< along the longest side of the workspace
-  std::size_t most = 200;        ///< maximum number of maps
+  std::uint64_t seeds = 10;               ///< seeds 1 to this, for start and noise
+  std::vector<int> views = {1, 2, 4, 8};  ///< numbers of views of the maps, ascending
+  int voxels = 128;                       ///< along the longest side of the workspace
+  std::size_t most = 200;                 ///< maximum number of maps
 };
 
 /// A map of a model after some views.

@@ -25,7 +25,7 @@ def plot_scaling(axes, result):
                 for k in ("median", "p05", "p95")}
         below = [m - low for m, low in zip(rate["median"], rate["p05"])]
         above = [high - m for m, high in zip(rate["median"], rate["p95"])]
-        label = f"{rays:,} rays a pose, {threads} thread{'s' if threads > 1 else ''}"
+        label = f"{rays:,} rays per pose, {threads} thread{'s' if threads > 1 else ''}"
         axes.errorbar(sides, rate["median"], yerr=[below, above], marker="o", capsize=3,
                       label=label)
     sides = sorted({int(case["scene"].split("-")[1]) for case in result["cases"]})
