@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Is HEAD faster than BASE? Builds viewgain-bench of two commits, runs `trace` or `bars` of both in
-# turns and prints, for each method or bar, the ratio of the medians with its spread: above 1 HEAD is
-# the better one, whether larger or smaller figures are.
-#   perf/compare.sh BASE HEAD        compare.sh main HEAD, BENCH=bars compare.sh v0.1 perf
-# Environment: BENCH (trace; or bars), RUNS (9) of each, POSES (100), VOXELS (128), THREADS (0: all),
-# MAPS (10) and ONLY (all groups) for bars, JOBS (all) to build with, WORK: a folder to build in and
-# keep, so that the next call builds only what changed.
+# Is HEAD faster than BASE? Builds viewgain-bench at both commits and runs `trace` or `bars` in turns.
+# Prints the ratio of the medians and its spread per method or bar. Above 1, HEAD is better.
+#   perf/compare.sh BASE HEAD        for example BENCH=bars perf/compare.sh v0.1 main
+# Environment (defaults): BENCH: trace or bars (trace); RUNS of each (9); POSES (100); VOXELS (128);
+# THREADS (0: all); JOBS for the build (all); WORK: a folder to build in and keep, so that the next
+# call builds only what changed.
+# Only for bars: MAPS (10), ONLY: groups (all).
 set -euo pipefail
 
 if [ $# -ne 2 ]; then
@@ -21,7 +21,7 @@ case $bench in
     [ -z "${ONLY:-}" ] || options+=(--only "$ONLY")
     ;;
   *)
-    echo "$0: BENCH is trace or bars, not $bench" >&2
+    echo "$0: BENCH is $bench; expected trace or bars" >&2
     exit 2
     ;;
 esac
@@ -31,7 +31,7 @@ for side in base head; do
   name=$1
   shift
   if ! commits[$side]=$(git -C "$repository" rev-parse --verify --quiet "$name^{commit}"); then
-    echo "$0: $name is no commit of $repository" >&2
+    echo "$0: $name is not a commit of $repository" >&2
     exit 2
   fi
 done
@@ -64,7 +64,7 @@ for side in base head; do
     cmake --build "$work/$side/build/release" --target viewgain_bench \
       -j "${JOBS:-$(nproc)}" >>"$work/$side.log" 2>&1 || {
     tail -20 "$work/$side.log" >&2
-    echo "$0: $side does not build" >&2
+    echo "$0: $side failed to build" >&2
     exit 1
   }
 done
@@ -78,7 +78,7 @@ for ((run = 0; run < runs; ++run)); do
   [ $((run % 2)) -eq 0 ] || order=(head base)
   for side in "${order[@]}"; do
     echo "run $((run + 1)) of $runs: $side" >&2
-    # 1 says that a bar is missed or an answer wrong, which is no reason not to compare.
+    # Exit code 1: a bar is missed or an answer is wrong. Compare all the same.
     "$work/$side/build/release/bin/viewgain-bench" "$bench" "${options[@]}" \
       >"$results/$side.$run.json" || [ $? -eq 1 ]
   done

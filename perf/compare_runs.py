@@ -1,21 +1,24 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Compares what compare.sh has collected: compare_runs.py FOLDER, with base.0.json, head.0.json, base.1.json, ...
+"""Compares the runs that compare.sh has collected.
 
-Each file is the JSON of `viewgain-bench trace` or `bars`. A ratio above 1 says that head is the better one: it is
-head / base where larger is better, base / head where smaller is.
+    compare_runs.py FOLDER
+
+FOLDER has base.0.json, head.0.json, base.1.json and so on. Each file is the JSON of
+`viewgain-bench trace` or `bars`. A ratio above 1 means that head is better: it is head / base if
+larger is better, base / head if smaller is better.
 """
 import json
 import pathlib
 import statistics
 import sys
 
-BAR = 0.95  # a ratio of medians under this is marked
+BAR = 0.95  # ratios of medians below this are marked
 
 
 def figures(text):
-    """{name: (value, whether larger is better)}; rates in Mrays/s."""
+    """{name: (value, is larger better)}; rates in Mrays/s."""
     data = json.loads(text)
     if isinstance(data, dict):
         return {m["name"]: (m["rays_per_second"] / 1e6, True) for m in data["methods"]}
@@ -33,7 +36,7 @@ def quantile(values, share):
 def main(folder):
     runs = sorted(int(path.name.split(".")[1]) for path in folder.glob("base.*.json"))
     base, head = ([figures((folder / f"{side}.{run}.json").read_text()) for run in runs] for side in ("base", "head"))
-    print(f"medians of {len(runs)} runs of each in turns; ratio of the medians, 5 and 95 % of the runs' ratios; above 1 head is better")
+    print(f"medians of {len(runs)} runs of each, in turns; ratio of the medians, 5 and 95 % quantiles of the runs' ratios; above 1, head is better")
     print(f"{'figure':<24} {'better':>7} {'base':>12} {'head':>12} {'ratio':>7} {'p05':>7} {'p95':>7}")
     for name in (name for name in base[0] if name in head[0]):
         is_higher_better = base[0][name][1]

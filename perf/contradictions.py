@@ -1,12 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""contradictions.py VIEWGAIN MESH... [--seed N] [--every K]: what share of the surface is carved away when frames contradict one another, and is it noticed?
+"""How much surface do wrong frames carve away, and is it noticed?
 
-Simulates a room of boxes, a shelf, a bin and each mesh with a time-of-flight and a stereo camera, changes poses, images or
-intrinsics by more and more, and prints for each change the share of the right map's surface that the wrong map has carved away
-(exactly, and with a tolerance of one voxel), the two shares of contradicting readings, and how often a warning came. Right
-folders, with all noise that the sensor declares, come first. Needs Python's viewgain package (PYTHONPATH=build/release/python).
+    contradictions.py VIEWGAIN MESH... [--seed N] [--every K]
+
+Simulates a room of boxes, a shelf, a bin and each mesh, with a time-of-flight and a stereo camera.
+Then it changes poses, images or intrinsics, by more and more. For each change it prints:
+
+- the share of the right map's surface that the wrong map has carved away, exactly and with a
+  tolerance of one voxel
+- the two shares of contradicting readings
+- how often there was a warning
+
+Right folders come first, with all noise that the sensor declares. Needs
+PYTHONPATH=build/release/python.
 """
 import argparse
 import collections
@@ -53,7 +61,7 @@ def look(eye, at):
     return viewgain.look_at(np.array(eye, float), np.array(at, float))
 
 
-# Camera at time k, in frames.
+# Pose of the camera at time k [frames].
 def before_a_table(k):
     a = .16 * k - .8
     return look([.7 * math.cos(a), .7 * math.sin(a), .25 + .05 * math.sin(5 * a)], [.02, .03, 0])
@@ -76,7 +84,7 @@ Scene = collections.namedtuple("Scene", "name mesh path box voxel sensor extra")
 
 
 class Folder:
-    """Frames of a scene, and what the program makes of them."""
+    """Frames of a scene, and the maps that the program makes from them."""
 
     def __init__(self, program, scene, root):
         self.program, self.scene, self.root = program, scene, root
@@ -98,7 +106,7 @@ class Folder:
         path.write_text(line + "\n" + path.read_text())
 
     def integrate(self, folder):
-        """The shares, the warning, the states of the map; None where the folder is refused."""
+        """Shares, warning and states of the map. Shares and states are None if the folder is refused."""
         result = self.run("integrate", folder, "--voxel", self.scene.voxel, "--workspace=" + self.scene.box, "--out",
                           self.root / "map.vdb", "--json", "--quiet")
         if result.returncode:
@@ -171,7 +179,7 @@ def changes(scene):
 
 
 def grown(states):
-    """Is a voxel or one of its 26 neighbours occupied?"""
+    """For each voxel: is it or one of its 26 neighbours occupied?"""
     occupied = np.pad(states == 2, 1)
     for axis in range(3):
         occupied = occupied | np.roll(occupied, 1, axis) | np.roll(occupied, -1, axis)
@@ -179,11 +187,11 @@ def grown(states):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("program")
-    parser.add_argument("meshes", nargs="+", type=pathlib.Path)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--every", type=int, default=1, help="only each K-th change")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", metavar="VIEWGAIN", help="the program viewgain")
+    parser.add_argument("meshes", nargs="+", type=pathlib.Path, metavar="MESH", help="mesh files of objects")
+    parser.add_argument("--seed", type=int, default=1, help="seed of scenes and noise (default: 1)")
+    parser.add_argument("--every", type=int, default=1, help="apply only every K-th change (default: 1)")
     options = parser.parse_args()
     rows, alarms, right = collections.defaultdict(list), 0, 0
     with tempfile.TemporaryDirectory() as temporary:
@@ -228,7 +236,7 @@ def main():
                 carved = surface & (states == 1)
                 rows[kind, amount].append((carved.sum() / surface.sum(), (carved & ~grown(states)).sum() / surface.sum(),
                                            shares["share_in_free"], shares["share_seen_past"], bool(said)))
-    print(f"\nright folders: {alarms} of {right} warned of\n")
+    print(f"\nright folders: {alarms} of {right} with a warning\n")
     print("| change | by | carved [%] | by over a voxel [%] | in free space [%] | seen past [%] | noticed |\n|---|---|---|---|---|---|---|")
     for (kind, amount), all in rows.items():
         part = [" to ".join(f"{100 * f([row[k] for row in all if not math.isnan(row[k])] or [math.nan]):.1f}" for f in (min, max)) for k in range(4)]

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""The best choices of views, where it is known what each view sees: least sets, best sets of k.
+"""Minimum sets of views and best sets of k views, if it is known what each view sees.
 
-`seen` is a boolean matrix, a row a view, a column a cell of the surface; `area` is one positive number a cell, what it counts.
-Shares are of the area of all cells. Integer programs are HiGHS's (scipy.optimize.milp); where one is not done within its
-seconds, what it proved until then stands beside the best set that is known.
+`seen` is a boolean matrix with a row per view and a column per cell of the surface. `area` has the
+weight of each cell, a positive number. Shares are shares of the total area. Integer programs are
+solved by HiGHS (scipy.optimize.milp). If one runs out of time, the result has the best known set
+and the bound that was proven.
 """
 from typing import NamedTuple
 
@@ -12,32 +13,32 @@ import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import csr_matrix, hstack, identity
 
-SLACK = 1e-9  # of shares, for sums in floating point
+SLACK = 1e-9  # tolerance of shares, for sums in floating point
 
 
 class Least(NamedTuple):
-    """The fewest views to a share."""
+    """The minimum number of views that reach a share."""
 
-    views: list  # indices of the smallest set that is known; None if all views together do not reach the share
-    lp_bound: int  # no set is smaller, by the linear program; 0 if all views together do not reach the share
-    bound: int  # the same, by all that was tried: proven where it is the size of the set
+    views: list  # indices of the smallest known set; None if all views together do not reach the share
+    lp_bound: int  # lower bound on the size, from the linear program; 0 if all views together do not reach the share
+    bound: int  # best lower bound; the set is optimal if this is its size
 
 
 class Best(NamedTuple):
     """The best set of k views."""
 
     views: list
-    share: float  # that it covers
-    bound: float  # no set of k covers more
+    share: float  # covered share
+    bound: float  # upper bound on the share of any k views
 
 
 def share_of(seen, area, views):
-    """What these views cover together."""
+    """The share that these views cover together."""
     return float(area[seen[list(views)].any(axis=0)].sum() / area.sum()) if len(views) else 0.0
 
 
 def greedy(seen, area, most=None):
-    """Views by what each adds, until none adds anything; ties go to the lower index."""
+    """Views in the order of their marginal gains, until none adds anything; ties go to the lower index."""
     left, views = area.astype(float).copy(), []
     while most is None or len(views) < most:
         added = seen @ left
@@ -50,7 +51,7 @@ def greedy(seen, area, most=None):
 
 
 def _swapped(seen, area, views):
-    """The set after swaps of one view for another as long as they cover more."""
+    """The set after swapping single views for as long as that covers more."""
     views = list(views)
     for _ in range(10):
         before = list(views)
@@ -65,7 +66,7 @@ def _swapped(seen, area, views):
 
 
 def _best_few(seen, area, k):
-    """The best set of one view or of at most two, by all pairs."""
+    """The best set of one view, or of at most two by trying all pairs."""
     alone = seen @ area
     if k == 1:
         return [int(np.argmax(alone))]
@@ -74,7 +75,7 @@ def _best_few(seen, area, k):
 
 
 def _solve(seen, area, cost, least, most, whole, seconds):
-    """Minimises `cost` over x (views) and y (cells): covered at least `least`, at most `most` views."""
+    """Minimises `cost` over x (views) and y (cells): a share of at least `least`, at most `most` views."""
     n, cells = seen.shape
     covers = hstack([csr_matrix(seen.T.astype(float)), -identity(cells)])
     sums = csr_matrix(np.stack([np.r_[np.zeros(n), area / area.sum()], np.r_[np.ones(n), np.zeros(cells)]]))
@@ -88,13 +89,13 @@ def _chosen(seen, result):
 
 
 def _with_first(seen, area, first):
-    """The problem that is left when a view is taken: cells that it does not see, and the share that it has."""
+    """The problem without a view: the cells that the view does not see, and the share that it covers."""
     rest = ~seen[first] if first is not None else np.ones(seen.shape[1], bool)
     return seen[:, rest], area[rest], 1 - float(area[rest].sum() / area.sum())
 
 
 def least_views(seen, area, share, *, first=None, seconds=60.0):
-    """The fewest views that cover a share; `first`, if given, is one of them."""
+    """The minimum set of views that covers a share. It contains `first`, if given."""
     if share_of(seen, area, range(len(seen))) < share - SLACK:
         return Least(None, 0, 0)
     start = [] if first is None else [first]
@@ -130,7 +131,7 @@ def least_views(seen, area, share, *, first=None, seconds=60.0):
 
 
 def best_of(seen, area, k, *, first=None, seconds=60.0):
-    """The set of at most k views that covers most; `first`, if given, is one of them."""
+    """The set of at most k views that covers most. It contains `first`, if given."""
     start = [] if first is None else [first]
     rest, rest_area, has = _with_first(seen, area, first)
     k -= len(start)

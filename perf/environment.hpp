@@ -6,11 +6,11 @@
 
 namespace viewgain::bench {
 
-/// Adds what a result depends on besides the code that is timed: threads, cpu, isa (that of the
-/// kernels, limited by VIEWGAIN_ISA), compiler, build_type, versions of the libraries, commit.
+/// Adds the conditions of a result: threads, cpu, isa, compiler, build_type, versions of the
+/// libraries and commit. `isa` is that of the kernels, which VIEWGAIN_ISA limits.
 void add_environment(nlohmann::ordered_json& json, int num_threads);
 
-/// `viewgain-bench environment`: prints that alone. Returns the exit code.
+/// `viewgain-bench environment`: prints only these. Returns the exit code.
 int run_environment(int num_threads);
 
 }  // namespace viewgain::bench

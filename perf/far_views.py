@@ -1,14 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Compares the new surface that views promise with what they bring, by range (perf/results/prediction.md, "Far views").
+"""Compares promised new surface with measured new surface, by range.
 
-    far_views.py SENSOR SCENE RUN    SCENE: a folder of scenes.py; RUN: of `viewgain reconstruct --save-maps on` in it
+    far_views.py SENSOR SCENE RUN
 
-After each of the first views, candidates at boundaries and of the shell (the reach of the scene) are sorted by the mean
-range of what they promise. Of each third, some of the better half are simulated. Columns: mean range; promised new
-surface; over that: readings in new voxels, area of the mesh that points cover then and did not before; the share that
-is covered of the mesh that the view sees and that was not covered.
+Results are in perf/results/prediction.md, "Far views".
+
+SCENE is a folder from scenes.py. RUN is a folder from `viewgain reconstruct --save-maps on` of that
+scene. After each of the first views, boundary and shell candidates (within the scene's reach) are
+sorted by the mean range of their promised surface. Some of the better half of each third are
+simulated. Columns:
+
+- mean range
+- promised new surface
+- readings in new voxels / promised
+- area of the mesh that points newly cover / promised
+- of the uncovered mesh that the view sees, the share that is covered afterwards
 """
 import argparse
 import json
@@ -26,7 +34,7 @@ TOLERANCE = 0.005  # [m]
 
 
 def samples_of(vertices, triangles, rng):
-    """Points evenly on the triangles, and the area of all [m^2]."""
+    """Uniform points on the triangles, and the total area [m^2]."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     areas = .5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
     i = rng.choice(len(triangles), SAMPLES, p=areas / areas.sum())
@@ -40,7 +48,7 @@ def covered(grid, samples):
 
 
 def seen(depth, sensor, pose, samples):
-    """Which samples a frame without noise has: within 4 mm and 1 % of its depth."""
+    """Which samples a frame without noise shows: within 4 mm + 1 % of its depth."""
     camera, p = sensor.camera, (samples - pose[:3, 3]) @ pose[:3, :3]
     before = p[:, 2] > .05
     z = np.where(before, p[:, 2], 1)
@@ -55,7 +63,7 @@ def seen(depth, sensor, pose, samples):
 
 
 def candidates_after(map_file, scene, sensor, count, rng):
-    """Mean range of what is promised [m], promised [m^2] and pose of some candidates, the nearest first."""
+    """Mean range [m] and area [m^2] of promised surface, and pose, of some candidates, nearest first."""
     call = ["viewgain", "next", map_file, "--generator", "boundary,shell", "--count", "150", "--gain", "paper", "--top", "all",
             "--reach", scene / "reach.toml", "--json"]
     views = json.loads(subprocess.run(call, check=True, capture_output=True, text=True).stdout)["next"]
@@ -74,16 +82,16 @@ def candidates_after(map_file, scene, sensor, count, rng):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("sensor", help="one of " + ", ".join(viewgain.sensor_preset_names()))
-    parser.add_argument("scene", type=pathlib.Path)
-    parser.add_argument("run", type=pathlib.Path)
-    parser.add_argument("--views", type=int, default=5)
-    parser.add_argument("--each", type=int, default=6, help="simulated of a third")
+    parser.add_argument("sensor", help="sensor preset: " + ", ".join(viewgain.sensor_preset_names()))
+    parser.add_argument("scene", type=pathlib.Path, help="folder from scenes.py")
+    parser.add_argument("run", type=pathlib.Path, help="folder from reconstruct")
+    parser.add_argument("--views", type=int, default=5, help="number of first views (default: 5)")
+    parser.add_argument("--each", type=int, default=6, help="candidates to simulate per third (default: 6)")
     options = parser.parse_args()
     sensor, rng = viewgain.sensor_preset(options.sensor), np.random.default_rng(1)
     vertices, triangles = (np.asarray(part) for part in meshes.read_mesh(options.scene / "scene.off"))
     vertices = vertices.astype(float)
-    vertices -= (vertices.min(axis=0) + vertices.max(axis=0)) / 2  # where reconstruct has the origin
+    vertices -= (vertices.min(axis=0) + vertices.max(axis=0)) / 2  # reconstruct puts the origin here
     samples, area = samples_of(vertices, triangles, rng)
     camera = viewgain.SimulatedSensor(vertices, triangles, sensor, seed=99)
     clean = viewgain.SimulatedSensor(vertices, triangles, sensor, noise=False, lateral_noise=False, sub_rays=1)

@@ -10,7 +10,7 @@
 
 namespace viewgain::bench {
 
-/// The distinct primitives that a traced tile's rays end in, in the order of the lanes.
+/// The distinct primitives in which the rays of a traced tile end, in the order of the lanes.
 [[nodiscard]] inline std::vector<std::uint32_t> hit_boxes(const detail::RayTile& tile) {
   std::vector<std::uint32_t> boxes;
   for (std::size_t lane = 0; lane < detail::kTileRays; ++lane) {

@@ -1,14 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""honesty.py [MESH...] [--voxel M] [--only NAME...]: are the covariances of points and vertices honest?
+"""Are the covariances of points and vertices honest?
 
-Takes a plate, a sphere and a cylinder of its own and the meshes (OFF, scaled to 0.35 m) before a simulated SR4000
-0.45 m away, the plate from above, the others from all around: 12 views once, the same four times, and 60 views.
-Prints a row each for points and vertices, then points by their distance from jumps of depth, then the points with one
-disturbance left out at a time. z is a distance to the mesh over the sigma along its direction; mean of min(z^2, 25)
-is 1 if sigmas are honest, the median of z^2 is 0.455. Those over 10 mm off are outliers and count in nothing else.
-Run it with PYTHONPATH=build/release/python; it takes two minutes an object.
+    honesty.py [MESH...] [--voxel M] [--only NAME...]
+
+The objects are a plate, a sphere, a cylinder and the meshes (OFF, scaled to 0.35 m). A simulated
+SR4000 views them from 0.45 m, the plate from above and the others from all sides: 12 views, the
+same 12 views four times, and 60 views. The tables have a row for
+
+- points and vertices
+- points by their distance from depth jumps
+- points with one disturbance left out at a time
+
+z is the distance to the mesh divided by the standard deviation in its direction. If standard
+deviations are honest, the mean of min(z^2, 25) is 1 and the median of z^2 is 0.455. Points over
+10 mm from the mesh are outliers and count only as such.
+
+Run it with PYTHONPATH=build/release/python. It takes two minutes per object.
 """
 import argparse
 import pathlib
@@ -19,11 +28,11 @@ import viewgain.mesh
 from scipy import ndimage, spatial
 
 SIZE, DISTANCE = 0.35, 0.45                                              # [m]
-SERIES = {"12 views": (12, 1), "x4": (12, 4), "60 views": (60, 1)}       # poses, times
+SERIES = {"12 views": (12, 1), "x4": (12, 4), "60 views": (60, 1)}       # number of poses, repetitions
 LEFT_OUT = {"nothing": {}, "axial noise": {"noise": False}, "lateral noise": {"lateral_noise": False},
             "mixed pixels": {"sub_rays": 1}, "all three": {"noise": False, "lateral_noise": False, "sub_rays": 1},
             "half of the voxel": {}}
-JUMP, SEEN = 0.02, 0.01                                                  # of depths [m]
+JUMP, SEEN = 0.02, 0.01                                                  # differences of depth [m]
 
 
 def grid_mesh(at, columns, rows):
@@ -67,13 +76,13 @@ def read_off(path):
     vertices = np.array(words[4:4 + 3 * count], float).reshape(-1, 3)
     triangles = np.array(words[4 + 3 * count:4 + 3 * count + 4 * faces], int).reshape(-1, 4)
     if words[0] != "OFF" or not (triangles[:, 0] == 3).all():
-        raise SystemExit(f"{path}: no OFF file of triangles")
+        raise SystemExit(f"{path}: expected an OFF file of triangles")
     low, high = vertices.min(0), vertices.max(0)
     return (vertices - 0.5 * (low + high)) * SIZE / (high - low).max(), triangles[:, 1:]
 
 
 class Truth:
-    """Distances to a mesh: exact, to the nearest triangles of one whose edges are cut to 3 mm."""
+    """Exact distances to a mesh. To find the nearest triangles, edges are cut to 3 mm."""
 
     def __init__(self, vertices, triangles):
         corners = vertices[triangles]
@@ -90,7 +99,7 @@ class Truth:
         self.tree = spatial.cKDTree(corners.mean(1))
 
     def nearest(self, points):
-        """The nearest place of the mesh to each point."""
+        """The point of the mesh nearest to each point."""
         best = np.full(len(points), np.inf)
         place = np.zeros((len(points), 3))
         for column in self.tree.query(points, k=16)[1].T:
@@ -128,7 +137,7 @@ def matrices(rows):
 
 
 def squares(truth, positions, covariances):
-    """e and z^2 of each position, e [m]."""
+    """Distance e [m] and z^2 of each position."""
     away = positions - truth.nearest(positions)
     e = np.linalg.norm(away, axis=1)
     n = away / np.maximum(e, 1e-12)[:, None]
@@ -155,7 +164,7 @@ def modelled(mesh, sensor, poses, times, voxel, left_out):
 
 
 def pixels_to_jumps(mesh, sensor, poses, points):
-    """Of each point the median over the views that show it, of how far its pixel is from a jump of depth [px]."""
+    """Median distance of each point's pixel from a depth jump [px], over the views that show it."""
     camera = viewgain.SimulatedSensor(*mesh, sensor, background_radius=1.5)
     pinhole = sensor.camera
     all_views = np.full((len(poses), len(points)), np.nan)
@@ -177,9 +186,9 @@ def pixels_to_jumps(mesh, sensor, poses, points):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("meshes", nargs="*")
-    parser.add_argument("--voxel", type=float, default=0.003125, help="[m]")
-    parser.add_argument("--only", nargs="*", help="objects by name")
+    parser.add_argument("meshes", nargs="*", metavar="MESH", help="mesh files (OFF)")
+    parser.add_argument("--voxel", type=float, default=0.003125, help="voxel size [m] (default: 0.003125)")
+    parser.add_argument("--only", nargs="*", metavar="NAME", help="objects to measure (default: all)")
     arguments = parser.parse_args()
     objects = {"plate": plate, "sphere": sphere, "cylinder": cylinder}
     objects.update({pathlib.Path(m).stem: (lambda m=m: read_off(m)) for m in arguments.meshes})

@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""How far a study's policies are from the best possible, as Markdown. Needs PYTHONPATH of a build, and scipy.
+"""How close do a study's policies come to the minimum number of views? Prints Markdown.
 
     limits.py SPEC.toml DIR [--samples 1000] [--seconds 20] [--dense 162] [--own 160]
 
-DIR is what `python3 -m viewgain.study SPEC.toml --out DIR` left; its spec has kept_candidates. What each view sees of the true surface
-(visibility.py) is kept in DIR/visibility. Shares are of the samples that some view of the object sees: of the dense set (so
-many poses on each of three spheres, at 0.8, 1 and 1.25 times the start's distance), of any run's candidates or views. The
-first view is given and counts. The least number of views to a share, and the best k views, are integer programs; where one is
-not done in its seconds, the table says what is proven.
+DIR is the output of `python3 -m viewgain.study SPEC.toml --out DIR`. The spec must set
+kept_candidates. Visible parts of the true surface (visibility.py) are kept in DIR/visibility.
+
+Shares are shares of the samples that at least one view of the object sees. These views are a dense
+set and the candidates and views of all runs. The dense set has --dense poses on each of three
+spheres, at 0.8, 1 and 1.25 times the start's distance. The first view is given and counts.
+
+The minimum number of views and the best k views are integer programs. If one runs out of time, the
+table has the bounds that were proven. Needs PYTHONPATH=build/release/python and scipy.
 """
 import argparse
 import collections
@@ -27,12 +31,12 @@ import meshes
 import visibility
 
 GOALS = (0.80, 0.90, 0.95)
-RADII = (0.8, 1, 1.25)  # of the dense set [start's distance]
-MOST = 12  # views of the curve
+RADII = (0.8, 1, 1.25)  # radii of the dense set [start's distance]
+MOST = 12  # number of views in the curve
 
 
 class Run:
-    """A run of the study, and what its views and its candidates see."""
+    """A run of the study, and what its views and candidates see."""
 
     def __init__(self, row, folder, most):
         self.row = row
@@ -41,14 +45,14 @@ class Run:
         self.taken = np.array([view["pose"] for view in record["per_view"]])
         candidates = folder / "runs" / row["hash"] / "candidates.txt"
         if not candidates.exists():
-            sys.exit(f"{candidates} is missing: the study's spec must say kept_candidates")
+            sys.exit(f"{candidates} is missing: set kept_candidates in the study's spec and run it again")
         own = viewgain.read_poses(candidates)
         own = own[np.unique(np.linspace(0, len(own) - 1, most).astype(int))]
         self.poses = np.concatenate([self.taken, own])
 
 
 def kept_matrix(path, known, poses):
-    """known.matrix(poses), from the file if that is of the same poses and samples."""
+    """known.matrix(poses), read from the file if it has the same poses and samples."""
     if path.exists():
         kept = np.load(path)
         if kept["poses"].shape == poses.shape and np.array_equal(kept["poses"], poses) and np.array_equal(kept["samples"], known.points):
@@ -60,7 +64,7 @@ def kept_matrix(path, known, poses):
 
 
 class Problem:
-    """Runs on one object; rows of `seen` are a start for each seed, then the dense set."""
+    """Runs on one object. The rows of `seen` are the start of each seed, then the dense set."""
 
     def __init__(self, runs, mesh, folder, options):
         row = runs[0].row
@@ -88,12 +92,15 @@ class Problem:
         self.points = known.points[counted]
 
     def rows_of(self, seed):
-        """Rows of the dense set with this seed's start as the first."""
+        """Rows of the dense set, with this seed's start first."""
         return [self.seeds.index(seed), *range(len(self.seeds), len(self.poses))]
 
 
     def modelled(self, poses, seed):
-        """The share that the surface has after a frame from each pose, simulated as `reconstruct` does, to a percent as it counts."""
+        """The covered share of the surface after a frame from each pose.
+
+        Frames are simulated as in `reconstruct`. The share is within one percent of its count.
+        """
         half = 0.5 * 0.4 / 0.35 * np.ptp(self.mesh[0], axis=0).max()
         camera = viewgain.SimulatedSensor(*self.mesh, self.sensor, background_radius=1.5, noise=True, lateral_noise=True, sub_rays=3,
                                           seed=seed)
@@ -117,7 +124,7 @@ def table(head, rows):
 
 
 def shown(least):
-    """"4", or "3-4" where 3 is not refuted; the linear program's bound in brackets where it is lower than what is proven."""
+    """"4", or "3-4" if 3 is not ruled out; in brackets the linear program's bound, if it is lower."""
     if least.views is None:
         return "never"
     size = len(least.views)
@@ -126,7 +133,11 @@ def shown(least):
 
 
 def limits_of(problem, seconds):
-    """By seed and goal: the dense set's least views, greedy's count, the shortest way. By run and goal: its own candidates'."""
+    """Limits of the dense set by seed and goal, and of the own candidates by run and goal.
+
+    A limit of the dense set is the minimum set, the size of the greedy set and the length of the
+    shortest path. One of the own candidates is the minimum set.
+    """
     dense, own = {}, {}
     for seed in problem.seeds:
         rows = problem.rows_of(seed)
@@ -151,12 +162,12 @@ def limits_of(problem, seconds):
 
 
 def with_first(seen, area):
-    """Greedy's order after view 0."""
+    """The greedy order after view 0."""
     return covers.greedy(seen, np.where(seen[0], 0, area))
 
 
 def print_curve(problems, seconds):
-    """The best k views of the dense set and what comes of them, beside the policies: means over objects, first seeds."""
+    """Prints the coverage of the best k views of the dense set and of the policies: means, first seeds."""
     rows, proven = [], 0
     policies = list(dict.fromkeys(run.policy for problem in problems for run in problem.runs))
     for k in range(1, MOST + 1):
@@ -177,8 +188,8 @@ def print_curve(problems, seconds):
                      *(mean(others[policy]) for policy in policies)])
         print(f"best {k}: {rows[-1]}", file=sys.stderr)
     print(f"Best k views of the dense set [%], means of {len(problems)} objects at their first seed; {proven} of {MOST * len(problems)} "
-          "proven to 0.01. Seen: greedy's, the best known, the bound. Modelled: the surface after a frame from each of the best, with all "
-          "noise, as the study counts it; beside it what the policies' runs had after k views\n")
+          "proven to 0.01. Seen: by the greedy set, by the best known set, and the bound. Modelled: the surface after a frame from each of the "
+          "best views, with all noise, as the study counts it. The other columns are the policies' runs after k views\n")
     table(["k", "greedy, seen", "best, seen", "bound", "best, modelled", *policies], rows)
 
 
@@ -187,7 +198,7 @@ def part_of_way(random, value, limit):
 
 
 def print_policies(problems, dense, own):
-    """Views by policy, and how much of the way from random to the limit that is."""
+    """Prints the number of views by policy, and its place between random and the limit."""
     runs = [(problem, run) for problem in problems for run in problem.runs]
     policies = list(dict.fromkeys(run.policy for _, run in runs))
     reached = {run: [covers.share_of(run.seen, problem.area, range(k + 1)) for k in range(len(run.taken))] for problem, run in runs}
@@ -204,9 +215,9 @@ def print_policies(problems, dense, own):
             one = own[run, goal]
             if one.views is not None:
                 own_least[key].append(len(one.views))
-    print("Views of each policy to a share of what can be seen, by what its views see; the least of the dense set and of the run's own "
-          "candidates from the same starts (the runs that it is known for: others' never reach it); and how much of the way from "
-          "`random` to the dense set's limit the policy made\n")
+    print("Number of views of each policy to a share of the visible surface, by what its views see. The limits are the minimum of the dense "
+          "set and of the run's own candidates, from the same starts. In brackets is the number of runs whose candidates reach the share. "
+          "0 % is `random`, 100 % the limit of the dense set\n")
     mean = {name: {key: np.mean(values) for key, values in store.items()}
             for name, store in (("views", views), ("ways", ways), ("counted", counted), ("least", least))}
     rows = []
@@ -218,17 +229,18 @@ def print_policies(problems, dense, own):
                          f"{np.mean(reach):.2f} ({len(reach)})" if reach else "never",
                          part_of_way(random, mean["views"][key], mean["least"][key]), f"{mean['ways'][key]:.2f}",
                          f"{mean['counted'][key]:.2f}"])
-    table(["policy", "share", "views", "limit, dense", "limit, own (runs)", "of the way", "way [m]", "views by the study's count"], rows)
+    table(["policy", "share", "views", "limit, dense", "limit, own (runs)", "from random to limit", "path length [m]",
+           "views by the study's count"], rows)
 
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("spec", type=pathlib.Path)
-    parser.add_argument("dir", type=pathlib.Path)
-    parser.add_argument("--samples", type=int, default=1000, help="of the surface")
-    parser.add_argument("--seconds", type=float, default=20, help="an integer program may take")
-    parser.add_argument("--dense", type=int, default=162, help="poses on each of three spheres")
-    parser.add_argument("--own", type=int, default=160, help="of a run's candidates at most, evenly taken")
+    parser.add_argument("spec", type=pathlib.Path, metavar="SPEC.toml", help="the study's spec")
+    parser.add_argument("dir", type=pathlib.Path, metavar="DIR", help="the study's output")
+    parser.add_argument("--samples", type=int, default=1000, help="number of samples on the surface (default: 1000)")
+    parser.add_argument("--seconds", type=float, default=20, help="time limit per integer program [s] (default: 20)")
+    parser.add_argument("--dense", type=int, default=162, help="poses on each of three spheres (default: 162)")
+    parser.add_argument("--own", type=int, default=160, help="most candidates per run, taken evenly (default: 160)")
     options = parser.parse_args()
     if min(options.samples, options.seconds, options.dense, options.own) <= 0:
         parser.error("--samples, --seconds, --dense and --own must be positive")
@@ -242,11 +254,11 @@ def main():
             sys.exit(f"{path} is missing")
     spec = tomllib.loads(options.spec.read_text(encoding="utf-8"))
     if spec.get("flags"):
-        sys.exit(f"{options.spec}: has flags, which may change what can be seen; limits.py knows none")
+        sys.exit(f"{options.spec}: limits.py does not support `flags`, because they may change what can be seen")
     files = {pathlib.Path(name).stem: options.spec.parent / name for name in spec["objects"]}
     rows = json.loads((options.dir / "results.json").read_text(encoding="utf-8"))
     if len({(row["sensor"], row["voxel"], row["size"]) for row in rows}) != 1:
-        sys.exit(f"{options.spec}: limits.py takes studies of one sensor, voxel and size")
+        sys.exit(f"{options.spec}: limits.py supports studies of one sensor, voxel size and object size")
     groups = collections.defaultdict(list)
     for row in rows:
         groups[row["object"]].append(Run(row, options.dir, options.own))
@@ -258,8 +270,8 @@ def main():
         by_seed, by_run = limits_of(problem, options.seconds)
         dense.update({(name, *key): value for key, value in by_seed.items()})
         own.update(by_run)
-    print(f"{sum(len(problem.runs) for problem in problems)} runs; {options.samples} samples an object, of which views see "
-          f"{', '.join(f'{problem.name} {100 * problem.visible:.1f} %' for problem in problems)}; a dense set of "
+    print(f"{sum(len(problem.runs) for problem in problems)} runs; {options.samples} samples per object. Views see "
+          f"{', '.join(f'{problem.name} {100 * problem.visible:.1f} %' for problem in problems)}; the dense set has "
           f"{len(RADII) * options.dense} views.\n")
     for goal in GOALS:
         all_dense = [value[0] for key, value in dense.items() if key[-1] == goal]
@@ -270,9 +282,9 @@ def main():
         print(f"- {100 * goal:.0f} %: proven for {closed(all_dense)} of {len(all_dense)} starts in the dense set ({by_lp(all_dense)} by "
               f"the linear program alone), for {closed(all_own)} of {len(all_own)} runs' own candidates ({by_lp(all_own)}); {never} of "
               "these cannot reach it.")
-    print("\nLeast views of the dense set: `3-4` is proven to be no less than 3; in brackets what the linear program says where that is "
-          "less. Beside it greedy's count and the shortest way through the cover [m]\n")
-    table(["object", "seed", *(f"{100 * goal:.0f} %, greedy, way" for goal in GOALS)],
+    print("\nMinimum number of views in the dense set. `3-4` means that fewer than 3 are ruled out. In brackets is the linear program's bound, "
+          "if it is lower. Then come the number of views of the greedy set and the shortest path through the minimum set [m]\n")
+    table(["object", "seed", *(f"{100 * goal:.0f} %, greedy, path" for goal in GOALS)],
           [[problem.name, seed, *(f"{shown(least)}, {simple}, {way:.2f}" if way is not None else "never"
                                   for least, simple, way in (dense[problem.name, seed, goal] for goal in GOALS))]
            for problem in problems for seed in problem.seeds])

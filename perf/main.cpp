@@ -31,55 +31,55 @@ constexpr int kBadInput = 2;
 
 void add_run(CLI::App& app, int& threads, int& repetitions, std::filesystem::path& mesh,
              bool& json) {
-  app.add_option("--threads", threads, "threads, 0: all")
+  app.add_option("--threads", threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  app.add_option("--repetitions", repetitions, "timed runs of each method")
+  app.add_option("--repetitions", repetitions, "timed runs per method")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--mesh", mesh, "the camel's mesh file")->capture_default_str();
+  app.add_option("--mesh", mesh, "mesh file of the camel")->capture_default_str();
   app.add_flag("--json", json, "print JSON");
 }
 
 void add_common(CLI::App& app, int& threads, int& voxels, int& repetitions,
                 std::filesystem::path& mesh, bool& json) {
   add_run(app, threads, repetitions, mesh, json);
-  app.add_option("--voxels", voxels, "voxels a side of the workspace")
+  app.add_option("--voxels", voxels, "voxels per side of the workspace")
       ->check(CLI::Range(8, 1024))
       ->capture_default_str();
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Benchmarks of viewgain and of other libraries doing the same job");
+  CLI::App app("Compares viewgain with other libraries on the same tasks");
   app.require_subcommand(1);
 
   viewgain::bench::TraceOptions trace;
   trace.mesh = viewgain::test::camel_mesh_path();
   CLI::App* trace_app = app.add_subcommand(
-      "trace", "first voxel that is not free along each ray, of views of the camel's map");
+      "trace", "find the first voxel that is not free along each ray, by several methods");
   add_common(*trace_app, trace.num_threads, trace.voxels, trace.repetitions, trace.mesh,
              trace.json);
-  trace_app->add_option("--poses", trace.poses, "views, SR4000 at full resolution")
+  trace_app->add_option("--poses", trace.poses, "number of SR4000 views at full resolution")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
 
   trace_app
-      ->add_option("--without", trace.without, "not compared with: dense, tree64, openvdb, octomap")
+      ->add_option("--without", trace.without, "methods to skip: dense, tree64, openvdb, octomap")
       ->check(CLI::IsMember({"dense", "tree64", "openvdb", "octomap"}))
       ->delimiter(',');
 
   viewgain::bench::IntegrateOptions integrate;
   integrate.mesh = viewgain::test::camel_mesh_path();
-  CLI::App* integrate_app = app.add_subcommand("integrate", "one depth frame into the camel's map");
+  CLI::App* integrate_app = app.add_subcommand("integrate", "add a depth frame to the camel's map");
   add_common(*integrate_app, integrate.num_threads, integrate.voxels, integrate.repetitions,
              integrate.mesh, integrate.json);
 
   viewgain::bench::DecisionOptions decision;
   decision.mesh = viewgain::test::camel_mesh_path();
   CLI::App* decision_app = app.add_subcommand(
-      "decision", "from a frame to the best next pose, by stage, gain and number of candidates");
+      "decision", "time from a frame to the best pose, by stage, gain and number of candidates");
   add_run(*decision_app, decision.num_threads, decision.repetitions, decision.mesh, decision.json);
-  decision_app->add_option("--maps", decision.maps, "of camel-N (N voxels a side), room, hall")
+  decision_app->add_option("--maps", decision.maps, "maps: camel-N (N voxels per side), room, hall")
       ->check(CLI::Validator(
           [](const std::string& name) {
             const bool is_camel = name.starts_with("camel-") && name.size() > 6 &&
@@ -89,159 +89,163 @@ int run(int argc, char** argv) {
           "MAP"))
       ->delimiter(',')
       ->capture_default_str();
-  decision_app->add_option("--candidates", decision.candidates, "views to choose from")
+  decision_app->add_option("--candidates", decision.candidates, "numbers of candidate views")
       ->check(CLI::Range(1, 1000000))
       ->delimiter(',')
       ->capture_default_str();
-  decision_app->add_option("--recording", decision.recording, "frames of the map room")
+  decision_app->add_option("--recording", decision.recording, "folder of frames for the map room")
       ->check(CLI::ExistingDirectory);
 
   viewgain::bench::ScalingOptions scaling;
   scaling.mesh = viewgain::test::camel_mesh_path();
-  CLI::App* scaling_app = app.add_subcommand(
-      "scaling", "the full gain on maps of several sizes, with few and many rays, by threads");
+  CLI::App* scaling_app =
+      app.add_subcommand("scaling", "time the full gain by map size, rays per pose and threads");
   add_run(*scaling_app, scaling.num_threads, scaling.repetitions, scaling.mesh, scaling.json);
-  scaling_app->add_option("--voxels", scaling.voxels, "voxels a side of each map")
+  scaling_app->add_option("--voxels", scaling.voxels, "voxels per side of each map")
       ->check(CLI::Range(8, 1024))
       ->delimiter(',')
       ->capture_default_str();
-  scaling_app->add_option("--poses", scaling.poses, "views at full resolution")
+  scaling_app->add_option("--poses", scaling.poses, "number of views at full resolution")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
 
   viewgain::bench::ApproximateOptions approximate;
   approximate.mesh = viewgain::test::camel_mesh_path();
-  CLI::App* approximate_app = app.add_subcommand(
-      "approximate", "accuracy against speed of pixel strides and of approximate()");
+  CLI::App* approximate_app =
+      app.add_subcommand("approximate", "accuracy and speed of pixel strides and of approximate()");
   add_common(*approximate_app, approximate.num_threads, approximate.voxels, approximate.repetitions,
              approximate.mesh, approximate.json);
-  approximate_app->add_option("--poses", approximate.poses, "views")
+  approximate_app->add_option("--poses", approximate.poses, "number of views")
       ->check(CLI::Range(40, 1000000))
       ->capture_default_str();
 
   viewgain::bench::ChooseOptions choose;
   CLI::App* choose_app = app.add_subcommand(
-      "choose",
-      "race and approximate against scoring all in a room, or approximate on maps of objects");
-  choose_app->add_option("--threads", choose.num_threads, "threads, 0: all")
+      "choose", "compare race and approximate with scoring all views, in a room or on objects");
+  choose_app->add_option("--threads", choose.num_threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  choose_app->add_option("--map", choose.map, "a room's map (.vdb); default: one made in memory")
+  choose_app->add_option("--map", choose.map, "map of a room, .vdb (default: made in memory)")
       ->check(CLI::ExistingFile);
-  choose_app->add_option("--poses", choose.poses, "in the room")
+  choose_app->add_option("--poses", choose.poses, "number of poses in the room")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  choose_app->add_option("--subsets", choose.subsets, "of 100 of these poses, one race each")
+  choose_app
+      ->add_option("--subsets", choose.subsets, "number of races, each among 100 of these poses")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  choose_app->add_option("--maps", choose.maps, "maps of objects instead of the room")
+  choose_app
+      ->add_option("--maps", choose.maps,
+                   "number of maps of objects; above 0, they replace the room")
       ->check(CLI::Range(0, 200))
       ->capture_default_str();
-  choose_app->add_option("--tuned", choose.tuned_maps, "the first so many maps are reported apart")
+  choose_app
+      ->add_option("--tuned", choose.tuned_maps,
+                   "number of first maps, used for tuning, to report separately")
       ->check(CLI::Range(0, 200))
       ->capture_default_str();
-  choose_app->add_option("--seed", choose.seed, "of poses, subsets, race and approximate")
+  choose_app->add_option("--seed", choose.seed, "seed of poses, subsets, race and approximate")
       ->capture_default_str();
-  choose_app->add_option("--gain", choose.gain, "paper, surface or combined")
+  choose_app->add_option("--gain", choose.gain, "gain: paper, surface or combined")
       ->check(CLI::IsMember(viewgain::gain_model_names()))
       ->capture_default_str();
   choose_app->add_flag("--json", choose.json, "print JSON");
 
   viewgain::bench::BarsOptions bars;
   bars.mesh = viewgain::test::camel_mesh_path();
-  CLI::App* bars_app =
-      app.add_subcommand("bars", "every figure that has a bar; 1 if one is missed");
+  CLI::App* bars_app = app.add_subcommand(
+      "bars", "measure all figures that have a bar; exit code 1 if one is missed");
   add_common(*bars_app, bars.num_threads, bars.voxels, bars.repetitions, bars.mesh, bars.json);
-  bars_app->add_option("--large-voxels", bars.large_voxels, "voxels a side of the large map")
+  bars_app->add_option("--large-voxels", bars.large_voxels, "voxels per side of the large map")
       ->check(CLI::Range(8, 1024))
       ->capture_default_str();
-  bars_app->add_option("--poses", bars.poses, "views in the tracing comparison")
+  bars_app->add_option("--poses", bars.poses, "number of views in the tracing comparison")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  bars_app->add_option("--maps", bars.maps, "maps on which the best of many views is searched")
+  bars_app->add_option("--maps", bars.maps, "number of maps to search with race")
       ->check(CLI::Range(1, 200))
       ->capture_default_str();
-  bars_app->add_option("--candidates", bars.candidates, "views searched on each")
+  bars_app->add_option("--candidates", bars.candidates, "number of views per search")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   std::vector<std::string> groups;
   for (const auto& group : viewgain::bench::bar_groups()) groups.emplace_back(group.name);
-  bars_app->add_option("--only", bars.only, "groups, separated by commas")
+  bars_app->add_option("--only", bars.only, "groups to measure (default: all)")
       ->check(CLI::IsMember(groups))
       ->delimiter(',');
 
   viewgain::bench::MemoryOptions memory;
   memory.mesh = viewgain::test::camel_mesh_path();
   CLI::App* memory_app =
-      app.add_subcommand("memory", "JSON of the memory of a map and its scene in this process");
-  memory_app->add_option("--threads", memory.num_threads, "threads, 0: all")
+      app.add_subcommand("memory", "print the memory of a map and its scene as JSON");
+  memory_app->add_option("--threads", memory.num_threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  memory_app->add_option("--voxels", memory.voxels, "voxels a side")
+  memory_app->add_option("--voxels", memory.voxels, "voxels per side of the workspace")
       ->check(CLI::Range(8, 1024))
       ->capture_default_str();
-  memory_app->add_option("--views", memory.views, "views integrated")
+  memory_app->add_option("--views", memory.views, "number of integrated views")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  memory_app->add_option("--mesh", memory.mesh, "the camel's mesh file")->capture_default_str();
+  memory_app->add_option("--mesh", memory.mesh, "mesh file of the camel")->capture_default_str();
 
   viewgain::bench::TracersOptions tracers;
   tracers.mesh = viewgain::test::camel_mesh_path();
-  CLI::App* tracers_app =
-      app.add_subcommand("tracers", "Embree's BVH against the sweep, by map, gain, image and call");
-  tracers_app->add_option("--threads", tracers.num_threads, "threads, 0: all")
+  CLI::App* tracers_app = app.add_subcommand(
+      "tracers", "compare Embree's BVH with the sweep, by map, gain, image and call");
+  tracers_app->add_option("--threads", tracers.num_threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  tracers_app->add_option("--repetitions", tracers.repetitions, "timed runs of each tracer")
+  tracers_app->add_option("--repetitions", tracers.repetitions, "timed runs per tracer")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  tracers_app->add_option("--mesh", tracers.mesh, "the camel's mesh file")->capture_default_str();
+  tracers_app->add_option("--mesh", tracers.mesh, "mesh file of the camel")->capture_default_str();
 
   viewgain::bench::HallOptions hall;
   CLI::App* hall_app =
-      app.add_subcommand("hall", "memory and speed of the map of a hall of 20 m x 20 m x 3 m");
-  hall_app->add_option("--threads", hall.num_threads, "threads, 0: all")
+      app.add_subcommand("hall", "memory and speed for a map of a hall of 20 m x 20 m x 3 m");
+  hall_app->add_option("--threads", hall.num_threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   hall_app->add_option("--voxel", hall.voxel, "voxel size [m]")
       ->check(CLI::Range(0.005, 1.0))
       ->capture_default_str();
-  hall_app->add_option("--coarsest", hall.coarsest, "greatest scale of a leaf, 0 to 3");
-  hall_app->add_option("--frames", hall.frames, "on the way through the hall")
+  hall_app->add_option("--coarsest", hall.coarsest, "largest scale of a leaf, 0 to 3");
+  hall_app->add_option("--frames", hall.frames, "number of frames along the aisles")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  hall_app->add_option("--poses", hall.poses, "scored in the end")
+  hall_app->add_option("--poses", hall.poses, "number of poses to score at the end")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   hall_app->add_flag("--json", hall.json, "print JSON");
 
   viewgain::bench::ArmadilloOptions armadillo;
   CLI::App* armadillo_app = app.add_subcommand(
-      "armadillo",
-      "views to the share of the Armadillo that NBV-Simulation's log has, by its count");
-  armadillo_app->add_option("--threads", armadillo.num_threads, "threads, 0: all")
+      "armadillo", "views until the Armadillo is as complete as in NBV-Simulation's log");
+  armadillo_app->add_option("--threads", armadillo.num_threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   armadillo_app
       ->add_option("--data", armadillo.data,
-                   "a clone of NBV-Simulation (perf/peers/get_nbv_simulation.sh), or a stand-in")
+                   "clone of NBV-Simulation (perf/peers/get_nbv_simulation.sh), or a stand-in")
       ->required();
-  armadillo_app->add_option("--gain", armadillo.rankers, "what ranks views, a run each")
+  armadillo_app->add_option("--gain", armadillo.rankers, "rankings of views, one run per ranking")
       ->check(CLI::IsMember(viewgain::bench::ranker_names()))
       ->delimiter(',')
       ->capture_default_str();
   armadillo_app
-      ->add_option("--travel", armadillo.travel, "share of the way in the score, a run each")
+      ->add_option("--travel", armadillo.travel,
+                   "weights of the distance in the score, one run per weight")
       ->check(CLI::Range(0.0, 1.0))
       ->delimiter(',')
       ->capture_default_str();
-  armadillo_app->add_option("--views", armadillo.views, "views of a run")
+  armadillo_app->add_option("--views", armadillo.views, "number of views per run")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  armadillo_app->add_option("--voxel", armadillo.voxel, "voxel size of our map [m]")
+  armadillo_app->add_option("--voxel", armadillo.voxel, "voxel size of viewgain's map [m]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  armadillo_app->add_option("--stride", armadillo.stride, "of the pixels that views are scored on")
+  armadillo_app->add_option("--stride", armadillo.stride, "score views on every n-th pixel and row")
       ->check(CLI::Range(1, 640))
       ->capture_default_str();
   armadillo_app->add_flag("--json", armadillo.json, "print JSON");
@@ -251,22 +255,24 @@ int run(int argc, char** argv) {
   hemisphere.meshes.push_back(hemisphere.meshes.back().parent_path() / "elephant.off");
   CLI::App* hemisphere_app = app.add_subcommand(
       "hemisphere", "coverage by view among the views of a hemisphere, by MA-SCVP's protocol");
-  hemisphere_app->add_option("--threads", hemisphere.num_threads, "threads, 0: all")
+  hemisphere_app->add_option("--threads", hemisphere.num_threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  hemisphere_app->add_option("--mesh", hemisphere.meshes, "mesh files; default: six objects")
+  hemisphere_app->add_option("--mesh", hemisphere.meshes, "mesh files (default: six objects)")
       ->delimiter(',');
-  hemisphere_app->add_option("--views-file", hemisphere.views_file,
-                             "MA-SCVP's view_space.txt or one in its layout; default: 32 of ours");
-  hemisphere_app->add_option("--gain", hemisphere.rankers, "what ranks views")
+  hemisphere_app->add_option(
+      "--views-file", hemisphere.views_file,
+      "positions, in the format of MA-SCVP's view_space.txt (default: 32 of viewgain's)");
+  hemisphere_app->add_option("--gain", hemisphere.rankers, "rankings of views, one run per ranking")
       ->check(CLI::IsMember(viewgain::bench::ranker_names()))
       ->delimiter(',')
       ->capture_default_str();
   hemisphere_app
-      ->add_option("--first-views", hemisphere.first_views, "runs, one from each of these")
+      ->add_option("--first-views", hemisphere.first_views,
+                   "number of first views, one run per first view")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  hemisphere_app->add_option("--budget", hemisphere.budget, "views of a run")
+  hemisphere_app->add_option("--budget", hemisphere.budget, "number of views per run")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   hemisphere_app->add_option("--size", hemisphere.size, "longest side of the objects [m]")
@@ -276,24 +282,25 @@ int run(int argc, char** argv) {
 
   viewgain::bench::FramesOptions frames;
   frames.meshes = viewgain::bench::object_meshes();
-  CLI::App* frames_app = app.add_subcommand(
-      "frames", "what log_diagonal costs on turned grids, against log_determinant");
-  frames_app->add_option("--threads", frames.num_threads, "threads, 0: all")
+  CLI::App* frames_app =
+      app.add_subcommand("frames", "compare log_diagonal with log_determinant on turned grids");
+  frames_app->add_option("--threads", frames.num_threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  frames_app->add_option("--mesh", frames.meshes, "mesh files; default: five objects")
+  frames_app->add_option("--mesh", frames.meshes, "mesh files (default: five objects)")
       ->delimiter(',');
-  frames_app->add_option("--degrees", frames.degrees, "that the grid is turned by")
+  frames_app->add_option("--degrees", frames.degrees, "rotations of the grid [deg]")
       ->check(CLI::Range(-180.0, 180.0))
       ->delimiter(',')
       ->capture_default_str();
-  frames_app->add_option("--seeds", frames.seeds, "runs of each object")
+  frames_app->add_option("--seeds", frames.seeds, "runs per object")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  frames_app->add_option("--views", frames.views, "views of a run")
+  frames_app->add_option("--views", frames.views, "number of views per run")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
-  frames_app->add_option("--candidates", frames.candidates, "views on the sphere")
+  frames_app
+      ->add_option("--candidates", frames.candidates, "number of candidate views on the sphere")
       ->check(CLI::Range(2, 1000000))
       ->capture_default_str();
   frames_app->add_option("--voxel", frames.voxel, "voxel size [m]")
@@ -303,8 +310,8 @@ int run(int argc, char** argv) {
 
   int environment_threads = 0;
   CLI::App* environment_app = app.add_subcommand(
-      "environment", "JSON of what results depend on: CPU, ISA, compiler, versions, commit");
-  environment_app->add_option("--threads", environment_threads, "threads, 0: all")
+      "environment", "print CPU, instruction set, compiler, versions and commit as JSON");
+  environment_app->add_option("--threads", environment_threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
 

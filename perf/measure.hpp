@@ -17,7 +17,7 @@ template <typename Call>
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Of a sample: the value below which the given share of it lies, interpolated between neighbours.
+/// The value below which the given share of a sample lies, interpolated between neighbours.
 [[nodiscard]] double quantile(std::span<const double> sample, double share);
 
 [[nodiscard]] inline double median(std::span<const double> sample) { return quantile(sample, 0.5); }
@@ -25,7 +25,7 @@ template <typename Call>
 /// Spearman's rank correlation of two samples of the same size, at least 2.
 [[nodiscard]] double rank_correlation(std::span<const double> a, std::span<const double> b);
 
-/// The CPU's name as the operating system gives it.
+/// The name of the CPU from the operating system.
 [[nodiscard]] std::string cpu_name();
 
 }  // namespace viewgain::bench

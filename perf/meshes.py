@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes from and into files, for the scripts."""
+"""Reads and writes meshes, for the scripts."""
 import sys
 
 import numpy as np
 
 
 def read_mesh(path):
-    """Vertices and triangles of an OFF or OBJ file, by its ending. What is none ends the script, named."""
+    """Vertices and triangles of an OFF or OBJ file. Exits with a message if the file is not a mesh."""
     try:
         with open(path, encoding="utf-8") as file:
             lines = [words for words in (line.split("#")[0].split() for line in file) if words]
@@ -26,14 +26,14 @@ def read_mesh(path):
         triangles = np.array([[face[0], face[k], face[k + 1]] for face in faces for k in range(1, len(face) - 1)], np.int64)
         vertices = np.array(vertices, float)
         if len(triangles) == 0 or triangles.min() < 0 or triangles.max() >= len(vertices):
-            raise ValueError("no faces, or corners that are not there")
+            raise ValueError("no faces, or a face with a vertex that does not exist")
     except (OSError, ValueError, IndexError) as error:
-        sys.exit(f"{path}: no OFF or OBJ file of a mesh: {error}")
+        sys.exit(f"{path}: expected a mesh in an OFF or OBJ file: {error}")
     return vertices, triangles.astype(np.uint32)
 
 
 def scaled(vertices, size):
-    """The middle of the box in the origin; its longest side `size` [m], or as it is for None."""
+    """Centres the bounding box at the origin and scales its longest side to `size` [m], unless None."""
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     return (vertices - (low + high) / 2) * (1 if size is None else size / (high - low).max())
 

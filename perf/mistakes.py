@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""mistakes.py VIEWGAIN MESH... [--folders N] [--right N] [--first N]: how often the program notices natural mistakes.
+"""How often does the program notice common mistakes?
 
-Simulates folders of frames (objects, sensors, distances, seeds in turn), puts one mistake into each, calls
-`integrate` and prints how many were noticed (a suspicion is said, whether the call is refused or not), and how
-many right folders raise a false alarm.
+    mistakes.py VIEWGAIN MESH... [--folders N] [--right N] [--first N]
+
+Simulates folders of frames with different objects, sensors, distances and seeds. It puts one
+mistake into each folder and calls `integrate`. The table has how many mistakes were noticed, by a
+warning or a refusal, and how many right folders raised a false alarm.
 """
 import argparse
 import pathlib
@@ -191,12 +193,12 @@ MISTAKES = {
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("program")
-    parser.add_argument("meshes", nargs="+")
-    parser.add_argument("--folders", type=int, default=20)
-    parser.add_argument("--right", type=int, default=200)
-    parser.add_argument("--first", type=int, default=0, help="number of the first folder: its seed and settings")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", metavar="VIEWGAIN", help="the program viewgain")
+    parser.add_argument("meshes", nargs="+", metavar="MESH", help="mesh files of objects")
+    parser.add_argument("--folders", type=int, default=20, help="wrong folders per mistake (default: 20)")
+    parser.add_argument("--right", type=int, default=200, help="right folders (default: 200)")
+    parser.add_argument("--first", type=int, default=0, help="number of the first folder, which sets its seed and settings (default: 0)")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         root = pathlib.Path(temporary)

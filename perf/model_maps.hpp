@@ -13,18 +13,18 @@
 
 namespace viewgain::bench {
 
-/// The objects that maps are made of; the camel is the first.
+/// The meshes of the objects; the camel is the first.
 [[nodiscard]] std::vector<std::filesystem::path> object_meshes();
 
 struct ModelMapPlan {
   std::vector<std::filesystem::path> meshes = object_meshes();
-  std::uint64_t seeds = 10;               ///< 1 .. seeds, of start and noise
-  std::vector<int> views = {1, 2, 4, 8};  ///< ascending; after so many there is a map
-  int voxels = 128;                       ///< along the workspace's longest side
-  std::size_t most = 200;                 ///< maps, then it ends
+  std::uint64_t seeds = 10;               ///< seeds 1 to this, for start and noise
+  std::vector<int> views = {1, 2, 4, 8};  ///< numbers of views of the maps, ascending
+  int voxels = 128;                       ///< along the longest side of the workspace
+  std::size_t most = 200;                 ///< maximum number of maps
 };
 
-/// A map on the way of a model.
+/// A map of a model after some views.
 struct ModelMap {
   std::filesystem::path mesh;
   std::uint64_t seed = 0;
@@ -32,13 +32,12 @@ struct ModelMap {
   std::shared_ptr<const VoxelScene> scene;
 };
 
-/// Cameras stand so far from the object's centre [m].
+/// Distance of cameras from the object's centre [m].
 inline constexpr double kModelDistance = 0.6;
 
-/// Calls visit for each map, seed by seed, object by object, view by view: a disturbed SR4000 (see
-/// ModelScene) begins where `viewgain reconstruct` would and then goes to the best of 200 poses on
-/// the sphere that it has not been at, scored on every fourth pixel. Deterministic; one map at a
-/// time is kept. Throws Error.
+/// Calls `visit` for each map, by seed, object and view. A disturbed SR4000 (see ModelScene) starts
+/// like `viewgain reconstruct`. It then goes to the best new pose among 200 on the sphere, scored
+/// on every fourth pixel. Deterministic. Only one map is kept at a time. Throws Error.
 void for_each_model_map(const ModelMapPlan& plan, const ExecConfig& exec,
                         const std::function<void(const ModelMap&)>& visit);
 

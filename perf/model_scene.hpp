@@ -14,8 +14,8 @@
 
 namespace viewgain::bench {
 
-/// An object before a disturbed SR4000, as `viewgain reconstruct` has it by default: noise, flying
-/// pixels, background, jump-edge filter.
+/// An object and an SR4000 with the default disturbances of `viewgain reconstruct`: noise, flying
+/// pixels and background, followed by the jump-edge filter.
 class ModelScene {
  public:
   ModelScene(const std::filesystem::path& mesh, std::uint64_t seed, const ExecConfig& exec);
@@ -23,9 +23,9 @@ class ModelScene {
   [[nodiscard]] const Stage& stage() const noexcept { return stage_; }
   [[nodiscard]] const Sensor& sensor() const noexcept { return sensor_; }
 
-  /// A filtered frame.
+  /// A disturbed and filtered frame.
   [[nodiscard]] DepthFrame acquire(const Pose& T_world_camera, std::uint64_t frame) const;
-  /// Without any disturbance.
+  /// A frame without disturbances.
   [[nodiscard]] DepthFrame true_frame(const Pose& T_world_camera) const;
 
   [[nodiscard]] BeliefGrid empty_grid(double voxel_size) const;

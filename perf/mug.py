@@ -1,12 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""mug.py [--picture PNG]: a mug on a table in a room, rough and fine in one map. As Markdown. Needs PYTHONPATH of a build.
+"""A mug on a table in a room, coarse and fine in one map. Prints Markdown.
 
-A simulated Kinect v1 with all its noise looks round a room of 4 x 3 x 2.5 m in 24 frames, then at the mug in 16, from the side away
-from its handle. The same frames go into one map of voxels of 2.5 mm that is known by cells of 20 mm but about the mug, one by cells as large as
-pixels, a map of the mug alone, and a room of one scale.
-The table says what each map takes, and how well it knows the mug; below is which view looks at the handle when the task says so.
+    mug.py [--picture PNG]
+
+A simulated Kinect v1 with all its noise views a room of 4 x 3 x 2.5 m: 24 frames of the room, then
+16 of the mug, from the side away from its handle. The same frames go into four maps:
+
+- voxels of 2.5 mm, with cells of 20 mm except around the mug
+- cells as large as the pixels' footprint, except around the mug
+- the mug alone
+- the room at one scale
+
+The first table has the cost of each map and how well it knows the mug. The second has the view that
+sees most of the handle, if the handle is the task. Needs PYTHONPATH=build/release/python.
 """
 import argparse
 import time
@@ -21,7 +29,7 @@ VOXEL, COARSEST, SAMPLES, NEAR = 0.0025, 3, 40000, 0.0025
 ROOM, TABLE_Z, TABLE = (4.0, 3.0, 2.5), 0.75, (1.2, 0.8)
 RADIUS, HEIGHT, WALL = 0.04, 0.1, 0.004
 HANDLE_RADIUS, HANDLE_THICKNESS = 0.028, 0.006
-AWAY = np.radians(180)  # where the second half of the frames is, seen from the mug; its handle is at 0
+AWAY = np.radians(180)  # azimuth of the frames of the mug; the handle is at 0
 MUG_BOX = [[-0.06, -0.06, TABLE_Z - 0.02], [0.1, 0.06, TABLE_Z + HEIGHT + 0.02]]
 HANDLE_BOX = [[RADIUS + 0.004, -0.02, TABLE_Z], [0.09, 0.02, TABLE_Z + HEIGHT]]
 
@@ -34,7 +42,7 @@ def box(low, high, inwards=False):
 
 
 def lattice(points, closed_v):
-    """The triangles of an (n, m, 3) lattice of points, its second way closed or not."""
+    """The triangles of an (n, m, 3) lattice of points. Its second direction is closed or open."""
     n, m = points.shape[:2]
     i, j = np.meshgrid(np.arange(n - 1), np.arange(m if closed_v else m - 1), indexing="ij")
     a, b, c, d = (x.ravel() for x in (i * m + j, (i + 1) * m + j, (i + 1) * m + (j + 1) % m, i * m + (j + 1) % m))
@@ -42,7 +50,7 @@ def lattice(points, closed_v):
 
 
 def mug():
-    """Standing on the table at x = y = 0, open above, its handle towards +x."""
+    """A mug on the table at x = y = 0, open at the top, with its handle towards +x."""
     inner, bottom = RADIUS - WALL, TABLE_Z + 1e-4
     profile = [(0, 0), (RADIUS, 0), (RADIUS, HEIGHT), (inner, HEIGHT), (inner, WALL), (0, WALL)]
     around = np.radians(np.arange(0, 360, 5))
@@ -64,7 +72,7 @@ def together(parts):
 
 
 def room_around(body, handle):
-    """The whole scene; the mug's triangles are its last."""
+    """The whole scene. The mug's triangles are the last."""
     x, y, z = ROOM
     w, d = TABLE
     legs = [box((sx * (w / 2 - 0.04) - 0.03, sy * (d / 2 - 0.04) - 0.03, 0), (sx * (w / 2 - 0.04) + 0.03, sy * (d / 2 - 0.04) + 0.03, 0.71))
@@ -75,7 +83,7 @@ def room_around(body, handle):
 
 
 def frames_of(camera):
-    """Poses and depth images: round the room, then the mug from the side away from its handle."""
+    """Poses and depth images: first the room, then the mug from the side away from its handle."""
     poses = []
     for angle in np.radians(np.arange(0, 360, 15)):
         eye = np.array([1.1 * np.cos(angle), 1.1 * np.sin(angle), 1.5])
@@ -88,7 +96,7 @@ def frames_of(camera):
 
 
 def model(sensor, frames, workspace, coarsest, fine, finest):
-    """The map, and the processor seconds that its frames took."""
+    """The map, and the CPU time that its frames took [s]."""
     grid = viewgain.BeliefGrid(voxel_size=VOXEL, workspace=workspace, sensor=sensor)
     integrator = viewgain.FrameIntegrator(sensor, coarsest=coarsest, fine=fine, finest=finest, num_threads=1)
     start = time.process_time()
@@ -104,7 +112,7 @@ def points_of_mug(grid):
 
 
 def knowledge(grid, samples):
-    """Share of the samples that a point is near to, and the points' RMS distance to the mug [m]."""
+    """Share of the samples with a point near by, and RMS distance of the points from the mug [m]."""
     points = points_of_mug(grid)
     near = cKDTree(points).query(samples, distance_upper_bound=NEAR)[0] < NEAR
     distance = cKDTree(samples).query(points)[0]
@@ -135,7 +143,7 @@ def draw(path, grid):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--picture", help="draw the map's points")
+    parser.add_argument("--picture", metavar="PNG", help="draw the points of the map to this file")
     arguments = parser.parse_args()
     sensor = viewgain.sensor_preset("kinect_v1")
     body, handle = mug()
@@ -159,7 +167,7 @@ def main():
     grid = maps["room 20 mm, mug 2.5 mm"]
     if arguments.picture:
         draw(arguments.picture, grid)
-    # What is seen of the handle's samples, by the frames so far and by a view more.
+    # Which samples of the handle the frames have seen, and which one more view would see.
     of_handle = visibility.KnownObject(*together([body, handle]), sensor, SAMPLES)
     of_handle.simulated = viewgain.SimulatedSensor(*scene, of_handle.sensor)
     low, high = np.array(HANDLE_BOX)
@@ -171,8 +179,9 @@ def main():
     poses[:, 2, 3] += TABLE_Z + HEIGHT / 2
     brings = np.array([(of_handle.sees(pose) & ~seen).mean() for pose in poses])
     voxels = viewgain.VoxelScene(grid)
-    print(f"\nOf the handle {100 * seen.mean():.0f} % is seen; a view can bring {100 * brings.max():.0f} % more, in the mean {100 * brings.mean():.0f} %.\n")
-    print("| the best view by | sees anew of the handle |", "|---|---|", sep="\n")
+    print(f"\n{100 * seen.mean():.0f} % of the handle is seen. One more view can show {100 * brings.max():.0f} % more; "
+          f"the mean is {100 * brings.mean():.0f} %.\n")
+    print("| best view by | newly seen part of the handle |", "|---|---|", sep="\n")
     for name, weights in (("combined", []), ("combined, the task: the handle", [(room, 0.0), (HANDLE_BOX, 1.0)])):
         evaluator = viewgain.GainEvaluator(voxels, sensor, weights=weights)
         print(f"| {name} | {100 * brings[evaluator.best(poses, 1).indices[0]]:.0f} % |")

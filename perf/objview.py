@@ -1,17 +1,28 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""ObjView-Bench's protocol (arXiv 2605.10707) on meshes at hand, as Markdown. Needs PYTHONPATH of a build, and scipy.
+"""ObjView-Bench's protocol (arXiv 2605.10707) on your meshes. Prints Markdown.
 
-    objview.py MESH... [--views FILE] [--observable FILE] [--starts FILE] [--as-is] [--budget 20] [--sectors whole,hemi,...]
+    objview.py MESH... [--views FILE] [--observable FILE] [--starts FILE] [--as-is] [--budget 20]
+               [--sectors whole,hemi,...]
 
-As they have it: an object in the unit sphere, views from 3.0 that look at its centre, 512x512 pixels, 45 deg, no noise; the next
-view is one of 128 Tammes directions in the whole, half (z >= 0), quarter (y, too) or eighth (x, too) sphere. NSC is the share
-of what all allowed ones of 360 Tammes directions read, a point in each 0.005, that a reading comes within 0.01, 0.02, 0.03 of.
-The map is stable when three views in a row add less than 1 % to the voxels of 0.01 that hold a reading. The way goes round the
-unit sphere. Ours: Tammes directions of tammes.py, 3,000 of the points, three starts (the directions next to x, y and z),
-voxels of 1/32 as their planner has them, gains by every 8th pixel and row. Their files, of three numbers a line, and meshes
-(OFF, OBJ; in their unit sphere with --as-is) can be given instead.
+The protocol:
+
+- The object is in the unit sphere. Views are at distance 3.0 and look at its centre, with 512x512
+  pixels, 45 deg and no noise.
+- The next view is one of 128 Tammes directions, in the whole sphere, a half (z >= 0), a quarter
+  (y >= 0, too) or an eighth (x >= 0, too).
+- The observable points are those that the allowed ones of 360 Tammes directions read, one point
+  per 0.005. NSC is the share of them with a reading within 0.01, 0.02 or 0.03.
+- The map is stable if each of three views in a row adds less than 1 % to the voxels of 0.01 with a
+  reading.
+- The path goes around the unit sphere.
+
+Our choices: Tammes directions from tammes.py, 3,000 of the points, three starts (the directions
+nearest to x, y and z), voxels of 1/32 as in their planner, gains on every 8th pixel and row.
+
+Their files can be given instead: directions as three numbers per line, meshes as OFF or OBJ, in
+their unit sphere with --as-is. Needs PYTHONPATH=build/release/python and scipy.
 """
 import argparse
 import collections
@@ -27,7 +38,7 @@ import covers
 import meshes
 import tammes
 
-SECTORS = {"whole": [], "hemi": [2], "quarter": [2, 1], "eighth": [2, 1, 0]}  # axes that may not be below 0
+SECTORS = {"whole": [], "hemi": [2], "quarter": [2, 1], "eighth": [2, 1, 0]}  # axes that must not be negative
 RADIUS, PIXELS, FUSED = 3.0, 512, 0.005
 NEAR = (0.01, 0.02, 0.03)
 TAU, PATIENCE = 0.01, 3
@@ -48,7 +59,7 @@ def allowed(directions, sector):
 
 
 def way_round(a, b, radius=1.0):
-    """From a to b, straight or, where the sphere round the origin is between, along it."""
+    """Path length from a to b. If the sphere around the origin is in between, the path follows it."""
     line = b - a
     length = np.linalg.norm(line)
     if length == 0:
@@ -62,7 +73,7 @@ def way_round(a, b, radius=1.0):
 
 
 def stable_at(voxels):
-    """After how many views the map is stable, by the voxels that hold a reading after each; None: never."""
+    """Number of views until the map is stable, or None. `voxels`: voxels with a reading after each view."""
     calm = 0
     for k, (before, after) in enumerate(zip(voxels, voxels[1:]), 2):
         calm = calm + 1 if (after - before) / max(before, 1) < TAU else 0
@@ -72,14 +83,14 @@ def stable_at(voxels):
 
 
 def cells_of(points, size):
-    """One of the points in each cell of a lattice, and the cells' numbers."""
+    """One point per cell of a lattice, and the keys of the cells."""
     index = np.floor(points / size).astype(np.int64) + 2**20
     keys, first = np.unique(index[:, 0] << 42 | index[:, 1] << 21 | index[:, 2], return_index=True)
     return points[first], keys
 
 
 class Stage:
-    """An object and what the views read of it."""
+    """An object, and what the views read of it."""
 
     def __init__(self, mesh, directions, observable, as_is):
         vertices, triangles = meshes.read_mesh(mesh)
@@ -103,7 +114,7 @@ class Stage:
         return np.hstack([self.rays[is_reading] * z, z]) @ T_world_camera[:3, :3].T + T_world_camera[:3, 3]
 
     def covered(self, views, observable):
-        """[threshold, view, point of what can be seen]: is a reading of the view so near?"""
+        """By [threshold, view, observable point]: does the view have a reading within the threshold?"""
         points = cells_of(np.concatenate([self.observed[i] for i in observable]), FUSED)[0]
         points = points[np.random.default_rng(1).permutation(len(points))[:POINTS]]
         distance = np.array([cKDTree(self.read[i]).query(points, distance_upper_bound=NEAR[-1])[0] for i in views])
@@ -111,7 +122,7 @@ class Stage:
 
 
 class MapChoice:
-    """The view that gains most in a map of the frames so far."""
+    """The view with the largest gain in a map of the frames so far."""
 
     def __init__(self, stage, policy):
         self.stage, self.policy = stage, policy
@@ -151,7 +162,7 @@ class RandomChoice:
 
 
 def episode(choice, views, start, budget):
-    """The views in their order, and the seconds of a choice."""
+    """The views in their order, and the mean time per choice [s]."""
     taken, seconds = [int(start)], []
     while len(taken) < min(budget, len(views)):
         begin = time.perf_counter()
@@ -161,7 +172,10 @@ def episode(choice, views, start, budget):
 
 
 def figures_of(stage, views, covered, taken, seconds, checkpoints):
-    """NSC at each checkpoint and at the stop [%], views at the stop (the budget if never), way to it, seconds a choice."""
+    """NSC at checkpoints [%], views until the stop, NSC there [%], path length, time per choice [s].
+
+    Without a stop, the budget counts.
+    """
     rows = [int(np.flatnonzero(views == view)[0]) for view in taken]
     nsc = lambda k, near=0: 100 * covered[near][rows[:k]].any(axis=0).mean()
     keys, counts = np.empty(0, np.int64), []
@@ -180,23 +194,25 @@ def directions_of(path, count):
     try:
         directions = np.loadtxt(path, ndmin=2).reshape(-1, 3)
     except (OSError, ValueError) as error:
-        sys.exit(f"{path}: not three numbers a line: {error}")
+        sys.exit(f"{path}: expected three numbers per line: {error}")
     return directions / np.linalg.norm(directions, axis=1)[:, None]
 
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("meshes", nargs="+", type=pathlib.Path, metavar="MESH")
-    for name, what in (("views", "candidates, instead of 128 of ours"), ("observable", "instead of 360 of ours"),
-                       ("starts", "instead of x, y and z; the nearest candidates are taken")):
+    parser.add_argument("meshes", nargs="+", type=pathlib.Path, metavar="MESH", help="mesh files")
+    for name, what in (("views", "file of candidate directions (default: 128 Tammes directions)"),
+                       ("observable", "file of directions that define the observable points (default: 360 Tammes directions)"),
+                       ("starts", "file of directions; runs start at the nearest candidates (default: x, y and z)")):
         parser.add_argument(f"--{name}", help=what)
-    parser.add_argument("--as-is", action="store_true", help="the meshes are in the unit sphere")
-    parser.add_argument("--budget", type=int, default=20, help="views, the start among them")
-    parser.add_argument("--sectors", default=",".join(SECTORS))
+    parser.add_argument("--as-is", action="store_true", help="do not scale the meshes; they are in the unit sphere")
+    parser.add_argument("--budget", type=int, default=20, help="number of views, with the start (default: 20)")
+    parser.add_argument("--sectors", default=",".join(SECTORS),
+                        help="sectors to run (default: all)")
     options = parser.parse_args()
     options.sectors = options.sectors.split(",")
     if not set(options.sectors) <= set(SECTORS):
-        parser.error(f"--sectors: of {', '.join(SECTORS)}")
+        parser.error(f"--sectors: choose from {', '.join(SECTORS)}")
     if options.budget < 1:
         parser.error("--budget must be positive")
     return options
@@ -226,14 +242,14 @@ def main():
             print(f"{mesh.stem}, {sector}", file=sys.stderr)
     print(f"{', '.join(mesh.stem for mesh in options.meshes)}; {len(starts)} starts; means of {len(options.meshes) * len(starts)} runs. "
           f"NSC at 0.01 after k views, then at the stop at {', '.join(map(str, NEAR))} [%].\n")
-    head = ["sector", "policy", *(f"k = {k}" for k in checkpoints), "views to the stop", *(f"NSC {near}" for near in NEAR), "way",
-            "s a choice"]
+    head = ["sector", "policy", *(f"k = {k}" for k in checkpoints), "views until the stop", *(f"NSC {near}" for near in NEAR), "path length",
+            "s per choice"]
     print("| " + " | ".join(head) + " |\n|" + "---|" * len(head))
     for (sector, policy), rows in figures.items():
         mean = np.mean(rows, axis=0)
         print("| " + " | ".join([sector, policy, *(f"{v:.1f}" for v in mean[:-1]), f"{mean[-1]:.3f}"]) + " |")
-    print("\nLeast views to a share of what all candidates together cover (no start given; objects in their order; `3-4`: no less than "
-          "3 is proven)\n\n| sector | all candidates' NSC [%] | 90 % | 95 % | 99 % | all |\n|---|---|---|---|---|---|")
+    print("\nMinimum number of views to a share of what all candidates together cover, with any start. Objects are in their order. `3-4` means "
+          "that fewer than 3 are ruled out\n\n| sector | all candidates' NSC [%] | 90 % | 95 % | 99 % | all |\n|---|---|---|---|---|---|")
     for sector, rows in limits.items():
         span = lambda one: str(len(one.views)) if one.bound == len(one.views) else f"{one.bound}-{len(one.views)}"
         columns = zip(*rows)

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Draws what `viewgain-bench scaling --json`, `bars --json` or `approximate --json` printed.
+"""Plots the output of `viewgain-bench scaling --json`, `bars --json` or `approximate --json`.
 
     viewgain-bench scaling --json > scaling.json
     perf/plot.py scaling.json scaling.png
 
-Of `scaling`: rays per second against the map's size, a line for each number of rays a pose and of
-threads, 5 to 95 % as bars. Of `bars`: each figure as a share of its bar, 1 and beyond is a pass. Of
-`approximate`: rank correlation with the full gains against speed.
+    scaling        rays per second by map size, for each number of rays and threads; bars: 5 to 95 %
+    bars           each figure divided by its bar; 1 or better passes
+    approximate    rank correlation with the full gains, by speed
+
 Needs matplotlib (Debian: python3-matplotlib).
 """
 import argparse
@@ -24,7 +25,7 @@ def plot_scaling(axes, result):
                 for k in ("median", "p05", "p95")}
         below = [m - low for m, low in zip(rate["median"], rate["p05"])]
         above = [high - m for m, high in zip(rate["median"], rate["p95"])]
-        label = f"{rays:,} rays a pose, {threads} thread{'s' if threads > 1 else ''}"
+        label = f"{rays:,} rays per pose, {threads} thread{'s' if threads > 1 else ''}"
         axes.errorbar(sides, rate["median"], yerr=[below, above], marker="o", capsize=3,
                       label=label)
     sides = sorted({int(case["scene"].split("-")[1]) for case in result["cases"]})
@@ -78,8 +79,8 @@ def plot_approximate(axes, result):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("json", help="what one of them printed")
-    parser.add_argument("png", help="the picture")
+    parser.add_argument("json", help="output of scaling, bars or approximate")
+    parser.add_argument("png", help="picture to write")
     arguments = parser.parse_args()
     try:
         with open(arguments.json, encoding="utf-8") as file:
@@ -93,7 +94,7 @@ def main():
     elif "ways" in result:
         plot = plot_approximate
     else:
-        sys.exit(f"plot.py: {arguments.json}: of none of `scaling`, `bars` and `approximate`")
+        sys.exit(f"plot.py: {arguments.json}: expected the JSON of `scaling`, `bars` or `approximate`")
     try:
         import matplotlib
     except ImportError:

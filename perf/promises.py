@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Compares the refinement that the combined gain promises with what frames bring (apps/docs/guide/surface_gain.md).
+"""Compares the refinement that the combined gain promises with what frames bring.
 
-    promises.py SENSOR RUN...    RUN: a folder of `viewgain reconstruct --save-maps on`; SENSOR: its preset
+    promises.py SENSOR RUN...
 
-For each run: the refinement [nat] that is promised for the views after the first, and the share of it that the points at
-the same voxels then lost in entropy. Without obstacles and support plane; maps of one scale.
+See apps/docs/guide/surface_gain.md.
+
+SENSOR is the preset of the runs. RUN is a folder from `viewgain reconstruct --save-maps on`. For
+each run, the table has the refinement [nat] promised for the views after the first. Next to it is
+the share by which the entropy of the points at the same voxels then fell. Supports maps of one
+scale, without obstacles and support plane.
 """
 import argparse
 import pathlib
@@ -16,7 +20,7 @@ import viewgain
 
 
 def information(grid):
-    """Of each voxel of the workspace: xx yy zz xy xz yz [1/m^2]; 0 where it is not occupied or has no readings."""
+    """Information per voxel: xx yy zz xy xz yz [1/m^2]; 0 if it is not occupied or has no readings."""
     states, beliefs = np.asarray(grid.states()), grid.beliefs()
     voxels = beliefs["voxel"] - np.array(grid.min_index)
     inside = np.all((voxels >= 0) & (voxels < states.shape), axis=1)
@@ -28,7 +32,7 @@ def information(grid):
 
 
 def entropy(grid, known, voxels):
-    """Of the point at each voxel, which pools the 27 voxels centred on it [nat]."""
+    """Entropy [nat] of the point at each voxel, which pools the 27 voxels around it."""
     padded = np.pad(known, [(1, 1)] * 3 + [(0, 0)])
     x, y, z = voxels.T
     pool = sum(padded[x + i, y + j, z + k] for i in range(3) for j in range(3) for k in range(3))
@@ -39,7 +43,7 @@ def entropy(grid, known, voxels):
 
 
 def promised_and_kept(run, sensor):
-    """Two columns, promised and lost [nat], with a row for each view after the first."""
+    """Promised and lost entropy [nat] in two columns, with a row per view after the first."""
     poses = viewgain.read_poses(run / "views.txt")
     rows = []
     after = viewgain.BeliefGrid.load(run / "maps" / "00.vdb")
@@ -56,8 +60,8 @@ def promised_and_kept(run, sensor):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("sensor", help="one of " + ", ".join(viewgain.sensor_preset_names()))
-    parser.add_argument("runs", nargs="+", type=pathlib.Path, metavar="RUN")
+    parser.add_argument("sensor", help="sensor preset: " + ", ".join(viewgain.sensor_preset_names()))
+    parser.add_argument("runs", nargs="+", type=pathlib.Path, metavar="RUN", help="folders from reconstruct --save-maps on")
     options = parser.parse_args()
     sensor = viewgain.sensor_preset(options.sensor)
     print("| run | promised [nat] | kept | of the 2nd, 3rd, ... view |\n|---|---|---|---|")

@@ -1,9 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""What Python adds to a batch: python_overhead.py PYTHON_GAINS [POSES [ROUNDS]]
+"""How much time does Python add to a batch?
 
-PYTHON_GAINS is the test program python_gains. C++ and Python score the same poses on the same map in
-turn; the medians over the rounds are printed, and the time of the conversions alone.
+    python_overhead.py PYTHON_GAINS [POSES [ROUNDS]]
+
+PYTHON_GAINS is the test program python_gains. C++ and Python score the same poses on the same map,
+in turns. Prints the medians over the rounds, and the time of the conversions alone.
 """
 import pathlib
 import statistics

@@ -6,13 +6,13 @@
 
 namespace viewgain::bench {
 
-/// What this process has in memory [byte]: VmRSS of /proc/self/status.
+/// The resident memory of this process [byte]: VmRSS of /proc/self/status.
 [[nodiscard]] std::uint64_t resident_bytes();
 
-/// The most that it had since reset_peak_memory() [byte]: VmHWM.
+/// Its peak since reset_peak_memory() [byte]: VmHWM.
 [[nodiscard]] std::uint64_t peak_resident_bytes();
 
-/// Returns freed memory to the system and starts the peak anew from what is resident now.
+/// Returns freed memory to the system and resets the peak to the current resident memory.
 void reset_peak_memory();
 
 }  // namespace viewgain::bench

@@ -1,12 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""scenes.py KIND SEED MESH... --out DIR: compose a cluttered scene from thin walls and the objects in MESH files.
+"""Composes a cluttered scene from thin walls and the objects in mesh files.
 
-KIND is shelf (two levels, three columns, boards of 10 mm), bin (an open box with walls of 6 mm) or table (a slab). Each
-object is scaled, turned about the vertical at random (SEED) and placed in free space. Writes scene.off, reach.toml and
-flags.toml. `viewgain reconstruct --config DIR/flags.toml --out RUN` then takes ten views with a D435 and voxels of 5 mm,
-from above the bin or the table or in front of the shelf. Meshes (OFF, OBJ) have y up.
+    scenes.py KIND SEED MESH... --out DIR
+    viewgain reconstruct --config DIR/flags.toml --out RUN
+
+    shelf    two levels, three columns, boards of 10 mm
+    bin      an open box with walls of 6 mm
+    table    a slab
+
+Each object is scaled, turned about the vertical at random (SEED) and placed in free space. Writes
+scene.off, reach.toml and flags.toml. The second command then takes ten views with a D435 and voxels
+of 5 mm, from above the bin or the table or in front of the shelf. In the meshes (OFF, OBJ), y is
+up.
 """
 import argparse
 import pathlib
@@ -19,12 +26,12 @@ import meshes
 from meshes import box
 
 Y_TO_Z = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)
-APART = 0.008     # least gap between the boxes of two objects [m]
+APART = 0.008     # minimum gap between the boxes of two objects [m]
 SIZES = .09, .15  # longest sides of objects [m]
 
 
 def standing(path, size, turn):
-    """Vertices and triangles with the middle of the underside in the origin, at most `size` wide, deep and high [m]."""
+    """Vertices and triangles, at most `size` [m] large, with the centre of the underside at the origin."""
     vertices, triangles = meshes.read_mesh(path)
     c, s = np.cos(turn), np.sin(turn)
     vertices = meshes.scaled(vertices, None) @ Y_TO_Z.T @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]).T
@@ -35,7 +42,7 @@ def standing(path, size, turn):
 
 
 def place(rng, paths, areas):
-    """The objects on rectangles (x0, y0, x1, y1, z, headroom) [m], in turn, none within APART of another."""
+    """Places objects on rectangles (x0, y0, x1, y1, z, headroom) [m], with gaps of at least APART."""
     parts, taken = [], [[] for _ in areas]
     for k, path in enumerate(paths):
         x0, y0, x1, y1, z, headroom = areas[k % len(areas)]
@@ -51,7 +58,7 @@ def place(rng, paths, areas):
                 parts.append((vertices + [*at, z], triangles))
                 break
         else:
-            sys.exit(f"{path}: no place is free; name fewer meshes")
+            sys.exit(f"{path}: no free place is left; pass fewer meshes")
     return parts
 
 
@@ -96,7 +103,7 @@ def numbers(values):
 
 
 def quaternion(eye, at):
-    """x, y, z, w of a camera in `eye` that looks at `at`, its image's rows level."""
+    """Orientation (x, y, z, w) of a camera at `eye` that looks at `at`, with level image rows."""
     forward = (at - eye) / np.linalg.norm(at - eye)
     right = np.cross(forward, [0, 0, 1])
     right /= np.linalg.norm(right)
@@ -105,14 +112,14 @@ def quaternion(eye, at):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=KINDS)
-    parser.add_argument("seed", type=int)
-    parser.add_argument("meshes", nargs="+")
-    parser.add_argument("--out", required=True, type=pathlib.Path)
+    parser.add_argument("kind", choices=KINDS, help="kind of scene")
+    parser.add_argument("seed", type=int, metavar="SEED", help="seed of sizes, rotations and places")
+    parser.add_argument("meshes", nargs="+", metavar="MESH", help="mesh files of objects")
+    parser.add_argument("--out", required=True, type=pathlib.Path, metavar="DIR", help="folder to write to")
     args = parser.parse_args()
     parts, reach, view = KINDS[args.kind](np.random.default_rng(args.seed), args.meshes)
     vertices = np.concatenate([corners for corners, _ in parts])
-    middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2  # where reconstruct puts the world's origin
+    middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2  # reconstruct puts the world's origin here
     vertices = vertices - middle
     low, high = vertices.min(axis=0) - .03, vertices.max(axis=0) + .03
     eye, at = np.array(view, float) - middle

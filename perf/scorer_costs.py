@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""scorer_costs.py [REPETITIONS]: what calls of ViewScorer cost, as a table.
+"""What do calls of ViewScorer cost? Prints a table.
 
-Maps of 1e4, 1e6 and 1e7 voxels of labels: a ball with an unknown inside, free space, and one half unknown. Cameras with
-25,344 and 307,200 rays. Medians [ms] on all threads; PYTHONPATH=build/release/python.
+    scorer_costs.py [REPETITIONS]
+
+The maps have 1e4, 1e6 and 1e7 voxels of labels: a ball with unknown voxels inside and free space
+around it; half of the workspace is unknown. Cameras have 25,344 and 307,200 rays. Figures are
+medians [ms] on all threads. Needs PYTHONPATH=build/release/python.
 """
 import statistics
 import sys
@@ -15,12 +18,12 @@ import viewgain
 
 EDGES = 22, 100, 216        # voxels along a side
 SENSORS = "sr4000", "kinect_v1"
-SIDE = 0.5                  # of the workspace [m]
+SIDE = 0.5                  # side of the workspace [m]
 POSES = viewgain.sphere_poses(200, 1.0)
 
 
 def labels_of(edge):
-    """A ball of half the side; behind x = 0 nothing is known."""
+    """Labels of a ball of half the side. All voxels behind x = 0 are unknown."""
     axis = (np.arange(edge) + 0.5) / edge - 0.5
     x, y, z = np.meshgrid(axis, axis, axis, indexing="ij", sparse=True)
     radius = np.sqrt(x**2 + y**2 + z**2)
@@ -31,7 +34,7 @@ def labels_of(edge):
 
 
 def median_ms(call, repetitions, prepare=lambda: None):
-    """Of call(what prepare() returned), which is not timed."""
+    """Median time of call(prepare()) [ms]. prepare() is not timed."""
     seconds = []
     for repetition in range(repetitions + 1):  # the first one warms up
         prepared = prepare()
@@ -68,7 +71,7 @@ def rows(edge, repetitions):
 
 def main():
     repetitions = int(sys.argv[1]) if len(sys.argv) > 1 else 7
-    print("| voxels | rays | `set` all | `set` 16³ | then `scene` | or `evaluator` | `add` | `evaluate`, a pose | `best`, a pose of 200 |")
+    print("| voxels | rays | `set` all | `set` 16³ | then `scene` | or `evaluator` | `add` | `evaluate`, per pose | `best` of 200, per pose |")
     print("|---|---|---|---|---|---|---|---|---|")
     for edge in EDGES:
         for row in rows(edge, repetitions):

@@ -1,14 +1,24 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""sets.py MESH... [--maps 200]: how good is a set of views? As Markdown. Needs PYTHONPATH of a build.
+"""How good are sets of views? Prints Markdown.
 
-Each object of 0.35 m is modelled by a simulated SR4000, all its noise, voxels of 5 mm, by gain "combined" among 200 poses of a
-sphere of 0.6 m; after 1, 2, 4 and 8 views its map is asked for sets of those poses.
-Choice: `best_set` of 2, 3 and 4 of 14 poses at random against the best of all their subsets, by every eighth pixel and row.
-Truth: `best_set` of 3 of the 200 against the three best single views, by the surface that they truly see and no view of the map has
-seen (perf/visibility.py), and by what of the surface the map's points come within 5 mm of once their frames are in.
-Realised over promised is the surface truly seen over the set's value by gain "surface".
+    sets.py MESH... [--maps 200]
+
+Each object of 0.35 m is modelled with a simulated SR4000 with all noise and voxels of 5 mm. Views
+are chosen by the gain "combined" among 200 poses on a sphere of 0.6 m. After 1, 2, 4 and 8 views,
+sets of these poses are chosen on the map.
+
+First table: `best_set` of 2, 3 and 4 of 14 random poses, compared with the best of all their
+subsets, on every eighth pixel and row.
+
+Second table: `best_set` of 3 of the 200 poses, compared with the three best single views.
+
+- Seen is the surface that they truly see and that no view of the map has seen (visibility.py).
+- Modelled is the surface within 5 mm of a point of the map, once their frames are in.
+- Realised / promised is the newly seen surface over the set's value by the gain "surface".
+
+Needs PYTHONPATH=build/release/python.
 """
 import argparse
 import itertools
@@ -26,20 +36,20 @@ VIEWS, FEW, SAMPLES, NEAR = (1, 2, 4, 8), 14, 4000, 0.005
 
 
 def value(evaluator, poses):
-    """What these views are worth together."""
+    """The set gain of these views."""
     chosen = evaluator.best_set(poses, len(poses))
     return float(chosen.gains["gain"].sum())
 
 
 def share_of_best(evaluator, poses, k):
-    """Of the best of all subsets of k what the greedy set has; nan where nothing gains."""
+    """Gain of the greedy set over that of the best subset of k views; nan if no subset has a gain."""
     best = max(value(evaluator, poses[list(subset)]) for subset in itertools.combinations(range(len(poses)), k))
     greedy = evaluator.best_set(poses, k).gains["gain"].sum()
     return float(greedy) / best if best > 0 else np.nan
 
 
 class Model:
-    """A map on its way, and what of the object is seen and modelled."""
+    """A map that grows view by view, and what of the object is seen and modelled."""
 
     def __init__(self, mesh, sensor, seed):
         self.truth = visibility.KnownObject(*mesh, sensor, SAMPLES)
@@ -65,7 +75,7 @@ class Model:
         self.seen |= self.truth.sees(pose)
 
     def covered_after(self, poses):
-        """Of the samples, near which a point would be with these views, too."""
+        """Share of the samples with a point near by, if these views were added."""
         planner = self.empty()
         for depth, pose, amplitude in self.frames + [self.frame(pose, 100 + k) for k, pose in enumerate(poses)]:
             planner.add(depth, pose, amplitude=amplitude)
@@ -73,13 +83,13 @@ class Model:
         return float((near < NEAR).mean())
 
     def newly_seen(self, poses):
-        """[m²]"""
+        """Surface that these views see and no view before [m²]."""
         together = np.any([self.truth.sees(pose) for pose in poses], axis=0)
         return float((together & ~self.seen).mean()) * self.truth.area
 
 
 def print_tables(choice, rows):
-    print("\n| k of 14 | maps | least share of the best subset's value | mean | exactly the best |", "|---|---|---|---|---|", sep="\n")
+    print("\n| k of 14 | maps | minimum share of the best subset's gain | mean | exactly the best |", "|---|---|---|---|---|", sep="\n")
     for k, shares in choice.items():
         known = np.array(shares)[~np.isnan(shares)]
         print(f"| {k} | {len(known)} | {100 * known.min():.2f} % | {100 * known.mean():.2f} % | {100 * (known > 1 - 1e-6).mean():.0f} % |")
@@ -97,8 +107,8 @@ def print_tables(choice, rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("meshes", nargs="+", type=pathlib.Path)
-    parser.add_argument("--maps", type=int, default=200)
+    parser.add_argument("meshes", nargs="+", type=pathlib.Path, metavar="MESH", help="mesh files")
+    parser.add_argument("--maps", type=int, default=200, help="number of maps (default: 200)")
     arguments = parser.parse_args()
     sensor = viewgain.sensor_preset("sr4000")
     around = viewgain.sphere_poses(POSES, DISTANCE)

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""tammes.py N: N directions with the least angle between any two as large as it is found (Tammes' problem), a line each.
+"""Prints N directions whose minimum angle is as large as possible (Tammes' problem), one per line.
 
-Starts at random, each improved by linear programs: the points move by at most so much that what pairs of neighbours do to
-first order holds, and the largest cosine falls. The best of all starts; deterministic by its seed.
+    tammes.py N
+
+Linear programs improve random starts. In each, the points move little enough that the angles
+between neighbours change linearly, and the largest cosine falls. The best of all starts is
+returned. The result is deterministic for a seed.
 """
 import sys
 
@@ -14,7 +17,7 @@ from scipy.sparse import csr_matrix
 
 
 def least_angle(points):
-    """Between any two unit vectors [deg]."""
+    """The minimum angle between any two unit vectors [deg]."""
     return float(np.degrees(2 * np.arcsin(min(1.0, _distances(points).min() / 2))))
 
 
@@ -24,7 +27,7 @@ def _distances(points):
 
 
 def _moved(points, reach):
-    """The points after a linear program's moves of at most `reach` along two tangents each."""
+    """The points after a linear program has moved each by at most `reach` along two tangents."""
     n = len(points)
     side = np.eye(3)[np.argmin(np.abs(points), axis=1)]
     first = np.cross(points, side)
@@ -49,7 +52,7 @@ def _moved(points, reach):
 
 
 def tammes(count, *, starts=None, seed=1):
-    """Unit vectors, (count, 3). Seconds for 128, half a minute for 360."""
+    """Unit vectors, (count, 3). Takes seconds for 128 and half a minute for 360."""
     if count < 2:
         raise ValueError(f"{count} directions have no angle; at least 2")
     random = np.random.default_rng(seed)

@@ -1,26 +1,32 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""What views of a known object see. Needs PYTHONPATH of a build.
+"""What views of a known object see. Needs PYTHONPATH=build/release/python.
 
-A view sees a sample of the surface if the sample is in its image and in the sensor's limits, at under 72 deg, as the policy
-`oracle` has it, and no triangle is before it. That is told by a depth image of the camera with three times the pixels a side:
-the nearest pixel's depth, but for what a surface of the sample's slope differs by within half a pixel. On the camel that is
-wrong for one sample in 100, mostly beside the rim.
+A view sees a sample of the surface under these conditions, which are those of the policy `oracle`:
+
+- The sample is in the image and within the sensor's range limits.
+- The angle of incidence is below 72 deg.
+- No triangle is in front of the sample.
+
+The last condition is checked with a depth image of three times the resolution. The depth of the
+nearest pixel must agree with that of the sample. The tolerance is the change of depth within half a
+pixel, given the slope of the surface. On the camel this is wrong for one sample in 100, mostly near
+the silhouette.
 """
 import numpy as np
 import viewgain
 
 FINER = 3
 LEAST_COSINE = np.cos(np.radians(72))
-EXACT = 2e-4  # of a depth, beside what the slope gives [m]
+EXACT = 2e-4  # tolerance of depths in addition to the slope's [m]
 
 
 class KnownObject:
-    """Samples of equal area on an object that is centred on the origin, and which of them a view sees."""
+    """Samples of equal area on an object centred at the origin, and which of them a view sees."""
 
     def __init__(self, vertices, triangles, sensor, samples):
         camera = sensor.camera
-        centre = lambda c: FINER * c + (FINER - 1) / 2  # the same rays: pixel (0,0) has its centre at (0,0)
+        centre = lambda c: FINER * c + (FINER - 1) / 2  # keeps the rays: the centre of pixel (0, 0) is at (0, 0)
         self.camera = viewgain.PinholeCamera(width=FINER * camera.width, height=FINER * camera.height, fx=FINER * camera.fx,
                                              fy=FINER * camera.fy, cx=centre(camera.cx), cy=centre(camera.cy),
                                              distortion=camera.distortion)
@@ -31,7 +37,7 @@ class KnownObject:
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         areas = np.linalg.norm(normals, axis=1) / 2
         self.area = float(areas.sum())
-        # Evenly along the surface of the triangles one after another, at random in each.
+        # Stratified over the area of the triangles in order, random within each triangle.
         random = np.random.default_rng(1)
         at = (np.arange(samples) + random.random(samples)) / samples * self.area
         of = np.minimum(np.searchsorted(np.cumsum(areas), at), len(areas) - 1)
@@ -40,7 +46,7 @@ class KnownObject:
         self.normals = normals[of] / (2 * areas[of][:, None])
 
     def sees(self, T_world_camera):
-        """One bool a sample."""
+        """One bool per sample."""
         sight = self.points - T_world_camera[:3, 3]
         ranges = np.linalg.norm(sight, axis=1)
         cosine = np.abs((sight * self.normals).sum(axis=1)) / ranges
@@ -61,5 +67,5 @@ class KnownObject:
         return seen
 
     def matrix(self, poses):
-        """A row a pose, a column a sample."""
+        """A row per pose, a column per sample."""
         return np.array([self.sees(pose) for pose in poses]).reshape(len(poses), len(self.points))

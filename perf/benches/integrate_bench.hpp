@@ -8,19 +8,19 @@
 namespace viewgain::bench {
 
 struct IntegrateOptions {
-  int num_threads = 0;  ///< ours; 0: all hardware threads. OctoMap has one.
-  int voxels = 128;     ///< a side
+  int num_threads = 0;  ///< of viewgain; 0: all hardware threads. OctoMap has one.
+  int voxels = 128;     ///< per side
   int repetitions = 9;
   std::filesystem::path mesh;
   bool json = false;
 };
 
-/// Times one more frame into camel-N, OctoMap against ours with lines and with cones, and compares
-/// the maps; the report as JSON. Throws Error.
+/// Times one more frame into camel-N, with OctoMap and with viewgain by lines and by cones.
+/// Compares the maps. Returns the report. Throws Error.
 [[nodiscard]] nlohmann::ordered_json measure_integrate(const IntegrateOptions& options);
 
-/// The same, printed as a table or JSON. Returns the exit code: 0, or 1 if the maps differ without
-/// a reason.
+/// Prints the same as a table or JSON. Returns the exit code: 1 if the maps differ without a
+/// reason.
 int run_integrate(const IntegrateOptions& options);
 
 }  // namespace viewgain::bench

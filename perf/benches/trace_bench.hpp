@@ -10,18 +10,18 @@ namespace viewgain::bench {
 
 struct TraceOptions {
   int num_threads = 0;  ///< 0: all hardware threads
-  int voxels = 128;     ///< a side
+  int voxels = 128;     ///< per side
   int poses = 200;
   int repetitions = 7;
-  /// dense, openvdb, octomap: not compared with. OctoMap takes minutes and gigabytes for a tree of
-  /// 512³.
+  /// Methods to skip: dense, tree64, openvdb, octomap. OctoMap takes minutes and gigabytes for a
+  /// tree of 512³.
   std::vector<std::string> without{};
   std::filesystem::path mesh;
   bool json = false;
 };
 
-/// Times and compares all ways to trace camel-N; prints a table or JSON. Returns the exit code: 0,
-/// or 1 if an answer is wrong.
+/// Times and compares all methods on camel-N. Prints a table or JSON. Returns the exit code: 1 if
+/// an answer of viewgain is wrong.
 int run_trace(const TraceOptions& options);
 
 }  // namespace viewgain::bench

@@ -9,13 +9,16 @@ namespace viewgain::bench {
 struct TracersOptions {
   int num_threads = 1;  ///< 0: all hardware threads
   int repetitions = 9;
-  std::filesystem::path mesh;  ///< the camel's
+  std::filesystem::path mesh;  ///< of the camel
 };
 
-/// Embree's BVH against the sweep, side by side: an object, a room and a sparse hall; poses round
-/// them and at random inside; batches and single poses; full images, those of about 400 rays as in
-/// a search's first stage, and of few pixels; by the paper's and by the combined gain. Prints a
-/// table of medians with spread. Returns the exit code: 1 if a gain differs by a bit.
+/// Compares Embree's BVH with the sweep, in turns. Prints a table of medians with spread. Returns
+/// the exit code: 1 if a gain differs in any bit. The rows are combinations of
+/// - an object, a room and a sparse hall
+/// - poses around them and random poses inside
+/// - batches and single poses
+/// - full images, images of about 400 rays as in the first stage of a search, and of few pixels
+/// - the gains paper and combined
 int run_tracers(const TracersOptions& options);
 
 }  // namespace viewgain::bench

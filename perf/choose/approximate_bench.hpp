@@ -8,16 +8,16 @@ namespace viewgain::bench {
 
 struct ApproximateOptions {
   int num_threads = 0;  ///< 0: all hardware threads
-  int voxels = 128;     ///< a side
+  int voxels = 128;     ///< per side
   int poses = 1000;
   int repetitions = 7;
   std::filesystem::path mesh;
   bool json = false;
 };
 
-/// Accuracy against speed of views that are not scored in full, by pixel stride and by
-/// approximate(): rank correlation with the full gains and speed as a multiple of scoring in full,
-/// all ways in turns. Prints a table or JSON. Returns the exit code, 0.
+/// Measures accuracy and speed of pixel strides and of approximate(), in turns. Accuracy is the
+/// rank correlation with the full gains. Speed is relative to scoring in full. Prints a table or
+/// JSON. Returns the exit code, 0.
 int run_approximate(const ApproximateOptions& options);
 
 }  // namespace viewgain::bench

@@ -1,20 +1,26 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""fit.py VIEWGAIN MESH... [--size M] [--voxel M] [--seed N] [--work DIR]: the constants of HazardConfig::Model.
+"""Fits the constants of HazardConfig::Model.
 
-Models each mesh by `reconstruct`, keeps the maps after views 1, 3 and 5, and lets noise-free rays from 80 poses of a
-sphere run through each map's unknown voxels: by distance d, elevation s over what is known and share o of directions
-that are open to free space, how many metres they pass and how often the true surface meets them there. Prints the
-model of the form
+    fit.py VIEWGAIN MESH... [--size M] [--voxel M] [--seed N] [--work DIR]
+
+Models each mesh with `reconstruct` and keeps the maps after views 1, 3 and 5. Noise-free rays from
+80 poses on a sphere then run through each map's unknown voxels. The script counts the metres that
+they pass and how often they meet the true surface, by distance d, elevation s above known surface
+and share o of directions that are open to free space. It prints the most likely model of the form
 
     h = h_inf + h_0 exp(-d / lambda) c(s) g(o)
 
-that makes this likeliest, and its log-likelihood per meeting on each mesh when it is left out of the fit. d, s and o
-are as HazardField has them: to voxels with three hits, whose normal leads to where more of 7^3 voxels is free; open
-within a tenth of the object's size. Run it with PYTHONPATH=build/release/python; it takes a minute a mesh. The
-constants in grid/src/hazard are of camel, lion-head, mannequin-devil, elephant, armadillo, bear and bull (CGAL's), seeds
-1 to 4.
+and, for each mesh, the log-likelihood per meeting if the mesh is left out of the fit.
+
+d, s and o are those of HazardField. Distances are to voxels with three hits. Their normal points to
+where more of 7^3 voxels is free. A direction is open if free space is within a tenth of the
+object's size.
+
+Run it with PYTHONPATH=build/release/python. It takes a minute per mesh. The constants in
+grid/src/hazard are from CGAL's camel, lion-head, mannequin-devil, elephant, armadillo, bear and
+bull, seeds 1 to 4.
 """
 import argparse
 import pathlib
@@ -25,12 +31,12 @@ import viewgain
 from scipy import ndimage
 
 VIEWS = (1, 3, 5)
-STRIDE = 5                                  # of pixels
+STRIDE = 5                                  # every 5th pixel and row
 DISTANCES = 1e-3 * np.array([0, 5.05, 7.5, 10.05, 15, 20, 25, 30, 40, 50, 65, 85, 110, 140])  # at 0.35 m
 ELEVATIONS = np.linspace(-1.1, 1.1, 12)
-OPEN = 14                                   # classes: 0 of the 26 directions, 1 or 2, 3 or 4, ...
+OPEN = 14                                   # classes of open directions: 0 of 26, 1 or 2, 3 or 4, ...
 OPEN_REACH = 0.1                            # [object sizes]
-PRIOR = 40                                  # meetings by which a factor is held to 1
+PRIOR = 40                                  # weight of the prior that factors are 1 [meetings]
 
 
 def run(*words):
@@ -38,7 +44,7 @@ def run(*words):
 
 
 def open_directions(states, reach):
-    """Of the 26 directions, along how many free space comes within `reach` voxels and before anything occupied."""
+    """For each voxel, the number of 26 directions with free space within `reach` voxels, seen from it."""
     free, unknown = (states == viewgain.VoxelState.FREE), (states == viewgain.VoxelState.UNKNOWN)
     most = int(reach)
     count = np.zeros(states.shape, int)
@@ -57,7 +63,7 @@ def open_directions(states, reach):
 
 
 def features(grid, size):
-    """State, and distance, elevation and count of open directions, of all voxels."""
+    """State, distance, elevation and number of open directions of all voxels."""
     states, V = grid.states(), grid.voxel_size
     occupied = grid.occupied()
     evidence = np.zeros(states.shape, bool)
@@ -76,7 +82,7 @@ def features(grid, size):
 
 
 def counts(grid, sensor, frames, size):
-    """[distance, elevation, open]: metres passed and meetings."""
+    """Metres passed and meetings, by [distance, elevation, open]."""
     scale = size / 0.35
     states, distance, sine, is_open = features(grid, size)
     V, low = grid.voxel_size, np.asarray(grid.min_index)
@@ -112,8 +118,11 @@ def counts(grid, sensor, frames, size):
 
 
 def fit(data):
-    """(log-likelihood, lambda, h_inf, h_0, c, g, rates): lambda and h_inf by a grid, c and g by expectation and
-    maximisation in turn; the greatest of c and of g is 1."""
+    """(log-likelihood, lambda, h_inf, h_0, c, g, rates).
+
+    A grid search finds lambda and h_inf. Expectation and maximisation find c and g, in turns. The
+    maxima of c and g are 1.
+    """
     passed, met = data
     middle = np.append((DISTANCES[:-1] + DISTANCES[1:]) / 2, 1.2 * DISTANCES[-1])
     best = None
@@ -138,7 +147,7 @@ def fit(data):
 
 
 def likelihood(data, rates):
-    """Per meeting, against one rate everywhere."""
+    """Log-likelihood ratio per meeting, compared with one rate everywhere."""
     passed, met = data
     mean = met.sum() / passed.sum()
     return ((met * np.log(np.maximum(rates, 1e-9) / mean)).sum() - (passed * (rates - mean)).sum()) / met.sum()
@@ -146,12 +155,13 @@ def likelihood(data, rates):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
-    parser.add_argument("mesh", nargs="+", type=pathlib.Path)
-    parser.add_argument("--size", type=float, default=0.35)
-    parser.add_argument("--voxel", type=float, default=0.005)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("hazard"))
+    parser.add_argument("program", metavar="VIEWGAIN", help="the program viewgain")
+    parser.add_argument("mesh", nargs="+", type=pathlib.Path, metavar="MESH", help="mesh files")
+    parser.add_argument("--size", type=float, default=0.35, help="longest side of the objects [m] (default: 0.35)")
+    parser.add_argument("--voxel", type=float, default=0.005, help="voxel size [m] (default: 0.005)")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the runs (default: 1)")
+    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("hazard"),
+                        help="folder for maps and frames (default: hazard)")
     args = parser.parse_args()
     args.work.mkdir(parents=True, exist_ok=True)
     sensor = viewgain.sensor_preset("sr4000")
@@ -169,13 +179,13 @@ def main():
                               for g in grids if g.exists())
     value, decay, far, h, c, g, _ = fit(sum(data.values()))
     print(f"near_rate {h * 0.35:.3g} / size, decay_length {decay / 0.35:.3g} size, far_rate {far * 0.35:.3g} / size: "
-          f"{value:.3f} nat a meeting")
+          f"{value:.3f} nat per meeting")
     print("c", " ".join(f"{factor:.3g}" for factor in c))
     print("g", " ".join(f"{factor:.3g}" for factor in g))
     for name, own in data.items():
         others = sum(counted for other, counted in data.items() if other != name)
         if len(data) > 1:
-            print(f"{name}: {likelihood(own, fit(others)[-1]):.3f} nat a meeting")
+            print(f"{name}: {likelihood(own, fit(others)[-1]):.3f} nat per meeting")
 
 
 if __name__ == "__main__":

@@ -12,11 +12,11 @@
 
 namespace viewgain::bench {
 
-/// How one method's answers compare with the oracle's.
+/// Comparison of a method's answers with those of the oracle.
 struct Agreement {
   std::size_t rays = 0;
   std::size_t same = 0;
-  /// Differ, and pass within 1e-4 voxel of a boundary between the two answers.
+  /// Rays that differ and pass within 1e-4 voxel of a boundary between the two answers.
   std::size_t ties = 0;
 
   Agreement& operator+=(const Agreement& o) {
@@ -30,13 +30,13 @@ struct Agreement {
   [[nodiscard]] bool agrees() const { return share() >= 0.9999 && wrong() == 0; }
 };
 
-/// Where the oracle (double precision, tests/oracle) says that all rays of the task's poses end, at
-/// full resolution; found once, for all methods. Refers to the task. Thread safe once made.
+/// The ends of all rays of the task's poses by the oracle (double precision, tests/oracle), at full
+/// resolution. Computed once for all methods. Refers to the task. Thread safe after construction.
 class OracleEndings {
  public:
   OracleEndings(const TraceTask& task, ThreadPool& pool);
 
-  /// A method's answers on some of the task's poses against these.
+  /// Compares a method's answers on some of the task's poses with these.
   [[nodiscard]] Agreement compare(const TraceMethod& method, std::span<const Pose> poses,
                                   ThreadPool& pool) const;
 
@@ -49,7 +49,7 @@ class OracleEndings {
   std::vector<Ending> endings_;
 };
 
-/// The endings that an evaluator made with this sensor and config uses, the same way.
+/// The same for the endings that an evaluator with this sensor and config uses.
 [[nodiscard]] Agreement compare_with_oracle(const oracle::DenseMap& map, const Sensor& sensor,
                                             const GainConfig& config,
                                             const GainEvaluator& evaluator,

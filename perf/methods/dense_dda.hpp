@@ -8,8 +8,8 @@
 
 namespace viewgain::bench {
 
-/// A hierarchical DDA over dense arrays, no BVH: see dense_grid.hpp. SIMD, a ray a lane, tiles of
-/// 4×4 pixels.
+/// A hierarchical DDA over dense arrays, without a BVH (see dense_grid.hpp). It uses SIMD with one
+/// ray per lane, for tiles of 4×4 pixels.
 [[nodiscard]] std::unique_ptr<TraceMethod> make_dense_dda(const TraceTask& task);
 
 }  // namespace viewgain::bench

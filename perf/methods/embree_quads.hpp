@@ -9,14 +9,17 @@
 
 namespace viewgain::bench {
 
-/// Embree over the map's exposed faces as quads, built with high quality: a quad per face with the
-/// robust flag ("single robust"), and faces merged greedily with and without it ("merged robust",
-/// "merged fast"). Of each all four combinations of coherent and incoherent rays and of packets of
-/// 8 (4x2 pixels) and 16 (4x4 pixels). Tracing only. Rays must start outside the non-free voxels.
+/// Embree over the exposed faces of the map as quads, with a high-quality BVH. Tracing only. Rays
+/// must start outside the non-free voxels. The variants:
+/// - "single robust": one quad per face, robust flag
+/// - "merged robust", "merged fast": greedily merged faces, with and without the robust flag
 ///
-/// Only single quads are watertight: where a corner of a merged quad lies on another one's edge,
-/// the two edges are rounded apart, and without the robust flag the seam of a quad's two triangles
-/// leaks too.
+/// Each comes in four combinations: coherent or incoherent rays, packets of 8 (4x2 pixels) or 16
+/// (4x4 pixels).
+///
+/// Only single quads are watertight. If a corner of a merged quad lies on the edge of another quad,
+/// rounding separates the two edges. Without the robust flag, the seam between a quad's two
+/// triangles leaks too.
 [[nodiscard]] std::vector<std::unique_ptr<TraceMethod>> make_embree_quads(const TraceTask& task);
 
 }  // namespace viewgain::bench

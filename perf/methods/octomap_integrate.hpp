@@ -8,9 +8,10 @@
 
 namespace viewgain::bench {
 
-/// Puts a depth frame into an octree the way FrameIntegrator does with lines, on one thread: rays
-/// clipped to the workspace, computeRayKeys, a KeySet of free and one of hit cells, hits before
-/// crossings, lazy updateNode and one updateInnerOccupancy. `frame_of` gives the workspace.
+/// Adds a depth frame to an octree like FrameIntegrator with lines, on one thread. Rays are clipped
+/// to the workspace, which `frame_of` defines. computeRayKeys fills a KeySet of free cells and one
+/// of hit cells. Hits take precedence over crossings. Nodes are updated lazily, followed by one
+/// updateInnerOccupancy.
 class OctomapIntegrator {
  public:
   OctomapIntegrator(const Sensor& sensor, const oracle::DenseMap& frame_of);

@@ -12,24 +12,25 @@
 
 namespace viewgain::bench {
 
-/// OctoMap's lattice goes through the origin as ours does: voxel i has the key i + 2^15 an axis.
+/// Both lattices pass through the origin: voxel i has the key i + 2^15 on each axis.
 inline constexpr int kOctomapKeyOffset = 1 << 15;
 
 [[nodiscard]] octomap::OcTreeKey key_of(Index3 voxel);
 [[nodiscard]] Index3 voxel_of(const octomap::OcTreeKey& key);
 
-/// In OctoMap's single precision.
+/// Converts to OctoMap's single precision.
 [[nodiscard]] octomap::point3d octomap_point(const Eigen::Vector3d& p);
 
-/// An empty tree with BeliefGrid's update rule: +0.85, -0.4, clamped to -2..3.5.
+/// An empty tree with the update rule of BeliefGrid: +0.85, -0.4, clamped to -2..3.5.
 [[nodiscard]] std::unique_ptr<octomap::OcTree> empty_octree(double voxel_size);
 
-/// The map's known voxels; unknown ones have no node. Pruned. T_world_grid must be the identity.
+/// A pruned tree of the map's known voxels. Unknown voxels have no node. T_world_grid must be the
+/// identity.
 [[nodiscard]] std::unique_ptr<octomap::OcTree> octree_of(const oracle::DenseMap& map);
 
-/// The part of the segment from `from` to `to` [m, grid frame] inside the workspace, kept 1e-5
-/// voxel off its faces since OctoMap's coordinates are single precision; nothing if there is none.
-/// `leaves` says whether the segment ends outside.
+/// The part of the segment from `from` to `to` [m, grid frame] inside the workspace, or nothing. It
+/// keeps 1e-5 voxel from the faces, because OctoMap's coordinates have single precision. `leaves`
+/// is true if the segment ends outside.
 struct ClippedSegment {
   Eigen::Vector3d begin;
   Eigen::Vector3d end;

@@ -13,12 +13,12 @@
 
 namespace viewgain::bench {
 
-/// Where a ray ends: its voxel's position in the workspace's dense array, or kMiss.
+/// The end of a ray: the position of its voxel in the dense array of the workspace, or kMiss.
 using Ending = std::int32_t;
 inline constexpr Ending kMiss = -1;
 
-/// What every method is given. The sensor has no pixel that the distortion model cannot invert, its
-/// cameras stand in free space outside the workspace and farther from it than min_range.
+/// The input of every method. The distortion model can invert all pixels of the sensor. Cameras are
+/// in free space outside the workspace, and farther from it than min_range.
 struct TraceTask {
   const BeliefGrid& grid;
   const oracle::DenseMap& map;  ///< the same states, dense
@@ -27,14 +27,13 @@ struct TraceTask {
   int num_threads = 1;
 };
 
-/// Of a view's rays, what is not evident from a rate.
+/// Shares of rays that a rate does not show.
 struct RayShares {
-  double untraced =
-      0;  ///< belong to a tile of pixels that can meet nothing, and cost next to nothing
-  double embree = 0;  ///< are traced by Embree
+  double untraced = 0;  ///< in tiles of pixels that can meet nothing, and cost next to nothing
+  double embree = 0;    ///< traced by Embree
 };
 
-/// A way to find the first voxel that is not free along every ray of a view.
+/// A method to find the first voxel that is not free along every ray of a view.
 /// Thread safety: const members may run from many threads.
 class TraceMethod {
  public:
@@ -47,14 +46,14 @@ class TraceMethod {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::size_t rays_per_pose() const { return rays_per_pose_; }
 
-  /// The answer, in pixel order; what agreement is judged by.
+  /// The answers in pixel order, for comparison with the oracle.
   virtual void trace(const Pose& T_world_camera, std::span<Ending> endings) const = 0;
 
-  /// What is timed: all rays of all poses, on all threads of the pool, by pose. Unless a method has
-  /// its own way, trace() into a buffer of the thread.
+  /// The timed part: all rays of all poses, on all threads of the pool, by pose. The default calls
+  /// trace() with a buffer per thread.
   virtual void run(std::span<const Pose> poses, ThreadPool& pool);
 
-  /// Over all rays of these poses.
+  /// Shares over all rays of these poses.
   [[nodiscard]] virtual RayShares shares(std::span<const Pose>) const { return {}; }
 
  private:

@@ -12,22 +12,21 @@ namespace viewgain::bench {
 
 using ScenePointer = std::shared_ptr<const VoxelScene>;
 
-/// GainEvaluator::evaluate on a batch: tracing, sums by voxel, entropies (`viewgain_gain`); the
-/// same by the surface and by the combined gain, and all three by the tracer embree (`_embree`).
+/// GainEvaluator::evaluate on a batch by the gain paper (`viewgain_gain`), surface and combined,
+/// and all three with the tracer embree (`_embree`). Includes tracing, sums by voxel and entropies.
 [[nodiscard]] std::vector<std::unique_ptr<TraceMethod>> make_viewgain_gains(
     const TraceTask& task, const ScenePointer& scene);
 
-/// Its tracing alone: each tile's endings as the gain takes them.
+/// The tracing of paper alone: the endings of each tile in the form that the gain uses.
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace(const TraceTask& task,
                                                                ScenePointer scene);
 
-/// The same by the tracer embree: a BVH of leaves and boxes, for every tile.
+/// The same with the tracer embree: a BVH of leaves and boxes, for every tile.
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_trace_embree(const TraceTask& task,
                                                                       ScenePointer scene);
 
-/// The same kernel when the leaves that are hit are known beforehand, tile by tile, and so are the
-/// tiles that hit nothing: what no way of finding them could beat. Knows the way for task.poses
-/// only.
+/// The same kernel if the leaves that each tile hits, and the tiles that hit nothing, are known
+/// beforehand: a lower bound on time for any method of finding them. Only for task.poses.
 [[nodiscard]] std::unique_ptr<TraceMethod> make_viewgain_floor(const TraceTask& task,
                                                                ScenePointer scene);
 

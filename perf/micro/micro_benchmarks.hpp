@@ -6,13 +6,13 @@
 
 namespace viewgain::bench {
 
-/// A counter of so many things per iteration, as a rate.
+/// Adds a counter of `per_iteration` things, shown as a rate.
 inline void count(benchmark::State& state, const char* what, double per_iteration) {
   state.counters[what] = benchmark::Counter(per_iteration * static_cast<double>(state.iterations()),
                                             benchmark::Counter::kIsRate);
 }
 
-// Each registers the microbenchmarks of its source with Google Benchmark.
+// Each registers the microbenchmarks of its source file with Google Benchmark.
 void register_trace_benchmarks();
 void register_feasible_benchmarks();
 void register_gain_benchmarks();

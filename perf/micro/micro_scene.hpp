@@ -13,26 +13,25 @@
 
 namespace viewgain::bench {
 
-/// What the microbenchmarks work on, made when first asked for and kept: camel-128 and some views
-/// of it. One thread.
+/// The data of the microbenchmarks: camel-128 and some views of it. Made by the first call of get()
+/// and kept. Single-threaded.
 class MicroScene {
  public:
   [[nodiscard]] static const MicroScene& get();
 
-  /// The traced tiles of a view that hit something, and for each the primitives that its rays end
-  /// in.
+  /// The traced tiles of a view that hit something, with the primitives in which their rays end.
   struct View {
     detail::PoseFrame frame;
     std::vector<detail::RayTile> tiles;
-    std::vector<std::size_t> numbers;                ///< tile i's in the table
+    std::vector<std::size_t> numbers;                ///< number of tile i in the table
     std::vector<std::vector<std::uint32_t>> leaves;  ///< of tile i
   };
 
-  /// Of the same views, one way or the other.
+  /// A tracer of the same views, by the given method.
   [[nodiscard]] detail::ViewTracer make_tracer(ExecConfig::Tracer way) const;
 
   Sensor sensor;
-  std::vector<test::CamelView> frames;  ///< three make the map, the fourth is new
+  std::vector<test::CamelView> frames;  ///< three are in the map, the fourth is new
   BeliefGrid grid;
   std::shared_ptr<const VoxelScene> scene;
   detail::ViewTracer tracer;
@@ -42,7 +41,7 @@ class MicroScene {
   MicroScene();
 };
 
-/// The instruction sets that there are kernels for and that VIEWGAIN_ISA allows, best first.
+/// The instruction sets that have kernels and that VIEWGAIN_ISA allows, best first.
 [[nodiscard]] std::vector<Isa> micro_isas();
 
 }  // namespace viewgain::bench

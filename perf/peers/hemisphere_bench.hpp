@@ -11,19 +11,19 @@ namespace viewgain::bench {
 struct HemisphereOptions {
   int num_threads = 0;  ///< 0: all hardware threads
   std::vector<std::filesystem::path> meshes;
-  std::filesystem::path
-      views_file;  ///< in the layout of MA-SCVP's view_space.txt; empty: 32 of ours
+  std::filesystem::path views_file;  ///< like MA-SCVP's view_space.txt; empty: 32 of ours
   std::vector<std::string> rankers{"combined", "frontier", "random"};
-  int first_views = 20;   ///< runs of each object and ranker begin at each of the first so many
-  int budget = 20;        ///< views of a run
+  int first_views = 20;   ///< number of first views; each starts a run per object and ranker
+  int budget = 20;        ///< views per run
   double size = 0.15;     ///< longest side of the objects [m]
-  double voxel = 0.0025;  ///< of our map [m]
-  int stride = 8;         ///< of the pixels that views are scored on
+  double voxel = 0.0025;  ///< voxel size of our map [m]
+  int stride = 8;         ///< views are scored on every stride-th pixel and row
   bool json = false;
 };
 
-/// Our choice of views by MA-SCVP's protocol: after each view the share of the voxels of 2 mm seen
-/// so far, of those that all views of a hemisphere see. Returns the exit code, 0.
+/// Measures our choice of views by MA-SCVP's protocol. After each view, coverage is the share of
+/// voxels of 2 mm seen so far, among those that all views of the hemisphere see. Returns the exit
+/// code, 0.
 int run_hemisphere(const HemisphereOptions& options);
 
 }  // namespace viewgain::bench

@@ -1,18 +1,24 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""A stand-in for NBV-Simulation's data, in its layout, from a mesh that is at hand.
-
-Writes FOLDER/3d_models/Armadillo.pcd (ASCII, x y z in the mesh's unit, area-uniform points) and
-FOLDER/3d_models/Armadillo.txt (number of views, the object's centre, its size, the positions [m]) by
-that project's rules: centre the mean of the points; size 1.2 times the half side of the cube round it
-that is found by halving until the share of the points inside, aimed at 0.95, moves by less than 0.001;
-positions uniform between the cube of two sizes and the sphere of four, no two in one voxel of 1 cm, the
-first 2.5 sizes before the centre along x. The points and positions are not those of the original:
-figures measured on them are figures of a stand-in.
+"""Makes a stand-in for NBV-Simulation's data, in the same layout, from a mesh.
 
     apps/extract_mesh.sh armadillo.off build/meshes
-    perf/peers/make_stand_in.py build/meshes/armadillo.off FOLDER [--points 47705] [--views 5000] [--seed 1]
+    perf/peers/make_stand_in.py build/meshes/armadillo.off FOLDER [--points 47705] [--views 5000]
+                                [--seed 1]
+
+Writes two files by that project's rules:
+
+FOLDER/3d_models/Armadillo.pcd: uniform points on the surface, ASCII, x y z in the mesh's unit.
+FOLDER/3d_models/Armadillo.txt: number of views, centre, size and positions of the views [m].
+
+- The centre is the mean of the points.
+- The size is 1.2 times half the side of a cube around the centre. The side is halved until the
+  share of the points inside, with a target of 0.95, changes by less than 0.001.
+- Positions are uniform between the cube of two sizes and the sphere of four. No two are in the same
+  voxel of 1 cm. The first is 2.5 sizes before the centre along x.
+
+Points and positions differ from the original. Figures are therefore figures of a stand-in.
 """
 
 import argparse
@@ -38,7 +44,7 @@ def area(a, b, c):
 
 
 def sample(vertices, triangles, count, generator):
-    """Points that are uniform over the surface."""
+    """Uniform points on the surface."""
     corners = [tuple(vertices[i] for i in t) for t in triangles]
     sums = list(itertools.accumulate(area(*t) for t in corners))
     points = []
@@ -51,7 +57,7 @@ def sample(vertices, triangles, count, generator):
 
 
 def predicted_size(points, centre, aim):
-    """1.2 times the half side of the cube that about `aim` of the points are in."""
+    """1.2 times half the side of the cube that contains a share of about `aim` of the points."""
     reach = [max(abs(x) for x in sub(p, centre)) for p in points]
     low, high = 0.0, max(math.dist(p, centre) for p in points)
     before = None
@@ -87,17 +93,17 @@ def positions(centre, size, count, generator):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("mesh", help="OFF file")
-    parser.add_argument("folder")
-    parser.add_argument("--points", type=int, default=47705)
-    parser.add_argument("--views", type=int, default=5000)
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("mesh", help="mesh file (OFF)")
+    parser.add_argument("folder", help="folder to write to")
+    parser.add_argument("--points", type=int, default=47705, help="number of points (default: 47705)")
+    parser.add_argument("--views", type=int, default=5000, help="number of views (default: 5000)")
+    parser.add_argument("--seed", type=int, default=1, help="seed of points and positions (default: 1)")
     arguments = parser.parse_args()
     generator = random.Random(arguments.seed)
     points = sample(*(part.tolist() for part in meshes.read_mesh(arguments.mesh)), arguments.points, generator)
     unit = 0.001 if any(abs(x) >= 10 for p in points for x in p) else 1.0
     metres = [tuple(unit * x for x in p) for p in points]
-    # What is larger is made as large.
+    # Larger objects are scaled down to this size.
     scale = min(1.0, 0.1 / predicted_size(metres, mean(metres), 0.92))
     metres = [tuple(scale * x for x in p) for p in metres]
     centre = mean(metres)

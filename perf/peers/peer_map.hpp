@@ -11,10 +11,10 @@
 
 namespace viewgain::bench {
 
-/// NBV-Simulation's measure of progress: an OctoMap of 1 cm, hit 0.7, miss 0.4, whose box round the
-/// object starts at p = 0.5, with a scan a view by OctoMap's own insertPointCloud; counted are the
-/// voxels in the box with p > 0.65. A voxel that one scan hit and another passes falls to 0.61, so
-/// that the count can fall.
+/// NBV-Simulation's measure of progress: an OctoMap of 1 cm, hit 0.7, miss 0.4. The box around the
+/// object starts at p = 0.5. Each view adds a scan with OctoMap's insertPointCloud. Voxels in the
+/// box with p > 0.65 count. A voxel that is hit by one scan and passed by another falls to 0.61, so
+/// the count can fall.
 class PeerMap {
  public:
   static constexpr double kVoxel = 0.01;          ///< [m]
@@ -23,12 +23,12 @@ class PeerMap {
   /// The box is center ± size [m].
   PeerMap(const Eigen::Vector3d& center, double size);
 
-  /// One scan: where its rays end [m], and from where.
+  /// Adds a scan: the ends of its rays and the camera's position [m].
   void insert(std::span<const octomap::point3d> hits, const Eigen::Vector3d& eye);
 
   [[nodiscard]] std::size_t occupied() const;
 
-  /// The voxels of 1 cm that the complete model's points lie in: what occupied() is divided by.
+  /// The number of voxels of 1 cm with a point of the complete model. occupied() is divided by it.
   [[nodiscard]] static std::size_t voxels_of(const std::vector<Eigen::Vector3d>& points);
 
  private:

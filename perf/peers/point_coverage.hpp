@@ -10,15 +10,15 @@
 
 namespace viewgain::bench {
 
-/// A point of the true surface is covered by a reading that is within this of it [m].
+/// A point of the true surface is covered if a reading is within this distance [m].
 inline constexpr double kCoveredWithin = 0.0025;
 
-/// The share of a surface's points that readings have come near to.
+/// The share of the points of a surface that are covered by readings.
 class PointCoverage {
  public:
   explicit PointCoverage(const std::vector<Eigen::Vector3d>& points) : points_(points) {}
 
-  void add(std::span<const octomap::point3d> readings);  ///< world [m]
+  void add(std::span<const octomap::point3d> readings);  ///< readings in the world frame [m]
 
   [[nodiscard]] double share() const;
 

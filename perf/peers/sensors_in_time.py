@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""A laser line scanner against the SR4000 on one object in the same time, after the paper's Fig. 6.
+"""Compares a laser line scanner with the SR4000 on one object in equal time, after the paper's Fig. 6.
 
-Runs `viewgain reconstruct` with sensor sr4000 and with a sweep, a frame of 480 lines, and prints as a
-Markdown table what each has after so many seconds: visible surface covered (5 mm), all of it at 2.5 mm,
-RMS of the surface, entropy removed (each sensor from its own prior). The time is that of a robot, not of this program:
+    sensors_in_time.py [--viewgain build/release/bin/viewgain] [--mesh build/release/meshes/camel.off]
+                       [--out build/sensors_in_time] [--seconds 10,20,30,60] [--speed 0.25]
+                       [--settle 0.5] [--line-rate 50] [--seeds 3] [-- arguments of reconstruct]
 
-    way / speed + views * (settle + frame)      frame: SR4000 1 / 20 s, sweeps 480 lines / line rate
+Runs `viewgain reconstruct` with the sensor sr4000 and with a sweep, which is a frame of 480 lines.
+Prints a Markdown table of coverage of the visible surface (5 mm), coverage of all surface (2.5 mm),
+RMS and removed entropy, after given times. Entropy starts from each sensor's own prior. The time is
+that of a robot, not of this program:
 
-    perf/peers/sensors_in_time.py [--viewgain build/release/bin/viewgain] [--mesh build/release/meshes/camel.off]
-                                  [--out build/sensors_in_time] [--seconds 10,20,30,60] [--speed 0.25]
-                                  [--settle 0.5] [--line-rate 50] [--seeds 3] [-- arguments of reconstruct]
+    path length / speed + views * (settle + frame)
+
+A frame takes 1 / 20 s with the SR4000. A sweep takes 480 lines / line rate.
 """
 
 import argparse
@@ -21,8 +24,8 @@ import os
 import statistics
 import subprocess
 
-LINES = 480  # of a sweep
-LEAST_WAY = {"SR4000": 0.5, "sweeps": 0.5}  # between views, in the mean [m]
+LINES = 480  # per sweep
+LEAST_WAY = {"SR4000": 0.5, "sweeps": 0.5}  # mean distance between views, at least [m]
 SWEEP = f"""name = "sweep of {LINES} lines"
 min_range = 0.1
 max_range = 1.0
@@ -45,22 +48,22 @@ sigma_lateral = 0.0002
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--viewgain", default="build/release/bin/viewgain")
-    parser.add_argument("--mesh", default="build/release/meshes/camel.off")
-    parser.add_argument("--out", default="build/sensors_in_time")
-    parser.add_argument("--seconds", default="10,20,30,60", help="rows of the table; the last is the budget")
-    parser.add_argument("--speed", type=float, default=0.25, help="of the camera [m/s]")
-    parser.add_argument("--settle", type=float, default=0.5, help="before a view [s]")
-    parser.add_argument("--line-rate", type=float, default=50, help="lines a second")
-    parser.add_argument("--seeds", type=int, default=3)
-    parser.add_argument("extra", nargs="*", help="further arguments of reconstruct, after --")
+    parser.add_argument("--viewgain", default="build/release/bin/viewgain", help="the program viewgain")
+    parser.add_argument("--mesh", default="build/release/meshes/camel.off", help="mesh file of the object")
+    parser.add_argument("--out", default="build/sensors_in_time", help="folder for the runs")
+    parser.add_argument("--seconds", default="10,20,30,60", help="times of the rows [s]; the last one is the budget")
+    parser.add_argument("--speed", type=float, default=0.25, help="speed of the camera [m/s] (default: 0.25)")
+    parser.add_argument("--settle", type=float, default=0.5, help="time to settle before a view [s] (default: 0.5)")
+    parser.add_argument("--line-rate", type=float, default=50, help="line rate of the scanner [1/s] (default: 50)")
+    parser.add_argument("--seeds", type=int, default=3, help="number of seeds (default: 3)")
+    parser.add_argument("extra", nargs="*", help="more arguments for reconstruct, after --")
     arguments = parser.parse_args()
     arguments.seconds = [float(s) for s in arguments.seconds.split(",")]
     return arguments
 
 
 def ways(arguments, budget):
-    """name -> (arguments of reconstruct, seconds a view)."""
+    """{name: (arguments of reconstruct, seconds per view)}."""
     sweep = os.path.join(arguments.out, "sweep.toml")
     with open(sweep, "w", encoding="utf-8") as file:
         file.write(SWEEP)
@@ -83,12 +86,12 @@ def run(arguments, name, flags, seed):
         raise SystemExit(f"{' '.join(command)}: {done.stderr.strip().splitlines()[-1:]}")
     views = json.loads(done.stdout)["per_view"]
     if views[-1]["travelled"] < LEAST_WAY[name] * (len(views) - 1):
-        raise SystemExit(f"{name}, seed {seed}: shorter ways than LEAST_WAY, so that the budget was not used up")
+        raise SystemExit(f"{name}, seed {seed}: path shorter than LEAST_WAY per view, so the time was not used up")
     return views
 
 
 def at(views, seconds, per_view, speed):
-    """What there is after so many seconds; None before the first view."""
+    """The state after this time [s]; None before the first view."""
     done = [v for i, v in enumerate(views) if v["travelled"] / speed + (i + 1) * per_view <= seconds]
     return {"views": len(done), **done[-1]} if done else None
 
@@ -113,7 +116,7 @@ def main():
     of = {}
     for name, (flags, per_view) in ways(arguments, arguments.seconds[-1]).items():
         of[name] = per_view, [run(arguments, name, flags, seed) for seed in range(1, arguments.seeds + 1)]
-    print("covered of the visible surface at 5 mm, of all at 2.5 mm, RMS of the surface, entropy removed\n")
+    print("coverage of the visible surface at 5 mm, of all surface at 2.5 mm, RMS of the surface, entropy removed\n")
     print("| after | " + " | ".join(of) + " |\n|---|" + "---|" * len(of))
     for seconds in arguments.seconds:
         cells = [cell([at(views, seconds, per_view, arguments.speed) for views in runs])

@@ -9,9 +9,9 @@
 namespace viewgain::bench {
 
 inline const Box kHallWorkspace{{-10, -10, 0}, {10, 10, 3}};
-/// Tables, shelves and crates on the floor and at all heights, beside the aisles.
+/// Tables, shelves and crates next to the aisles, on the floor and at all heights.
 [[nodiscard]] TriangleMesh hall_mesh();
-/// Up one aisle and down the next, looking left and right: where the camera is at a frame.
+/// Pose of the camera at a frame. It goes up one aisle and down the next, looking left and right.
 [[nodiscard]] Pose hall_pose(int frame, int frames);
 
 struct HallOptions {
@@ -23,12 +23,14 @@ struct HallOptions {
   bool json = false;
 };
 
-/// Memory and speed of a large map: a hall of 20 m × 20 m × 3 m with tables, shelves and crates,
-/// through which a kinect_v1 (640×480, noise on) is carried along the aisles, a frame every 0.11 m
-/// if there are 1,000. Times each frame's integration and the scene's build and update, scores
-/// poses_in() the hall by the paper's gain, forgets half of the map. The peak is VmHWM less VmRSS
-/// from before the grid: map, scene, evaluator and all temporaries, those of the simulation
-/// included. Returns the exit code.
+/// Measures memory and speed of a large map: a hall of 20 m × 20 m × 3 m with tables, shelves and
+/// crates. A kinect_v1 (640×480, noise on) moves along the aisles, with a frame every 0.11 m if
+/// there are 1,000.
+///
+/// Times the integration of each frame, and building and updating the scene. Scores poses_in() the
+/// hall by the gain paper. Forgets half of the map. The peak is VmHWM minus VmRSS before the grid
+/// was made: map, scene, evaluator and all temporaries, with those of the simulation. Returns the
+/// exit code.
 int run_hall(const HallOptions& options);
 
 }  // namespace viewgain::bench
