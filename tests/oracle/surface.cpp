@@ -49,7 +49,8 @@ Eigen::Vector3d outward(const DenseMap& map, Index3 voxel) {
       }
     }
   }
-  return sum.norm() > 0 ? sum.normalized() : sum;
+  if (sum.norm() == 0) return sum;
+  return (sum.normalized().array() * 511).round() / 511;  // as scenes keep them
 }
 
 /// An unknown chord in one hazard cell.
@@ -132,7 +133,8 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
     std::optional<Run> run;
     // The stretch of unknown voxels up to here.
     bool in_stretch = false;
-    double stretch_begin = 0, stretch_passed = 1, stretch_share = 0, stretch_area = 0;
+    double stretch_begin = 0, stretch_passed = 1, stretch_share = 0;
+    double stretch_area = 0, stretch_all = 0;  // of new surface; of all, new or not
     double last_across = 0;
     const auto close = [&] {
       if (!run) return;
@@ -145,9 +147,11 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
           std::min(angle * t * t, cap) * misses(sensor.working_distance) / misses(t);
       value.pixel_area = std::max(value.pixel_area, across);
       last_across = across;
+      const double area = P * across * run->weighted / length;
+      stretch_all += area;
       if (hazard.is_new(run->voxel)) {
-        value.area += P * across * run->weighted / length;
-        stretch_area += P * across * run->weighted / length;
+        value.area += area;
+        stretch_area += area;
       }
       passed *= std::exp(-depth);
       stretch_share += P;
@@ -169,7 +173,7 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
           if (!in_stretch) {
             in_stretch = true;
             stretch_begin = begin, stretch_passed = passed;
-            stretch_share = stretch_area = 0;
+            stretch_share = stretch_area = stretch_all = 0;
           }
           if (!run) run = Run{cell, begin, end, 0, voxel};
           run->end = end;
@@ -185,13 +189,16 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
         const double length = begin - stretch_begin;
         const double chance = stretch_passed > 0 ? stretch_share / stretch_passed : 0;
         if (cosine > 0.2 && length >= 2) {
-          if (chance > 0) value.area += stretch_area / chance - stretch_area;
+          // Parallel to the known surface, and new.
+          if (chance > 0) {
+            value.area += stretch_all / (chance * std::max(cosine, 0.35)) - stretch_area;
+          }
           passed = 0;
         }
         if ((std::abs(cosine - 0.2) < 3e-3 && length > 1.99) ||
             (std::abs(length - 2) < 1e-3 && cosine > 0.19)) {
           ++undecided;
-          undecided_area += last_across;
+          undecided_area += last_across / 0.35;
         }
       }
       const Eigen::Matrix3d added = passed * information_of(sensor, ray.direction, begin * V);

@@ -243,6 +243,7 @@ struct Workspace {
   std::vector<SampledEnd> sampled_ends;
   std::vector<VoxelVisit> mixed_visits, visits;
   std::vector<SurfaceShare> shares;
+  std::vector<double> share_areas;             ///< of each share, as if its surface were new [m²]
   std::unique_ptr<ViewScratch> scratch;        ///< of a gain that walks rays itself
   std::optional<GainAccumulator> accumulator;  ///< made when first needed
   std::uint64_t bound_to = 0;                  ///< number of the driver whose scene it sums for

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "from_behind.hpp"
 #include "trace/scene_tracing.hpp"
 #include "view_driver.hpp"
 #include "viewgain/support/belief_block.hpp"
@@ -17,10 +18,6 @@ namespace {
 // A surface point is made of the readings within a pooling length of it, and of so many at least
 // (grid's fused points).
 constexpr double kLeastReadings = 2.0;
-// A ray comes to a surface from behind where it has passed so much unknown space before it [voxels]
-// and runs along the outward normal by this cosine: the surface must lie in between.
-constexpr float kLeastStretch = 2.0F;
-constexpr float kLeastCosineBehind = 0.2F;
 // Readings that a voxel of new surface is counted with.
 constexpr double kNewReadings = 3.0;
 
@@ -86,19 +83,23 @@ SymmetricMatrix3 SurfaceView::information(const RayTile& rays, int lane, float r
       d.normalized(), core_.frontal(static_cast<double>(range) * scene_.snapshot.voxel_size));
 }
 
-bool SurfaceView::is_behind(const RayTile& rays, int lane, Index3 at) const {
+float SurfaceView::cosine_at(const RayTile& rays, int lane, Index3 at) const {
   const Eigen::Vector3f normal = bricks_.normal_at(at.x, at.y, at.z);
-  return normal.x() * rays.dx[lane] + normal.y() * rays.dy[lane] + normal.z() * rays.dz[lane] >
-         kLeastCosineBehind;
+  return normal.x() * rays.dx[lane] + normal.y() * rays.dy[lane] + normal.z() * rays.dz[lane];
 }
 
 double SurfaceView::area_of(const RayTile& rays, WalkedTile& tile) const {
   for_each_lane(tile.occupied, [&](int lane) {
-    if (!(tile.stretch_length[lane] >= kLeastStretch)) return;
-    if (!is_behind(rays, lane, {tile.x[lane], tile.y[lane], tile.z[lane]})) return;
+    if (!(tile.stretch_length[lane] >= FromBehind::kLeastStretch)) return;
+    const float cosine = cosine_at(rays, lane, {tile.x[lane], tile.y[lane], tile.z[lane]});
+    if (!(cosine > FromBehind::kLeastCosine)) return;
     // With a hazard of 0 throughout there is nowhere for the surface to be.
-    const float chance = tile.stretch_chance[lane], area = tile.stretch_area[lane];
-    if (chance > 0) tile.area[lane] += area / chance - area;
+    const float chance = tile.stretch_chance[lane];
+    const auto factor =
+        static_cast<float>(FromBehind::area_over_across(static_cast<double>(cosine)));
+    if (chance > 0) {
+      tile.area[lane] += tile.stretch_all[lane] * factor / chance - tile.stretch_area[lane];
+    }
     tile.passed[lane] = 0;
   });
   double sum = 0;
@@ -323,6 +324,8 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
            a.z >> shift == b.z >> shift;
   };
   const auto& visits = workspace.visits;
+  std::vector<double>& areas = workspace.share_areas;
+  areas.clear();
   for (auto first = visits.begin(), last = first; first != visits.end(); first = last) {
     const bool is_new_ray = first == visits.begin() || first->lane != (first - 1)->lane;
     const bool follows_on = !is_new_ray && first->begin == (first - 1)->end;
@@ -330,12 +333,14 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
     last = first + 1;
     const int lane = static_cast<int>(first->lane);
     if (first->state == BrickTable::kOccupiedVoxel) {
-      if (follows_on && first->begin - stretch_begin >= kLeastStretch &&
-          is_behind(rays, lane, {first->x, first->y, first->z})) {
+      const float cosine = cosine_at(rays, lane, {first->x, first->y, first->z});
+      if (follows_on && first->begin - stretch_begin >= FromBehind::kLeastStretch &&
+          cosine > FromBehind::kLeastCosine) {
         const double chance = stretch_passed > 0 ? stretch_share / stretch_passed : 0;
+        const double factor = FromBehind::area_over_across(static_cast<double>(cosine)) / chance;
         for (std::size_t i = stretch; chance > 0 && i < workspace.shares.size(); ++i) {
           workspace.shares[i].probability /= chance;
-          workspace.shares[i].area /= chance;
+          workspace.shares[i].area = areas[i] * factor;
         }
         passed = 0;
       }
@@ -345,6 +350,7 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
         share.information = information(rays, lane, first->begin) * passed;
       }
       workspace.shares.push_back(share);
+      areas.push_back(0);
       continue;
     }
     if (!follows_on) {
@@ -365,14 +371,9 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
     const double across =
         std::min(angle * t * t, static_cast<double>(worth_.cap)) * reading_worth_(t * V);
     const auto put = [&](Index3 voxel, float from, double part, double weight, bool is_new) {
-      workspace.shares.push_back({lane,
-                                  from,
-                                  voxel,
-                                  false,
-                                  part,
-                                  is_new ? part * across * weight * V * V : 0.0,
-                                  {},
-                                  rate});
+      const double area = part * across * weight * V * V;
+      areas.push_back(area);
+      workspace.shares.push_back({lane, from, voxel, false, part, is_new ? area : 0.0, {}, rate});
     };
     double weight_of_run = weights.empty() ? 1.0 : 0.0;
     for (auto visit = first; visit != last; ++visit) {

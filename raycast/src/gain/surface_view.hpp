@@ -146,8 +146,9 @@ class SurfaceView {
     return weights.empty() ? 1.0 : task_weight(weights, voxel, scene_.snapshot.voxel_size);
   }
   [[nodiscard]] double area_of(const RayTile& rays, WalkedTile& tile) const;
-  /// Does the ray come to an occupied voxel, in table coordinates, from behind?
-  [[nodiscard]] bool is_behind(const RayTile& rays, int lane, Index3 at) const;
+  /// Cosine of a ray to the outward normal of an occupied voxel, in table coordinates; 0: not
+  /// known.
+  [[nodiscard]] float cosine_at(const RayTile& rays, int lane, Index3 at) const;
   [[nodiscard]] SymmetricMatrix3 information(const RayTile& rays, int lane, float range) const;
 
   const SceneData& scene_;

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scorer/realised_area.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <unordered_map>
 
+#include "gain/from_behind.hpp"
 #include "gain/frontal_sigmas.hpp"
+#include "viewgain/support/voxel_walk.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -15,6 +19,83 @@ bool sees_plane(const Sensor& sensor, const Eigen::Vector3d& point, const Eigen:
   const double range = sight.norm(), rise = sight.z() / range;  // its size is cosθ on the plane
   return is_of_plane(point.z() - plane, rise, sensor.sigmas(range, std::abs(rise)));
 }
+
+// The known surface that rays would come to from behind if nothing new lay before it.
+class SurfaceBehind {
+ public:
+  explicit SurfaceBehind(const BeliefGrid& map)
+      : map_(map),
+        T_grid_world_(map.T_world_grid().inverse()),
+        box_(VoxelBox::from_dims(map.min_index(), map.dims())) {}
+
+  /// For a reading in the workspace and its ray [m, world]: the cosine of the ray to the outward
+  /// normal of that surface; 0: there is none.
+  double cosine(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) {
+    const Eigen::Vector3d at = T_grid_world_ * point / map_.voxel_size();
+    const Eigen::Vector3d along = T_grid_world_.rotation() * direction;
+    const Way on = way(at, along);
+    if (on.end != VoxelState::occupied) return 0;
+    double length = on.length;
+    const bool is_occupied = length == 0;  // then what lies before that voxel counts
+    if (length < FromBehind::kLeastStretch) length += way(at, -along, is_occupied).length;
+    if (length < FromBehind::kLeastStretch) return 0;
+    const double cosine = outward(on.voxel).dot(along);
+    return cosine > FromBehind::kLeastCosine ? cosine : 0;
+  }
+
+ private:
+  // A way through unknown voxels.
+  struct Way {
+    double length = 0;  // [voxels]
+    VoxelState end = VoxelState::unknown;
+    Index3 voxel;  // where it ends
+  };
+
+  // `beside`: from where the ray leaves the voxel that it begins in.
+  [[nodiscard]] Way way(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
+                        bool beside = false) const {
+    const HalfLine line(from, along);
+    VoxelWalk walk(line, 0, box_);
+    if (beside) walk.leave<1>();
+    const double begin = walk.from();
+    for (; box_.contains(walk.voxel()); walk.leave<1>()) {
+      const VoxelState state = map_.state(walk.voxel());
+      if (state != VoxelState::unknown) return {walk.from() - begin, state, walk.voxel()};
+    }
+    return {walk.from() - begin, VoxelState::unknown, {}};
+  }
+
+  // Of a cube of 2³ voxels, towards free and from unknown ones around; zero if not known.
+  const Eigen::Vector3d& outward(Index3 voxel) {
+    const Index3 low{voxel.x & -2, voxel.y & -2, voxel.z & -2};
+    const auto [entry, is_new] = normals_.try_emplace(low, Eigen::Vector3d::Zero());
+    if (!is_new) return entry->second;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int i = 0; i < 216; ++i) {
+      const int x = i / 36 - 2, y = i / 6 % 6 - 2, z = i % 6 - 2;
+      const Index3 at{low.x + x, low.y + y, low.z + z};
+      if (!box_.contains(at)) continue;
+      const VoxelState state = map_.state(at);
+      if (state == VoxelState::occupied) continue;
+      const Eigen::Vector3d side((x + 2) / 2 - 1, (y + 2) / 2 - 1, (z + 2) / 2 - 1);
+      sum += state == VoxelState::free ? side : -side;
+    }
+    if (sum.norm() > 0) entry->second = sum.normalized();
+    return entry->second;
+  }
+
+  struct Hash {
+    std::size_t operator()(Index3 v) const {
+      return (static_cast<std::size_t>(static_cast<std::uint32_t>(v.x)) * 73856093U) ^
+             (static_cast<std::size_t>(static_cast<std::uint32_t>(v.y)) * 19349663U) ^
+             (static_cast<std::size_t>(static_cast<std::uint32_t>(v.z)) * 83492791U);
+    }
+  };
+  const BeliefGrid& map_;
+  Pose T_grid_world_;
+  VoxelBox box_;
+  std::unordered_map<Index3, Eigen::Vector3d, Hash> normals_;
+};
 
 }  // namespace
 
@@ -30,6 +111,7 @@ double RealisedArea::of(const DepthFrame& frame, const Pose& T_world_camera,
                         const BeliefGrid& before, const HazardField* hazard) const {
   check_frame_size(frame, sensor_.camera);
   double area = 0;
+  SurfaceBehind behind(before);
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     const float z = frame.depth[i];
     if (!(z > 0) || !std::isfinite(z) || !rays_[i].allFinite()) continue;
@@ -43,9 +125,16 @@ double RealisedArea::of(const DepthFrame& frame, const Pose& T_world_camera,
       continue;
     }
     const std::optional<Index3> voxel = before.index_of(point);
-    if (!voxel || before.state(*voxel) != VoxelState::unknown) continue;
-    if (hazard != nullptr && !hazard->is_new(*voxel)) continue;
-    area += solid_angles_[i] * range * range * worth_(range);
+    if (!voxel) continue;
+    const VoxelState state = before.state(*voxel);
+    if (state == VoxelState::free) continue;
+    const double across = solid_angles_[i] * range * range * worth_(range);
+    const Eigen::Vector3d sight = point - T_world_camera.translation();
+    if (const double cosine = behind.cosine(point, sight.normalized()); cosine > 0) {
+      area += across * FromBehind::area_over_across(cosine);
+    } else if (state == VoxelState::unknown && (hazard == nullptr || hazard->is_new(*voxel))) {
+      area += across;
+    }
   }
   return area;
 }

@@ -22,11 +22,11 @@ class RealisedArea {
   /// Undoes the lens distortion once. Readings of the support plane (world z [m]) show nothing.
   RealisedArea(const Sensor& sensor, double voxel_size, std::optional<double> support_plane = {});
 
-  /// Σ ω t² ρ(t) [m²], area across the rays, over the frame's readings within the sensor's range
-  /// that lie in a voxel of the workspace that is unknown in `before`, at d > 1.2 pooling lengths
-  /// from what is known of the surface, and show nothing known (DepthFrame::known_depth). `hazard`:
-  /// that of the same map; null: no surface is known, all is new. Throws Error(invalid_argument) as
-  /// check_frame_size().
+  /// Σ ω t² ρ(t) [m²] over the frame's readings of new surface within the sensor's range. They
+  /// lie in unknown voxels of `before`, at d > 1.2 pooling lengths from what is known of the
+  /// surface (`hazard`: that of the same map; null: nothing is known), and show nothing known
+  /// (DepthFrame::known_depth); or their ray would come to known surface from behind (FromBehind).
+  /// Throws Error(invalid_argument) as check_frame_size().
   [[nodiscard]] double of(const DepthFrame& frame, const Pose& T_world_camera,
                           const BeliefGrid& before, const HazardField* hazard) const;
 

@@ -188,6 +188,7 @@ class AreaSink {
       stretch_begin_ = hn::IfThenElse(begins, t, stretch_begin_);
       stretch_passed_ = hn::IfThenElse(begins, passed_, stretch_passed_);
       stretch_area_ = hn::IfThenZeroElse(begins, stretch_area_);
+      stretch_all_ = hn::IfThenZeroElse(begins, stretch_all_);
       stretch_share_ = hn::IfThenZeroElse(begins, stretch_share_);
 
       const VI places = finder.rate_places(step.place, step.at, unknown);
@@ -204,13 +205,14 @@ class AreaSink {
       const VF middle = hn::Mul(hn::Set(df, 0.5F), hn::Add(begin_, next));
       VF across = hn::Div(hn::Min(hn::Mul(angle_, hn::Mul(middle, middle)), cap_), misses(middle));
       if constexpr (kMissed) across = hn::Mul(across, hn::GatherIndex(df, missed_, places));
-      const MF is_known = hn::Lt(rate, hn::Zero(df));
-      const VF whole = hn::IfThenZeroElse(is_known, hn::Mul(run_, across));
-      const VF more =
+      const VF whole = hn::Mul(run_, across);
+      const VF all =
           hn::IfThenElseZero(unknown, hn::Sub(whole, hn::IfThenElseZero(goes_on, run_area_)));
+      const VF more = hn::IfThenZeroElse(hn::Lt(rate, hn::Zero(df)), all);  // unless it is known
       run_area_ = hn::IfThenElse(unknown, whole, run_area_);
       area_ = hn::Add(area_, more);
       stretch_area_ = hn::Add(stretch_area_, more);
+      stretch_all_ = hn::Add(stretch_all_, all);
     }
     moved_ = hn::IfThenZeroElse(to_i(step.counts), moved_);
     // Where a ray ends in a voxel it stays what it was before.
@@ -228,6 +230,7 @@ class AreaSink {
     hn::Store(passed_, df, out.passed + lane0);
     hn::Store(area_, df, out.area + lane0);
     hn::Store(hn::IfThenElseZero(in_unknown_, stretch_area_), df, out.stretch_area + lane0);
+    hn::Store(hn::IfThenElseZero(in_unknown_, stretch_all_), df, out.stretch_all + lane0);
     hn::Store(hn::IfThenElseZero(hn::Gt(stretch_passed_, hn::Zero(df)),
                                  hn::Div(stretch_share_, stretch_passed_)),
               df, out.stretch_chance + lane0);
@@ -256,7 +259,7 @@ class AreaSink {
   VF begin_ = hn::Zero(df), run_ = hn::Zero(df), run_area_ = hn::Zero(df);
   // The stretch of unknown voxels that it is in.
   VF stretch_begin_ = hn::Zero(df), stretch_passed_ = hn::Zero(df), stretch_area_ = hn::Zero(df),
-     stretch_share_ = hn::Zero(df);
+     stretch_all_ = hn::Zero(df), stretch_share_ = hn::Zero(df);
   // Where it ends.
   MF occupied_ = no_lane();
   VF range_ = hn::Zero(df);

@@ -25,10 +25,12 @@ struct alignas(64) WalkedTile {
   float passed[kTileRays];
   /// Σ P min(ω t², cap) ρ(t) over its runs: the new surface to be expected, across the ray.
   float area[kTileRays];
-  /// Of the last stretch of unknown voxels, without a free one in between: its share of the area,
-  /// the chance to end in it of a ray that gets there, its length. The chance is a sum of small
-  /// ones: as 1 - T it would be lost where the hazard is low.
-  float stretch_area[kTileRays], stretch_chance[kTileRays], stretch_length[kTileRays];
+  /// Of the last stretch of unknown voxels, without a free one in between: its share of the area;
+  /// the same as if all surface in it were new; the chance to end in it of a ray that gets there;
+  /// its length. The chance is a sum of small ones: as 1 - T it would be lost where the hazard is
+  /// low.
+  float stretch_area[kTileRays], stretch_all[kTileRays], stretch_chance[kTileRays],
+      stretch_length[kTileRays];
   float range[kTileRays];                                 ///< where a ray ends that is `occupied`
   std::int32_t x[kTileRays], y[kTileRays], z[kTileRays];  ///< its voxel, in table coordinates
   std::uint32_t occupied = 0;                             ///< lanes that end in an occupied voxel

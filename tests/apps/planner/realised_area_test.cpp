@@ -7,9 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "apps/planner/planner_scene.hpp"
@@ -121,6 +124,100 @@ TEST(RealisedArea, TheSupportPlaneIsNotSurface) {
   }
 }
 
+/// The voxels from a point on, in units of voxels, and how far the line goes in each: by sorting
+/// where it crosses planes.
+std::vector<std::pair<Index3, double>> voxels_along(const Eigen::Vector3d& from,
+                                                    const Eigen::Vector3d& along, double length) {
+  std::vector<double> crossings{0, length};
+  for (int a = 0; a < 3; ++a) {
+    const double end = from[a] + length * along[a];
+    for (double plane = std::ceil(std::min(from[a], end)); plane <= std::max(from[a], end);
+         plane += 1) {
+      crossings.push_back((plane - from[a]) / along[a]);
+    }
+  }
+  std::sort(crossings.begin(), crossings.end());
+  std::vector<std::pair<Index3, double>> all;
+  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+    if (!(crossings[i] < crossings[i + 1])) continue;
+    const Eigen::Vector3d p = from + 0.5 * (crossings[i] + crossings[i + 1]) * along;
+    all.push_back({{static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
+                    static_cast<int>(std::floor(p.z()))},
+                   crossings[i + 1] - crossings[i]});
+  }
+  return all;
+}
+
+/// The cosine by which a ray would come to known surface from behind; 0: it would not.
+double cosine_from_behind(const BeliefGrid& grid, const Eigen::Vector3d& point,
+                          const Eigen::Vector3d& along) {
+  constexpr double kFar = 200;  // [voxels]
+  const Eigen::Vector3d at = point / kVoxel;
+  const auto inside = [&](Index3 v) {
+    const Index3 low = grid.min_index(), n = grid.dims();
+    return v.x >= low.x && v.y >= low.y && v.z >= low.z && v.x < low.x + n.x && v.y < low.y + n.y &&
+           v.z < low.z + n.z;
+  };
+  double length = 0;
+  std::optional<Index3> end;
+  for (const auto& [voxel, part] : voxels_along(at, along, kFar)) {
+    if (!inside(voxel) || grid.state(voxel) == VoxelState::free) return 0;
+    if (grid.state(voxel) == VoxelState::occupied) {
+      end = voxel;
+      break;
+    }
+    length += part;
+  }
+  if (!end) return 0;
+  bool is_own = length == 0;  // the occupied voxel that the reading is in
+  for (const auto& [voxel, part] : voxels_along(at, -along, kFar)) {
+    if (std::exchange(is_own, false)) continue;
+    if (!inside(voxel) || grid.state(voxel) != VoxelState::unknown) break;
+    length += part;
+  }
+  if (length < 2) return 0;
+  Eigen::Vector3d outward = Eigen::Vector3d::Zero();
+  const auto even = [](int i) { return 2 * static_cast<int>(std::floor(i / 2.0)); };
+  for (int x = -2; x < 4; ++x) {
+    for (int y = -2; y < 4; ++y) {
+      for (int z = -2; z < 4; ++z) {
+        const Index3 v{even(end->x) + x, even(end->y) + y, even(end->z) + z};
+        if (!inside(v) || grid.state(v) == VoxelState::occupied) continue;
+        const auto side = [](int i) { return i < 0 ? -1 : i > 1 ? 1 : 0; };
+        const Eigen::Vector3d to(side(x), side(y), side(z));
+        outward += grid.state(v) == VoxelState::free ? to : -to;
+      }
+    }
+  }
+  const double cosine = outward.norm() > 0 ? outward.normalized().dot(along) : 0;
+  return cosine > 0.2 ? cosine : 0;
+}
+
+// The outer side of a thin wall whose inner side is known: its readings are next to known surface.
+TEST(RealisedArea, TheOtherSideOfAThinWallIsNew) {
+  const Sensor sensor = test::half_sr4000();
+  const RealisedArea realised(sensor, kVoxel);
+  // The wall is known at z = 0, from below, where all is free.
+  BeliefGrid grid = empty_map();
+  const Index3 low = grid.min_index(), n = grid.dims();
+  for (int x = low.x; x < low.x + n.x; ++x) {
+    for (int y = low.y; y < low.y + n.y; ++y) {
+      grid.set({x, y, -1}, 0.85F, hit(5));
+      for (int z = low.z; z < -1; ++z) grid.set({x, y, z}, -0.4F);
+    }
+  }
+  const HazardField hazard = fine_hazard(grid);
+  const BeliefGrid unknown = empty_map();
+  for (const double above : {0.001, 0.004, 0.02}) {  // of the other side over z = 0 [m]
+    const DepthFrame frame = plane_frame(sensor, kEye - above);
+    const double all = realised.of(frame, from_above(), unknown, nullptr);
+    const double behind = realised.of(frame, from_above(), grid, &hazard);
+    // More than across the rays, which are slanted by up to 28 degrees.
+    EXPECT_GT(behind, all) << above;
+    EXPECT_LT(behind, 1.1 * all) << above;
+  }
+}
+
 TEST(RealisedArea, IsWhatAnOracleCounts) {
   std::mt19937_64 random(5);
   const auto uniform = [&](double a, double b) {
@@ -131,7 +228,7 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
   const RealisedArea realised(sensor, kVoxel);
   const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
   const std::vector<double> angles = sensor.camera.solid_angles(rays);
-  std::size_t new_readings = 0, known = 0, near = 0;
+  std::size_t new_readings = 0, known = 0, near = 0, behind = 0;
   int maps = 0;
   for (; maps < 20; ++maps) {
     BeliefGrid grid = empty_map(0.1);
@@ -155,6 +252,15 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
       if (p.norm() < sensor.min_range || p.norm() > sensor.max_range) continue;
       const auto voxel = grid.index_of(pose * p);
       if (!voxel) continue;
+      const double across = angles[i] * p.squaredNorm() * worth(sensor, p.norm());
+      const Eigen::Vector3d along = (pose.rotation() * rays[i]).normalized();
+      const double cosine =
+          grid.state(*voxel) == VoxelState::free ? 0 : cosine_from_behind(grid, pose * p, along);
+      if (cosine > 0) {
+        ++behind;
+        expected += across / std::max(cosine, 0.35);
+        continue;
+      }
       if (grid.state(*voxel) != VoxelState::unknown) {
         ++known;
         continue;
@@ -169,7 +275,7 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
         continue;
       }
       ++new_readings;
-      expected += angles[i] * p.squaredNorm() * worth(sensor, p.norm());
+      expected += across;
     }
     EXPECT_NEAR(realised.of(frame, pose, grid, &hazard), expected, 1e-9 * expected);
   }
@@ -177,6 +283,7 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
   EXPECT_GT(new_readings, 5000U);
   EXPECT_GT(known, 100U);
   EXPECT_GT(near, 100U);
+  EXPECT_GT(behind, 400U);
 }
 
 }  // namespace

@@ -151,6 +151,34 @@ TEST(SurfaceGain, AWallSeenFromBehindIsInTheSlabBeforeIt) {
   EXPECT_NEAR(gain_of(apart, one_ray(1.0), constant(1)).gain, kCap * before, 1e-5 * kCap);
 }
 
+// The surface in between is parallel to the wall: across a slanted ray it has the cosine of its
+// area.
+TEST(SurfaceGain, AWallSeenFromBehindAtASlantHidesMoreThanTheRayIsWide) {
+  const BeliefGrid grid = planes([](int x) {
+    if (x == 30) return VoxelState::occupied;
+    return x == 28 || x == 29 ? VoxelState::unknown : VoxelState::free;
+  });
+  const Sensor sensor = one_ray(1.0);
+  int slants = 0;
+  for (const double slant : {0.999, 0.8, 0.5, 0.36, 0.3, 0.27}) {
+    const double tangent = std::sqrt(1 - slant * slant) / slant;
+    const Eigen::Vector3d eye(26.9, 2.1, 8.4), at(30.2, 2.1 + 3.3 * tangent, 8.4);
+    ASSERT_LT(at.y(), kDims.y);
+    const Pose pose = look_at(kExactVoxel * eye, kExactVoxel * at);
+    const double cosine = (pose.rotation() * sensor.camera.ray_table()[0]).normalized().x();
+    const double area = kCap / std::max(cosine, 0.35);
+    EXPECT_NEAR(gain_of(grid, sensor, constant(1), {}, pose).gain, area, 2e-5 * area) << slant;
+    ++slants;
+  }
+  EXPECT_EQ(slants, 6);
+  // From the front, or along the wall, it says nothing.
+  const Eigen::Vector3d eye(27.3, 1.2, 8.4), along(28.5, 12, 8.4);
+  const double gain =
+      gain_of(grid, one_ray(1.0), constant(1), {}, look_at(kExactVoxel * eye, kExactVoxel * along))
+          .gain;
+  EXPECT_LT(gain, kCap);
+}
+
 TEST(SurfaceGain, ARayInAFaceBelongsToTheLargerIndex) {
   const BeliefGrid grid = slab(8, 40);
   auto volume = std::make_shared<HazardConfig::Volume>();
