@@ -148,7 +148,7 @@ TEST(Tum, FilesWithoutAPose) {
   const TemporaryFolder folder;
   for (const char* contents : {"", "\n\n", "# timestamp tx ty tz qx qy qz qw\n"}) {
     const auto path = folder.file("empty.txt", contents);
-    expect_error(ErrorCode::format, path.string() + ": holds no pose",
+    expect_error(ErrorCode::format, path.string() + ": contains no pose",
                  [&] { (void)read_tum(path); });
   }
 }
@@ -184,7 +184,7 @@ TEST(Tum, TimestampsComeBackAsTheyWere) {
   EXPECT_EQ(read_tum(path).timestamps, timestamps);
   write_tum(path, read_tum(path).poses, read_tum(path).timestamps);
   EXPECT_EQ(read_tum(path).timestamps, timestamps);
-  expect_error(ErrorCode::invalid_argument, "5 poses but 4 timestamps",
+  expect_error(ErrorCode::invalid_argument, "5 poses, but 4 timestamps",
                [&] { write_tum(path, poses, std::span(timestamps).first(4)); });
   const std::vector<double> bad(timestamps.size(), NAN);
   expect_error(ErrorCode::invalid_argument, "timestamp 0 is not finite",

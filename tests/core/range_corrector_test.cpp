@@ -117,7 +117,7 @@ TEST(RangeCorrector, RefusesWhatCannotBe) {
   bad.fx = -3;
   refused(bad, kTable, "fx");
   refused(bad, {}, "fx");
-  refused(camera, {{{1, 0}, {1, 0}}}, "rise");
+  refused(camera, {{{1, 0}, {1, 0}}}, "must increase");
   refused(camera, {{{1, 0}, {2, std::nan("")}}}, "entry 1");
 
   for (const RangeCalibration& table : {kTable, RangeCalibration{}}) {
@@ -168,8 +168,8 @@ TEST(RangeCalibration, RefusesTablesThatDoNotRiseOrAreNotFinite) {
   const auto refused = [](const RangeCalibration& table, const char* word) {
     expect_error(ErrorCode::invalid_argument, word, [&] { table.validate(); });
   };
-  refused({{{1, 0}, {1, 0}}}, "rise");
-  refused({{{1, 0}, {2, 0}, {1.5, 0}}}, "rise");
+  refused({{{1, 0}, {1, 0}}}, "must increase");
+  refused({{{1, 0}, {2, 0}, {1.5, 0}}}, "must increase");
   refused({{{kNan, 0}}}, "finite");
   refused({{{1, 0}, {2, kInfinity}}}, "entry 1");
 }

@@ -58,7 +58,7 @@ TEST(SensorPresets, ATableOfRangesHasToLeaveRanges) {
     sensor.range_calibration.table = std::move(table);
     expect_error(ErrorCode::invalid_argument, part, [&] { sensor.validate(); });
   };
-  refused({{1.0, 0.0}, {0.5, 0.0}}, "rise");
+  refused({{1.0, 0.0}, {0.5, 0.0}}, "must increase");
   refused({{0.0, -0.1}}, "not a valid range");
   refused({{-1.0, -2.0}}, "not a valid range");
   refused({{0.5, 0.0}, {1.0, 1.0}}, "not a valid range");

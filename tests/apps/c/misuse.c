@@ -33,7 +33,7 @@ static void of_sensors(void) {
   CHECK(bad.fx == -3);
   vg_sensor_init(&bad, sizeof bad + 8); /* of another header: zeros and its size */
   CHECK(bad.fx == 0 && bad.struct_size == sizeof bad + 8);
-  CHECK_REFUSED(vg_sensor_preset("sr4000", &bad), "; in this library, ");
+  CHECK_REFUSED(vg_sensor_preset("sr4000", &bad), ", but in this library ");
 }
 
 static void of_grids(const char* folder) {

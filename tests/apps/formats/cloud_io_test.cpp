@@ -220,14 +220,14 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
   change("bad.pcd:7:", "WIDTH 50", "WIDTH -1");
   change("WIDTH x HEIGHT is too large", "WIDTH 50\nHEIGHT 1",
          "WIDTH 4294967295\nHEIGHT 4294967295");
-  change("are there", "WIDTH 50\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 50",
+  change("are present", "WIDTH 50\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 50",
          "WIDTH 4294967295\nHEIGHT 1\nPOINTS 4294967295");
   change("only one of WIDTH and HEIGHT", "HEIGHT 1", "# none");
   change("no count of points", "WIDTH 50\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 50", "# none");
   change("missing field 'z'", "y z\n", "y w\n");
   change("'x' must have COUNT 1", "COUNT 1 1 3", "COUNT 1 2 3");
   change("the count '100001' is too large", "COUNT 1 1 3", "COUNT 1 1 100001");
-  change("are there", "COUNT 1 1 3", "COUNT 1 1 100000");
+  change("are present", "COUNT 1 1 3", "COUNT 1 1 100000");
   change("needs one word for each of the 5 fields", "SIZE 2 4 4 8 4", "SIZE 2 4 4 8");
   change("needs one word for each", "TYPE U F F F I", "TYPE U F F F I I");
   change("bad.pcd:5: TYPE 'D'", "TYPE U F", "TYPE U D");

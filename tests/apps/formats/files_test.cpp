@@ -412,7 +412,7 @@ TEST_F(Files, FramesHaveNumbersOfAnyLength) {
                [&] { (void)open_frames(folder); });
   fs::remove(beyond);
   fs::copy(folder / "frame-1.depth.png", folder / "frame-01.depth.png");
-  expect_error(ErrorCode::format, "are of one number", [&] { (void)open_frames(folder); });
+  expect_error(ErrorCode::format, "have the same number", [&] { (void)open_frames(folder); });
 }
 
 TEST_F(Files, AmplitudesReadBackInThousandths) {

@@ -77,7 +77,7 @@ TEST(Formats, WhatIsNotThereIsNoFrame) {
   writer.commit(sphere_poses(1, 0.6), sensor);
   const FrameSequence frames = open_frames(folder.path() / "frames");
   EXPECT_NEAR(load_frame(open_frames(folder.path() / "frames", "", 1e-3), 0).depth[1], 5.F, 1e-5);
-  test::expect_error(ErrorCode::invalid_argument, "no frame 1 of 1",
+  test::expect_error(ErrorCode::invalid_argument, "no frame 1; there are 1 frames",
                      [&] { (void)load_frame(frames, 1); });
   for (const double scale : {0.0, -1e-3, std::nan("")}) {
     test::expect_error(ErrorCode::invalid_argument, "depth scale",
@@ -118,7 +118,7 @@ TEST(Formats, FramesAreReadWithTheSensorsTable) {
   ASSERT_EQ(images.images, plain.images);
   EXPECT_TRUE(images.poses.empty());
   EXPECT_EQ(load_frame(images, 0), expected);
-  test::expect_error(ErrorCode::invalid_argument, "no frame 0 of 0",
+  test::expect_error(ErrorCode::invalid_argument, "no frame 0; there are 0 frames",
                      [&] { (void)frame_identity(images, 0); });
   std::filesystem::create_directory(folder.path() / "empty");
   test::expect_error(ErrorCode::io, "no frame-NNNNNN.depth.png",
@@ -168,7 +168,8 @@ TEST(Formats, FramesAreReadByTheSensorAsItIs) {
   EXPECT_EQ(load_frame(frames, 0), seen[1]);
 
   plain.sensor.range_calibration.table = {{1, 0}, {1, 0}};
-  test::expect_error(ErrorCode::invalid_argument, "rise", [&] { (void)load_frame(plain, 0); });
+  test::expect_error(ErrorCode::invalid_argument, "must increase",
+                     [&] { (void)load_frame(plain, 0); });
   write_sensor_toml(dir / "sensor.toml", sensor_preset("sr4000"));
   EXPECT_EQ(open_frames(dir).corrector, nullptr);
 }
@@ -187,8 +188,8 @@ TEST(Formats, FramesThatCannotBeAreRefusedAndNothingIsWritten) {
   refuses("5 amplitudes", [&] { writer.write_frame(1, {3, 2, six, five}); });
   refuses("0 x 2", [&] { writer.write_frame(1, {0, 2, {}, {}}); });
   refuses("-3 x -2", [&] { writer.write_frame(1, {-3, -2, six, {}}); });
-  refuses("after 1 frames", [&] { writer.write_frame(2, {3, 2, six, {}}); });
-  refuses("another size", [&] { writer.write_frame(1, {2, 3, six, {}}); });
+  refuses("frame 2: must be number 1", [&] { writer.write_frame(2, {3, 2, six, {}}); });
+  refuses("differs in size", [&] { writer.write_frame(1, {2, 3, six, {}}); });
   refuses("2 poses for 1 frames", [&] { writer.commit(sphere_poses(2, 1), sensor); });
   refuses("3 x 2 px for a sensor", [&] { writer.commit(sphere_poses(1, 1), sensor); });
   refuses("values", [&] { write_png(folder.path() / "a.png", GrayImage{3, 2, {1, 2, 3}}); });

@@ -390,7 +390,7 @@ TEST_F(Recordings, FlagsThatDoNotFitAreRefused) {
 TEST_F(Recordings, WhatIsDamagedIsNamed) {
   write_tum_recording();
   const std::string list = read("rec/depth.txt");
-  expect_damage_named({{"depth.txt", "", "names no image"},
+  expect_damage_named({{"depth.txt", "", "lists no image"},
                        {"depth.txt", list + "101.5\n", ":8: "},
                        {"depth.txt", list + "soon depth/0.png\n", "'soon'"},
                        {"depth.txt", list + "101.5 ../0.png\n", ":8: the image '../0.png' is"},

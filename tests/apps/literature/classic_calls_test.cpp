@@ -158,11 +158,11 @@ TEST(ClassicGains, RefuseWhatTheyCannotDo) {
   expect(refused(map, {}), "no classic gain");
   const ClassicGain one = ClassicGain::unknown_count;
   expect(refused(map, {.gains = {one, one}}), "twice");
-  expect(refused(nullptr, {.gains = {one}}), "no map");
+  expect(refused(nullptr, {.gains = {one}}), "need a map");
   expect(refused(map, {.gains = {one}, .pixel_stride = 0}), "stride is 0");
   expect(refused(map, {.gains = {one}, .min_range = 2, .max_range = 1}), "min_range 2 m");
   expect(refused(map, {.gains = {one}, .unknown_prior = 1.5}), "1.5");
-  expect(error_of([&] { (void)ClassicMap::build(nullptr, grid); }), "no scene");
+  expect(error_of([&] { (void)ClassicMap::build(nullptr, grid); }), "need a scene");
   expect(error_of([&] {
            (void)ClassicMap::build(scene, row_map({}).clone(), Acquisition{one_ray(), 99});
          }),

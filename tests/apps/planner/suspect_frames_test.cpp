@@ -270,7 +270,7 @@ TEST_F(SuspectFrames, OnePoseAFrame) {
   frames_[3].depth.pop_back();
   test::expect_error(ErrorCode::invalid_argument, "", [&] { (void)kind(); });
   poses_.pop_back();
-  test::expect_error(ErrorCode::invalid_argument, "one pose a frame", [&] { (void)kind(); });
+  test::expect_error(ErrorCode::invalid_argument, "one pose per frame", [&] { (void)kind(); });
 }
 
 TEST(SuspectPoses, WhatSeesNoVoxelOfTheMap) {

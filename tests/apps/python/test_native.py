@@ -194,7 +194,7 @@ def test_arrays_of_other_libraries_come_in_by_dlpack(grid, labels, sensor, evalu
     for device in (2, 8, 10):  # CUDA, Metal, ROCm
         with pytest.raises(ValueError, match="T_world_camera must be .* in the memory of the CPU"):
             evaluator.evaluate(OtherArray(poses, device))
-    with pytest.raises(ValueError, match=r"depth must be floating point \[m\].*uint16"):
+    with pytest.raises(ValueError, match=r"depth must be floating point in metres .*astype\(numpy.float32\) / 1000\), not dtype uint16"):
         frame(OtherArray(depth.astype(np.uint16)), poses[0])
     with pytest.raises(ValueError, match=r"shape \(..., 4, 4\), .* not \(2, 3\)"):
         evaluator.evaluate(OtherArray(points))
@@ -232,7 +232,7 @@ def test_pictures_of_what_cannot_be_drawn_say_why(evaluator, poses, sensor):
     pytest.importorskip("matplotlib").use("agg")
     surface = viewgain.GainEvaluator(evaluator.scene, sensor, gain="surface", pixel_stride=8)
     cases = [(lambda: viewgain.plot.gains(poses, [1.0]), "one value per pose"),
-             (lambda: viewgain.plot.gains(poses[:2], [np.nan, np.nan]), "no value is a number"),
+             (lambda: viewgain.plot.gains(poses[:2], [np.nan, np.nan]), "all values are NaN"),
              (lambda: viewgain.plot.gains(poses[0], 1.0), "one value per pose"),
              (lambda: viewgain.plot.depth([1.0]), "two dimensions"),
              (lambda: viewgain.plot.contributions(surface, poses[0]), "'surface'")]

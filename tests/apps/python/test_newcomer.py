@@ -77,8 +77,9 @@ def test_an_object_in_anothers_place_is_named(grid, sensor, evaluator, poses):
     frames, clouds = viewgain.FrameIntegrator(sensor), viewgain.CloudIntegrator(sensor)
     make = viewgain.BeliefGrid.from_labels
     box = {"voxel_size": 0.02, "workspace": WORKSPACE}
-    of_grid, of_scene = "grid must be a BeliefGrid, not {}; BeliefGrid.from_labels", r"scene must be a VoxelScene, not {}; VoxelScene\(grid\)"
-    of_sensor = r"sensor must be a Sensor, not {}; sensor_preset\(name\)"
+    of_grid = "grid must be a BeliefGrid, not {}; make one from an array of states with BeliefGrid.from_labels"
+    of_scene = r"scene must be a VoxelScene, not {}; make one from a BeliefGrid with VoxelScene\(grid\)"
+    of_sensor = r"sensor must be a Sensor, not {}; get one with sensor_preset\(name\)"
     calls = [(lambda: viewgain.GainEvaluator(grid, sensor), of_scene, "BeliefGrid"),
              (lambda: viewgain.GainEvaluator(scene, "sr4000"), of_sensor, "str"),
              (lambda: viewgain.VoxelScene(np.zeros((4, 4, 4), np.uint8)), of_grid, "ndarray"),
@@ -88,10 +89,10 @@ def test_an_object_in_anothers_place_is_named(grid, sensor, evaluator, poses):
              (lambda: clouds.integrate(poses[0], np.ones((1, 3)), poses[0]), of_grid, "ndarray"),
              (lambda: viewgain.ViewPlanner("sr4000", **box), of_sensor, "str"),
              (lambda: make(np.zeros((2, 2, 2), int), voxel_size=0.1, sensor="sr4000"), of_sensor, "str"),
-             (lambda: evaluator.evaluate(poses, control=print), r"control must be a BatchControl, not {}; BatchControl\(progress\)",
+             (lambda: evaluator.evaluate(poses, control=print), r"control must be a BatchControl, not {}; make one from a function with BatchControl\(progress\)",
               "builtin_function_or_method"),
              (lambda: viewgain.Sensor(MATRIX, min_range=0.1, max_range=1, working_distance=0.5, noise=viewgain.ConstantNoise()),
-              "camera must be a PinholeCamera, not {}; PinholeCamera.from_matrix", "ndarray")]
+              "camera must be a PinholeCamera, not {}; make one from an intrinsic matrix with PinholeCamera.from_matrix", "ndarray")]
     for call, text, given in calls:
         with pytest.raises(TypeError, match=text.format(given)):
             call()

@@ -242,7 +242,7 @@ TEST(TracePaths, TracersAreNamed) {
   EXPECT_EQ(parse_tracer("embree"), ExecConfig::Tracer::embree);
   EXPECT_EQ(tracer_names().at(static_cast<std::size_t>(ExecConfig::Tracer::sweep)), "sweep");
   test::expect_error(ErrorCode::invalid_argument,
-                     "'octree', valid values: automatic, embree, sweep",
+                     "'octree'; valid values: automatic, embree, sweep",
                      [] { (void)parse_tracer("octree"); });
 }
 

@@ -143,7 +143,7 @@ TEST_F(MessageRecordings, CamerasAreThoseOfTheImages) {
   McapText text;
   add_transforms(text);
   add_images(text);
-  EXPECT_EQ(import(text, {}, "the intrinsics are the sensor's")["intrinsics"],
+  EXPECT_EQ(import(text, {}, "using the sensor's intrinsics")["intrinsics"],
             (json{60, 60, 23.5, 17.5}));
   expect_refused({"import", "rec.mcap", "--out", "new"}, "no camera_info belongs to");
   // That of another frame is named, to be given by hand.
@@ -186,13 +186,13 @@ TEST_F(MessageRecordings, WhatIsBrokenIsNamed) {
   McapText no_tf;
   add_info(no_tf);
   add_images(no_tf);
-  refuse(no_tf, "has no transforms: record /tf and /tf_static");
+  refuse(no_tf, "has no transforms; record /tf and /tf_static");
   McapText of_others = no_tf;
   of_others.transform("/tf", 100, "base", "link", kStill);
   refuse(of_others, "no transform leads to the frame 'optical'; existing frames: 'base', 'link'");
   McapText top = no_tf;
   top.transform("/tf", 100, "optical", "link", kStill);
-  refuse(top, "has no parent, so that the camera would never move");
+  refuse(top, "has no parent, so the camera would never move");
   refuse(McapText(), "holds no message");
   McapText no_depth;
   add_transforms(no_depth);
@@ -205,7 +205,7 @@ TEST_F(MessageRecordings, WhatIsBrokenIsNamed) {
   add_transforms(clocks, 900, 901);
   add_info(clocks);
   add_images(clocks);
-  refuse(clocks, "the camera's clock differs from the robot's");
+  refuse(clocks, "the camera's clock is not the robot's");
   // An empty image, a damaged one, a quaternion that is none.
   McapText some = good();
   some.image(kTopic, 100.3, "optical", kWidth, kHeight, "16UC1", "short", 2 * kWidth);
@@ -288,12 +288,12 @@ TEST_F(MessageRecordings, FlagsAndFilesThatDoNotFitAreRefused) {
   const auto import = [](const std::string& source, const Strings& more = {}) {
     return test::joined({"import", source, "--sensor", "small.toml", "--out", "frames"}, more);
   };
-  expect_refused({{import("rec.mcap", {"--format", "tum"}), "is of the format mcap"},
+  expect_refused({{import("rec.mcap", {"--format", "tum"}), "has format mcap"},
                   {import("rec.mcap", {"--mask", "none"}), "no image files for masks to belong to"},
                   {import("rec.mcap", {"--depth-scale", "2"}), "within 0 and 1"},
                   {import("rec.mcap", {"--depth-scale", "-1"}), "--depth-scale"},
                   {import("both"), "two kinds, .mcap and .bag"},
-                  {import("none"), "holds no recording"},
+                  {import("none"), "contains no recording"},
                   {import("packed"), "unzstd"},
                   {import("text.mcap"), "is not a recording"},
                   {import("old.bag"), "rosbag fix"},

@@ -145,7 +145,7 @@ TEST_F(TransformsJson, FramesAndTheTopShareTheCamera) {
   EXPECT_EQ(import(scene)["intrinsics"][2], 23.5);
   EXPECT_EQ(import(scene)["intrinsics"][3], 17.5);
   scene["w"] = kWidth;
-  refuse(scene, "has one of w and h");
+  refuse(scene, "w and h");
 }
 
 TEST_F(TransformsJson, OneBadFrameIsOneLess) {
@@ -201,7 +201,7 @@ TEST_F(TransformsJson, WhatCannotBeReadIsNamed) {
     refuse(scene, "transforms.json: camera: ");
   }
   write("scene/transforms.json", good().dump());
-  expect_refused(call({"--world", "map"}), "--world map: is for recordings of messages");
+  expect_refused(call({"--world", "map"}), "--world map: is only for recordings of messages");
   fs::remove(dir / "scene/depth/0.png");
   fs::create_symlink("/etc/passwd", dir / "scene/depth/0.png");
   expect_refused(call(), "is a link that leaves the recording");

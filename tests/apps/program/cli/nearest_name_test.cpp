@@ -80,7 +80,7 @@ TEST_F(Spelling, TheNearestIsNamed) {
         "--out: OUT is positional; give it without the flag (see"},
        {{"reconstruct", "--voxel=0.01", "--policy=best", "--sensor=sr4000", "--out=run", "--",
          "cube.off"},
-        "--policy: best is"},
+        "--policy: unknown policy best"},
        {{"reconstruct", "--nonsense"}, "--nonsense: unknown flag for reconstruct (see"},
        {{"score", "map.vdb", "--gain", "surfce"},
         "--gain: unknown gain surfce; did you mean surface? Valid: paper, surface, combined"},

@@ -97,7 +97,7 @@ TEST_F(EndedCalls, ALimitOnTimeIsAWishToStopAsOftenAsItComes) {
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
   EXPECT_EQ(json::parse(read("run/run.json"))["stop_reason"], "interrupted");
-  const std::string message = "the call stops after this step";
+  const std::string message = "the command stops after this step";
   EXPECT_NE(said().find(message), std::string::npos) << said();
   EXPECT_EQ(said().find(message), said().rfind(message)) << said();
 }

@@ -206,8 +206,8 @@ TEST_F(ForeignMaps, WrongUseIsRefused) {
   expect_refused(with_cloud({"--origin", "0,0,0", "--poses", "poses.txt"}), "--poses");
   expect_refused(with_cloud({"--poses", "poses.txt"}), "2 poses for 1 clouds");
   expect_refused(with_cloud({"--origin", "0,0,0", "--depth-scale", "1"}), "--depth-scale");
-  expect_refused(with_cloud({"--origin", "0,0,90"}), "no cloud has a reading");
-  expect_refused(integrate({"frames", "--origin", "0,0,0"}), "is for clouds");
+  expect_refused(with_cloud({"--origin", "0,0,90"}), "no cloud has readings");
+  expect_refused(integrate({"frames", "--origin", "0,0,0"}), "requires --cloud");
   expect_refused(integrate({"--cloud", "cut.pcd", "--sensor", "small.toml", "--origin", "0,0,0"}),
                  "cut.pcd:");
   expect_refused(integrate({"--cloud", "none.ply", "--sensor", "small.toml", "--origin", "0,0,0"}),

@@ -136,7 +136,7 @@ TEST_F(Implausible, FlagsInOtherUnits) {
   for (const Strings& call : commands(false)) {
     expect_said(test::joined(call, {"--support-plane", "-300"}), "--support-plane: ");
   }
-  expect_said(integrate({"--register", "5,0.5"}), "standard deviation of 5 m");
+  expect_said(integrate({"--register", "5,0.5"}), "standard deviation of poses is 5 m");
 }
 
 TEST(RefusedFrames, AreSaidWhereRegistrationLeavesOutMost) {
@@ -208,7 +208,7 @@ TEST_F(Implausible, HazardRatesOfAnotherPlaceOrUnit) {
   EXPECT_EQ(warnings(rates_of(grid_of(0.1, 0.2, 0))), "");
   expect_refused(rates_of(grid_of(2.5, 20, 0)), "has voxels of 2.5 m, the map of 0.025 m");
   expect_refused(rates_of(grid_of(0.00025, 0.002, 0)), "has voxels of 0.00025 m");
-  expect_refused(rates_of(grid_of(0.025, 0.2, 5)), "none of them in the map");
+  expect_refused(rates_of(grid_of(0.025, 0.2, 5)), "none lies in the map");
 }
 
 }  // namespace

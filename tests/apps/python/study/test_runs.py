@@ -176,10 +176,10 @@ def test_a_folder_of_other_things_is_refused(folder, program):
     (folder / "spec.toml").write_text(SPEC)
     (folder / "other").mkdir()
     (folder / "other/notes.txt").write_text("mine")
-    assert "name a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
+    assert "--out other: has files, but no runs/ of a study; choose a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
     assert names("other") == ["notes.txt"]
     (folder / "other/runs").mkdir()  # of something else
-    assert "name a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
+    assert "--out other: has files, but no runs/ of a study; choose a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
     # The spec may lie there, and stays as it is.
     (folder / "home").mkdir()
     spec = SPEC.replace("cube.off", "../cube.off").replace("tof.toml", "../tof.toml")
