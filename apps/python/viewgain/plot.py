@@ -52,7 +52,7 @@ def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (
         raise ValueError(f"values of the shape {numbers.shape} for poses of the shape {poses.shape}; expected one value per pose")
     known = np.isfinite(numbers)
     if not known.any():
-        raise ValueError("all values are NaN")
+        raise ValueError("no value is finite")
     x, y, z = (poses[known, :3, 3] - np.asarray(center, float)).T
     azimuth, elevation = np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
     axes = _axes_of(axes)

@@ -133,7 +133,7 @@ Reconstruction reconstruct(
       sensor, voxel_size, boundary.value_or(is_of_boundaries(policy_config.policy)), candidates,
       reach, policy_config.policy);
   if (!generation_settings.at_boundaries && candidates.is_none()) {
-    throw py::value_error("policy \"" + policy + "\" requires candidates if there is no boundary");
+    throw py::value_error("policy \"" + policy + "\" requires candidates or boundary=True");
   }
   policy_config.criterion = map_config.gain.criterion;
   policy_config.model = parse_gain_model(gain);
