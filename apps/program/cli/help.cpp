@@ -101,6 +101,12 @@ void explain_values(App& app, const std::string& text) {
   app.footer(app.get_footer() + text + "\n");
 }
 
+std::string explain_values_in(const char* home, App& app, const std::string& text) {
+  if (app.get_name() != home) return "see viewgain " + std::string(home) + " --help";
+  explain_values(app, text);
+  return "see below";
+}
+
 void most_need(App& app, const std::vector<const char*>& names) {
   for (const char* name : names) app.get_option(name)->group(kMostNeed);
 }

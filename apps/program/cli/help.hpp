@@ -18,6 +18,9 @@ void most_need(App& app, const std::vector<const char*>& names);
 /// --help ends with this text about the values of an option, before the examples. Its lines have at
 /// most 80 columns.
 void explain_values(App& app, const std::string& text);
+/// As above, but only in the help of the subcommand `home`. Returns "see below" or, for other
+/// subcommands, a reference to that help.
+std::string explain_values_in(const char* home, App& app, const std::string& text);
 
 /// -h shows the positionals and most_need(), --help all options in their groups, both in lines of
 /// at most 80 columns.

@@ -70,8 +70,8 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options) {
                  "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
                  "poses.txt, 1e-3 with pose files)");
   app.add_option("--out-of-range", options.out_of_range,
-                 "meaning of 65535: carve (free up to max_range) or invalid (no reading) (default: "
-                 "from frames.toml or sensor, else carve with poses.txt, else invalid)")
+                 "meaning of 65535: carve (free up to max_range) or invalid (default: from "
+                 "frames.toml or sensor, else carve with poses.txt, else invalid)")
       ->check(one_of({"carve", "invalid"}, "value"));
   add_mask_options(app, options.mask, options.confidence);
   app.add_option("--on-contradiction", options.on_contradiction,

@@ -68,15 +68,15 @@ double total_gain(const NextViews& next) {
 }  // namespace
 
 void add_plan_option(App& app, std::string& text) {
-  app.add_option("--plan", text,
-                 "K[,M]: plan up to K views as a set and replan after M of them (default M: K; see "
-                 "below); 1: one view at a time");
-  explain_values(
-      app,
+  const std::string reference = explain_values_in(
+      "next", app,
       "Planning ahead with --plan K[,M]:\n"
       "  The views of a plan come in an order with a short straight-line path. The\n"
       "  planner replans after M views, or earlier if no remaining view is possible and\n"
       "  promises enough. next, and model without --watch, list the first M.\n");
+  app.add_option("--plan", text,
+                 "K[,M]: plan up to K views as a set and replan after M of them (default M: K; " +
+                     reference + "); 1: one view at a time");
 }
 
 PlanAhead parse_plan(const std::string& text) {

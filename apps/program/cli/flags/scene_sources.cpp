@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "program/cli/help.hpp"
 #include "program/cli/values.hpp"
 #include "viewgain/formats/sensor_toml.hpp"
 #include "viewgain/grid/vdb_io.hpp"
@@ -62,6 +63,21 @@ std::optional<double> object_size_of(const std::string& hazard) {
       parse_numbers("--hazard size", hazard.substr(5, hazard.find(',') - 5), 1, 1)[0];
   check_positive("--hazard size", size);
   return size;
+}
+
+void add_hazard_option(App& app, std::string& text) {
+  const std::string reference = explain_values_in(
+      "score", app,
+      "Values of --hazard; size=L can precede one of the others, as in size=0.3,5:\n"
+      "  RATE      one rate for all unknown voxels [1/m]\n"
+      "  FILE.vdb  a rate per voxel\n"
+      "  size=L    longest side of the object [m] (default: that of its seen part)\n"
+      "  By default, rates follow from the distance to the seen surface and from the\n"
+      "  elevation above it.\n");
+  app.add_option("--hazard", text,
+                 "rate at which rays meet surface in unknown voxels, for --gain surface and "
+                 "combined: RATE [1/m], FILE.vdb or size=L (" +
+                     reference + ")");
 }
 
 HazardConfig hazard_source(const std::string& text, const BeliefGrid& grid) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "program/cli/app.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/formats/map_file.hpp"
@@ -30,17 +31,8 @@ namespace viewgain::app {
 /// load_hazard_vdb().
 [[nodiscard]] HazardConfig hazard_source(const std::string& text, const BeliefGrid& grid);
 
-inline constexpr const char* kHazardHelp =
-    "rate at which rays meet surface in unknown voxels, for --gain surface and combined: RATE "
-    "[1/m], FILE.vdb or size=L (see below)";
-
-inline constexpr const char* kHazardValues =
-    "Values of --hazard; size=L can precede one of the others, as in size=0.3,5:\n"
-    "  RATE      one rate for all unknown voxels [1/m]\n"
-    "  FILE.vdb  a rate per voxel\n"
-    "  size=L    longest side of the object [m] (default: that of its seen part)\n"
-    "  By default, rates follow from the distance to the seen surface and from the\n"
-    "  elevation above it.\n";
+/// Adds --hazard, whose value hazard_source() reads.
+void add_hazard_option(App& app, std::string& text);
 
 /// What --size [m], --place center and --up say of a mesh.
 [[nodiscard]] MeshPlacement placement_of(std::optional<double> size, const std::string& place,

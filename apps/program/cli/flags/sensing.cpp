@@ -64,20 +64,22 @@ void add_sensing_options(App& app, SensingOptions& o) {
   begin_group(app, "Simulated camera");
   app.add_option("--support-plane", o.support_plane,
                  "height z of an infinite table that occludes [m] (default: none)");
+  const std::string reference = explain_values_in(
+      "simulate", app,
+      "Values of --noise, separated by commas:\n"
+      "  off       no noise\n"
+      "  on        the sensor's Gaussian noise along and across the ray; for sensors\n"
+      "            with a modulation frequency also flying pixels, which mix 3x3 rays\n"
+      "  plain     on without flying pixels\n"
+      "  flying    flying pixels only\n"
+      "  scale=E   ranges read 1 + E times the true value\n"
+      "  pose=SIGMA_M/SIGMA_DEG  error of reported poses per axis [m] and per\n"
+      "            rotation-vector component [deg]; the first pose is exact and\n"
+      "            defines the world\n");
   app.add_option("--noise", o.noise,
                  "noise of readings and poses: off, on, plain or flying, scale=E, "
-                 "pose=SIGMA_M/SIGMA_DEG, separated by commas (see below)");
-  explain_values(app,
-                 "Values of --noise, separated by commas:\n"
-                 "  off       no noise\n"
-                 "  on        the sensor's Gaussian noise along and across the ray; for sensors\n"
-                 "            with a modulation frequency also flying pixels, which mix 3x3 rays\n"
-                 "  plain     on without flying pixels\n"
-                 "  flying    flying pixels only\n"
-                 "  scale=E   ranges read 1 + E times the true value\n"
-                 "  pose=SIGMA_M/SIGMA_DEG  error of reported poses per axis [m] and per\n"
-                 "            rotation-vector component [deg]; the first pose is exact and\n"
-                 "            defines the world\n");
+                 "pose=SIGMA_M/SIGMA_DEG, separated by commas (" +
+                     reference + ")");
   app.add_option("--background", o.background,
                  "radius of a sphere around the origin that stands for the room [m]; 0: none");
   add_seed_option(app, o.seed, "seed for the noise of readings and poses");
@@ -111,16 +113,17 @@ std::optional<JumpEdgeFilter::Config> parse_jump_edge_filter(const std::string& 
 
 void add_registration_option(App& app, RegistrationOptions& options) {
   begin_group(app, "Registration");
-  app.add_option(
-      "--register", options.text,
-      "correct reported poses by aligning frames: off, on or SIGMA_M,SIGMA_DEG (see below)");
-  explain_values(app,
-                 "Values of --register:\n"
-                 "  off       use poses as reported\n"
-                 "  on        align frames with one another and leave out those that contradict\n"
-                 "            the rest; integrate and model --watch align each with the map\n"
-                 "  SIGMA_M,SIGMA_DEG  on, with these standard deviations of reported poses\n"
-                 "            (default: 0.005,0.5; reconstruct: those of --noise if given)\n");
+  const std::string reference = explain_values_in(
+      "integrate", app,
+      "Values of --register:\n"
+      "  off       use poses as reported\n"
+      "  on        align frames with one another and leave out those that contradict\n"
+      "            the rest; integrate and model --watch align each with the map\n"
+      "  SIGMA_M,SIGMA_DEG  on, with these standard deviations of reported poses\n"
+      "            (default: 0.005,0.5; reconstruct: those of --noise if given)\n");
+  app.add_option("--register", options.text,
+                 "correct reported poses by aligning frames: off, on or SIGMA_M,SIGMA_DEG (" +
+                     reference + ")");
 }
 
 std::optional<PoseSigma> stated_sigma(const RegistrationOptions& options) {

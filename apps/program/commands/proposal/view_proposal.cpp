@@ -105,8 +105,7 @@ void add_next_view_options(App& app, ProposalOptions& o) {
   app.add_option("--support-plane", o.support_plane, "height z of a table [m]");
   app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
   begin_group(app, "Gain and order");
-  app.add_option("--hazard", o.hazard, kHazardHelp);
-  explain_values(app, kHazardValues);
+  add_hazard_option(app, o.hazard);
   add_seed_option(app, o.seed, "seed of the shell");
   app.add_option("--gain", o.gain, "gain to rank by: paper, surface or combined, as in score")
       ->check(one_of_gain_models());

@@ -21,8 +21,8 @@ constexpr std::size_t kMaxCount = 1'000'000;
 void add_output_options(App& app, RunOutputs& outputs) {
   begin_group(app, "Output");
   add_switch(app, "--save-maps", outputs.save_maps,
-             "write maps/NN.vdb after each view; reconstruct also writes the candidates for the "
-             "next view, maps/NN.txt");
+             "write maps/NN.vdb after each view; reconstruct: also the candidates for the next "
+             "view, maps/NN.txt");
   add_switch(app, "--pictures", outputs.pictures, "draw views/NN.png");
   app.add_option("--report", outputs.report,
                  "on: write report.html, one file for a browser; or the folder of another run "
@@ -34,7 +34,8 @@ void add_output_options(App& app, RunOutputs& outputs) {
 
 void add_options(App& app, ReconstructOptions& o) {
   o.sensing.noise = "on";
-  app.add_option("MESH", o.mesh, "OFF, OBJ, STL or PLY file; the mesh is centred")->required();
+  app.add_option("MESH", o.mesh, "OFF, OBJ, STL or PLY file; the mesh is centred at the origin")
+      ->required();
   app.add_option("--sensor", o.sensor, kSensorHelp.c_str())->required();
   app.add_option("--voxel", o.voxel, "voxel size [m]")->required();
   app.add_option("--size", o.size,
@@ -83,8 +84,7 @@ void add_options(App& app, ReconstructOptions& o) {
                  "gain for --policy gain: paper (entropy removed), surface (expected new surface), "
                  "combined or a gain of the literature (default: combined)")
       ->check(one_of(all_gain_names(), "gain"));
-  app.add_option("--hazard", o.hazard, kHazardHelp);
-  explain_values(app, kHazardValues);
+  add_hazard_option(app, o.hazard);
   begin_group(app, "Gain");
   app.add_option("--criterion", o.criterion,
                  "criterion of entropy and of the paper gain: log_diagonal, log_determinant [nat] "
@@ -95,16 +95,14 @@ void add_options(App& app, ReconstructOptions& o) {
   add_stop_option(app, o.stop);
   app.add_option("--tolerance", o.tolerance,
                  "distance within which the surface covers a point of the mesh [m] (default: "
-                 "0.005, or a voxel if that is larger)");
+                 "the larger of 0.005 and a voxel)");
   begin_group(app, "Views");
   app.add_option("--cost-per-metre", o.cost_per_metre,
                  "L: rank by gain - L * distance [nat/m; with --gain surface m^2/m]");
   add_plan_option(app, o.plan);
   begin_group(app, "Obstacles");
   app.add_option("--reach", o.reach, "TOML file of reachable boxes, shells, half-spaces and poses");
-  app.add_option("--obstacle", o.obstacles,
-                 std::string(kObstacleHelp) + "; the object is centred at the origin")
-      ->allow_extra_args(false);
+  app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
   app.add_option("--body", o.body, kBodyHelp);
   add_sensing_options(app, o.sensing);
   add_registration_option(app, o.registration);

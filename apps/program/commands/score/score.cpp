@@ -314,8 +314,7 @@ Command add_score(App& program) {
                   "paper (entropy removed) [nat], surface (expected new surface) [m^2] or combined "
                   "[nat]; or gains of the literature with commas, ranked by the first")
       ->check(several_of(all_gain_names(), "gain"));
-  app->add_option("--hazard", options->hazard, kHazardHelp);
-  explain_values(*app, kHazardValues);
+  add_hazard_option(*app, options->hazard);
   begin_group(*app, "Obstacles");
   app->add_option("--support-plane", options->support_plane,
                   "height z of a table [m]: ends rays of surface and combined; --feasible on keeps "
