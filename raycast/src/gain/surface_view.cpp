@@ -333,9 +333,10 @@ void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const 
     last = first + 1;
     const int lane = static_cast<int>(first->lane);
     if (first->state == BrickTable::kOccupiedVoxel) {
-      const float cosine = cosine_at(rays, lane, {first->x, first->y, first->z});
-      if (follows_on && first->begin - stretch_begin >= FromBehind::kLeastStretch &&
-          cosine > FromBehind::kLeastCosine) {
+      const bool is_hidden =
+          follows_on && first->begin - stretch_begin >= FromBehind::kLeastStretch;
+      const float cosine = is_hidden ? cosine_at(rays, lane, {first->x, first->y, first->z}) : 0.0F;
+      if (cosine > FromBehind::kLeastCosine) {
         const double chance = stretch_passed > 0 ? stretch_share / stretch_passed : 0;
         const double factor = FromBehind::area_over_across(static_cast<double>(cosine)) / chance;
         for (std::size_t i = stretch; chance > 0 && i < workspace.shares.size(); ++i) {

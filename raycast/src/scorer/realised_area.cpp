@@ -120,16 +120,13 @@ double RealisedArea::of(const DepthFrame& frame, const Pose& T_world_camera,
     if (range < sensor_.min_range || range > sensor_.max_range) continue;
     if (frame.shows_known(i)) continue;
     const Eigen::Vector3d point = T_world_camera * p_camera;
-    if (support_plane_ &&
-        sees_plane(sensor_, point, point - T_world_camera.translation(), *support_plane_)) {
-      continue;
-    }
+    const Eigen::Vector3d sight = point - T_world_camera.translation();
+    if (support_plane_ && sees_plane(sensor_, point, sight, *support_plane_)) continue;
     const std::optional<Index3> voxel = before.index_of(point);
     if (!voxel) continue;
     const VoxelState state = before.state(*voxel);
     if (state == VoxelState::free) continue;
     const double across = solid_angles_[i] * range * range * worth_(range);
-    const Eigen::Vector3d sight = point - T_world_camera.translation();
     if (const double cosine = behind.cosine(point, sight.normalized()); cosine > 0) {
       area += across * FromBehind::area_over_across(cosine);
     } else if (state == VoxelState::unknown && (hazard == nullptr || hazard->is_new(*voxel))) {
