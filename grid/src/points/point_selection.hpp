@@ -21,8 +21,8 @@ struct PooledPoint {
 
 /// For each point, 1 if its evidence is at least `share` of the upper quartile among the points
 /// within `radius` [voxels] whose normals are within 60° of its own, including itself. Removes the
-/// halo of silhouettes, which has few readings. The other face of a thin wall is ignored, because
-/// it may have been seen far more often. share 0 keeps all.
+/// sparse points that silhouettes leave around them. The other face of a thin wall is ignored,
+/// because it may have been seen far more often. share 0 keeps all.
 [[nodiscard]] std::vector<std::uint8_t> well_supported(const std::vector<PooledPoint>& points,
                                                        double radius, double share,
                                                        ThreadPool& pool);

@@ -51,8 +51,8 @@ struct BlockPlace {
   int scale = 0;
 };
 
-/// Processes regions on many threads: writes leaves and belief blocks of its own region only, and
-/// reads the rest of the tree, whose shape does not change meanwhile.
+/// Processes regions on many threads. Each thread writes only the leaves and belief blocks of its
+/// region. It reads the rest of the tree, whose topology stays fixed.
 template <Evidence E>
 class RegionUpdate {
  public:

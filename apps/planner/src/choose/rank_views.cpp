@@ -150,7 +150,7 @@ Ranking rank_views(const GainEvaluator& evaluator, std::span<const Pose> T_world
   }
   const BestConfig best_by{
       .costs = costs, .measure = config.measure, .run_measure = config.run_measure};
-  // Of all poses if all are scored, because the rule of area needs the largest expected area.
+  // If all poses are scored, the stop rule for area uses the largest expected area of them all.
   BestViews best =
       config.exact || evaluator.model() == GainModel::paper
           ? evaluator.best(T_world_camera, T_world_camera.size(), best_by, control)

@@ -150,7 +150,7 @@ struct ViewPlanner::Impl {
     state.planned.erase(found == state.planned.end() ? state.planned.begin() : found);
   }
 
-  // The rest of the plan; empty if it is no longer worthwhile.
+  // The remaining views of the plan; empty if they no longer promise enough.
   Proposal planned_proposal() {
     Proposal left = proposer.propose_these({std::string(kPlanned), state.planned}, scorer.grid(),
                                            scorer.scene(), state.reached, state.missed);

@@ -73,9 +73,9 @@ struct RegistrationView {
   }
   /// The reading nearest to a pixel, within half a lattice step; -1: none.
   [[nodiscard]] std::int32_t reading_at(double u, double v) const;
-  /// Whether the space around a point [camera frame, m] is known to be free. A frame must see past
-  /// it by more than `margin` [m] at all pixels within `reach` [m] of its own, and at least at the
-  /// eight around it; a map must be free there and `margin` nearer and farther.
+  /// Whether the space around a point [camera frame, m] is known to be free. A frame must see more
+  /// than `margin` [m] past the point, at the eight neighbouring pixels and at all pixels within
+  /// `reach` [m]. A map must be free at the point, and `margin` before and behind it.
   [[nodiscard]] bool looks_past(const Eigen::Vector3d& point, double margin, double reach) const;
 };
 

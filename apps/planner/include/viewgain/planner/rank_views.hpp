@@ -36,8 +36,8 @@ struct VIEWGAIN_EXPORT RankConfig {
   /// (plan_tour() without paths). Cannot be used with measures.
   bool together = false;
   /// Scores all poses in full. False: uses two stages, see GainEvaluator::race(), except with the
-  /// paper's gain. With `together` the first view is found so; the others are chosen among a few
-  /// poses, at least 32, with a quarter of their rays, and their marginal gains are estimates.
+  /// paper's gain. With `together` this holds for the first view. The others are chosen from at
+  /// least 32 poses with a quarter of the rays, and their marginal gains are estimates.
   bool exact = false;
 };
 
@@ -77,8 +77,8 @@ struct VIEWGAIN_EXPORT Ranking {
   std::vector<std::size_t> scored_indices{};
   std::vector<ViewGain> scored_gains{};  ///< their gains, in the same order
   double way = 0;                        ///< straight-line path through the views of a plan [m]
-  /// Worth of the decision, of the first view or a whole new plan, in the gain's unit; NaN: there
-  /// are no costs, or the views are the rest of a plan, which is not abandoned because of paths.
+  /// Gain minus costs of the first view or of a whole new plan, in the gain's unit. NaN without
+  /// costs, and for the rest of a plan, which continues whatever its path costs.
   double worth = std::numeric_limits<double>::quiet_NaN();
 };
 
