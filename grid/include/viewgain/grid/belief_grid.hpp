@@ -139,9 +139,9 @@ class VIEWGAIN_EXPORT BeliefGrid {
   void set(std::span<const VoxelValue> voxels);
 
   /// Resets voxels whose centres lie in a region of the grid frame [m] to unknown, without log-odds
-  /// and belief; bounds may be infinite. The region is extended to whole cells of the map's
-  /// largest scale. Views and hazard counters remain. For moved objects, and for maps that follow a
-  /// robot. Returns the number of voxels that were known. Throws Error(invalid_argument) for a bound that
+  /// and belief. Bounds may be infinite. The region is extended to whole cells of the map's largest
+  /// scale. Views and hazard counters remain. For moved objects, and for maps that follow a robot.
+  /// Returns the number of voxels that were known. Throws Error(invalid_argument) for a bound that
   /// is NaN or a region inside out. Cost: one pass over the map's blocks.
   std::uint64_t forget(const Box& region);
 
