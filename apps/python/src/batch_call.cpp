@@ -118,8 +118,8 @@ Parameters
 ----------
 progress : callable, optional
     Called with ``(done, total)`` on the calling thread about every 50 ms and at the end; for an
-    empty batch with ``(0, 0)``. A false result other than ``None`` (``False``, ``numpy.False_``, 0)
-    stops the call; an exception stops it too and is raised from it.
+    empty batch with ``(0, 0)``. The call stops if the result is false but not ``None`` (``False``,
+    ``numpy.False_``, 0). An exception also stops the call, which then raises it.
 
 Notes
 -----
