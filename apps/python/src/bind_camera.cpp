@@ -122,7 +122,7 @@ SimulatedFrame)")
 
 namespace {
 
-// The entries of a matrix [px] that must be 0 or 1: rounding of a calibration's file is no fault.
+// Tolerance for matrix entries that must be 0 or 1, for rounding in calibration files [px].
 constexpr double kExact = 1e-9;
 
 PinholeCamera camera_of_matrix(const py::object& matrix, int width, int height,

@@ -20,7 +20,7 @@
 namespace viewgain::python {
 namespace {
 
-// Of an array (n, columns), or of None.
+// Calls f for each row of an array (n, columns); None has no rows.
 template <typename F>
 void for_each_row(const py::object& given, const char* name, py::ssize_t columns, const F& f) {
   if (given.is_none()) return;
@@ -56,14 +56,14 @@ ReachRegion region_of(const py::object& boxes, const py::object& shells,
   return region;
 }
 
-// By value; a predicate is the same as itself alone.
+// Equality by value; regions with a predicate are equal only to themselves.
 bool is_same(const ReachRegion& a, const ReachRegion& b) {
   if (&a == &b) return true;
   return !a.predicate && !b.predicate && a.boxes == b.boxes && a.shells == b.shells &&
          a.half_spaces == b.half_spaces && a.poses == b.poses && a.tolerance == b.tolerance;
 }
 
-// Of the constructor. A predicate is a function, which may not be pickled.
+// Keywords of the constructor. Refuses a predicate, because functions cannot always be pickled.
 py::dict keywords_of(const py::object& self) {
   const auto& region = self.cast<const ReachRegion&>();
   if (region.predicate) throw py::type_error("a ReachRegion with a predicate cannot be pickled");
@@ -153,7 +153,7 @@ ndarray, (...), bool
 
 namespace {
 
-// Codes of Infeasibility, one a pose.
+// Codes of Infeasibility, one per pose.
 py::array_t<std::uint8_t> codes_of(const FeasibilityChecker& self, const py::object& T_world_camera,
                                    const py::object& taken) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);

@@ -25,7 +25,7 @@
 namespace viewgain::python {
 namespace {
 
-// A preset's name or the file's.
+// Name of a preset or a file.
 std::string preset_or_file(const py::object& value) {
   std::string text = file_path(value);
   return is_sensor_file(text) ? readable_file(value) : text;
@@ -82,7 +82,7 @@ py::list suspicions(const Given<Sensor>& sensor, const py::sequence& frames) {
     if (frame.size() < 2) throw py::value_error("each of frames must be (depth, T_world_camera)");
     const Pose pose =
         pose_batch(doubles(frame[1], "T_world_camera", {4, 4}), "T_world_camera", false).poses[0];
-    if (!rigid_pose(pose)) continue;  // it is lost
+    if (!rigid_pose(pose)) continue;  // the pose is lost
     images.push_back(depth_frame_of_any_unit(*sensor, frame[0]));
     poses.push_back(pose);
   }
@@ -204,7 +204,7 @@ frame; ``poses`` is a copy.)");
       .def(
           "__iter__",
           [](const py::object& self) {
-            (void)py::cast<const FrameSequence&>(self);  // refuses what was never initialised
+            (void)py::cast<const FrameSequence&>(self);  // refuses an uninitialised object
             return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
           },
           "The frames in order.\n\nReturns\n-------\niterator")

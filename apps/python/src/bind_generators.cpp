@@ -52,7 +52,7 @@ py::tuple order_stops_of(const py::object& costs) {
   return py::make_tuple(stops, tour.cost);
 }
 
-// Of the docstrings: what all lattices have in common.
+// Parts of the docstrings that all lattices share.
 constexpr const char* kCenter = R"(center : array_like, (3,)
     World frame [m].
 )";

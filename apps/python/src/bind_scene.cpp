@@ -34,8 +34,8 @@ Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
 
 namespace {
 
-// A number, the rate everywhere, a path of a .vdb file, or an array of a rate for each voxel of the
-// workspace.
+// Hazard from a number (a constant rate), a path of a .vdb file, or an array with one rate per
+// voxel.
 HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_size,
                        const py::object& hazard) {
   HazardConfig config;

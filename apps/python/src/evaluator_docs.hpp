@@ -4,7 +4,7 @@
 
 namespace viewgain::python {
 
-// What the class GainEvaluator and its methods say of themselves.
+// Docstrings of the class GainEvaluator.
 
 inline constexpr const char* kEvaluatorDoc =
     R"(Scores camera poses against a scene by expected information gain.

@@ -4,7 +4,7 @@
 
 namespace viewgain::python {
 
-// What the class ViewPlanner and its methods say of themselves.
+// Docstrings of the class ViewPlanner.
 
 inline constexpr const char* kPlannerDoc =
     R"(Next-best views step by step: takes frames and proposes views, for a robot's program.

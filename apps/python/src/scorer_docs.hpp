@@ -4,7 +4,7 @@
 
 namespace viewgain::python {
 
-// What the class ViewScorer and its methods say of themselves.
+// Docstrings of the class ViewScorer.
 
 inline constexpr const char* kScorerDoc =
     R"(Takes depth frames or labelled voxels and returns gains of camera poses.

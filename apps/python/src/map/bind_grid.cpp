@@ -48,7 +48,7 @@ std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_s
   GridConfig config;
   config.voxel_size = voxel_size;
   config.prior_sigma = prior_of(prior_sigma, sensor.value, voxel_size);
-  // The lattice goes through the corner of the array, wherever that is.
+  // The corner of the array is on the lattice.
   config.T_world_grid = T_world_grid.is_none()
                             ? Pose(Eigen::Matrix3d::Identity(), vector3(origin, "origin"))
                             : one_pose(T_world_grid, "T_world_grid");
@@ -57,7 +57,7 @@ std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_s
     config.workspace.max[axis] =
         static_cast<double>(any.shape(static_cast<py::ssize_t>(axis))) * voxel_size;
   }
-  static_cast<void>(BeliefGrid(config));  // throws before what no grid can hold is copied
+  static_cast<void>(BeliefGrid(config));  // throws before a copy that is too large
   require_states(any);
   const Labels array(any);
   const std::span states(array.data(), static_cast<std::size_t>(array.size()));

@@ -26,7 +26,7 @@ namespace viewgain::python {
 
 namespace {
 
-/// A folder of this process alone, which goes with it.
+/// A private temporary folder, removed by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -49,7 +49,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-// OpenVDB's own streams know no seal, so bytes are those of a file.
+// OpenVDB's streams have no seal, so the bytes are those of a file.
 py::bytes bytes_of(const SharedGrid& grid) {
   return grid.read([](const BeliefGrid& g) {
     const TemporaryFolder folder;
@@ -79,7 +79,7 @@ void bind_grid_files(GridClass& grid_class) {
   // By name, so that pickles outlive the extension's own names.
   grid_class.def("__reduce_ex__", [](const py::object& self, int) {
     const py::type of_self = py::type::of(self), own = py::type::of<SharedGrid>();
-    if (!of_self.is(own)) {  // what a subclass adds is not ours to keep
+    if (!of_self.is(own)) {  // attributes of a subclass would be lost
       throw py::type_error("cannot pickle '" + of_self.attr("__name__").cast<std::string>() +
                            "' object: it is a subclass of BeliefGrid");
     }

@@ -27,7 +27,7 @@
 namespace viewgain::python {
 namespace {
 
-// What the docstrings of both integrators have in common: parameters of the constructors.
+// Common parts of the docstrings of both integrators: parameters of the constructors.
 constexpr const char* kIntegratorSettings =
     R"(occupancy : {"probabilistic", "literal"}
     How states change: by log-odds, once per voxel and call, or literally: crossed voxels become
@@ -46,7 +46,7 @@ finest : int
 num_threads : int
     0: all hardware threads. Does not affect the map.)";
 
-// What holds for the methods.
+// Notes for the methods.
 constexpr const char* kIntegratorNotes = R"(
 
 Notes
@@ -54,7 +54,7 @@ Notes
 Concurrent calls wait for each other. Releases the GIL during integration. Maps are bit-identical
 for any number of threads.)";
 
-// What integrate() returns and raises.
+// Result and exceptions of integrate().
 constexpr const char* kIntegrateReturns =
     R"(Returns
 -------
@@ -90,7 +90,7 @@ struct SharedIntegrator {
   SharedIntegrator(const Sensor& of, const Config& config, int num_threads)
       : sensor(of), integrator(of, config, ExecConfig{num_threads}) {}
 
-  // Calls f(BeliefGrid&, Integrator&) without the GIL, with which it is called.
+  // Calls f(BeliefGrid&, Integrator&) without the GIL. Call it with the GIL.
   template <typename F>
   auto write(SharedGrid& grid, const F& f) {
     return grid.write([&](BeliefGrid& g) {
@@ -236,7 +236,7 @@ Cloud
 
 namespace {
 
-/// Frames can say what the hazard of unknown space is, too.
+/// Adds the calibration of the hazard, which only frames support.
 struct Integrator : SharedIntegrator<FrameIntegrator> {
   Integrator(const Sensor& of, const IntegrationConfig& config, int num_threads)
       : SharedIntegrator(of, config, num_threads), calibration(of, config.support_plane) {}

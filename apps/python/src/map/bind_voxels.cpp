@@ -25,8 +25,7 @@ struct OccupiedRow {
 
 namespace {
 
-// All three numbers of a row where there is no voxel: the index of none, on the lattice or in an
-// array.
+// All three numbers of a row without a voxel. Not a valid index on the lattice or in an array.
 constexpr std::int32_t kNoVoxel = std::numeric_limits<std::int32_t>::min();
 
 std::int32_t index_number(double number) {

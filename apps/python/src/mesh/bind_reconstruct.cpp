@@ -23,7 +23,7 @@
 namespace viewgain::python {
 namespace {
 
-/// What Python gets back.
+/// Result for Python.
 struct Reconstruction {
   std::string reason;
   py::list views;
@@ -35,7 +35,7 @@ void check_signals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
-// DATAACQUISITION by a function of Python's.
+// DATAACQUISITION by a Python function.
 class PythonAcquisition : public DataAcquisition {
  public:
   PythonAcquisition(py::object callback, const Sensor& sensor)
@@ -70,7 +70,7 @@ class PythonAcquisition : public DataAcquisition {
   const Sensor& sensor_;
 };
 
-// One turn of the loop.
+// One iteration of the loop.
 py::object to_python(const ViewRecord& record) {
   const bool of_boundary = record.chosen_as && record.chosen_as->boundary_class;
   return named_in("viewgain.mesh.results", "ViewRecord", record.index,
@@ -83,7 +83,7 @@ py::object to_python(const ViewRecord& record) {
                   record.proposal.dropped);
 }
 
-// Whether a policy chooses among boundary candidates by itself; others have a set of their own.
+// Whether a policy uses boundary candidates by default.
 bool is_of_boundaries(Policy policy) {
   return policy != Policy::sequence && policy != Policy::random;
 }
@@ -158,7 +158,7 @@ Reconstruction reconstruct(
     });
   };
   {
-    // On this thread, so that a camera's driver and a plot are called on the thread they know.
+    // Runs on this thread, so that camera drivers and plots are called on their own thread.
     const WithoutGil without_gil;
     const PlanningResult end =
         active_view_planning(x_0, acquisition, model, generation, decision, planning, watch);

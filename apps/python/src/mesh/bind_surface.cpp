@@ -158,7 +158,7 @@ SurfaceMesh surface_of_grid(const Given<SharedGrid>& grid, std::uint32_t min_hit
   });
 }
 
-// A Python package that viewgain can do without.
+// An optional Python package.
 py::module_ other_package(const char* name, const char* wanted_by) {
   try {
     return py::module_::import(name);
@@ -174,7 +174,7 @@ py::module_ other_package(const char* name, const char* wanted_by) {
 
 py::object to_trimesh(const SurfaceMesh& surface) {
   const py::module_ trimesh = other_package("trimesh", "to_trimesh");
-  // As it is: trimesh would merge vertices and lose their normals.
+  // Unprocessed, because trimesh would merge vertices and lose their normals.
   return trimesh.attr("Trimesh")(
       "vertices"_a = to_array_3(surface.vertices), "faces"_a = to_array_3(surface.triangles),
       "vertex_normals"_a = to_array_3(surface.normals), "process"_a = false);
