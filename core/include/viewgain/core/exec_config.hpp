@@ -35,8 +35,8 @@ struct VIEWGAIN_EXPORT ExecConfig {
 /// Parses a name. Throws Error(invalid_argument) listing the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT ExecConfig::Tracer parse_tracer(std::string_view name);
 
-/// Observes one long call or stops it early. `stop` and `is_cancelled` have the same effect, which
-/// the call documents.
+/// Observes one long call or stops it early. `stop` and `is_cancelled` have the same effect; each
+/// call documents what it then returns.
 struct VIEWGAIN_EXPORT BatchControl {
   std::stop_token stop{};  ///< stops the call from another thread; checked between poses
   std::function<void(std::size_t done, std::size_t total)>

@@ -43,7 +43,7 @@ inline constexpr std::array<std::string_view, 12> kFrameVerdictNames{
   return verdict <= FrameVerdict::carved;
 }
 
-/// Number of frames per verdict. A missing verdict has no frames.
+/// Number of frames per verdict. A verdict that is missing has no frames.
 using FrameCounts = std::map<FrameVerdict, std::size_t>;
 
 /// Count of one verdict. Never throws.

@@ -47,7 +47,7 @@ struct VIEWGAIN_EXPORT MeshPlacement {
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh placed(TriangleMesh mesh,
                                                   const MeshPlacement& placement);
 
-/// read_mesh(), then placed(). Errors and cost: see there. Errors name the file.
+/// read_mesh(), then placed(). Errors and cost are those of the two calls; errors name the file.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path,
                                                      const MeshPlacement& placement,
                                                      MeshRepairs* repairs = nullptr);

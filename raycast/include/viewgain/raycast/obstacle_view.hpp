@@ -33,9 +33,9 @@ class VIEWGAIN_EXPORT ObstacleView {
   ObstacleView& operator=(ObstacleView&&) noexcept;
 
   /// Sets DepthFrame::known_depth for a frame from T_world_camera: the depth of the first obstacle
-  /// on each pixel's ray, less a margin of kKnownSigmas along the obstacle's normal. Empty if there
-  /// are no obstacles. Throws Error(invalid_argument) like check_frame_size(), and for a pose that
-  /// is not rigid (1e-3). Cost: about 0.2 µs per pixel and thread.
+  /// on each pixel's ray, minus a margin of kKnownSigmas along the obstacle's normal. Empty if
+  /// there are no obstacles. Throws Error(invalid_argument) like check_frame_size(), and for a pose
+  /// that is not rigid (1e-3). Cost: about 0.2 µs per pixel and thread.
   void mark(DepthFrame& frame, const Pose& T_world_camera) const;
 
  private:

@@ -53,7 +53,7 @@ namespace viewgain {
 
 /// Whether most views of a map lie inside solid obstacles, such as a closed mesh of the room's
 /// walls, so that no view is possible. Kind views_in_obstacle. Builds a BVH of the obstacles.
-/// Throws as VoxelScene::build().
+/// Throws like VoxelScene::build().
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_solid_obstacles(const Obstacles& obstacles,
                                                                 std::span<const Pose> views);
 

@@ -131,7 +131,7 @@ class VIEWGAIN_EXPORT ViewScorer {
   std::uint64_t set(const VoxelBox& box, std::span<const std::uint8_t> labels);
 
   /// Resets a region of the grid frame [m] to unknown, for example after an object has moved.
-  /// Returns how many voxels were known. Throws as BeliefGrid::forget(). Cost: one pass over the
+  /// Returns how many voxels were known. Throws like BeliefGrid::forget(). Cost: one pass over the
   /// map's blocks.
   std::uint64_t forget(const Box& region);
 

@@ -16,7 +16,7 @@
 
 namespace viewgain {
 
-/// Tells which points of a map's surface its views see unoccluded, for the argument `sees` of
+/// Determines which points of a map's surface its views see unoccluded, for the argument `sees` of
 /// estimate_views(). Traces a view on its first query. Thread safety: one call at a time. Cost: one
 /// trace per view, then constant time per point.
 class VIEWGAIN_EXPORT ViewSight {

@@ -108,7 +108,7 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
 class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
  public:
   /// `model` must be empty; a reference is kept. `sigma`: uncertainty of each reported pose. Throws
-  /// Error(invalid_argument) as FrameAlignment.
+  /// Error(invalid_argument) like FrameAlignment.
   RegisteredModel(SurfaceModel& model, const PoseSigma& sigma, const ExecConfig& exec = {});
 
   /// The stages are those of SurfaceModel::update(), and register. Throws like
