@@ -87,8 +87,8 @@ struct ClassicTable : BrickIndex {
   /// first index in `words`.
   static constexpr std::uint32_t kUniform = 0x80000000U;
 
-  std::vector<std::uint16_t>
-      words;  ///< 512 per mixed brick, by word_in_brick(); the first 512 are unused
+  /// 512 per mixed brick, by word_in_brick(); the first 512 are unused.
+  std::vector<std::uint16_t> words;
 
   /// From the current grid. Throws Error(capacity).
   explicit ClassicTable(const BeliefGrid& grid);

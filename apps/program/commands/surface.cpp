@@ -29,8 +29,8 @@
 namespace viewgain::app {
 namespace {
 
-constexpr double kSteepest =
-    80 * std::numbers::pi / 180;  // largest angle at which a sample counts as seen [rad]
+// Largest angle at which a sample counts as seen [rad].
+constexpr double kSteepest = 80 * std::numbers::pi / 180;
 
 struct Options {
   CommonOptions common;

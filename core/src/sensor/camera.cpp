@@ -16,8 +16,8 @@ namespace {
 constexpr int kMaxSize = 16384;  // [px]
 constexpr int kMaxPixels = 1 << 24;
 constexpr double kTolerance = 1e-12;  // of normalised coordinates
-constexpr int kFixedPointIterations =
-    4;  // enough for Newton's method to converge with usual lenses
+// Enough for Newton's method to converge with usual lenses.
+constexpr int kFixedPointIterations = 4;
 constexpr int kNewtonIterations = 30;
 constexpr int kBranchChecks = 16;  // points between the axis and a solution
 constexpr int kContinuationSteps = 64;

@@ -136,8 +136,8 @@ void unlist_temporary(char* name) {
   }
 }
 
-constexpr mode_t kPermissionBits =
-    S_IRWXU | S_IRWXG | S_IRWXO;  // a write also clears the other bits
+// A write also clears the other bits.
+constexpr mode_t kPermissionBits = S_IRWXU | S_IRWXG | S_IRWXO;
 
 bool is_synced(int file) {
   // Some file systems do not support syncing and report that.

@@ -99,8 +99,8 @@ class ConstrainedTriangulation {
   std::vector<Index> edge_of_;  // an edge that begins at the node
   // Half-edges, three per triangle, counter-clockwise.
   std::vector<Index> origin_, twin_;
-  std::vector<std::int32_t>
-      flow_;                    // passes of the chain along it, minus those in the other direction
+  // Passes of the chain along it, minus those in the other direction.
+  std::vector<std::int32_t> flow_;
   std::vector<Index> moved_;    // new place of a rim's edge, while a hole is filled
   std::vector<Index> node_of_;  // by corner
   std::vector<Constraint> constraints_;

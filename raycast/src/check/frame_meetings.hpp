@@ -25,8 +25,8 @@ struct Convention {
   double focal_factor = 1;
   double focal_x_factor = 1;  ///< additional factor for fx
   bool flips_columns = false, flips_rows = false;
-  double pose_shift =
-      0;  ///< in frames: each frame has the pose of a later frame, possibly interpolated
+  /// In frames: each frame has the pose of a later frame, possibly interpolated.
+  double pose_shift = 0;
   bool is_rolled = false;
 
   /// Whether this is one of many similar conventions, so that one of them can fit slightly better

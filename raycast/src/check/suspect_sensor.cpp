@@ -19,8 +19,8 @@ constexpr double kWidestView = 6;         // width / focal length: 143 degrees
 constexpr double kLongestRange = 300;     // [m]
 constexpr double kNoiseOfDistance = 0.1;  // standard deviation relative to the working distance
 constexpr double kNoiseOfVoxel = 10;      // relative to the voxel size
-constexpr double kPoseOfDistance =
-    0.2;  // standard deviation of the position relative to the working distance
+// Standard deviation of the position relative to the working distance.
+constexpr double kPoseOfDistance = 0.2;
 constexpr double kPoseRotation = 0.05;  // [rad]: 2.9 degrees
 constexpr double kLongestBody = 2;      // [m]
 

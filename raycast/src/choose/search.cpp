@@ -236,8 +236,8 @@ class Search {
   Stopwatch watch_;
   bool was_cancelled_ = false;
   std::vector<std::size_t> open_;  // remaining poses, the most promising first
-  std::vector<double>
-      full_;  // measure with all rays of the poses that determine the scale, otherwise NaN
+  // Measure with all rays of the poses that determine the scale, otherwise NaN.
+  std::vector<double> full_;
   BestViews best_;
 };
 

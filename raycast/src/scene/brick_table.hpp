@@ -18,8 +18,8 @@ struct BrickTable : BrickIndex {
   /// aligned free cube around the brick [voxels], 8 to 128; otherwise the brick's slot.
   static constexpr std::uint32_t kFree = 0, kUnknown = 1, kMixed = 2;
   static constexpr std::uint32_t kPayload = 0x3FFFFFFFU;
-  static constexpr std::uint32_t kFarSlot =
-      0;  ///< shared by all bricks that have the far rate everywhere
+  /// Shared by all bricks that have the far rate everywhere.
+  static constexpr std::uint32_t kFarSlot = 0;
 
   /// States of two bits. A word of `states` has 16 bits for a cube of 2³ voxels (x << 2 | y << 1 |
   /// z). Above them is the edge, 1, 2 or 4, of the largest aligned cube around its voxels that is
@@ -29,8 +29,8 @@ struct BrickTable : BrickIndex {
 
   double pooling_length = 1;  ///< [voxels]: Pooling::length
   int rate_shift = 0;         ///< rates are per cube of 2^rate_shift voxels per edge
-  std::vector<std::uint32_t>
-      states;  ///< 64 per mixed brick, by slot; mixed bricks have the first slots
+  /// 64 per mixed brick, by slot; mixed bricks have the first slots.
+  std::vector<std::uint32_t> states;
   /// 8^(3 - rate_shift) per slot [1/voxel]; the sign bit is set if surface there is not new.
   std::vector<float> rates;
 

@@ -70,8 +70,8 @@ struct SceneData {
   std::vector<PrimitiveBox> boxes;         ///< one per primitive
   std::vector<std::uint64_t> block_keys;   ///< block << 9, one per primitive below block_count
   std::vector<std::uint32_t> leaf_source;  ///< index into snapshot.leaves, one per leaf primitive
-  std::vector<std::uint8_t>
-      has_occupied;  ///< whether it has occupied voxels, one per leaf primitive
+  /// Whether it has occupied voxels, one per leaf primitive.
+  std::vector<std::uint8_t> has_occupied;
   std::size_t leaf_count = 0;
   std::size_t block_count = 0;
   /// First primitives of each of the snapshot's regions, and one past the last.

@@ -47,8 +47,8 @@ struct NextViews {
   GainModel model = kDefaultGain;              ///< model of the gains
   std::optional<GainEvaluator::RayOutcomes>
       no_gain{};  ///< from explain(): rays of candidates, if none has a gain
-  std::optional<double>
-      plan_metres{};      ///< path length of a new plan, from the current camera pose [m]
+  /// Path length of a new plan, from the current camera pose [m].
+  std::optional<double> plan_metres{};
   bool all_worth = true;  ///< false: some views cost more than they gain
   bool together = true;   ///< true: gains are marginal; false: individual
 };

@@ -26,8 +26,8 @@ struct VIEWGAIN_EXPORT StopMemory {
   /// Decision::best_area divided by the surface, for the last three decisions; decision i is at i %
   /// 3.
   std::array<double, 3> area_shares{};
-  double promised_area =
-      std::numeric_limits<double>::quiet_NaN();  ///< prediction for the next view [m²]
+  /// Prediction for the next view [m²].
+  double promised_area = std::numeric_limits<double>::quiet_NaN();
   double promised_gain = std::numeric_limits<double>::quiet_NaN();  ///< likewise [nat, m²]
   std::size_t broken_promises = 0;                                  ///< the last ones in a row
 };

@@ -41,9 +41,9 @@ struct VIEWGAIN_EXPORT BoundaryRun {
 struct VIEWGAIN_EXPORT BoundaryConfig {
   /// Largest angle between face normal and line of sight [rad].
   double max_view_angle = 80.0 * std::numbers::pi / 180;
-  double min_run_length =
-      0;  ///< shorter runs join the longer neighbour in their loop [m]; use several point spacings,
-          ///< otherwise each tooth of a jagged border is a run
+  /// Shorter runs join the longer neighbour in their loop [m]; use several point spacings,
+  /// otherwise each tooth of a jagged border is a run.
+  double min_run_length = 0;
   double min_loop_length = 0;  ///< shorter loops are omitted: small holes [m]
 };
 

@@ -20,8 +20,8 @@ struct VIEWGAIN_EXPORT QuadraticPatch {
   /// Columns u, v, w in the world; right-handed. Stored column-major.
   Eigen::Matrix<double, 3, 3, Eigen::ColMajor> axes = Eigen::Matrix3d::Identity();
   std::array<double, 6> coefficients{};  ///< a b c d e f
-  bool planar =
-      false;         ///< whether a plane was fitted, because the points did not determine a quadric
+  /// Whether a plane was fitted, because the points did not determine a quadric.
+  bool planar = false;
   double rms = 0;    ///< root mean square of the residuals along w [m]
   double depth = 0;  ///< inward extent of the fitted points: -min u [m]
 

@@ -20,8 +20,8 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT EstimatorConfig {
   BoundaryConfig boundary{};   ///< cutting of boundaries
   double patch_length = 0.06;  ///< longer runs are cut into parts of about this length [m]
-  double region_depth =
-      0.05;              ///< inward extent of the surface region to which a patch is fitted [m]
+  /// Inward extent of the surface region to which a patch is fitted [m].
+  double region_depth = 0.05;
   double overlap = 0.5;  ///< fraction of known surface in the next view, in (0, 1)
   double max_turn = 60.0 * std::numbers::pi / 180;  ///< largest turn of the extrapolation [rad]
   /// Candidates are made for all combinations of distances, tilts and rolls, with rolls varying

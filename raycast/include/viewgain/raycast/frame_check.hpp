@@ -20,8 +20,8 @@ namespace viewgain {
 /// How well the frames of a map agree.
 struct VIEWGAIN_EXPORT FrameConsistency {
   std::vector<FrameContradiction> frames{};  ///< one per frame in the map, in order
-  std::size_t in_free =
-      0;  ///< number of readings (measured depths) in space that other frames saw as free
+  /// Number of readings (measured depths) in space that other frames saw as free.
+  std::size_t in_free = 0;
   std::size_t seen_past = 0;   ///< number of readings of earlier frames that later frames see past
   double share_in_free = 0;    ///< in_free as a share of all readings
   double share_seen_past = 0;  ///< seen_past as a share of the readings of earlier frames

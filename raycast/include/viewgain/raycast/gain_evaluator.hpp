@@ -68,8 +68,8 @@ struct VIEWGAIN_EXPORT GainConfig {
   /// surface and obstacles nearer than that block the ray.
   std::optional<double> min_range{};
   std::optional<double> max_range{};  ///< along the ray [m]; defaults to the sensor's
-  std::vector<WeightRegion>
-      weights{};                   ///< task weights; where regions overlap, the last one counts
+  /// Task weights; where regions overlap, the last one counts.
+  std::vector<WeightRegion> weights{};
   double refinement_weight = 1.0;  ///< combined gain: weight w of refinement
   /// Paper's gain: also computes ViewGain::posterior_entropy; about 4 % slower.
   bool posterior_entropy = false;

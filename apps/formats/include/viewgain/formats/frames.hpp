@@ -67,8 +67,8 @@ VIEWGAIN_EXPORT std::uint64_t apply_mask(const Gray8Image& mask, DepthFrame& fra
 
 namespace viewgain {
 
-inline constexpr double kDepthUnit =
-    1e-4;  ///< default unit of depth images in viewgain's layout [m]
+/// Default unit of depth images in viewgain's layout [m].
+inline constexpr double kDepthUnit = 1e-4;
 inline constexpr double kRecordedDepthUnit = 1e-3;  ///< default unit of recorded depth images [m]
 inline constexpr double kAmplitudeUnit = 1e-3;      ///< unit of amplitude images [m⁻²]
 

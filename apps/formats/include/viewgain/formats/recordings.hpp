@@ -62,16 +62,16 @@ struct VIEWGAIN_EXPORT ImportReport {
   std::size_t frames = 0;  ///< number of frames written
   PinholeCamera camera{};  ///< camera of the images
   FrameCounts bad{};  ///< frames left out, by reason: no_pose, lost_pose, unreadable, wrong_size
-  std::size_t orthonormalized =
-      0;  ///< number of rotations that deviated by 1e-9 to 1e-2 and were repaired
+  /// Number of rotations that deviated by 1e-9 to 1e-2 and were repaired.
+  std::size_t orthonormalized = 0;
   std::uint64_t readings = 0;       ///< pixels with a depth that were written
   std::uint64_t masked_pixels = 0;  ///< pixels with a depth that were masked out
   std::size_t masks = 0;            ///< frames with a mask or a confidence image
   double depth_scale = 0;           ///< of the written images [m per unit]
   std::string world{};              ///< tf frame of the poses; empty without tf
   std::string depth_topic{};        ///< empty without topics
-  std::vector<std::string>
-      warnings{};  ///< about data that was read only in part, and about assumptions
+  /// About data that was read only in part, and about assumptions.
+  std::vector<std::string> warnings{};
 };
 
 /// Format of a recording, from the file's first bytes or the folder's contents. Throws Error(io) or

@@ -51,8 +51,8 @@ struct VIEWGAIN_EXPORT PlannerConfig {
 struct VIEWGAIN_EXPORT AddedView {
   std::size_t view = 0;  ///< number of the view, from 0, counting failed views
   MapUpdate update{};    ///< update of the map
-  ModelProgress
-      progress{};  ///< state after the view; surface_area is the sum of new areas so far [m²]
+  /// State after the view; surface_area is the sum of new areas so far [m²].
+  ModelProgress progress{};
   double entropy_removed = 0;  ///< increase of the removed entropy [nat, or m² for trace]
 };
 

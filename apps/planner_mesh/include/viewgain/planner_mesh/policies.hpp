@@ -202,8 +202,8 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
   PolicyConfig config_;
   ExecConfig exec_;
   std::optional<GainEvaluator> evaluator_;  ///< for the scene of the last decision
-  std::optional<GainEvaluator>
-      area_evaluator_;  ///< evaluator of the surface gain on the same scene
+  /// Evaluator of the surface gain on the same scene.
+  std::optional<GainEvaluator> area_evaluator_;
   BoundaryOrder order_;
   std::optional<OracleChoice> oracle_;
   std::optional<RegisteredChoice> registered_;

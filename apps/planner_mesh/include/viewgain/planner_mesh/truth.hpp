@@ -72,9 +72,9 @@ struct VIEWGAIN_EXPORT QualityFigures {
   /// Fraction of the visible samples covered by the triangles of the surface, not only its
   /// vertices.
   double coverage_triangles = 0;
-  double coverage_2_5mm =
-      0;                    ///< fraction of all samples with a vertex of the surface within 2.5 mm
-  double covered_area = 0;  ///< area of the mesh with covered visible samples [m²]
+  /// Fraction of all samples with a vertex of the surface within 2.5 mm.
+  double coverage_2_5mm = 0;
+  double covered_area = 0;          ///< area of the mesh with covered visible samples [m²]
   ErrorStatistics surface_error{};  ///< error of surface.ply
   ErrorStatistics points_error{};   ///< error of points.ply
   Consistency consistency{};        ///< consistency of the points
