@@ -19,13 +19,13 @@ namespace {
 
 using detail::PixelScatter;
 
-constexpr double kMayMove = 0.003;         // of the pixels
+constexpr double kMayMove = 0.003;         // fraction of pixels
 constexpr double kLeastEdge = 100;         // [px]
 constexpr std::size_t kLeastSmooth = 500;  // pixels
 constexpr int kFromJump = 6;               // [px]
 constexpr double kLeastCos = 0.866;        // of incidence
-constexpr double kStep = 1.05;             // of ranges in one step
-constexpr double kShapeSpan = 1.3;         // of ranges that tell how σ_ax grows
+constexpr double kStep = 1.05;             // ratio of ranges in one step
+constexpr double kShapeSpan = 1.3;         // least ratio of ranges that shows how σ_ax grows
 constexpr int kTurns = 20;
 
 [[noreturn]] void fail(const std::string& what) { refuse("noise cannot be measured: " + what); }
@@ -39,7 +39,7 @@ struct SmoothPixel {
   double variance;  // along the ray [m²]
 };
 
-// Which pixels have no jump, and no pixel that reads nothing, near by.
+// Marks pixels without a depth jump or a missing reading nearby.
 std::vector<bool> smooth_places(const PinholeCamera& camera,
                                 const std::vector<PixelScatter>& pixels, double sigma) {
   const int width = camera.width, height = camera.height;
@@ -69,7 +69,7 @@ std::vector<bool> smooth_places(const PinholeCamera& camera,
   return smooth;
 }
 
-// Of the plane through the 5x5 pixels around.
+// From the plane through the surrounding 5x5 pixels.
 double cos_incidence(const std::vector<Eigen::Vector3d>& rays,
                      const std::vector<PixelScatter>& pixels, std::size_t i, std::size_t width) {
   Eigen::Vector3d along_u = Eigen::Vector3d::Zero(), along_v = along_u;
@@ -104,9 +104,9 @@ std::vector<SmoothPixel> smooth_pixels(const PinholeCamera& camera,
   return result;
 }
 
-// σ_ax of each step, by the model as far as it goes: its ratio between angles, and lateral noise on
-// slants, which is taken off: `lateral` times the model's. The median is robust; it is that of χ²
-// of n - 1 degrees.
+// σ_ax of each range step. The model provides the ratio between angles, and the lateral noise on
+// slanted surfaces (times `lateral`), which is subtracted. Uses the median because it is robust,
+// divided by that of χ² with n - 1 degrees of freedom.
 std::vector<NoiseStep> steps_of(const std::vector<SmoothPixel>& pixels, const Sensor& sensor,
                                 std::size_t frames, double lateral) {
   const double chi_median = std::pow(1 - 2 / (9 * static_cast<double>(frames - 1)), 3);
@@ -142,7 +142,7 @@ bool tells_shape(const std::vector<NoiseStep>& steps) {
   return steps.size() >= 4 && steps.back().range > kShapeSpan * steps.front().range;
 }
 
-// By which factor readings scatter more than the model says.
+// Measured σ_ax divided by the model's, averaged over pixels.
 double factor_of(const std::vector<NoiseStep>& steps) {
   double sum = 0, weights = 0;
   for (const NoiseStep& step : steps) {
@@ -152,7 +152,7 @@ double factor_of(const std::vector<NoiseStep>& steps) {
   return sum / weights;
 }
 
-// offset + quadratic (t - vertex)², neither negative.
+// Fits offset + quadratic (t - vertex)² with non-negative coefficients.
 void fit_growth(const std::vector<NoiseStep>& steps, double vertex, double& offset,
                 double& quadratic) {
   const double factor = factor_of(steps);
@@ -176,7 +176,7 @@ void fit_growth(const std::vector<NoiseStep>& steps, double vertex, double& offs
   quadratic = x[1];
 }
 
-// Puts measured axial noise into the model.
+// Fits the model to the measured axial noise.
 struct AxialFit {
   const std::vector<NoiseStep>& steps;
 
@@ -267,8 +267,8 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
   result.sigma_lateral_px = edges.sigma_px;
   result.edge_length = edges.length;
   result.lateral_in_model = set_lateral(result.sensor.noise, edges);
-  // The share of lateral noise on slants depends on what is fitted. A model of 1 px may have more
-  // of it than the camera.
+  // Iterates, because the lateral noise on slanted surfaces depends on the fit. A model with a
+  // fixed σ_lat of 1 px is scaled to the measured one.
   const double lateral = result.lateral_in_model ? 1 : edges.sigma_px;
   for (int turn = 0; turn < kTurns; ++turn) {
     result.steps = steps_of(smooth, result.sensor, depths_.size(), lateral);

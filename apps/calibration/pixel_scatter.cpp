@@ -9,15 +9,15 @@
 namespace viewgain::detail {
 namespace {
 
-constexpr double kMovedSigmas = 4;      // by which the means of both halves may differ
-constexpr double kMovedVariance = 2.5;  // over that of frames in succession
+constexpr double kMovedSigmas = 4;      // largest difference of both halves' means
+constexpr double kMovedVariance = 2.5;  // times that of successive frames
 constexpr double kLeastMove = 1e-6;     // [m]
-constexpr int kReach = 6;               // of a window round an edge [px]
-constexpr int kAround = 8;              // within which a pixel's two sides are looked for [px]
+constexpr int kReach = 6;               // half size of a window around an edge [px]
+constexpr int kAround = 8;              // distance to search for a pixel's two sides [px]
 constexpr double kJumpSigmas = 8;
 constexpr double kJumpShare = 0.05;  // of the range
-constexpr double kBetween = 0.2;     // of a window's pixels may lie between the sides
-constexpr double kStraight = 0.97;   // of an edge's length that lies along one line
+constexpr double kBetween = 0.2;     // largest fraction of pixels between the sides
+constexpr double kStraight = 0.97;   // least fraction of an edge along one line
 
 bool is_reading(float depth) { return std::isfinite(depth) && depth > 0; }
 
@@ -43,7 +43,7 @@ PixelScatter scatter_of_pixel(const std::vector<double>& ranges) {
   return pixel;
 }
 
-// How often pixels round an edge read its far side.
+// How often pixels near an edge read its far side.
 class FarShare {
  public:
   FarShare(const PinholeCamera& camera, const std::vector<std::vector<float>>& depths,
@@ -57,7 +57,7 @@ class FarShare {
   }
 
   struct Side {
-    double share = -1;         // of readings of the far side; -1: there are no two sides
+    double share = -1;         // fraction of far readings; -1: no edge
     double unlikeness = 0;     // unbiased p (1 - p)
     double near = 0, far = 0;  // along the ray [m]
   };
@@ -112,10 +112,10 @@ class FarShare {
   std::vector<Side> sides_;
 };
 
-// The edge through the middle of a window.
+// The edge through the centre of a window.
 struct Edge {
   double unlikeness = 0;     // Σ p (1 - p)
-  Eigen::Vector2d gradient;  // Σ of the share's; as long as the edge, across it [px]
+  Eigen::Vector2d gradient;  // Σ of the share's; across the edge, with its length [px]
   double near = 0, far = 0;  // [m]
 };
 
@@ -173,7 +173,7 @@ EdgeScatter edge_scatter(const PinholeCamera& camera, const std::vector<std::vec
   const FarShare share(camera, depths, rays, pixels, sigma);
   std::vector<bool> taken(pixels.size());
   const auto index = [&](int u, int v) { return static_cast<std::size_t>(v * camera.width + u); };
-  double unlikeness = 0, per_metre = 0;  // Σ p (1 - p), and what 1 m of σ_lat would make of it
+  double unlikeness = 0, per_metre = 0;  // Σ p (1 - p), and the same per metre of σ_lat
   EdgeScatter result;
   constexpr int kRim = kAround + kReach + 2;
   for (int v = kRim; v < camera.height - kRim; ++v) {
@@ -187,7 +187,7 @@ EdgeScatter edge_scatter(const PinholeCamera& camera, const std::vector<std::vec
       }
       const double length = edge->gradient.norm();
       const Eigen::Vector3d& ray = rays[index(u, v)];
-      // A shift across the ray is longer in the image, off its middle and away from it.
+      // A lateral shift is longer in the image away from the centre, most in the outward direction.
       const Eigen::Vector2d across =
           edge->gradient.cwiseProduct(Eigen::Vector2d(camera.fx, camera.fy)) / length;
       const double outward = across.dot(ray.head<2>());

@@ -11,7 +11,7 @@
 
 namespace viewgain::detail {
 
-/// The value in the middle, of an even count the mean of both; there is at least one.
+/// Median; the mean of the middle two for an even count. Requires at least one value.
 [[nodiscard]] inline double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -19,7 +19,7 @@ namespace viewgain::detail {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-/// What a pixel of a static scene read over time, along its ray.
+/// Ranges of a pixel over time, for a static scene.
 struct PixelScatter {
   double median = 0;    ///< [m]; 0: too few readings
   double mean = 0;      ///< [m]
@@ -27,19 +27,20 @@ struct PixelScatter {
   bool moves = false;   ///< readings depend on time
 };
 
-/// One a pixel, of those that read in nine of ten frames. `depths` are frames of one size.
+/// Results per pixel; empty for pixels with readings in fewer than nine of ten frames. `depths`:
+/// frames of equal size.
 [[nodiscard]] std::vector<PixelScatter> scatter_of(const std::vector<std::vector<float>>& depths,
                                                    const std::vector<Eigen::Vector3d>& rays);
 
-/// By how much a pixel's place scatters, at jumps of depth.
+/// Noise of a pixel's position, from depth jumps.
 struct EdgeScatter {
-  double length = 0;         ///< of the edges that tell it [px]
+  double length = 0;         ///< of the edges used [px]
   double sigma_px = 0;       ///< [px]
-  double sigma_lateral = 0;  ///< across the ray, were it the same at all ranges [m]
+  double sigma_lateral = 0;  ///< across the ray, if it were equal at all ranges [m]
 };
 
-/// `sigma` is about how readings scatter along the ray [m]; jumps are larger than 8 of them and 5 %
-/// of the range. No length where there are none.
+/// `sigma`: approximate noise along the ray [m]. Jumps must exceed 8 sigma and 5 % of the range.
+/// The length is 0 if there are none.
 [[nodiscard]] EdgeScatter edge_scatter(const PinholeCamera& camera,
                                        const std::vector<std::vector<float>>& depths,
                                        const std::vector<Eigen::Vector3d>& rays,

@@ -15,11 +15,11 @@
 namespace viewgain {
 namespace {
 
-constexpr double kMostSaturated = 0.05;  // of the pixels
-constexpr double kLeastFlat = 0.6;       // of the pixels
-constexpr double kMostRough = 0.02;      // of the depth
-constexpr double kLeastCosine = 0.7;     // of incidence, of a frame's middle
-constexpr std::size_t kReadings = 8000;  // of a frame, about
+constexpr double kMostSaturated = 0.05;  // fraction of pixels
+constexpr double kLeastFlat = 0.6;       // fraction of pixels
+constexpr double kMostRough = 0.02;      // fraction of the depth
+constexpr double kLeastCosine = 0.7;     // of incidence, at a frame's centre
+constexpr std::size_t kReadings = 8000;  // per frame, about
 constexpr double kMostTurn = 10;         // between a frame's plane and the wall [deg]
 constexpr double kMostOffsetSigma = 0.0005, kMostBend = 0.002, kMostFrameError = 0.004;  // [m]
 constexpr int kIterations = 10;
@@ -47,14 +47,14 @@ void RangeFit::add(const DepthFrame& frame, const Pose& T_world_camera, const st
     left_out_.push_back(name + ": " + std::to_string(saturated) + " pixels are saturated");
     return;
   }
-  // The wall's plane in the camera's frame: 1/z is linear in the ray. Pixels far off are left out.
+  // Fits the wall's plane in the camera frame, where 1/z is linear in the ray. Omits outliers.
   std::vector<std::size_t> pixels;
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     const float z = frame.depth[i];
     if (std::isfinite(z) && z > 0 && rays_[i].allFinite()) pixels.push_back(i);
   }
   Eigen::Vector3d plane = Eigen::Vector3d::Zero();
-  double typical = 0;  // share of the depth that a pixel is off
+  double typical = 0;  // median deviation, as a fraction of the depth
   std::vector<std::size_t> wall = pixels;
   for (int i = 0; i < kIterations && wall.size() >= 100; ++i) {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
@@ -100,15 +100,15 @@ void RangeFit::add(const DepthFrame& frame, const Pose& T_world_camera, const st
   frames_.push_back(std::move(kept));
 }
 
-// The wall and the error's table, which are fitted together. The table is over the true range:
-// noise of the measured range would bias it (regression dilution).
+// The wall and the table of errors, which are fitted together. The table uses the true range,
+// because noise of the measured range would bias the fit (regression dilution).
 struct RangeFit::Wall {
   Eigen::Vector3d normal;      // world
   double offset = 0;           // normal · p [m]
   double first = 0, step = 1;  // of the table's ranges [m]
   Eigen::VectorXd errors;      // [m]
 
-  // Place in the table and the share of the next entry.
+  // Index in the table and weight of the next entry.
   [[nodiscard]] std::pair<Eigen::Index, double> place(double true_range) const {
     const double at =
         std::clamp((true_range - first) / step, 0.0, double(errors.size() - 1) - 1e-9);
@@ -163,7 +163,7 @@ RangeFitResult RangeFit::solve() const {
   wall.step = (*most - *least) / static_cast<double>(knots - 1);
   wall.errors = Eigen::VectorXd::Zero(knots);
 
-  // Gauss-Newton over the table, two turns of the normal and the offset.
+  // Gauss-Newton. Unknowns: the table, two rotations of the normal, and the offset.
   const Eigen::Index size = knots + 3;
   Eigen::MatrixXd A;
   double squares = 0;
@@ -180,7 +180,7 @@ RangeFitResult RangeFit::solve() const {
         const auto [k, share] = wall.place(true_range);
         const double residual = range - true_range - wall.error(true_range);
         const double slope = 1 + (wall.errors[k + 1] - wall.errors[k]) / wall.step;
-        // Of the model, true range and table, by the unknowns.
+        // Derivatives of the model (true range plus error) by the unknowns.
         const std::array<std::pair<Eigen::Index, double>, 5> parts{
             {{k, 1 - share},
              {k + 1, share},
@@ -209,7 +209,7 @@ RangeFitResult RangeFit::solve() const {
     wall.offset += change[knots + 2];
   }
 
-  // What is left, by frame and by place on the wall: a bent wall leaves squares of the place.
+  // Residuals by frame, and by position on the wall: a bent wall leaves quadratic terms.
   const Eigen::Vector3d side = wall.normal.unitOrthogonal(), up = wall.normal.cross(side);
   Eigen::Matrix<double, 6, 6> B = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> c = Eigen::Matrix<double, 6, 1>::Zero();

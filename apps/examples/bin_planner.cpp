@@ -1,4 +1,4 @@
-// Next best views into a bin, frame by frame, with a memory: stop it at any time and start it
+// Next best views into a bin, frame by frame. Saves its state: stop it at any time and start it
 // again.
 #include <cstdio>
 #include <filesystem>
@@ -16,7 +16,7 @@ ScorerConfig bin_map() {
   config.voxel_size = 0.005;
   config.workspace = {{-0.20, -0.15, 0.0}, {0.20, 0.15, 0.20}};
   config.support_plane = 0.0;  // the bin's floor
-  // Its four walls, 2 cm thick and 20 cm high.
+  // The bin's walls, 2 cm thick and 20 cm high.
   config.obstacles.boxes = {{{-0.22, -0.17, 0}, {-0.20, 0.17, 0.2}},
                             {{0.20, -0.17, 0}, {0.22, 0.17, 0.2}},
                             {{-0.22, -0.17, 0}, {0.22, -0.15, 0.2}},
@@ -28,12 +28,12 @@ ScorerConfig bin_map() {
 PlannerConfig robot() {
   PlannerConfig config;
   config.reach.shells = {{{0.0, 0.0, 0.1}, 0.40, 0.75}};
-  config.reach.half_spaces = {{{0, 0, 1}, 0.30}};  // nowhere under 0.3 m
+  config.reach.half_spaces = {{{0, 0, 1}, 0.30}};  // never below 0.3 m
   return config;
 }
 
-// Stands for the robot: drives the camera there and says whether it got there. These frames were
-// recorded before, so it does.
+// Stands for the robot: moves the camera to the pose and returns whether it arrived. Here it always
+// does, because the frames are recorded.
 bool drive_to(const Pose&) { return true; }
 
 int main(int argc, char** argv) try {
@@ -58,7 +58,7 @@ int main(int argc, char** argv) try {
                   best.index, at.x(), at.y(), at.z(), best.gain.gain);
       const bool reached = drive_to(best.T_world_camera);
       planner.tried(best.T_world_camera, reached);
-      if (reached) break;  // else the next best
+      if (reached) break;  // otherwise try the next best
     }
     if (const auto reason = planner.should_stop()) {
       std::printf("; enough: %s", std::string(stop_reason_name(*reason)).c_str());

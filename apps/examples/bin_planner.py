@@ -1,4 +1,4 @@
-"""Next best views into a bin, frame by frame, with a memory: stop it at any time and start it again."""
+"""Next best views into a bin, frame by frame. Saves its state: stop it at any time and start it again."""
 import pathlib
 import sys
 
@@ -7,7 +7,7 @@ import viewgain
 
 
 def drive_to(pose):
-    """Stands for the robot: drives the camera there and says whether it got there. Recorded frames: it does."""
+    """Stands for the robot: moves the camera to the pose and returns whether it arrived. Here it always does."""
     return True
 
 
@@ -43,6 +43,6 @@ for i in range(first, min(len(frames), first + most)):
         reached = drive_to(pose)
         planner.tried(pose, reached)
         if reached:
-            break  # else the next best
+            break  # otherwise try the next best
     print(f"; enough: {planner.should_stop()}" if planner.should_stop() else "")
     planner.save(state)

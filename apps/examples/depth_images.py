@@ -1,5 +1,5 @@
-"""From numpy depth images to the next view, in cells (`# %%`): run it whole, or cell by cell in an editor that knows them."""
-# %% Depth images: here of a ball before a wall, seen by a made-up camera. Yours come from your camera's driver.
+"""From numpy depth images to the next view, in cells (`# %%`). Run all of it, or cell by cell in an editor."""
+# %% Depth images: here simulated, a ball in front of a wall. Yours come from your camera's driver.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -21,37 +21,37 @@ def see(T_world_camera, ball=0.1, wall=-0.5):
     with np.errstate(divide="ignore"):
         to_wall = (wall - eye[1]) / rays[..., 1]
     depth = np.minimum(np.where(to_ball > 0, to_ball, np.inf), np.where(to_wall > 0, to_wall, np.inf))
-    return depth + noise.normal(0, 0.001, depth.shape)  # other noise in each frame
+    return depth + noise.normal(0, 0.001, depth.shape)  # new noise in each frame
 
 
 start = viewgain.look_at([0.0, 0.6, 0.2], [0.0, 0.0, 0.0])
 frame = see(start)
 viewgain.plot.depth(frame).figure.savefig("depth.png")
 
-# %% Map: all is unknown until frames go in.
+# %% Map: everything is unknown at first.
 scorer = viewgain.ViewScorer(sensor, voxel_size=0.005, workspace=[[-0.15, -0.15, -0.15], [0.15, 0.15, 0.15]], gain="surface")
 print(scorer.add(frame, start))
 print(scorer.grid)
 
-# %% Candidates: 500 poses round the ball, less those that the robot cannot reach or in which the camera would collide.
+# %% Candidates: 500 poses around the ball, without those that are out of reach or where the camera would collide.
 sphere = viewgain.sphere_poses(500, 0.5)
-reach = viewgain.ReachRegion(half_spaces=[[0, 1, 0, -0.35]])  # y >= -0.35 m: no nearer to the wall than 15 cm
-checker = viewgain.FeasibilityChecker(scorer.scene, reach=reach)   # a body of 6.5 x 6.5 x 7.6 cm, as no body_size is given
+reach = viewgain.ReachRegion(half_spaces=[[0, 1, 0, -0.35]])  # y >= -0.35 m: at least 15 cm from the wall
+checker = viewgain.FeasibilityChecker(scorer.scene, reach=reach)   # default body: 6.5 x 6.5 x 7.6 cm
 poses = sphere[checker.feasible(sphere)]
 print(f"{len(poses)} of 500 are possible")
 
-# %% Gains: how much is each expected to add?
+# %% Gains: how much new surface each view is expected to show.
 gains = scorer.evaluate(poses)
 viewgain.plot.gains(poses, gains, label="new surface [m²]").figure.savefig("gains.png")
 
-# %% Why: what the best view sees of the map, and where its gain comes from.
-best = poses[np.nanargmax(gains)]  # a bad pose gains NaN, which np.argmax would choose
+# %% Why: what the best view sees, and where its gain comes from.
+best = poses[np.nanargmax(gains)]  # np.argmax would choose the NaN of a bad pose
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.5), layout="constrained")
 viewgain.plot.depth(scorer.evaluator.depth(best), axes=left)
 viewgain.plot.contributions(viewgain.GainEvaluator(scorer.scene, sensor, gain="paper"), best, axes=right)
 figure.savefig("why.png")
 
-# %% Go there, and so on: four more views, and how much of the box is known after each of the five.
+# %% Go there and repeat: four more views, and the known part of the workspace after each.
 def share_known():
     grid = scorer.grid
     return 1 - grid.statistics().unknown / np.prod(grid.shape)
@@ -62,7 +62,7 @@ for _ in range(4):
     scorer.add(see(pose), pose)
     taken.append(pose)
     known.append(share_known())
-    checker = viewgain.FeasibilityChecker(scorer.scene, reach=reach)  # what is possible changes with the map
+    checker = viewgain.FeasibilityChecker(scorer.scene, reach=reach)  # possible poses change with the map
     poses = sphere[checker.feasible(sphere, taken)]
     pose = poses[scorer.best(poses).indices[0]]
 plt.figure()

@@ -17,7 +17,7 @@ int main(void) {
   vg_map_update update;
   vg_scorer* scorer = NULL;
 
-  /* Stands for a real camera: a plate of 40 pixels before a floor. */
+  /* Stands for a real camera: a plate of 40 pixels in front of a floor. */
   for (i = 0; i < kWidth * kHeight; ++i) {
     const int u = (int)(i % kWidth) - kWidth / 2, v = (int)(i / kWidth) - kHeight / 2;
     depth[i] = u * u < 400 && v * v < 400 ? 0.5F : 0.6F;

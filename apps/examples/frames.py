@@ -4,7 +4,7 @@ import numpy as np
 import viewgain
 
 sensor = viewgain.sensor_preset("sr4000")
-# Stands for a real camera: a box of 16 cm before a wall.
+# A simulated camera in place of a real one: a 16 cm box in front of a wall.
 corners = 0.08 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
 quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]

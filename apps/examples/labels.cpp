@@ -1,4 +1,4 @@
-// A planner has a map of its own. Each cycle it hands over what has changed and asks for a view.
+// For a planner with its own map. Each cycle it passes on the changes and asks for a view.
 #include <cstdio>
 #include <viewgain/viewgain.hpp>
 

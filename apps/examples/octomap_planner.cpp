@@ -1,4 +1,4 @@
-// A planner on octomap::OcTree: viewgain follows the tree as it grows and says where to look next.
+// A planner on octomap::OcTree: viewgain follows the growing tree and chooses the next view.
 #include <cmath>
 #include <cstdio>
 #include <memory>

@@ -1,4 +1,4 @@
-// A gain of one's own: the number of distinct unknown voxels in view, each weighted by 1/range².
+// A custom gain: the number of distinct unknown voxels in view, each weighted by 1/range².
 #include <algorithm>
 #include <cstdio>
 #include <set>

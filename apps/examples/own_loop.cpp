@@ -1,5 +1,5 @@
-// Algorithm 1 with two parts of one's own: candidates on a ring that comes nearer, and a choice
-// that takes the best gain a metre of way.
+// Algorithm 1 with two custom parts: candidates on a ring that comes nearer, and a choice by the
+// largest gain per metre of path.
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -8,7 +8,7 @@
 
 using namespace viewgain;
 
-// Proposes a ring of views round the middle, each time 2 cm nearer.
+// Proposes a ring of views around the origin, 2 cm nearer each time.
 class NearingRing : public ViewpointGeneration {
  public:
   Proposal generate(const Pose&) override {
@@ -24,7 +24,7 @@ class NearingRing : public ViewpointGeneration {
   double radius_ = 0.55;  // [m]
 };
 
-// The representation is viewgain's own; the loop asks how far it is.
+// The representation is viewgain's; the loop asks for its progress.
 class Map : public RepresentationUpdate {
  public:
   Map(const Sensor& sensor, const ScorerConfig& config) : scorer(sensor, config) {}
@@ -35,7 +35,7 @@ class Map : public RepresentationUpdate {
   ViewScorer scorer;
 };
 
-// Takes the candidate with the most nats a metre of way.
+// Takes the candidate with the most nats per metre of path.
 class GainPerMetre : public DecisionMaking {
  public:
   explicit GainPerMetre(const Map& map) : map_(map) {}

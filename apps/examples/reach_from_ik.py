@@ -1,9 +1,9 @@
-"""A reach file from any inverse kinematics: the poses of a camera that an arm can take.
+"""Makes a reach file from any inverse kinematics: the camera poses that an arm can reach.
 
     reach_from_ik.py OUT.toml [POSES, 2000]
 
-`ik` is the only part to replace: it takes T_base_flange (4x4) and returns joint angles, or None where
-there are none. Here it is a UR5-like arm by its closed form; MoveIt, KDL or a vendor's interface will do.
+Replace only `ik`: it takes T_base_flange (4x4) and returns joint angles, or None if there are none. Here it
+is the closed form of a UR5-like arm; MoveIt, KDL or a vendor's interface can take its place.
 """
 import itertools
 import sys
@@ -12,12 +12,12 @@ import numpy as np
 
 import viewgain
 
-# The arm, as Denavit and Hartenberg have it: d, a, alpha of each joint [m, rad].
+# Denavit-Hartenberg parameters of the arm: d, a, alpha of each joint [m, rad].
 D = np.array([0.0892, 0, 0, 0.1092, 0.0947, 0.0823])
 A = np.array([0, -0.425, -0.3922, 0, 0, 0])
 ALPHA = np.array([np.pi / 2, 0, 0, np.pi / 2, -np.pi / 2, 0])
-LIMIT = np.radians(170)  # of each joint, so that no cable is wound up
-TABLE = 0.05  # every joint stays above [m]
+LIMIT = np.radians(170)  # of each joint, so that cables do not wind up
+TABLE = 0.05  # least height of every joint [m]
 # The robot's base in the world, and the camera on its flange.
 T_WORLD_BASE = np.eye(4)
 T_WORLD_BASE[:3, 3] = [-0.6, 0, 0]
@@ -36,7 +36,7 @@ def forward(joints):
 
 
 def arm_solutions(T):
-    """Up to eight sets of joint angles that put the flange at T."""
+    """Up to eight sets of joint angles that place the flange at T."""
     wrist = T @ [0, 0, -D[5], 1]
     radius = np.hypot(wrist[0], wrist[1])
     if radius < D[3]:
@@ -46,7 +46,7 @@ def arm_solutions(T):
         s, c = np.sin(q1), np.cos(q1)
         q5 = flip * np.arccos(np.clip((T[0, 3] * s - T[1, 3] * c - D[3]) / D[5], -1, 1))
         if abs(np.sin(q5)) < 1e-6:
-            continue  # the last axis is parallel to the second: any q6 would do
+            continue  # the last axis is parallel to the second: q6 is arbitrary
         inverse = T[:3, :3].T
         q6 = np.arctan2((-inverse[1, 0] * s + inverse[1, 1] * c) / np.sin(q5), (inverse[0, 0] * s - inverse[0, 1] * c) / np.sin(q5))
         T14 = np.linalg.inv(link(0, q1)) @ T @ np.linalg.inv(link(4, q5) @ link(5, q6))
@@ -72,14 +72,14 @@ def ik(T_base_flange):
 
 
 def reachable(poses, ik, T_world_base, T_flange_camera):
-    """Those of T_world_camera (N, 4, 4) that have a solution."""
+    """The poses T_world_camera (N, 4, 4) that have a solution."""
     T_base_flange = np.linalg.inv(T_world_base) @ poses @ np.linalg.inv(T_flange_camera)
     return poses[[ik(T) is not None for T in T_base_flange]]
 
 
 def main():
     out, count = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 2000
-    # Candidates: round the object, at three distances, each turned about its optical axis.
+    # Candidates around the object: three distances, each with four rolls about the optical axis.
     spheres = [viewgain.sphere_poses(max(count // 12, 1), radius) for radius in (0.35, 0.45, 0.55)]
     turns = [np.eye(4) for _ in range(4)]
     for turn, angle in zip(turns, np.radians([0, 90, 180, 270])):

@@ -32,10 +32,10 @@ namespace {
 constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
 
-// One thread at most says why the program ends; what comes after it waits for the end.
+// At most one thread reports why the program ends; others wait for the end.
 std::atomic_flag is_reported = ATOMIC_FLAG_INIT;
 
-// One line, whatever a message or a file name holds.
+// Prints one line, whatever a message or a file name contains.
 int report(std::string message, int exit_code) {
   wait_if_ended();
   while (is_reported.test_and_set()) ::pause();
@@ -43,7 +43,7 @@ int report(std::string message, int exit_code) {
   return exit_code;
 }
 
-// What --help prints through std::cout, all else through stdout.
+// Flushes both: --help prints to std::cout, everything else to stdout.
 int end_of_output() {
   if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     return report("cannot write to the standard output", kInternalError);
@@ -83,17 +83,17 @@ int run(int argc, char** argv) {
   return end_of_output();
 }
 
-// Where memory has ended, without what exit() runs: threads of libraries may still be at what they
-// could not do.
+// Ends the program when memory has run out. Does not use exit(), because threads of libraries may
+// be in any state.
 [[noreturn]] void leave(int exit_code) {
   (void)std::fflush(stdout);
   std::_Exit(exit_code);
 }
 
-// For std::terminate(): TBB does so in a thread of its own where it cannot start another.
+// For std::terminate(), which TBB calls on one of its threads if it cannot start another.
 [[noreturn]] void end_in_one_line() {
   if (is_reported.test_and_set()) {
-    ::sleep(1);  // another thread is at it
+    ::sleep(1);  // another thread reports
     std::_Exit(kInternalError);
   }
   try {
@@ -110,11 +110,11 @@ int run(int argc, char** argv) {
   std::_Exit(kInternalError);
 }
 
-// Runs the call; what it throws becomes a line and an exit code.
+// Runs the call, and turns exceptions into a message and an exit code.
 int guarded_run(int argc, char** argv) {
   std::set_terminate(end_in_one_line);
-  std::signal(SIGXFSZ, SIG_IGN);  // a write past the limit fails, with a message, instead
-  std::signal(SIGPIPE, SIG_IGN);  // who reads no more what a call says does not end its work
+  std::signal(SIGXFSZ, SIG_IGN);  // a write past the limit then fails with a message
+  std::signal(SIGPIPE, SIG_IGN);  // a closed output pipe does not end the work
   try {
     clean_up_when_ended();
     keep_bytes_of_pipes();  // --poses <(...)

@@ -5,8 +5,8 @@
 
     make_stubs.py FOLDER MODULE FILE.pyi
 
-FOLDER holds the package. Names, order and defaults are those of pybind11's signatures; types are those that the docstrings (numpydoc) say, as
-"array_like, (..., 4, 4), optional". What has no such type is an error.
+FOLDER holds the package. Names, order and defaults come from pybind11's signatures. Types come from the docstrings (numpydoc), such as
+"array_like, (..., 4, 4), optional". A parameter without a type is an error.
 """
 import ast
 import functools
@@ -27,14 +27,14 @@ from numpy.typing import ArrayLike, NDArray
 
 _Path = Union[str, bytes, "os.PathLike[str]"]
 '''
-# What docstrings say in words.
+# Types that docstrings state in words.
 WORDS = {
     "path-like": "_Path", "path": "_Path", "array_like": "ArrayLike", "callable": "Callable[..., Any]", "dict": "dict[str, float]",
     "iterable of (vertices, triangles)": "Iterable[tuple[ArrayLike, ArrayLike]]", "iterable of (box, weight)": "Iterable[tuple[ArrayLike, float]]",
     "sequence of frames": "FrameSequence | Sequence[tuple[ArrayLike, ArrayLike]]",
     "(float, float)": "tuple[float, float]", "tuple of 3 int": "tuple[int, int, int]", "trimesh.Trimesh": "Any", "open3d.geometry.TriangleMesh": "Any",
 }
-# What is called, by what it is called.
+# Signatures of callables, by the name of the parameter.
 CALLED = {
     "progress": "[int, int], object", "predicate": "[NDArray[np.float64]], object", "generator": "[BeliefGrid], ArrayLike",
     "measure": "[NDArray[np.float64], Any], float", "way": "[int, int], float", "acquire": "[NDArray[np.float64]], Any",
@@ -47,7 +47,7 @@ faults = []
 
 
 def type_of(words):
-    """Of "ndarray, (n, 4, 4), float64, or None"."""
+    """The type for words such as "ndarray, (n, 4, 4), float64, or None"."""
     words = words.strip().replace("viewgain.", "")
     if words.endswith(", optional"):
         return type_of(words[:-len(", optional")]) + " | None"
@@ -72,7 +72,7 @@ def type_of(words):
 
 
 def sections(doc, owner):
-    """{parameter: words} and the words of what is returned; "As ``name``" stands for what another of the owner's says."""
+    """{parameter: words}, and the words for the result. "As ``name``" refers to another docstring of the owner."""
     parameters, returned, section, names = {}, None, "", ""
     for line in inspect.cleandoc(doc).splitlines():
         if line in ("Parameters", "Returns", "Raises"):
@@ -144,7 +144,7 @@ def class_stub(name, one):
 
 
 def main(folder, name, file):
-    sys.path[0] = folder  # in the place of this script's, where the package is not whole
+    sys.path[0] = folder  # replaces the script's folder, where the package is incomplete
     module = importlib.import_module(name)
     package = importlib.import_module(name.rpartition(".")[0])
     names = [key for key in vars(module) if not key.startswith("_")]

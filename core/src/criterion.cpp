@@ -22,7 +22,7 @@ double trace_of_product(const SymmetricMatrix3& a, const SymmetricMatrix3& b) {
   return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.xy * b.xy + a.xz * b.xz + a.yz * b.yz);
 }
 
-/// det(I + Λ⁻¹ B) - 1 = tr(Σ B) + (tr(Λ adj B) + det B) / det Λ: no difference of near-equal
+/// det(I + Λ⁻¹ B) - 1 = tr(Σ B) + (tr(Λ adj B) + det B) / det Λ, which subtracts no nearly equal
 /// numbers.
 double determinant_ratio_minus_one(const SymmetricMatrix3& before, const Inverse& inverse,
                                    const SymmetricMatrix3& b) {
@@ -45,7 +45,7 @@ Eigen::Vector3d covariance_drop(const SymmetricMatrix3& s, const SymmetricMatrix
           Eigen::Vector3d(s.xz, s.yz, s.zz).dot(b * column_z)};
 }
 
-/// Rounding may leave a gain of nothing a little below zero. NaN stays NaN.
+/// Rounding can make a gain of zero slightly negative. NaN stays NaN.
 double not_negative(double value) { return value < 0 ? 0.0 : value; }
 
 }  // namespace

@@ -21,7 +21,7 @@
 namespace viewgain {
 namespace {
 
-/// Looks at the flag before sleeping: some microseconds, less than a wake-up costs.
+/// Number of looks at the flag before sleeping: some microseconds, less than the cost of a wake-up.
 constexpr int kSpins = 200;
 
 void relax() {
@@ -50,19 +50,19 @@ struct ThreadPool::Impl {
   explicit Impl(int n);
   ~Impl();
 
-  /// The threads of this process; after a fork the first call makes them.
+  /// The threads of this process. After a fork, the first call creates them.
   Crew& here();
 };
 
-/// The threads of one process. A fork copies the object but not the threads, and its locks in
-/// whatever state they were: a child leaves it as it is and makes its own.
+/// The threads of one process. A fork copies the object but not the threads, and the locks may be
+/// in any state. A child therefore leaves the copied object unused and makes its own.
 ///
-/// A run invites workers by `slots`. Each worker that takes a slot works and counts itself in
-/// `finished`; the caller, when no range is left, withdraws the slots nobody took and waits for the
-/// others. So the job's fields change only while nobody holds a slot.
+/// A run invites workers by `slots`. A worker that takes a slot works, and then increments
+/// `finished`. When no range is left, the caller withdraws the remaining slots and waits for the
+/// workers. The job's fields therefore change only while no worker holds a slot.
 struct ThreadPool::Impl::Crew {
   const pid_t process = getpid();
-  const Crew* const abandoned;  // the parent process's: never touched, never freed
+  const Crew* const abandoned;  // of the parent process; never used or freed
 
   std::atomic<bool> busy{false};
 
@@ -72,7 +72,7 @@ struct ThreadPool::Impl::Crew {
   std::atomic<bool> stopping{false};
 
   std::atomic<int> slots{0};     // workers still invited
-  std::atomic<int> finished{0};  // workers that took a slot and are through
+  std::atomic<int> finished{0};  // workers that took a slot and have finished
 
   Task task;
   std::size_t count = 0;
@@ -92,7 +92,7 @@ struct ThreadPool::Impl::Crew {
       end();
       throw Error(ErrorCode::capacity,
                   "cannot start " + std::to_string(num_threads) + " threads: " + e.what());
-    } catch (...) {  // no memory for a thread's state: those that run must end before the object
+    } catch (...) {  // no memory for a thread's state; running threads must end before the object
       end();
       throw;
     }
@@ -150,7 +150,9 @@ struct ThreadPool::Impl::Crew {
       }
       work();
       finished.fetch_add(1, std::memory_order_release);
-      { const std::lock_guard lock(mutex); }  // the caller is asleep by now or will look first
+      {
+        const std::lock_guard lock(mutex);
+      }  // the caller now sleeps, or will check before sleeping
       done.notify_one();
     }
   }
@@ -188,7 +190,7 @@ ThreadPool::Impl::Impl(int n) : num_threads(n), crew(new Crew(n, nullptr)) {}
 
 ThreadPool::Impl::~Impl() {
   Crew* own = crew.load();
-  if (own->process == getpid()) delete own;  // else its threads cannot be joined here
+  if (own->process == getpid()) delete own;  // threads of another process cannot be joined
 }
 
 ThreadPool::Impl::Crew& ThreadPool::Impl::here() {
@@ -198,7 +200,7 @@ ThreadPool::Impl::Crew& ThreadPool::Impl::here() {
   if (crew.compare_exchange_strong(own, made.get(), std::memory_order_acq_rel)) {
     return *made.release();
   }
-  return *own;  // another thread of the child was faster
+  return *own;  // another thread of the child has created it
 }
 
 ThreadPool::ThreadPool(int num_threads)

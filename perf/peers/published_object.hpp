@@ -23,7 +23,7 @@ struct PublishedObject {
 [[nodiscard]] PublishedObject read_published_object(const std::filesystem::path& folder);
 
 /// Reads positions in the format of MA-SCVP's view_space.txt: their number, then x y z [m] per
-/// line. Throws as above.
+/// line. Throws like above.
 [[nodiscard]] std::vector<Eigen::Vector3d> read_view_space(const std::filesystem::path& path);
 
 /// Their `predicted_size` [m]: 1.2 times half the side of a cube around the centre. The side is

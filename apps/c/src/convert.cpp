@@ -11,7 +11,7 @@
 namespace viewgain::c_api {
 namespace {
 
-// As far as a rotation may be off.
+// Largest deviation of a rotation from orthonormal.
 constexpr double kMaxError = 1e-3;
 
 bool has_lowest_row(const double* matrix) {

@@ -33,8 +33,8 @@
 #include "viewgain/raycast/voxel_scene.hpp"
 #include "viewgain/support/voxels_text.hpp"
 
-// What the opaque handles of viewgain.h are. Scenes are shared by what is made from them, so
-// handles may go in any order.
+// The opaque handles of viewgain.h. Objects made from a scene share it, so handles can be released
+// in any order.
 
 struct vg_range_calibration {
   viewgain::RangeCorrector corrector;
@@ -47,7 +47,7 @@ struct vg_grid {
 struct vg_integrator {
   viewgain::FrameIntegrator integrator;
   viewgain::HazardCalibration calibration;
-  viewgain::PinholeCamera camera;  // of its frames
+  viewgain::PinholeCamera camera;  // of the frames
 };
 
 struct vg_scene {
@@ -66,13 +66,12 @@ namespace viewgain::c_api {
 
 inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// NaN stands for what is not given.
+/// Empty for NaN.
 [[nodiscard]] inline std::optional<double> given(double value) {
   return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
-/// Takes `coarsest`, `fine` and `finest` over; throws Error(invalid_argument) for null instead of
-/// boxes.
+/// Copies `coarsest`, `fine` and `finest`. Throws Error(invalid_argument) if boxes are missing.
 template <typename Config, typename Settings>
 void set_scales(const Config& given, Settings& settings) {
   settings.coarsest = given.coarsest;
@@ -83,8 +82,8 @@ void set_scales(const Config& given, Settings& settings) {
   }
 }
 
-/// The box of voxels that an array has a label for each of; throws Error(invalid_argument) unless
-/// it is inside the workspace.
+/// The box of voxels that an array labels. Throws Error(invalid_argument) unless it is inside the
+/// workspace.
 [[nodiscard]] inline VoxelBox box_in(const VoxelBox& workspace, const std::int32_t* first,
                                      const std::int32_t* dims) {
   const auto is_inside = [](std::int64_t a, std::int64_t n, std::int64_t min, std::int64_t max) {
@@ -98,7 +97,7 @@ void set_scales(const Config& given, Settings& settings) {
   return VoxelBox::from_dims({first[0], first[1], first[2]}, {dims[0], dims[1], dims[2]});
 }
 
-/// A number of C as an enumerator; throws Error(invalid_argument) unless it is in 0..last.
+/// Converts to an enumerator. Throws Error(invalid_argument) unless it is in 0..last.
 template <typename Enum>
 [[nodiscard]] Enum enum_of(std::int32_t value, std::int32_t last, const std::string& name) {
   if (value >= 0 && value <= last) return static_cast<Enum>(value);
@@ -109,26 +108,27 @@ template <typename Enum>
   return {num_threads, enum_of<ExecConfig::Tracer>(tracer, VG_TRACER_SWEEP, "tracer")};
 }
 
-/// A pose from 16 numbers, row by row; all NaN if the lowest row is off by more than 1e-3.
+/// A pose from 16 numbers, row-major; all NaN if the last row deviates from 0 0 0 1 by more than
+/// 1e-3.
 [[nodiscard]] VIEWGAIN_EXPORT Pose pose_of(const double* matrix);
-/// As pose_of(), but throws Error(invalid_argument) for such a row.
+/// Like pose_of(), but throws Error(invalid_argument) for such a row.
 [[nodiscard]] VIEWGAIN_EXPORT Pose rigid_pose_of(const double* matrix);
-/// Of what C calls pose_sigma: null stands for exact poses.
+/// From the argument pose_sigma; null: exact poses.
 [[nodiscard]] VIEWGAIN_EXPORT PoseSigma pose_sigma_of(const double* sigmas);
-/// count poses of 16 numbers each; throws Error(invalid_argument) for null.
+/// `count` poses of 16 numbers each. Throws Error(invalid_argument) for null.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> poses_of(const double* matrices, std::size_t count);
 
 VIEWGAIN_EXPORT void write_pose(const Pose& pose, double* matrix);
 VIEWGAIN_EXPORT void write_poses(std::span<const Pose> poses, double* matrices);
 
-/// Fills what its _init has seen; throws Error(invalid_argument) for null, another size or a pose
+/// Fills an initialised struct. Throws Error(invalid_argument) for null, another size or a pose
 /// that is not rigid (1e-3).
 VIEWGAIN_EXPORT void write_outcomes(const GainEvaluator& evaluator, const double* T_world_camera,
                                     vg_ray_outcomes* outcomes);
 
-/// Throws Error(invalid_argument) for null, another size, or a noise model that does not exist.
+/// Throws Error(invalid_argument) for null, another size or an unknown noise model.
 [[nodiscard]] VIEWGAIN_EXPORT Sensor sensor_of(const vg_sensor* given);
-/// Fills a struct that its _init has seen; throws Error(invalid_argument) for another.
+/// Fills an initialised struct. Throws Error(invalid_argument) if it is not initialised.
 VIEWGAIN_EXPORT void write_sensor(const Sensor& sensor, vg_sensor* out);
 
 /// A frame of the camera's size; `amplitude` may be null.
@@ -173,7 +173,7 @@ template <typename Config>
   return surroundings;
 }
 
-/// Where a robot can put the camera, as the caller says; null: everywhere.
+/// The caller's predicate of reachable poses; null: all are reachable.
 [[nodiscard]] inline std::function<bool(const Pose&)> predicate_of(
     std::int32_t (*reachable)(const double*, void*), void* user) {
   if (reachable == nullptr) return {};

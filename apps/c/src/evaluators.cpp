@@ -39,7 +39,7 @@ GainConfig settings_of(const vg_evaluator_config& config) {
   return settings;
 }
 
-/// Scores poses; whether all were.
+/// Scores poses; returns whether all were scored.
 bool score(const GainEvaluator& evaluator, std::span<const Pose> poses, std::span<ViewGain> views,
            bool is_watched, const BatchControl& control) {
   if (poses.size() == 1 && !is_watched) {
@@ -66,7 +66,7 @@ vg_view_gain written(const ViewGain& view) {
 const std::vector<ViewGain>& gains_of(const BestViews& best) { return best.gains; }
 const std::vector<ViewGain>& gains_of(const ViewSet& set) { return set.marginal; }
 
-/// Chooses some of the poses by `choose` and hands them over; `gains` may be null.
+/// Chooses poses with `choose` and writes the results; `gains` may be null.
 template <typename Choose>
 vg_status choice(const vg_evaluator* evaluator, const double* poses, std::size_t count,
                  std::size_t k, std::size_t total, std::size_t* indices, double* gains,

@@ -50,7 +50,7 @@ vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3], cons
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!std::isfinite(origin[axis])) refuse("the origin must be finite");
     }
-    // A grid checks its own size, too, but not before it has been given all of the array.
+    // The grid also checks its size, but needs the whole array first.
     constexpr std::int32_t kMaxEdge = 65'536;
     std::size_t count = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -152,7 +152,7 @@ vg_status vg_scorer_evaluate(const vg_scorer* scorer, const double* poses, size_
     const auto evaluator = scorer->scorer.evaluator();
     bool complete = true;
     if (count == 1 && watch == nullptr) {
-      views[0] = evaluator->evaluate(candidates[0]);  // on all threads
+      views[0] = evaluator->evaluate(candidates[0]);  // uses all threads
     } else {
       complete = evaluator->evaluate(candidates, views, watcher.control()) == count;
     }

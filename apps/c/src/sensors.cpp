@@ -110,7 +110,7 @@ vg_status vg_range_calibration_create(const vg_sensor* sensor, const double* tab
     for (std::size_t i = 0; i < rows; ++i) {
       calibrated.range_calibration.table.push_back({table[2 * i], table[2 * i + 1]});
     }
-    calibrated.validate();  // of the table it asks more than a corrector does, as files do
+    calibrated.validate();  // checks the table more strictly than a corrector does
     return RangeCorrector(calibrated.camera, calibrated.range_calibration);
   });
 }

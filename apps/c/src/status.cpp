@@ -9,7 +9,7 @@
 namespace viewgain::c_api {
 namespace {
 
-// An array, so that keeping a message cannot fail.
+// An array, so that storing a message cannot fail.
 thread_local std::array<char, 1024> last_error{};
 
 vg_status keep(vg_status status, const char* message) noexcept {
@@ -44,7 +44,7 @@ vg_status status_of_exception() noexcept {
     return keep(VG_STOPPED, stopped.what());
   } catch (const std::bad_alloc&) {
     return keep(VG_OUT_OF_MEMORY, "out of memory");
-  } catch (const std::length_error&) {  // of a container, for a count beyond any memory
+  } catch (const std::length_error&) {  // from a container, for an excessive count
     return keep(VG_OUT_OF_MEMORY, "out of memory: a count is larger than any memory");
   } catch (const std::exception& error) {
     return keep(VG_INTERNAL, error.what());

@@ -17,16 +17,17 @@
 
 namespace viewgain::c_api {
 
-/// A call ended by its vg_watch, once what it has is handed over.
+/// A call was ended by its vg_watch; its results so far are already written.
 class VIEWGAIN_EXPORT Stopped : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Status of the exception in flight; keeps its message for vg_last_error().
+/// Status of the current exception; stores its message for vg_last_error().
 VIEWGAIN_EXPORT vg_status status_of_exception() noexcept;
 
-/// Throws Error(invalid_argument) for the first that is null; `names` has theirs, with blanks.
+/// Throws Error(invalid_argument) for the first null pointer. `names`: their names, separated by
+/// blanks.
 inline void require(std::string_view names, std::initializer_list<const void*> pointers) {
   for (const void* pointer : pointers) {
     const std::string_view name = names.substr(0, names.find(' '));
@@ -35,12 +36,12 @@ inline void require(std::string_view names, std::initializer_list<const void*> p
   }
 }
 
-/// An array among these, which may be null where it is empty.
+/// For arrays in require(): an empty array may be null.
 [[nodiscard]] inline const void* sized(const void* pointer, std::size_t count) {
   return count > 0 ? pointer : "";
 }
 
-/// Runs the body of a function of the C interface, after require(); nothing it throws gets out.
+/// Calls require(), then the body of a C function; exceptions become a status.
 template <typename Body>
 vg_status guarded(std::string_view names, std::initializer_list<const void*> pointers,
                   const Body& body) noexcept {
@@ -53,13 +54,13 @@ vg_status guarded(std::string_view names, std::initializer_list<const void*> poi
   }
 }
 
-/// What a struct's _init sets; zeros unless specialised.
+/// Values that a struct's _init sets; zeros unless specialised.
 template <typename Struct>
 [[nodiscard]] Struct defaults() noexcept {
   return {};
 }
 
-/// Throws Error(invalid_argument) for another size of a struct than it has in this library.
+/// Throws Error(invalid_argument) unless a struct has the size that it has in this library.
 template <typename Struct>
 void require_size(std::size_t size, const std::string& name) {
   if (size == sizeof(Struct)) return;
@@ -68,35 +69,35 @@ void require_size(std::size_t size, const std::string& name) {
          std::to_string(sizeof(Struct)));
 }
 
-/// A struct that the caller has initialised, or for the library to fill.
+/// Throws Error(invalid_argument) for null, and like require_size().
 template <typename Struct>
 void require_struct(const Struct* value, const std::string& name) {
   require(name, {value});
   require_size<Struct>(value->struct_size, name + " (struct_size, set by its _init)");
 }
 
-/// A struct of the caller's.
+/// A copy of the caller's struct. Throws like require_struct().
 template <typename Struct>
 [[nodiscard]] Struct read_struct(const Struct* value, const std::string& name) {
   require_struct(value, name);
   return *value;
 }
 
-/// The same where null stands for all defaults.
+/// Like read_struct(), but null gives the defaults.
 template <typename Struct>
 [[nodiscard]] Struct read_config(const Struct* value, const std::string& name) {
   return value == nullptr ? defaults<Struct>() : read_struct(value, name);
 }
 
-/// Fills a struct that require_struct() has seen.
+/// Fills a struct that passed require_struct().
 template <typename Struct>
 void write_struct(Struct* value, Struct whole) noexcept {
   whole.struct_size = sizeof(Struct);
   *value = whole;
 }
 
-/// Writes the defaults. A struct of another size, which is another header's, gets zeros and that
-/// size, by which all functions refuse it.
+/// Writes the defaults. A struct of another size, from another version of the header, gets zeros
+/// and that size, so that all functions refuse it.
 template <typename Struct>
 void initialise(Struct* value, std::size_t struct_size) noexcept {
   if (value == nullptr || struct_size < sizeof(value->struct_size)) return;
@@ -105,13 +106,14 @@ void initialise(Struct* value, std::size_t struct_size) noexcept {
   value->struct_size = struct_size;
 }
 
-/// The _init of a struct.
+/// Defines the _init function of a struct.
 #define VG_DEFINE_INIT(name)                               \
   void name##_init(name* value, std::size_t struct_size) { \
     viewgain::c_api::initialise(value, struct_size);       \
   }
 
-/// Makes a handle with what `make` returns; null if it throws. The first name is the handle's.
+/// Makes a handle from the result of `make`; null if it throws. The first name is that of the
+/// handle.
 template <typename Handle, typename Make>
 vg_status make_handle(Handle** handle, std::string_view names,
                       std::initializer_list<const void*> pointers, const Make& make) noexcept {

@@ -13,7 +13,7 @@
 
 namespace viewgain::c_api {
 
-/// A caller's vg_watch for the length of one call.
+/// A caller's vg_watch during one call.
 class Watcher {
  public:
   Watcher(const vg_watch* watch, std::size_t total) : total_(total) {
@@ -22,7 +22,7 @@ class Watcher {
     if (watch_->poll == nullptr) refuse("poll of vg_watch is null");
   }
 
-  /// To be used while this lives.
+  /// Valid during the lifetime of this object.
   [[nodiscard]] BatchControl control() {
     if (!watch_) return {};
     BatchControl control;
@@ -38,7 +38,7 @@ class Watcher {
     return control;
   }
 
-  /// At the end of the call. Throws Stopped if poll ended it.
+  /// Call it at the end. Throws Stopped if poll ended the call.
   void finish(bool complete) {
     if (!watch_) return;
     if (!complete && was_stopped_) {

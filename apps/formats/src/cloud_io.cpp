@@ -61,7 +61,7 @@ Pose read_viewpoint(const LineReader& line) {
   if (line.words().size() != 8) line.fail("VIEWPOINT needs 7 numbers: tx ty tz qw qx qy qz");
   for (std::size_t i = 0; i < 7; ++i) v[i] = line.finite_number(i + 1);
   Eigen::Quaterniond q(v[3], v[4], v[5], v[6]);
-  // Drivers that know no rotation write zeros.
+  // Drivers without a rotation write zeros.
   if (q.squaredNorm() == 0) q.setIdentity();
   if (!(std::abs(q.norm() - 1) <= kMendableNorm)) {
     line.fail("VIEWPOINT's quaternion must have norm 1, not " + short_text(q.norm()));
@@ -69,7 +69,7 @@ Pose read_viewpoint(const LineReader& line) {
   return {q.normalized().toRotationMatrix(), Eigen::Vector3d(v[0], v[1], v[2])};
 }
 
-/// Works out where the fields lie, and finds x, y, z.
+/// Computes the positions of the fields, and finds x, y, z.
 void lay_out(const LineReader& line, Header& header) {
   for (Field& field : header.fields) {
     if (!field.type.is_known()) {
@@ -93,7 +93,7 @@ void lay_out(const LineReader& line, Header& header) {
   }
 }
 
-/// Up to the line DATA, behind which the points begin.
+/// Reads up to the line DATA, after which the points begin.
 Header read_header(LineReader& line) {
   Header header;
   std::uint64_t width = 0, height = 0;
@@ -226,7 +226,7 @@ PointCloud parse_ply(std::string_view bytes, const std::string& name) {
   }
   PointCloud cloud;
   const auto number = static_cast<std::size_t>(vertices - elements.begin());
-  // What stands behind the vertices is not looked at.
+  // Elements after the vertices are not read.
   file.read(number + 1, [&](std::size_t element, const PlyRow& row) {
     if (element != number) return;
     cloud.points.push_back({row.scalar(xyz[0]), row.scalar(xyz[1]), row.scalar(xyz[2])});

@@ -8,12 +8,12 @@
 
 namespace viewgain {
 
-/// Is there something of this name? Throws Error(io) where that cannot be told, as in a folder that
-/// may not be looked into or where links go in a circle.
+/// Whether something of this name exists. Throws Error(io) if that cannot be determined, for
+/// example because the folder is not readable or links form a cycle.
 [[nodiscard]] bool is_there(const std::filesystem::path& path);
 
-/// Names in a folder, sorted; none where there is no such folder. Throws Error(io) for one that
-/// cannot be read.
+/// Names in a folder, sorted; none if the folder does not exist. Throws Error(io) if it cannot be
+/// read.
 [[nodiscard]] std::vector<std::string> names_in(const std::filesystem::path& folder);
 
 }  // namespace viewgain

@@ -35,7 +35,7 @@ BeliefGrid load_map(const std::filesystem::path& file_or_run, const Sensor* sens
     BeliefGrid grid = load_vdb(path, exec);
     MapNotes notes = grid.notes();
     if (notes.sensor.empty()) return grid;
-    // As this version words it, so that equal sensors have equal notes.
+    // Rewritten in this version's format, so that equal sensors have equal notes.
     notes.sensor = sensor_toml(parse_sensor_toml(notes.sensor, path.string()));
     grid.set_notes(std::move(notes));
     return grid;

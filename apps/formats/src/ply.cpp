@@ -12,7 +12,7 @@
 namespace viewgain {
 namespace {
 
-// The header says the machine's own byte order, so values go out as they are.
+// The header states the machine's byte order, so values are written unchanged.
 template <typename Value>
 void append(std::string& bytes, Value value) {
   const auto raw = std::bit_cast<std::array<char, sizeof(Value)>>(value);

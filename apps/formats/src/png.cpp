@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kSizeEnd = 24;  // of a file's signature and size
 
-// Everything that must survive libpng's longjmp lives here, outside of the functions that it
+// Holds everything that must survive libpng's longjmp, outside the functions that the longjmp
 // leaves.
 struct PngState {
   std::string bytes;
@@ -54,17 +54,17 @@ void write_bytes(png_structp png, png_bytep data, std::size_t count) {
 
 void flush_nothing(png_structp) {}
 
-// What the functions below do is undone by libpng's longjmp where it fails: then they return false
-// with a message in `state`. No object with a destructor may live in them, but in what calls them.
+// If libpng fails, its longjmp leaves the functions below; they then return false with a message in
+// `state`. They must not contain objects with destructors; their callers may.
 
-// What is read: a grey image of one of these depths.
+// The required format: a grey image of one of these depths.
 struct Wanted {
   int least_bits, most_bits;
   const char* refusal;
 };
 
-// Sets the image's rows up by its size; refuses by a message in `state`. snprintf into a string of
-// fixed size keeps it free of temporaries.
+// Sets up the image's rows for its size; refuses by a message in `state`. snprintf into a fixed
+// buffer avoids temporaries.
 template <typename Image>
 bool set_rows(png_structp png, png_infop info, PngState& state, Image& image) {
   const png_uint_32 columns = png_get_image_width(png, info);
@@ -95,7 +95,7 @@ bool decode(png_structp png, png_infop info, PngState& state, const Wanted& want
   }
   if (!set_rows(png, info, state, image)) return false;
   if (bits == 16) png_set_swap(png);   // PNG is big-endian, this machine is not
-  if (bits < 8) png_set_packing(png);  // a byte a pixel
+  if (bits < 8) png_set_packing(png);  // one byte per pixel
   (void)png_set_interlace_handling(png);
   png_read_update_info(png, info);
   png_read_image(png, state.rows.data());
@@ -121,7 +121,7 @@ bool encode(png_structp png, png_infop info, PngState& state, int width, int hei
   throw Error(code, path.string() + ": " + what);
 }
 
-// A PNG of `channels` values a pixel.
+// Writes a PNG of `channels` values per pixel.
 template <typename Value>
 std::string encoded(int width, int height, int color_type, const std::vector<Value>& pixels,
                     std::size_t channels) {
@@ -132,7 +132,7 @@ std::string encoded(int width, int height, int color_type, const std::vector<Val
            std::to_string(pixels.size()) + " values");
   }
   PngState state;
-  // libpng takes rows that it does not write to as non-const.
+  // libpng takes rows as non-const but does not write to them.
   auto* first = reinterpret_cast<png_bytep>(const_cast<Value*>(pixels.data()));
   for (int v = 0; v < height; ++v) {
     state.rows.push_back(first + static_cast<std::size_t>(v) * row * sizeof(Value));
@@ -145,7 +145,7 @@ std::string encoded(int width, int height, int color_type, const std::vector<Val
   return std::move(state.bytes);
 }
 
-// Naming the file where the image is none.
+// Checks the image; messages name the file.
 template <typename Value>
 void write_image(const std::filesystem::path& path, int width, int height, int color_type,
                  const std::vector<Value>& pixels, std::size_t channels) {
@@ -159,7 +159,7 @@ void write_image(const std::filesystem::path& path, int width, int height, int c
   write_file_atomically(path, bytes);
 }
 
-// Runs libpng's reading on the bytes, of the size that `image` has; `name` for messages.
+// Reads an image of the size of `image` from bytes; `name` is used in messages.
 template <typename Image>
 Image decoded(std::string bytes, const std::filesystem::path& name, const Wanted& wanted,
               Image image) {

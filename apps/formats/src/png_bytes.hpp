@@ -8,8 +8,8 @@
 
 namespace viewgain {
 
-/// As read_gray_png(), of bytes in memory and of whatever size up to 2^24 pixels. Throws
-/// Error(format) without a file's name.
+/// Like read_gray_png(), from bytes in memory, of any size up to 2^24 pixels. Throws Error(format)
+/// without a file's name.
 [[nodiscard]] GrayImage gray_image_of_png(std::string_view bytes);
 
 }  // namespace viewgain

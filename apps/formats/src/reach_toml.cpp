@@ -142,7 +142,7 @@ void write_reach_toml(const std::filesystem::path& path, const ReachRegion& regi
     if (toml::parse(text.str())["poses"].value<std::string>() != poses.filename().string()) {
       refuse(path.string() + ": a TOML file cannot name " + poses.filename().string());
     }
-    const AtomicFile writable(path);  // known before the poses change
+    const AtomicFile writable(path);  // checked before the poses change
     write_tum(poses, region.poses);
   }
   write_file_atomically(path, text.str());

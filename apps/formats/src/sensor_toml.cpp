@@ -17,7 +17,7 @@
 namespace viewgain {
 namespace {
 
-// Ten times what depth cameras have; rays and images of more would fill a machine's memory.
+// Ten times the pixels of depth cameras. Rays and images of more would fill the memory.
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 24U;
 
 PinholeCamera read_camera(TableReader reader) {
@@ -93,7 +93,7 @@ RangeCalibration read_range_calibration(TableReader reader) {
   return calibration;
 }
 
-// What `file` holds.
+// The sensor in `file`.
 Sensor sensor_of(const toml::table& root, const std::string& file) {
   TableReader reader(root, file, "");
   reader.check_format();
@@ -109,7 +109,7 @@ Sensor sensor_of(const toml::table& root, const std::string& file) {
     const std::vector<double> size = reader.numbers("body", *node, 3);
     sensor.body_size = {size[0], size[1], size[2]};
   }
-  // The unit is in the name since the flag --register is in degrees; 0.1.0 left it out.
+  // The key's name has the unit, because the flag --register is in degrees. 0.1.0 wrote no unit.
   for (const char* key : {"pose_sigma", "pose_sigma_rad"}) {
     const toml::node* node = reader.find(key);
     if (node == nullptr) continue;

@@ -38,8 +38,8 @@ std::vector<const StagedFolder*> alive;
   throw Error(ErrorCode::io, target.string() + ": " + what);
 }
 
-// A folder in use is locked by its process, wherever that runs. -1: that one has the lock, the
-// folder is gone, or the file system has no locks.
+// A process locks the folder that it uses, also on another machine. -1: another process has the
+// lock, the folder is gone, or the file system has no locks.
 int lock_of(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (file < 0 || ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
@@ -47,7 +47,7 @@ int lock_of(const fs::path& folder) {
   return -1;
 }
 
-// Of that name, each a process's.
+// Hidden folders for this target, each of one process.
 std::vector<fs::path> leftovers(const fs::path& folder, const TemporaryNames& names) {
   std::vector<fs::path> found;
   std::error_code ignored;
@@ -57,7 +57,7 @@ std::vector<fs::path> leftovers(const fs::path& folder, const TemporaryNames& na
   return found;
 }
 
-// To be called before the file takes the place of the other, if that is there.
+// Call it before the file replaces another, if that exists.
 void take_permissions(const fs::path& file, const fs::path& replaced) {
   struct stat status {};
   if (::stat(replaced.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return;
@@ -67,15 +67,15 @@ void take_permissions(const fs::path& file, const fs::path& replaced) {
   ::close(written);
 }
 
-// When the machine was started, by the clock of files' times.
+// When the machine was started, in the clock of file times.
 fs::file_time_type time_of_boot() {
   struct timespec since {};
   (void)::clock_gettime(CLOCK_BOOTTIME, &since);
   return fs::file_time_type::clock::now() - std::chrono::seconds(since.tv_sec);
 }
 
-// And links, which writers would follow out of the folder. Nothing in it but its record was synced:
-// what is from before the machine was started may have come through a power cut, and not whole.
+// Also removes links, which writers would follow out of the folder. Only the record was synced, so
+// files from before the machine was started may be incomplete after a power cut.
 void remove_half_written(const fs::path& folder, const char* record) {
   std::vector<fs::path> found;
   std::error_code ignored;
@@ -91,7 +91,7 @@ void remove_half_written(const fs::path& folder, const char* record) {
   for (const fs::path& path : found) fs::remove(path, ignored);
 }
 
-// What says that the other files are there comes after them.
+// Files that show that the other files exist are moved last.
 bool is_record(const fs::path& file) {
   return file == "run.json" || file == "poses.txt" || file == "simulated.txt" ||
          file == "imported.txt";
@@ -106,7 +106,7 @@ std::string numbered(std::size_t index, const char* ending) {
   return std::string(number.data()) + ending;
 }
 
-// NN + ending, as numbered() writes it: nobody else's file is touched.
+// NN + ending, as numbered() writes it, so that no other files are touched.
 bool is_numbered(const std::string& name, const char* ending) {
   const std::size_t digits = name.find_first_not_of("0123456789");
   return digits != std::string::npos && digits >= 2 && name.substr(digits) == ending;
@@ -117,7 +117,7 @@ bool has_mark(const fs::path& file, const char* mark) {
   return fs::is_regular_file(file, ignored) && file_bytes(file).find(mark) != std::string::npos;
 }
 
-// An earlier run's files, which a new run may replace. One that was killed while its files were
+// An earlier run's files, which a new run may replace. A run that was killed while its files were
 // moved has no run.json.
 std::vector<fs::path> files_of_earlier_run(const fs::path& dir) {
   std::vector<fs::path> files = run_files(dir);
@@ -135,7 +135,7 @@ std::vector<fs::path> files_of_earlier_run(const fs::path& dir) {
 
 }  // namespace
 
-// Takes up one of them at most and removes the others; those in use stay.
+// Resumes at most one hidden folder and removes the others; folders in use stay.
 bool StagedFolder::take_leftovers(const fs::path& folder, const TemporaryNames& names,
                                   const char* taken_up) {
   std::error_code ignored;
@@ -157,7 +157,7 @@ bool StagedFolder::take_leftovers(const fs::path& folder, const TemporaryNames& 
 
 StagedFolder::StagedFolder(const fs::path& target, const char* taken_up) {
   std::error_code code;
-  target_ = target.has_filename() ? target : target.parent_path();  // a slash at the end
+  target_ = target.has_filename() ? target : target.parent_path();  // for a slash at the end
   const bool exists = fs::exists(target_, code);
   if (target_.empty() || (exists && !fs::is_directory(target_, code))) fail(target, "not a folder");
   target_ = fs::weakly_canonical(fs::absolute(target_), code);
@@ -168,9 +168,9 @@ StagedFolder::StagedFolder(const fs::path& target, const char* taken_up) {
   const bool is_taken_up = take_leftovers(target_.parent_path(), names, taken_up) || is_inside;
 
   const std::lock_guard guard(list_mutex);
-  alive.reserve(alive.size() + 1);  // what is made below is listed in any case
-  // Files that replace others get their permissions when they are moved. Until then nobody else may
-  // read them.
+  alive.reserve(alive.size() + 1);  // so that listing the folder below cannot fail
+  // Files that replace others get their permissions when they are moved. Until then they are
+  // private.
   const mode_t mode = exists ? S_IRWXU : S_IRWXU | S_IRWXG | S_IRWXO;
   if (is_taken_up) {
     if (exists) (void)::chmod(staging_.c_str(), mode);
@@ -182,14 +182,13 @@ StagedFolder::StagedFolder(const fs::path& target, const char* taken_up) {
     parents_.push_back(p);
   }
   bool is_new = false;
-  do {  // again if the name is another's, or somebody took the folder for a leftover before it was
-        // locked
+  do {  // repeats if the name is in use, or another process removed the folder before it was locked
     staging_ = around / names.next().filename();
     fs::create_directories(around, code);
     is_new = !code && ::mkdir(staging_.c_str(), mode) == 0;
     if (!code && !is_new && errno != EEXIST) code.assign(errno, std::generic_category());
     if (code) {
-      staging_.clear();  // is another's
+      staging_.clear();  // belongs to another process
       remove();
       fail(target, "cannot be created: " + code.message());
     }
@@ -215,9 +214,9 @@ void StagedFolder::remove() const noexcept {
   if (is_kept_) return;
   std::error_code ignored;
   try {
-    // When a signal ends the program, other threads still write files into the folder, perhaps as
-    // fast as these can be removed. They cannot find it under another name. The loops cover a file
-    // that is being opened and a thread that creates the folder again.
+    // When a signal ends the program, other threads may still write files to the folder, as fast as
+    // they are removed. Renaming the folder stops them. The loops handle a file that is just being
+    // opened, and a thread that creates the folder again.
     for (int tries = 0; tries < 10 && fs::exists(staging_, ignored); ++tries) {
       const fs::path aside =
           staging_.parent_path() / TemporaryNames::of_folder(target_).next().filename();
@@ -233,12 +232,12 @@ void StagedFolder::remove() const noexcept {
 }
 
 void StagedFolder::commit(const std::vector<fs::path>& earlier) {
-  synced_->sync();  // whole after a power cut, before anything gets its name
+  synced_->sync();  // before renaming, so that files are complete after a power cut
   std::error_code code;
   if (!fs::exists(target_, code)) {
     fs::rename(staging_, target_, code);
     if (!code) return sync_folder(target_.parent_path());
-    code.clear();  // somebody else has made it meanwhile
+    code.clear();  // another process has created it meanwhile
   }
   std::vector<fs::path> written;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(staging_, code)) {
@@ -303,7 +302,7 @@ fs::path RunFolder::last_checkpoint() const {
 void RunFolder::write_checkpoint(const std::string& text) {
   AtomicFile checkpoint(file(kCheckpoint));
   checkpoint.write(text);
-  checkpoint.sync();  // a run may go on from it although its folder was never synced
+  checkpoint.sync();  // a run may resume from it although its folder was never synced
   checkpoint.commit();
   sync_folder(staged_.path());
 }

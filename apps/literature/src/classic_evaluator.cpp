@@ -43,8 +43,8 @@ bool needs_occlusion(ClassicGain gain) {
 namespace viewgain::detail {
 namespace {
 
-constexpr double kPart = 4096;        // first parts of -log2 q are multiples of its reciprocal
-constexpr double kAllAbsorbed = 200;  // in place of -log2 0: nothing is left in single precision
+constexpr double kPart = 4096;        // the first part of -log2 q is a multiple of 1 / kPart
+constexpr double kAllAbsorbed = 200;  // replaces -log2 0; 2^-200 is 0 in single precision
 
 double entropy_of(double p) {
   if (!(p > 0 && p < 1)) return 0;
@@ -123,7 +123,7 @@ GainConfig rays_of(const ClassicConfig& config) {
           .max_range = config.max_range};
 }
 
-// f(x; a): 0 at 0 and 1, 1 at a, two cubics without slope at these.
+// f(x; a): two cubics with value 0 at 0 and 1, value 1 at a, and slope 0 at all three.
 double area_weight(double x, double a) {
   if (x <= a) return (-2 * x / a + 3) * (x / a) * (x / a);
   return (((-2 * x + 3 * (a + 1)) * x - 6 * a) * x + 3 * a - 1) / std::pow(a - 1, 3);
@@ -145,7 +145,7 @@ struct ClassicGainEvaluator::Impl {
 
 namespace {
 
-// Sums what the rays of views meet.
+// Sums the gains along the rays of views.
 class SumConsumer final : public RayConsumer {
  public:
   SumConsumer(const ClassicMapData& data, const ClassicConfig& config, const VoxelValues& values,
@@ -237,7 +237,7 @@ ClassicGainEvaluator::ClassicGainEvaluator(std::shared_ptr<const ClassicMap> map
                                            const ExecConfig& exec) {
   map = checked(std::move(map), checked(config));
   GainEvaluator rays(ClassicAccess::data(*map).scene, sensor, rays_of(config),
-                     {exec.num_threads});  // whose rays the walker leads: no tracer is asked
+                     {exec.num_threads});  // used only for its rays, which no tracer traces
   impl_ =
       std::make_unique<Impl>(Impl{config, std::move(map), VoxelValues(config), std::move(rays)});
 }

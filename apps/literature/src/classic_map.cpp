@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What classic gains read of a map, and which unknown voxels earlier views have left behind
-// surfaces.
+// Map data for classic gains, including the unknown voxels that surfaces hid from earlier views.
 #include <cmath>
 #include <mutex>
 #include <utility>
@@ -18,7 +17,7 @@ namespace {
 
 using namespace detail;
 
-// A ray enters at most √3 voxels a voxel's length, and steps are kept in a byte.
+// A ray enters at most √3 voxels per voxel edge, and a byte stores the number of steps.
 constexpr double kMostDepth = 140;  // [voxels]
 
 void check(const VoxelScene* scene, const BeliefGrid& grid,
@@ -39,7 +38,7 @@ void check(const VoxelScene* scene, const BeliefGrid& grid,
   }
 }
 
-// Follows the rays of the views that made a map. Only obstacles end them before a surface.
+// Follows the rays of a map's views. Before the first surface, only obstacles end them.
 class OcclusionConsumer final : public RayConsumer {
  public:
   OcclusionConsumer(const ClassicTable& table, double depth)

@@ -11,7 +11,7 @@ namespace viewgain::detail {
 namespace {
 
 constexpr std::size_t kBrickVoxels = 512;
-// The rows of a brick along z with a voxel more at each side: bit k is z - 1 + k.
+// Rows of a brick along z with a margin of one voxel on each side: bit k is z - 1 + k.
 constexpr int kRows = 10;
 using Rows = std::array<std::array<std::uint16_t, kRows>, kRows>;
 
@@ -19,7 +19,7 @@ std::uint32_t word_of(std::uint8_t code) {
   return code == kUnknownCode ? ClassicTable::kUnknown : code;
 }
 
-// Every voxel with what is within one voxel of it.
+// Adds the 26 neighbours of each voxel.
 Rows dilated(const Rows& rows) {
   Rows along_z{}, along_y{}, all{};
   for (std::size_t x = 0; x < kRows; ++x) {
@@ -42,7 +42,7 @@ Rows dilated(const Rows& rows) {
   return all;
 }
 
-// Tells the words of a mixed brick how large the cubes of one value are round them.
+// Stores in each word of a mixed brick the size of the uniform cube around it.
 void find_cubes_in_brick(std::uint16_t* words) {
   std::for_each_n(words, kBrickVoxels, [](std::uint16_t& word) {
     word = static_cast<std::uint16_t>(word & ClassicTable::kValue);
@@ -58,7 +58,7 @@ void find_cubes_in_brick(std::uint16_t* words) {
       });
 }
 
-// The same for the uniform bricks of a node.
+// The same for uniform bricks of a node.
 void find_cubes_in_node(std::uint32_t* entries) {
   std::for_each_n(entries, BrickIndex::kEntries, [](std::uint32_t& entry) {
     if ((entry & ClassicTable::kUniform) == 0) return;
@@ -126,7 +126,7 @@ void ClassicTable::find_frontiers(const std::vector<Index3>& with_occupied) {
   }
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end()), places.end());
-  // What is put into the table does not change codes, so the order does not matter.
+  // Frontier marks do not change codes, so the order does not matter.
   for (const auto& [x, y, z] : places) mark_frontiers({x, y, z});
 }
 
@@ -179,7 +179,7 @@ void ClassicTable::mark_frontiers(Index3 brick) {
   }
 }
 
-// The words of a brick; it becomes a mixed one.
+// The words of a brick, which becomes a mixed one.
 std::uint16_t* ClassicTable::own_words(Index3 brick) {
   std::uint32_t& entry = own_entry(brick.x, brick.y, brick.z);
   if ((entry & kUniform) != 0) {

@@ -16,14 +16,15 @@
 
 namespace viewgain::detail {
 
-/// Steps behind a measured surface, by brick of 8³ voxels in table coordinates (ClassicTable).
+/// Number of steps of each unknown voxel behind a measured surface, stored by brick of 8³ voxels in
+/// table coordinates (ClassicTable).
 class OcclusionSteps {
  public:
   static constexpr std::uint8_t kNone = 0;
   using Brick = std::array<std::uint8_t, 512>;  ///< x << 6 | y << 3 | z
   using Place = std::array<std::int32_t, 3>;    ///< of a brick: x / 8, y / 8, z / 8
 
-  /// The least of what is said of a voxel counts; `steps` is above 0.
+  /// The lowest value for a voxel counts; `steps` is above 0.
   void mark(std::int32_t x, std::int32_t y, std::int32_t z, std::uint8_t steps) {
     const Place place{x >> 3, y >> 3, z >> 3};
     if (last_ == nullptr || place != last_place_) {
@@ -57,12 +58,12 @@ class OcclusionSteps {
   Brick* last_ = nullptr;
 };
 
-/// What classic gains weigh of each voxel, found by place.
+/// Voxel data for classic gains, indexed by place.
 struct ClassicTable : BrickIndex {
-  /// A word of 13 bits. A known voxel's begins with the code of its log-odds, an unknown one's has
-  /// kUnknown, its steps behind a measured surface and whether it is a surface frontier. Above
-  /// either the binary logarithm of the edge of the largest aligned cube round it whose values are
-  /// the same, 0 to 2 in a brick, 3 to kLargestShift else [voxels].
+  /// A word has 13 bits. The lower 10 of a known voxel hold the code of its log-odds; those of an
+  /// unknown one hold kUnknown, the steps behind a measured surface, and whether it is a surface
+  /// frontier. The upper 3 hold the binary logarithm of the edge [voxels] of the largest aligned
+  /// uniform cube around it: 0 to 2 in a brick, otherwise 3 to kLargestShift.
   static constexpr std::uint32_t kCode = 0x7FU, kFrontier = 1, kUnknown = 0x200U;
   static constexpr int kStepsShift = 1, kEdgeShift = 10;
   static constexpr std::uint32_t kMostSteps = 255, kValue = 0x3FFU, kEdge = 7;
@@ -82,25 +83,27 @@ struct ClassicTable : BrickIndex {
     return 1 << (word >> kEdgeShift & kEdge);
   }
 
-  /// An entry is the word of all its brick's voxels with this bit, or its first index in `words`.
+  /// An entry with this bit is the word of all voxels of its brick; otherwise it is the brick's
+  /// first index in `words`.
   static constexpr std::uint32_t kUniform = 0x80000000U;
 
-  std::vector<std::uint16_t> words;  ///< 512 a mixed brick, by word_in_brick(); 512 of none first
+  /// 512 per mixed brick, by word_in_brick(); the first 512 are unused.
+  std::vector<std::uint16_t> words;
 
-  /// Of the grid as it is. Throws Error(capacity).
+  /// From the current grid. Throws Error(capacity).
   explicit ClassicTable(const BeliefGrid& grid);
 
-  /// Puts the steps of unknown voxels in.
+  /// Adds the steps of unknown voxels.
   void add(const OcclusionSteps& steps);
 
-  /// Of a voxel of the workspace in table coordinates.
+  /// Word of a voxel of the workspace, in table coordinates.
   [[nodiscard]] std::uint32_t word(std::int32_t x, std::int32_t y, std::int32_t z) const {
     const std::uint32_t entry = entries[entry_index(x, y, z)];
     if ((entry & kUniform) != 0) return entry;
     return words[entry + word_in_brick(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
                                        static_cast<std::uint32_t>(z))];
   }
-  /// Words lie by cubes of 4³, in two cache lines each.
+  /// Words are ordered by cubes of 4³, two cache lines each.
   [[nodiscard]] static std::uint32_t word_in_brick(std::uint32_t x, std::uint32_t y,
                                                    std::uint32_t z) {
     return (x & 4U) << 6U | (y & 4U) << 5U | (z & 4U) << 4U | (x & 3U) << 4U | (y & 3U) << 2U |
@@ -118,10 +121,10 @@ struct ClassicTable : BrickIndex {
   void find_cubes();
 };
 
-/// Whether occlusion distances are known, or what is missing.
+/// Whether occlusion distances are known, or why not.
 enum class OcclusionKnown : std::uint8_t { yes, no_sensor, no_views };
 
-/// What ClassicMap owns.
+/// The data of a ClassicMap.
 struct ClassicMapData {
   std::shared_ptr<const VoxelScene> scene;
   ClassicTable table;
@@ -132,7 +135,7 @@ struct ClassicMapData {
       : scene(std::move(s)), table(grid) {}
 };
 
-/// The way into a map for this library.
+/// Gives this library access to the data of a ClassicMap.
 struct ClassicAccess {
   [[nodiscard]] static const ClassicMapData& data(const ClassicMap& map) { return *map.data_; }
 };

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What rays meet on their way through all voxels, a ray a lane. Compiled once
-// for each instruction set.
+// Sums over all voxels that rays pass, one ray per lane. Compiled once for each instruction set.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "gain_sums.cpp"
@@ -21,7 +20,7 @@ namespace viewgain::detail::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// As ClassicTable::word_in_brick().
+// Like ClassicTable::word_in_brick().
 HWY_INLINE VI word_in_brick(const Voxels& v) {
   const auto part = [](VI a, std::int32_t bits) HWY_ATTR { return hn::And(a, set_i(bits)); };
   const VI cube = hn::Or(hn::Or(hn::ShiftLeft<6>(part(v.x, 4)), hn::ShiftLeft<5>(part(v.y, 4))),
@@ -31,12 +30,12 @@ HWY_INLINE VI word_in_brick(const Voxels& v) {
   return hn::Or(cube, in_cube);
 }
 
-// Finds words. kByVoxel: voxels are met one by one, else unknown ones alone.
+// Finds words. kByVoxel: steps through all voxels one by one, otherwise only through unknown ones.
 template <bool kByVoxel>
 class WordFinder {
  public:
   struct Place {
-    VI word;  // as ClassicTable's
+    VI word;  // as in ClassicTable
     VI edge;
     VI node;
 
@@ -53,7 +52,7 @@ class WordFinder {
 
   HWY_INLINE void begin(const Voxels& at) { find_nodes(at); }
 
-  // Lane by lane: two gathers, one waiting for the other, take longer.
+  // One lane at a time, because two dependent gathers take longer.
   HWY_INLINE Place find(const Voxels& at, VI moved, MF) {
     if (!stay_in_nodes(moved)) find_nodes(at);
     HWY_ALIGN std::uint32_t bricks[kWidth], in_bricks[kWidth], words[kWidth];
@@ -62,7 +61,7 @@ class WordFinder {
     const std::uint32_t* entries = table_.entries.data();
     const std::uint16_t* of_bricks = table_.words.data();
     for (std::size_t i = 0; i < kWidth; ++i) {
-      // Without branches, which nothing foretells; there is a word at 0 too.
+      // Without branches, because they would be unpredictable; index 0 is valid too.
       const std::uint32_t entry = entries[bricks[i]];
       const std::uint32_t uniform = 0U - (entry >> 31U);
       static_assert(ClassicTable::kUniform == 1U << 31U);
@@ -85,12 +84,12 @@ class WordFinder {
   }
 
   const ClassicTable& table_;
-  VI node_, first_;  // each lane's node and its first entry
+  VI node_, first_;  // of each lane: the node and its first entry
 };
 using CubeFinder = WordFinder<false>;
 using VoxelFinder = WordFinder<true>;
 
-// What a code has in a table of VoxelValues; codes are below VoxelValues::kPassed.
+// Value of a code, below VoxelValues::kPassed, in a table of VoxelValues.
 HWY_INLINE VF lookup(const std::array<float, VoxelValues::kPassed>& table, VI code) {
 #if HWY_TARGET == HWY_AVX3
   const float* values = table.data();
@@ -104,11 +103,11 @@ HWY_INLINE VF lookup(const std::array<float, VoxelValues::kPassed>& table, VI co
 #endif
 }
 
-// 2^-(whole + rest), whole above 0 and rest small, to single precision.
+// 2^-(absorbed + rest) in single precision, for absorbed >= 0 and a small rest.
 HWY_INLINE VF left_after(VF absorbed, VF rest) {
   const VF nearest = hn::Round(absorbed);
   const VF f = hn::Add(hn::Sub(absorbed, nearest), rest);  // the difference is exact
-  // exp(-f ln 2): seven terms are enough for |f| to 0.51.
+  // exp(-f ln 2): degree 7 suffices for |f| up to 0.51.
   constexpr float kTerms[] = {-1.5252734e-5F, 1.5403530e-4F, -1.3333558e-3F, 9.6181291e-3F,
                               -5.5504109e-2F, 2.4022651e-1F, -6.9314718e-1F, 1.0F};
   VF power = hn::Set(df, kTerms[0]);
@@ -134,14 +133,14 @@ HWY_INLINE std::int64_t total(VI v) {
 
 HWY_INLINE MI no_lane_i() { return to_i(no_lane()); }
 
-// Adds to a sum of many numbers of one size, with what rounding took of it (Kahan's).
+// Kahan summation, for sums of many numbers of similar size.
 HWY_INLINE void add_to_long(VF& sum, VF& error, VF v) {
   const VF mended = hn::Sub(v, error), next = hn::Add(sum, mended);
   error = hn::Sub(hn::Sub(next, sum), mended);
   sum = next;
 }
 
-// Sums what a packet's rays meet.
+// Sums over the voxels that a packet's rays pass.
 class GainSink {
  public:
   HWY_INLINE GainSink(const ClassicView& view, const float* solid_angle, DistinctVoxels& distinct)
@@ -163,7 +162,7 @@ class GainSink {
     const VI voxels = hn::IfThenElse(ends, set_i(1), step.voxels);
     const VI counted = hn::IfThenElseZero(counts, voxels);
     const VF n = hn::ConvertTo(df, counted);
-    // Of the entropies only those below kPassed.
+    // The table has only entropies of codes below kPassed.
     VF H = lookup(view_.values.passed_entropy, passed_code);
     if (!hn::AllFalse(di, ends)) {
       H = hn::IfThenElse(to_f(ends), hn::GatherIndex(df, values.entropy.data(), code), H);
@@ -171,8 +170,8 @@ class GainSink {
     absorbed_ = hn::MulAdd(n, lookup(values.absorbed, passed_code), absorbed_);
     rest_ = hn::MulAdd(n, lookup(values.absorbed_rest, passed_code), rest_);
     const VF left = left_after(absorbed_, rest_);
-    // One voxel has P H; several together what they take, which rounding leaves alone if voxels
-    // absorb much as all known ones do.
+    // One voxel adds P H. Several add the decrease of P times per_taken, which is accurate if each
+    // absorbs much, as all known ones do.
     const VF of_many = hn::Mul(hn::Sub(left_, left), lookup(values.per_taken, passed_code));
     const VF of_one = hn::Mul(left_, H);
     const VF visible = hn::IfThenElseZero(
@@ -194,7 +193,7 @@ class GainSink {
     if (!hn::AllFalse(di, unobserved)) pass_unobserved(step, unobserved);
   }
 
-  // `end`: how far rays may go.
+  // `end`: distances at which the rays end at the latest.
   HWY_INLINE void add_to(ClassicSums& sums, VF end) {
     turn(end, in_unobserved_, no_lane_i());
     sums.occlusion_aware += total(occlusion_aware_);
@@ -211,7 +210,7 @@ class GainSink {
   }
 
  private:
-  // Rays that come to an occupied voxel.
+  // For rays that reach an occupied voxel.
   HWY_INLINE void end(MI occupied) {
     const MI rear = hn::And(occupied, in_unobserved_);
     rear_side_ += hn::CountTrue(di, rear);
@@ -219,8 +218,9 @@ class GainSink {
     on_surface_ += hn::CountTrue(di, hn::AndNot(is_on_hidden_, hn::And(occupied, from_free_)));
   }
 
-  // Rays that come into unobserved space, at t, or leave it: the cones of the voxels between differ
-  // by less than single precision tells, but only the first face and the last count.
+  // For rays that enter or leave unobserved space at t. Adds the volume of the whole cone between
+  // the first and the last face, because the differences per voxel would be lost in single
+  // precision.
   HWY_INLINE void turn(VF at, MI lanes, MI unobserved) {
     HWY_ALIGN float ts[kWidth];
     hn::Store(at, df, ts);
@@ -234,7 +234,7 @@ class GainSink {
     in_unobserved_ = hn::Xor(in_unobserved_, lanes);
   }
 
-  // Unobserved voxels are passed one by one.
+  // Steps through unobserved space have one voxel each.
   HWY_INLINE void pass_unobserved(const Step<CubeFinder::Place>& step, MI lanes) {
     const VI steps = hn::And(hn::ShiftRight<ClassicTable::kStepsShift>(step.place.word),
                              set_i(ClassicTable::kMostSteps));
@@ -257,19 +257,19 @@ class GainSink {
   const ClassicView& view_;
   const float* solid_angle_;
   DistinctVoxels& distinct_;
-  VF absorbed_ = hn::Zero(df), rest_ = hn::Zero(df);      // -log2 of P, as VoxelValues has it
-  VF left_ = hn::Set(df, 1.0F), stretch_ = hn::Zero(df);  // P, and Σ P H since the last known voxel
+  VF absorbed_ = hn::Zero(df), rest_ = hn::Zero(df);      // -log2 P in two parts, as in VoxelValues
+  VF left_ = hn::Set(df, 1.0F), stretch_ = hn::Zero(df);  // P; Σ P H since the last known voxel
   VF occlusion_aware_ = hn::Zero(df), unobserved_ = hn::Zero(df);
   VF entropy_ = hn::Zero(df), entropy_error_ = hn::Zero(df);
   VI voxels_ = hn::Zero(di), hidden_steps_ = hn::Zero(di);
   VF rear_side_entropy_ = hn::Zero(df);
-  // What the voxel before is, and whether the ray has come to what surfaces hide.
+  // State of the previous voxel, and whether the ray has met hidden voxels.
   MI in_unobserved_ = no_lane_i(), from_free_ = no_lane_i(), is_on_hidden_ = no_lane_i();
   std::uint64_t rear_side_ = 0, on_surface_ = 0, hidden_ = 0;
   double volume_ = 0;
 };
 
-// Where rays meet the first occupied voxel.
+// Finds where rays meet the first occupied voxel.
 class SurfaceSink {
  public:
   static constexpr bool kCountsVoxels = false;
@@ -287,7 +287,7 @@ class SurfaceSink {
   MF met = no_lane();
 };
 
-// Counts voxels behind that.
+// Counts the voxels behind the first occupied one.
 class HiddenSink {
  public:
   static constexpr bool kCountsVoxels = false;

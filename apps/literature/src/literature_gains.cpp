@@ -10,13 +10,13 @@
 namespace viewgain {
 namespace {
 
-// Its evaluators share the map; they are made when their stride is asked for.
+// Its evaluators share the map and are made when their stride is first needed.
 class LiteratureEvaluator : public FamilyEvaluator {
  public:
   LiteratureEvaluator(std::shared_ptr<const ClassicMap> map, const Sensor& sensor,
                       std::vector<ClassicGain> gains, const ExecConfig& exec)
       : map_(std::move(map)), sensor_(sensor), gains_(std::move(gains)), exec_(exec) {
-    (void)of_stride(1);  // refuses what there is not
+    (void)of_stride(1);  // throws if a gain is not available
   }
 
   void evaluate(std::span<const Pose> T_world_camera, int pixel_stride, std::span<double> results,

@@ -18,8 +18,8 @@
 namespace viewgain {
 namespace {
 
-// Where boundaries have fewer candidates, the hazard's places have the rest. As many beside any
-// number of theirs bring the loop nothing (perf/results/loop.md).
+// If boundaries give fewer candidates, hazard_views() supply the rest. Adding them to more boundary
+// candidates does not help (perf/results/loop.md).
 constexpr std::size_t kFewCandidates = 200;
 
 }  // namespace
@@ -44,7 +44,7 @@ EstimatorConfig default_estimator(double spacing) {
 
 BoundaryViewsConfig default_boundary(const Sensor& sensor, double voxel_size) {
   BoundaryViewsConfig config;
-  // As far apart as the points of the surface will be.
+  // Spacing of the surface's points.
   if (!(voxel_size > 0) || !std::isfinite(voxel_size)) {
     refuse("voxel size " + short_text(voxel_size) + " m must be positive and finite");
   }

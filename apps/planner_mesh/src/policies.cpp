@@ -21,7 +21,7 @@
 namespace viewgain {
 namespace {
 
-// How far each patch is from the middle of its run, in patches.
+// Distance of each patch from the middle of its run, in patches.
 std::vector<double> distances_from_the_middle(const EstimatedViews& estimated) {
   const std::vector<std::uint32_t>& run_of_patch = estimated.run_of_patch;
   std::vector<double> distances(run_of_patch.size());
@@ -34,7 +34,7 @@ std::vector<double> distances_from_the_middle(const EstimatedViews& estimated) {
   return distances;
 }
 
-// At which a view has about 400 rays, which rank views nearly as well as all.
+// Pixel stride with about 400 rays per view, which rank views nearly as well as all rays.
 int coarse_stride(const PinholeCamera& camera) {
   const double pixels = static_cast<double>(camera.width) * camera.height;
   return std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / 400))));
@@ -85,7 +85,7 @@ std::optional<std::size_t> BoundaryOrder::next(std::span<const Candidate> candid
   };
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!candidates[i].boundary_class) continue;  // a pose of the reachable list
+    if (!candidates[i].boundary_class) continue;  // a pose from the reach region's list
     if (!proposed(i).nominal || tried[proposed(i).run]) continue;
     if (!first || rank(proposed(i)) < rank(proposed(*first))) first = i;
   }
@@ -142,7 +142,7 @@ std::vector<double> OracleChoice::uncovered_in_view(std::span<const Candidate> c
   for (std::size_t i = 0; i < distances.size(); ++i) {
     if (!(distances[i] <= object_.truth->tolerance())) uncovered.push_back(truth.samples()[i]);
   }
-  // From afar readings miss the surface by more than makes points of it.
+  // Distant readings are too inaccurate to become points of the surface.
   const auto worth = [&](const Eigen::Vector3d& sight) {
     return 1 / (1 + sensor_.noise_sigmas(sight.norm()).axial / model_.grid().voxel_size());
   };
@@ -206,7 +206,7 @@ void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
   if (!by_gain && stop_gain.value_or(0) > 0) {
     refuse("stop_gain requires policy gain with the gain paper");
   }
-  // A policy without a gain per voxel never asks for the rule of the paper's.
+  // Policies without a gain get the rules of the paper's gain, which never stop them.
   set_stop_rules(planning, by_gain ? policy.model : GainModel::paper, policy.criterion, stop_gain,
                  stop_area);
 }
@@ -277,7 +277,7 @@ std::optional<DecisionMaking::Decision> PolicyDecision::decide(
   DecisionMaking::Decision decision;
   decision.candidate = *chosen;
   decision.gain = gain.gain;
-  // A fixed order of views does not stop because one of them promises little.
+  // A fixed order of views does not stop at a view with little expected surface.
   decision.area =
       std::isnan(gain.area) ? expected_area(candidates[*chosen].T_world_camera) : gain.area;
   return decision;
@@ -354,7 +354,7 @@ std::optional<std::size_t> PolicyDecision::choose_by_boundary(
     std::span<const Candidate> candidates) {
   if (const auto next = order_.next(candidates, generation_.estimated())) return next;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    // A pose of the reachable list.
+    // A pose from the reach region's list.
     const std::string& generator = candidates[i].generator;
     if (!candidates[i].boundary_class && generator != kHazardViews && generator != kReachViews) {
       return i;

@@ -143,7 +143,7 @@ ModelProgress RegisteredModel::update(const Measurements& measurements) {
   }
   const double seconds = watch.seconds();
   ModelProgress progress = views_.size() == 1 ? model_.update(kept.front()) : model_.rebuild(kept);
-  // What the last view brought, not the last that was kept.
+  // Refers to the last view, even if it was not kept.
   if (registrations().back().status == RegistrationStatus::refused) progress.new_area = 0;
   progress.seconds["register"] = seconds;
   return progress;

@@ -23,8 +23,8 @@ constexpr std::size_t kPoses = 2562, kSamples = 10'000;
 constexpr std::uint64_t kSeed = 1;  // of the samples
 const double kMinCosine = std::cos(80.0 * std::numbers::pi / 180);
 constexpr double kNearer = 2.5e-3;  // [m]
-constexpr double kStep = 2.5e-3;    // between distances that are looked at [m]
-constexpr int kMostSteps = 20'000;  // each way, 50 m
+constexpr double kStep = 2.5e-3;    // between tried distances [m]
+constexpr int kMostSteps = 20'000;  // in each direction, 50 m
 
 // The pose at another distance from the centre [m].
 Pose moved(const Pose& pose, const Eigen::Vector3d& center, double distance) {
@@ -32,7 +32,7 @@ Pose moved(const Pose& pose, const Eigen::Vector3d& center, double distance) {
   return {pose.rotation(), center + distance * away};
 }
 
-// The pose at the possible distance from the centre that is nearest to the wanted one.
+// The pose at the possible distance from the centre that is nearest to the given distance.
 template <typename Possible>
 std::optional<Pose> moved_into_reach(const Pose& pose, const VisibilityConfig& config, double least,
                                      double most, const Possible& possible) {
@@ -56,7 +56,7 @@ double radius_round(const TriangleMesh& mesh, const Eigen::Vector3d& center) {
   return radius;
 }
 
-// Where the camera can be to look at the object.
+// Poses from which the camera can look at the object.
 std::vector<Pose> looking_poses(const VisibilityConfig& config, const Sensor& sensor,
                                 const TriangleMesh& mesh) {
   const auto possible = [&](const Pose& pose) {
@@ -64,7 +64,7 @@ std::vector<Pose> looking_poses(const VisibilityConfig& config, const Sensor& se
            !(config.support_plane && pose.translation().z() <= *config.support_plane);
   };
   std::vector<Pose> poses{config.start};
-  if (!config.reach.poses.empty()) {  // a lattice all but never meets a list
+  if (!config.reach.poses.empty()) {  // a lattice almost never has a pose of the list
     std::copy_if(config.reach.poses.begin(), config.reach.poses.end(), std::back_inserter(poses),
                  possible);
     return poses;
@@ -153,7 +153,7 @@ void mark_seen(const SurfaceScene& scene, const SurfaceScene* surroundings, cons
     if (!(range > sensor.min_range && range < sensor.max_range)) continue;
     if (std::abs(sight.dot(sample.normal)) < least_cosine * range) continue;
     if (!sensor.camera.sees(T_camera_world * sample.position)) continue;
-    // The sample's own triangle does not hide it.
+    // Stops before the sample, so that its own triangle does not hide it.
     rays.push_back({eye, sight / range, range * (1 - 1e-4)});
     asked.push_back(i);
   }

@@ -48,7 +48,7 @@ std::vector<const Option*> all_options(const App& subcommand) {
   for (const App* group : subcommand.get_subcommands(nullptr)) {
     if (!group->get_name().empty()) continue;
     for (const Option* option : all_options(*group)) {
-      // The subcommand has its own.
+      // The subcommand has its own help option.
       if (option != group->get_help_ptr() && option != group->get_help_all_ptr()) {
         options.push_back(option);
       }

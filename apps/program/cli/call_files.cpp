@@ -32,12 +32,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What the value of an option names.
+// What kind of file the value of an option names.
 enum class Kind {
   input,
   reach,
   folder,
-  frames,  // a folder of them, or a file in their place
+  frames,  // a folder of frames, or a file instead of it
   map,     // or the folder of a run
   output,
   frames_output,
@@ -100,7 +100,7 @@ void check_values(const App& subcommand) {
   }
 }
 
-// Null where the call has none of this name.
+// The option of this name; null if the call has none.
 const Option* option_of_call(const App& subcommand, std::string_view name) {
   const std::vector<const Option*> options = options_of_call(subcommand);
   const auto found = std::find_if(options.begin(), options.end(),
@@ -108,7 +108,7 @@ const Option* option_of_call(const App& subcommand, std::string_view name) {
   return found == options.end() ? nullptr : *found;
 }
 
-// Without what stands beside a path in some values.
+// The path in a value that can have more parts.
 std::string path_in(std::string_view option, const std::string& value) {
   if (option == "--confidence") return parse_confidence(value).folder;
   return option == "--hazard" ? hazard_file_of(value) : value;
@@ -124,7 +124,7 @@ std::vector<NamedFile> named_files(const App& subcommand) {
       if (file_option.name == "--poses" && is_set_of_poses(value)) continue;
       if (file_option.name == "--hazard" && hazard_file_of(value).empty()) continue;
       if (file_option.name == "--obstacle" && !is_obstacle_file(value)) continue;
-      // Of a run it is a switch, and the page a file of --out.
+      // For runs --report is a switch, and the page is a file of --out.
       if (file_option.name == "--report" && is_run(subcommand)) continue;
       files.push_back({std::string(file_option.name), path_in(file_option.name, value),
                        kind_of(file_option, subcommand.get_name())});
@@ -133,10 +133,10 @@ std::vector<NamedFile> named_files(const App& subcommand) {
   return files;
 }
 
-// A file by what it is and not by what it is called.
+// Identifies a file independent of its name.
 struct Identity {
   fs::path path;
-  std::optional<std::pair<dev_t, ino_t>> node{};  // of what is there
+  std::optional<std::pair<dev_t, ino_t>> node{};  // of an existing file
 
   explicit Identity(const fs::path& given) {
     std::error_code ignored;
@@ -149,7 +149,7 @@ struct Identity {
   }
 };
 
-// The files that a name stands for: a folder for those in it that are read or replaced.
+// The files that a name refers to; for a folder, those in it that are read or replaced.
 std::vector<Identity> identities(const NamedFile& file) {
   std::vector<Identity> found{Identity(file.path)};
   std::vector<fs::path> inside;
@@ -169,7 +169,7 @@ std::vector<Identity> identities(const NamedFile& file) {
   return found;
 }
 
-// Of a folder any file may be read.
+// Whether a file lies in a folder, of which any file may be read.
 bool lies_in(const NamedFile& file, const NamedFile& folder) {
   const fs::path inner = Identity(file.path).path, outer = Identity(folder.path).path;
   return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
@@ -197,8 +197,8 @@ void check_not_read(const NamedFile& output, const std::vector<NamedFile>& files
   }
 }
 
-// What is wrong with the ending of a file that the call writes, known before the work; empty:
-// nothing, or, of maps, what check_map_name() says.
+// What is wrong with the ending of an output file, checked before the work; empty if it is valid.
+// For maps it is the message of check_map_name().
 std::string fault_of_output(const NamedFile& file, const std::string& subcommand) {
   if (file.kind != Kind::output) return "";
   const fs::path& path = file.path;
@@ -231,7 +231,7 @@ void check_call(const App& subcommand) {
   }
   for (const NamedFile& file : files) {
     if (file.kind == Kind::output) {
-      const AtomicFile writable(file.path);  // known now rather than after the work
+      const AtomicFile writable(file.path);  // fails now rather than after the work
     }
   }
 }

@@ -6,15 +6,14 @@
 
 namespace viewgain::app {
 
-/// The rules that hold for the values and files of every subcommand, by the names of its options,
-/// before it runs:
+/// Checks rules for the values and files of every subcommand, by the names of its options, before
+/// it runs:
 /// - no option has an empty value, no output is called "-";
-/// - nothing that is written is a file that is read, by whatever name, path or link, or is written
-///   twice; that includes the files in a folder of frames, those that a folder to be written
-///   replaces, the poses that a reach file names, and all in a recording or a folder of masks. Only
-///   `integrate --map` may name its --out: a map is continued where it stands;
-/// - a file to be written can be written.
-/// Throws Error, naming option and file.
+/// - no output is also an input or a second output, under any name, path or link. Inputs include
+/// all files in folders of frames and masks and in recordings, and the poses that a reach file
+/// names. Only `integrate --map` may name the same file as --out, because it continues a map in
+/// place;
+/// - output files can be written. Throws Error, naming option and file.
 void check_call(const App& subcommand);
 
 }  // namespace viewgain::app

@@ -18,7 +18,7 @@
 namespace viewgain::app {
 namespace {
 
-// Null for another word.
+// The subcommand of this name, or null.
 const App* subcommand_of(const App& program, const std::string& word) {
   for (const App* subcommand : program.get_subcommands(nullptr)) {
     if (subcommand->get_name() == word) return subcommand;
@@ -40,7 +40,7 @@ std::string fault_of_flag(const App& called, const std::string& flag) {
     const std::string name = option->get_name();
     if (flag == name) return flag + ": must follow the subcommand " + called.get_name();
     if (option->nonpositional()) flags.push_back(name);
-    if (flag == "--" + CLI::detail::to_lower(name)) {  // a positional's
+    if (flag == "--" + CLI::detail::to_lower(name)) {  // name of a positional
       return flag + ": " + name + " is positional; give it without the flag";
     }
   }
@@ -52,7 +52,7 @@ bool is_flag(const std::string& word) {
          std::isdigit(static_cast<unsigned char>(word[1])) == 0 && word[1] != '.';
 }
 
-// What is wrong with the words that nothing takes; empty: there are none, or the error is another.
+// What is wrong with words that no option takes; empty if there are none, or for another error.
 std::string fault_of_extras(const App& program, const CLI::ParseError& error) {
   const std::vector<std::string> extras = program.remaining(true);
   const std::vector<App*> called = program.get_subcommands();
@@ -76,7 +76,8 @@ std::string fault_of_extras(const App& program, const CLI::ParseError& error) {
   return extras.front() + ": " + called.front()->get_name() + " takes no further arguments";
 }
 
-// A flag in the place of a flag's value: a value that begins so is given as --flag=--value.
+// Refuses a flag in place of a flag's value. A value that begins with -- must be given as
+// --flag=--value.
 void check_have_values(const App& program, const std::vector<std::string>& words) {
   const App* called = &program;
   for (const std::string& word : words) {
@@ -149,7 +150,7 @@ std::unique_ptr<App> make_program(CommonOptions& common) {
 const App* parse(App& program, const std::vector<std::string>& words) {
   check_have_values(program, words);
   try {
-    program.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as CLI11 wants them
+    program.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // reversed for CLI11
     return program.get_subcommands().front();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {

@@ -49,7 +49,7 @@ bool is_of(const App& app, const Option& option) {
   return std::find(options.begin(), options.end(), &option) != options.end();
 }
 
-// Those that a file can hold.
+// Options that a file can set.
 Options settable_options(const App& subcommand) {
   Options options = options_of_call(subcommand);
   std::erase_if(options, [](const Option* option) {
@@ -60,7 +60,7 @@ Options settable_options(const App& subcommand) {
   return options;
 }
 
-// A value as the command line has it.
+// A value as on the command line.
 std::string word_of(const TableReader& reader, const std::string& key, const toml::node& node,
                     Kind kind, bool may_be_switch = false) {
   if (kind == Kind::text && node.is_boolean() && may_be_switch) {
@@ -91,7 +91,7 @@ std::string word_of(const TableReader& reader, const std::string& key, const tom
   return words;
 }
 
-// The values that a key stands for; none of a flag that is not set.
+// The values of a key; none for a flag that is not set.
 Words values_of(const TableReader& reader, const std::string& key, const toml::node& node,
                 const Option& option) {
   const toml::array* list = node.as_array();
@@ -99,7 +99,7 @@ Words values_of(const TableReader& reader, const std::string& key, const toml::n
     return word_of(reader, key, node, Kind::boolean) == "on" ? Words{"true"} : Words{};
   }
   if (!is_repeated(option) || (list == nullptr && !option.nonpositional())) {
-    // "on" and "off" of noise, register and report, which also take other texts.
+    // Noise, register and report take "on" and "off" and also other texts.
     const std::string usual = option.get_default_str();
     return {word_of(reader, key, node, kind_of(option), usual == "on" || usual == "off")};
   }
@@ -113,7 +113,7 @@ Words values_of(const TableReader& reader, const std::string& key, const toml::n
   return values;
 }
 
-// What it was given, as TOML has it.
+// The given value in TOML.
 std::string value_of(const Option& option) {
   const std::string text = option.reduced_results().back();
   switch (kind_of(option)) {
@@ -141,7 +141,7 @@ std::string default_of(const Option& option) {
   return kind == Kind::text ? toml_string(text) : text;
 }
 
-// Of a value as value_of() and default_of() write it. Texts come as they were given, UTF-8 or not.
+// JSON of a value from value_of() or default_of(). Texts are unchanged, whether UTF-8 or not.
 Json json_of(const std::string& value, const Option& option) {
   if (kind_of(option) != Kind::text) {
     const Json json = parse_or_null(value);
@@ -164,7 +164,7 @@ bool is_utf8(const std::string& text) {
 
 namespace {
 
-// Whether the command line has said another one of a group of which one may be given.
+// Whether the command line has another option of a group in which only one is allowed.
 bool is_excluded(const App& subcommand, const Option& option) {
   for (const App* group : subcommand.get_subcommands(nullptr)) {
     const Options members = group->get_options();

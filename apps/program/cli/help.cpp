@@ -12,11 +12,11 @@ namespace {
 constexpr std::size_t kColumns = 80;
 constexpr const char* kMostNeed = "Options";
 
-// The text in lines, the first one behind `head`, the others behind so many blanks.
+// The text in lines: the first after `head`, the others indented.
 std::string wrapped(std::string head, const std::string& text, std::size_t indent) {
   std::istringstream words(text);
   std::string lines, line = std::move(head);
-  bool is_empty = true;  // the line, but for what it begins with
+  bool is_empty = true;  // whether the line has no word yet
   for (std::string word; words >> word;) {
     if (!is_empty && line.size() + 1 + word.size() > kColumns) {
       lines += line + "\n";
@@ -55,7 +55,7 @@ std::string text_of(const std::string& head, const std::vector<const Option*>& o
   return text;
 }
 
-// The heads in the order in which their first option comes, what most need before the others.
+// The headings in the order of their first options; those that most calls need come first.
 std::vector<std::string> heads_of(const std::vector<const Option*>& options) {
   std::vector<std::string> heads{kMostNeed};
   for (const Option* option : options) {
@@ -66,7 +66,7 @@ std::vector<std::string> heads_of(const std::vector<const Option*>& options) {
   return heads;
 }
 
-// Calls that are too long go on in the next line, as in a shell.
+// Breaks long calls with a backslash, as in a shell.
 std::string continued(const std::string& calls) {
   std::istringstream lines(calls);
   std::string text;

@@ -12,7 +12,7 @@ namespace viewgain::app {
 /// Help lists options added after this call under this heading.
 void begin_group(App& app, const char* head);
 
-/// Puts these options into the group that -h shows alone: what most calls need, ten at most.
+/// Puts these options, at most ten that most calls need, into the group that -h shows.
 void most_need(App& app, const std::vector<const char*>& names);
 
 /// --help ends with this text about the values of an option, before the examples. Its lines have at

@@ -17,18 +17,18 @@
 namespace viewgain::app {
 namespace {
 
-constexpr int kOutOfTime = 1;  // as out of memory
+constexpr int kOutOfTime = 1;  // same as out of memory
 
 std::mutex mutex;
-std::stop_source* guarded = nullptr;  // of the InterruptGuard that lives
+std::stop_source* guarded = nullptr;  // of the existing InterruptGuard
 bool ended = false;
 
-// Not how long it is: the kernel raises the limit with each signal.
+// Does not state the limit, because the kernel raises it with each signal.
 void say_that_time_is_up(const char* what_follows) {
   std::fprintf(stderr, "viewgain: processor time limit reached (ulimit -t)%s\n", what_follows);
 }
 
-// Whether the signal was only a wish to stop. That of the processor's time comes again each second
+// Whether the signal only requests a stop. The signal of the CPU time limit repeats each second
 // until the call ends.
 bool asks_for_a_stop(int signal) {
   const std::lock_guard lock(mutex);
@@ -41,13 +41,13 @@ bool asks_for_a_stop(int signal) {
   return false;
 }
 
-// A thread waits for the signals that all threads block: unlike a handler it may take locks.
+// A thread waits for signals that all threads block. Unlike a signal handler it may take locks.
 void watch(const sigset_t& signals) {
   int signal = 0;
   while (::sigwait(&signals, &signal) != 0 || asks_for_a_stop(signal)) {
   }
   remove_unfinished_files();
-  if (signal == SIGXCPU) {  // which would leave a core, too
+  if (signal == SIGXCPU) {  // which would also dump core
     say_that_time_is_up("");
     std::_Exit(kOutOfTime);
   }
@@ -63,7 +63,7 @@ void clean_up_when_ended() {
   ::sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU}) {
     struct sigaction action {};
-    // Programs in the background and under nohup are started with some ignored.
+    // Programs in the background and under nohup start with some signals ignored.
     if (::sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
       ::sigaddset(&signals, signal);
     }

@@ -6,21 +6,21 @@
 
 namespace viewgain::app {
 
-/// From now on Ctrl-C (SIGINT), SIGTERM, SIGHUP and SIGQUIT remove what is half-written before they
-/// end the program, and so does SIGXCPU, which ends it with a message and exit code 1. Signals that
-/// were ignored when it was started stay so. To be called once, before any other thread is started.
+/// From now on Ctrl-C (SIGINT), SIGTERM, SIGHUP and SIGQUIT remove unfinished files before they end
+/// the program. SIGXCPU does the same, with a message and exit code 1. Signals that were ignored at
+/// the start stay ignored. Call it once, before any other thread is started.
 void clean_up_when_ended();
 
-/// Removes what all writers of this process have half-written and is not kept for a call that goes
-/// on; they fail afterwards. Takes locks.
+/// Removes the unfinished files of all writers of this process, except those kept for a resumed
+/// call. Writers fail afterwards. Takes locks.
 void remove_unfinished_files() noexcept;
 
-/// Returns at once, unless a signal is ending the program: then not at all, so that what fails for
-/// that reason is not reported as an error.
+/// Returns at once. If a signal is ending the program, never returns, so that failures for that
+/// reason are not reported as errors.
 void wait_if_ended();
 
-/// While it lives, the first of SIGINT, SIGTERM and SIGHUP asks for a stop instead of ending the
-/// program, and every SIGXCPU does. One at a time.
+/// While it exists, the first SIGINT, SIGTERM or SIGHUP, and every SIGXCPU, requests a stop instead
+/// of ending the program. Only one may exist at a time.
 class InterruptGuard {
  public:
   InterruptGuard();

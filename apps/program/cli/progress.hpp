@@ -9,13 +9,12 @@
 
 namespace viewgain::app {
 
-/// "frame 30 of 120, 25 %, 12.5/s, 7 s left": how far a call is after so many seconds.
+/// "frame 30 of 120, 25 %, 12.5/s, 7 s left": progress of a call after this many seconds.
 [[nodiscard]] std::string progress_text(const std::string& label, std::size_t done,
                                         std::size_t total, double seconds);
 
-/// One line on stderr that counts up, from the second second on and only where stderr is a
-/// terminal and nothing asks for quiet. Wiped when the object goes. Thread safety: one call at a
-/// time.
+/// A progress line on stderr, shown after the first second, only on a terminal and without --quiet.
+/// The destructor wipes it. Thread safety: one call at a time.
 class Progress {
  public:
   Progress(std::string label, bool quiet);
@@ -24,7 +23,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void update(std::size_t done, std::size_t total);
-  /// Makes room for another line on stderr.
+  /// Clears the line, so that another can be printed.
   void wipe();
 
  private:

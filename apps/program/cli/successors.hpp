@@ -7,8 +7,8 @@
 
 namespace viewgain::app {
 
-/// "--take was removed; use --plan K,M" for a subcommand, or a flag with its --, that there was
-/// once; empty for another name.
+/// "--take was removed; use --plan K,M" for a removed subcommand, or a removed flag with its --;
+/// empty for another name.
 [[nodiscard]] std::string successor_of(std::string_view name);
 
 }  // namespace viewgain::app

@@ -18,7 +18,7 @@
 namespace viewgain::app {
 
 using viewgain::refuse;
-/// Of "FLAG VALUE: what".
+/// Throws Error(invalid_argument) with "FLAG VALUE: what".
 [[noreturn]] void refuse(std::string_view flag, std::string_view value, const std::string& what);
 
 /// Numbers separated by commas; each must be finite and their count in [min_count, max_count].
@@ -26,7 +26,7 @@ using viewgain::refuse;
 [[nodiscard]] std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
                                                 std::size_t min_count, std::size_t max_count);
 
-/// A count among parse_numbers' values: a whole number that is not negative and at most 1e7.
+/// Converts a value of parse_numbers() to a count: a whole number from 0 to 1e7.
 [[nodiscard]] std::size_t parse_count(std::string_view flag, double value);
 
 /// x0,y0,z0,x1,y1,z1 [m]. Throws Error(invalid_argument) if it is inside out or has no extent.
@@ -48,32 +48,33 @@ using viewgain::refuse;
 [[nodiscard]] std::string fault_of_name(const std::string& value,
                                         const std::vector<std::string>& names, const char* what);
 
-/// The names in a list with commas; none in an empty one.
+/// The names in a list with commas; none for an empty text.
 [[nodiscard]] std::vector<std::string> names_in(std::string_view text);
 
-/// x0, y0, z0 .. x1, y1, z1 for people.
+/// "x0, y0, z0 .. x1, y1, z1", for messages.
 [[nodiscard]] std::string describe(const Box& box);
 
-/// As std::printf prints it, to at most 511 bytes.
+/// Formats like std::printf, to at most 511 bytes.
 [[nodiscard]] __attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...);
 
-/// A stranger's text for a terminal: line ends become blanks, other control characters (C0, C1 in
-/// UTF-8, DEL) question marks.
+/// Makes untrusted text safe for a terminal: line ends become blanks, other control characters (C0,
+/// C1 in UTF-8, DEL) question marks.
 [[nodiscard]] std::string printable(std::string text) noexcept;
 
 /// 2,097,152 for 2097152.
 [[nodiscard]] std::string with_commas(unsigned long long value);
 
-/// 83.2 M for 83200000; one of k, M, G where it helps.
+/// 83.2 M for 83200000; uses k, M or G if it helps.
 [[nodiscard]] std::string with_unit(double value);
 
 /// "12 collision, 3 unreachable"
 [[nodiscard]] std::string counts_text(const std::map<std::string, std::size_t>& counts);
 
-/// Says how many poses were not quite rigid and were mended; nothing of none.
+/// Prints how many poses were not exactly rigid and were repaired, if any.
 void print_mended(std::size_t poses);
 
-/// A flag's value, checked: each throws Error(invalid_argument) that names both. NaN never passes.
+/// Checks of a flag's value. Each throws Error(invalid_argument) that names flag and value, also
+/// for NaN.
 void check_finite(std::string_view flag, double value);
 void check_positive(std::string_view flag, double value);    ///< and finite
 void check_at_least_0(std::string_view flag, double value);  ///< and finite

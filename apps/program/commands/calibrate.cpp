@@ -34,7 +34,7 @@ struct Options {
   std::string out;
 };
 
-// The frames that both calibrations read, without an earlier range calibration for `range`.
+// Opens the frames for both calibrations; for `range`, without an earlier range calibration.
 FrameSequence opened_frames(const Options& options, OpenFrames open) {
   FrameSequence frames = opened(open, options.frames, options.sensor, options.depth_scale);
   frames.out_of_range = Sensor::OutOfRange::invalid;
@@ -53,7 +53,7 @@ struct FrameCountsRead {
 template <typename Calibration, typename Add>
 auto solved(const Options& options, const FrameSequence& frames, Calibration& calibration, Add add,
             FrameCountsRead& counts) {
-  std::string fault;  // of the first frame that cannot be used
+  std::string fault;  // fault of the first frame that cannot be used
   Progress progress("frame", options.common.quiet);
   for (std::size_t i = 0; i < frames.images.size(); ++i) {
     progress.update(i + 1, frames.images.size());
@@ -88,7 +88,7 @@ void calibrate_range(const Options& options) {
   for (const std::string& text : result.left_out) {
     std::fprintf(stderr, "viewgain: warning: left out: %s\n", printable(text).c_str());
   }
-  double largest = 1e-6;  // error [m]
+  double largest = 1e-6;  // largest error [m]
   for (const RangeStep& step : result.steps) largest = std::max(largest, std::abs(step.error));
   Json steps = Json::array();
   if (!options.common.json) {

@@ -13,14 +13,14 @@
 
 namespace viewgain::app {
 
-/// One subcommand: its options are in `app`, `run` does the work after parsing. run throws Error
-/// for bad input; nothing half-written stays behind.
+/// One subcommand. Its options are in `app`; `run` does the work after parsing. run throws Error
+/// for bad input and leaves no unfinished files.
 struct Command {
   App* app = nullptr;
   std::function<void(const CommonOptions&)> run;
 };
 
-/// One that runs by its `options`, whose `common` are the program's.
+/// Makes a command that runs with `options`, whose `common` are the program's.
 template <typename Options, typename Run>
 [[nodiscard]] Command command_of(App* app, std::shared_ptr<Options> options, Run run) {
   return {app, [=](const CommonOptions& common) {

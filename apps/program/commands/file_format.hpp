@@ -10,12 +10,12 @@
 
 namespace viewgain::app {
 
-/// The key `format` of run.json, checkpoint.json and next.json; grows when a reader of this one
-/// would err.
+/// The key `format` of run.json, checkpoint.json and next.json. Increases when readers of this
+/// version would misread the file.
 inline constexpr std::uint64_t kRunFormat = 1;
 
-/// Throws Error(format), naming file and formats, for one that is newer, and Json::exception for
-/// none.
+/// Throws Error(format), naming file and formats, for a newer format, and Json::exception if it is
+/// missing.
 inline void check_format(const std::string& file, const Json& json) {
   const auto format = json.at("format").get_ref<const Json::number_unsigned_t&>();
   if (format <= kRunFormat) return;

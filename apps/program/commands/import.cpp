@@ -60,7 +60,7 @@ void check(const Options& options, RecordingFormat format) {
   }
 }
 
-// Of NAME[,tx,ty,tz,qx,qy,qz,qw] the name and the pose.
+// Name and pose of NAME[,tx,ty,tz,qx,qy,qz,qw].
 std::pair<std::string, std::optional<Pose>> parse_mount(const char* flag, const std::string& text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string::npos) return {text, std::nullopt};
@@ -68,7 +68,7 @@ std::pair<std::string, std::optional<Pose>> parse_mount(const char* flag, const 
   return {text.substr(0, comma), parse_pose(flag, text.substr(comma + 1))};
 }
 
-// Of the flag; without it of the library's choice.
+// The camera of the flag; without the flag the library chooses.
 PinholeCamera camera_of(const Options& options) {
   if (options.intrinsics.empty()) return {};
   const std::vector<double> k = parse_numbers("--intrinsics", options.intrinsics, 4, 4);

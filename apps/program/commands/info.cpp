@@ -59,7 +59,7 @@ void print(const Region& region, const char* unit) {
   std::printf("  hits           %s\n", with_commas(s.hits).c_str());
 }
 
-// What frames have said of the hazard of unknown space; null where none was asked.
+// Hazard factors learnt from frames; null if no frame was counted.
 Json hazard_factors(const BeliefGrid& grid) {
   const HazardCounters& counters = grid.hazard_counters();
   if (counters.empty()) return nullptr;

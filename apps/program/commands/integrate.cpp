@@ -48,7 +48,7 @@ BeliefGrid new_map(ReadingSource& source, const Options& options) {
   return grid;
 }
 
-// An existing map keeps its layout and prior; flags that say something else are an error.
+// An existing map keeps its layout and prior; flags that contradict them are an error.
 BeliefGrid continued_map(const Sensor& sensor, const Options& options) {
   OctomapConfig tree;  // which has no prior or workspace of its own
   tree.prior_sigma = options.prior_sigma;
@@ -76,7 +76,7 @@ BeliefGrid continued_map(const Sensor& sensor, const Options& options) {
   return grid;
 }
 
-// Of no values none.
+// Empty for no values.
 std::optional<double> median(std::vector<double> values) {
   if (values.empty()) return std::nullopt;
   std::sort(values.begin(), values.end());
@@ -91,10 +91,10 @@ struct Totals {
   IntegrationReport sum{};
   std::uint64_t masked_pixels = 0;
   std::uint64_t jump_edge_removed = 0;
-  std::size_t skipped = 0;                       // frames that the map has already
-  std::vector<FrameRegistration> registrations;  // of the others, if they are registered
+  std::size_t skipped = 0;                       // frames that the map already has
+  std::vector<FrameRegistration> registrations;  // of the other frames, if these are registered
   std::optional<FrameConsistency> consistency;   // of depth frames
-  std::vector<double> seconds;  // of each frame's integration, reading the image not counted
+  std::vector<double> seconds;  // of each frame's integration, without reading the image
 };
 
 Totals integrate_all(ReadingSource& source, const Options& options) {
@@ -213,7 +213,7 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
   std::printf("%s: hash %s\n", options.out.c_str(), grid.content_hash().c_str());
 }
 
-// Flags of depth frames with clouds and the other way round say what cannot be had.
+// Refuses flags of depth frames for clouds, and of clouds for depth frames.
 void check_flags(const Options& options, const App& app) {
   const auto refuse = [&app](std::initializer_list<const char*> flags, const char* why) {
     for (const char* flag : flags) {
@@ -233,7 +233,7 @@ void check_flags(const Options& options, const App& app) {
   }
 }
 
-// A map without a reading comes of a wrong scale, sensor or workspace.
+// A map without readings results from a wrong scale, sensor or workspace.
 void refuse_empty(const Options& options, const ReadingSource& source, const Totals& totals) {
   if (totals.skipped > 0) {
     totals.tally.name_left_out();

@@ -13,7 +13,7 @@
 
 namespace viewgain::app {
 
-/// What a call says in JSON of a map that it has written.
+/// JSON about a map that a call has written.
 [[nodiscard]] inline Json map_json(const BeliefGrid& grid,
                                    const BeliefGrid::Statistics& statistics) {
   const Index3 dims = grid.dims();
@@ -23,7 +23,7 @@ namespace viewgain::app {
           {"occupied", statistics.occupied}};
 }
 
-/// The same for people: two lines.
+/// Prints the same as two lines.
 inline void print_map(const BeliefGrid& grid, const BeliefGrid::Statistics& statistics) {
   const Index3 dims = grid.dims();
   std::printf("workspace %s m (grid frame): %d x %d x %d voxels of %g m, prior sigma %g m\n",
@@ -36,7 +36,7 @@ inline void print_map(const BeliefGrid& grid, const BeliefGrid::Statistics& stat
       with_commas(statistics.free).c_str(), with_commas(statistics.occupied).c_str());
 }
 
-/// Warns on stderr of what a tree cannot hold, where save_map lost it.
+/// Warns on stderr of contents that save_map() lost, because a tree cannot store them.
 inline void warn_of_lost_frame(const LostInTree& lost, const std::string& path) {
   if (!lost.T_world_grid) return;
   std::fprintf(stderr,

@@ -32,7 +32,7 @@ void put_boundary(Json& json, const Candidate& candidate, const EstimatedViews& 
   json["patch_rms"] = estimated.patches[proposed.patch].rms;
 }
 
-// With --top all also the boundaries, and each candidate that was dropped with its reason.
+// With --top all, also writes the boundaries, and each dropped candidate with its reason.
 void put_all(Json& json, const NextViews& views, const Proposal& proposal,
              const CandidateGeneration& generation) {
   const EstimatedViews& estimated = generation.estimated();
@@ -57,7 +57,7 @@ void put_all(Json& json, const NextViews& views, const Proposal& proposal,
   }
 }
 
-// Nothing: all.
+// Number of views; empty for "all".
 std::optional<std::size_t> parse_top(const std::string& text) {
   if (text == "all") return std::nullopt;
   const std::size_t count = parse_count("--top", parse_numbers("--top", text, 1, 1)[0]);

@@ -50,7 +50,7 @@ struct MapSurface {
         sigmas(surface_sigmas(surface, points)) {}
 };
 
-// Dark up to the first, bright from the second on.
+// Values that map to the darkest and the brightest colour.
 using ColourRange = std::array<double, 2>;
 
 struct Picture {

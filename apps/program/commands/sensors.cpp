@@ -19,7 +19,7 @@ struct Options {
   std::string name;
 };
 
-// Of the image along an axis [degrees].
+// Field of view of the image along an axis [degrees].
 double field_of_view(double pixels, double focal, double center) {
   const double low = (center + 0.5) / focal, high = (pixels - center - 0.5) / focal;
   return (std::atan(low) + std::atan(high)) * 180 / std::numbers::pi;

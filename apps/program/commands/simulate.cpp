@@ -61,7 +61,7 @@ struct PixelCounts {
   }
 };
 
-// Where the mesh's frame is in the world; nothing: where it is, or its centre at the origin.
+// Pose of the mesh's frame in the world; empty: unchanged, or its centre at the origin.
 std::optional<Pose> parse_place(std::string text) {
   if (text.empty() || text == "center") return std::nullopt;
   if (text.starts_with("center,")) text.erase(0, 7);
@@ -79,7 +79,7 @@ void place(const Pose& T_world_mesh, TriangleMesh& mesh) {
   }
 }
 
-// Whether a pixel looks at the mesh, and not all of them at the room alone.
+// Whether any pixel shows the mesh, and not only the room.
 bool sees_mesh(const SurfaceScene& scene, const Sensor& sensor,
                const std::vector<Eigen::Vector3d>& rays, const Pose& T_world_camera) {
   const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
@@ -100,9 +100,9 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   }
 }
 
-// Most meshes that are far too large are in millimetres; what is under the table is not seen.
+// A mesh that is far too large is usually in millimetres. Parts below the table are not visible.
 void warn_of_place(const Options& options, const Box& box, const Sensor& sensor) {
-  constexpr double kTooLarge = 10;  // times what the sensor sees
+  constexpr double kTooLarge = 10;  // relative to the sensor's range
   if (const double side = longest_side(box); side > kTooLarge * sensor.max_range) {
     std::fprintf(stderr,
                  "viewgain: warning: %s is %s m long, but the sensor's range ends at %s m. Is it "
@@ -140,7 +140,7 @@ void simulate(const Options& options) {
   const SimulatedSensor camera(scene, sensor, simulation_config(options.sensing, noise, sensor),
                                exec);
   warn(suspect_pose_sigma(noise.pose, sensor.working_distance), "--noise pose");
-  std::vector<Pose> poses, reported;  // one a frame
+  std::vector<Pose> poses, reported;  // one per frame
   for (std::size_t view = 0; view < source.poses.size(); ++view) {
     const Pose& pose = source.poses[view];
     poses.insert(poses.end(), options.frames_per_view, pose);

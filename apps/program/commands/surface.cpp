@@ -29,7 +29,8 @@
 namespace viewgain::app {
 namespace {
 
-constexpr double kSteepest = 80 * std::numbers::pi / 180;  // at which a sample counts as seen [rad]
+// Largest angle at which a sample counts as seen [rad].
+constexpr double kSteepest = 80 * std::numbers::pi / 180;
 
 struct Options {
   CommonOptions common;
@@ -59,7 +60,7 @@ std::shared_ptr<const SurfaceScene> truth_of(const Options& options, const ExecC
   return std::make_shared<const SurfaceScene>(std::move(mesh), exec);
 }
 
-// Which samples any of the views has in sight.
+// Marks the samples that any of the views sees.
 std::vector<std::uint8_t> seen_samples(const GroundTruth& truth, const SurfaceScene& mesh,
                                        const std::vector<Pose>& views, const Sensor& sensor,
                                        const ExecConfig& exec) {
@@ -76,7 +77,7 @@ std::vector<std::uint8_t> seen_samples(const GroundTruth& truth, const SurfaceSc
   return seen;
 }
 
-// Of the samples visible are those that the map's views have in sight; NaN without any.
+// Samples count as visible if a view of the map sees them; NaN if there are none.
 QualityFigures figures_of(const SurfaceScene& mesh, const BeliefGrid& map,
                           const SurfaceMesh& surface, const std::vector<FusedPoint>& points,
                           const ExecConfig& exec) {
@@ -108,7 +109,7 @@ void print(const QualityFigures& figures, double voxel_size) {
   std::printf("%s", consistency_text(figures.consistency).c_str());
 }
 
-// A truth that lies elsewhere than the map, or is much larger.
+// Warns of a reference mesh that lies elsewhere than the map or is much larger.
 void warn_of_place(const Options& options, const TriangleMesh& truth, const BeliefGrid& grid) {
   constexpr double kTooLarge = 10;  // times the map
   const Box box = bounds_of(truth), map = grid.workspace();

@@ -25,10 +25,10 @@ std::string wanted_text(const Shape& wanted) {
   return text + (wanted.size() == 1 ? ",)" : ")");
 }
 
-// Does an array of another library, which has __dlpack__, lie where the CPU cannot read it?
+// Whether an array of another library (with __dlpack__) is in memory that the CPU cannot read.
 bool is_elsewhere(const py::handle& value) {
   if (!py::hasattr(value, "__dlpack_device__")) return false;
-  // Of DLPack's codes: the CPU, and memory that CUDA and ROCm have pinned for it.
+  // DLPack's codes for CPU memory, and for memory pinned by CUDA and ROCm.
   constexpr std::array<int, 3> kReadable{1, 3, 11};
   const auto device = value.attr("__dlpack_device__")().cast<std::pair<int, int>>();
   return std::find(kReadable.begin(), kReadable.end(), device.first) == kReadable.end();
@@ -251,7 +251,7 @@ std::string writable_file(const py::handle& value) {
   if (folder.empty()) folder = ".";
   if (!std::filesystem::exists(folder, error)) raise_os_error(ENOENT, folder.string());
   if (!std::filesystem::is_directory(folder, error)) raise_os_error(ENOTDIR, folder.string());
-  // The file is written beside its name first.
+  // A temporary file is written to the same folder first.
   if (::access(folder.c_str(), W_OK | X_OK) != 0) raise_os_error(errno, folder.string());
   return path;
 }

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{50};
 
-// What the working thread tells the waiting one.
+// Messages from the working thread to the waiting one.
 struct Mailbox {
   std::mutex mutex;
   std::condition_variable finished;
@@ -31,7 +31,7 @@ struct Mailbox {
 
 using Count = std::pair<std::size_t, std::size_t>;  // done, total
 
-// Whether the progress function's answer asks for a stop. Throws what its truth value raises.
+// Whether the progress function's result requests a stop. Passes on exceptions of its truth value.
 bool asks_for_stop(const py::object& answer) {
   if (answer.is_none()) return false;
   const int truth = PyObject_IsTrue(answer.ptr());
@@ -39,12 +39,12 @@ bool asks_for_stop(const py::object& answer) {
   return truth == 0;
 }
 
-// Throws what Python's signal handlers raise.
+// Passes on exceptions of Python's signal handlers.
 void check_signals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
-// Calls the progress function. Throws what it raises.
+// Calls the progress function. Passes on its exceptions.
 void tell(Control* control, Count now, std::optional<Count>& told, std::stop_source& stop) {
   if (control == nullptr || control->progress.is_none()) return;
   told = now;
@@ -60,7 +60,7 @@ void run_batch(Control* control, const std::function<void(const BatchControl&)>&
   Mailbox box;
   std::stop_source stop;
   std::optional<Count> told;
-  // A stop, from whichever thread, must not wait for the next look.
+  // A stop from any thread takes effect immediately, not only at the next check.
   const std::stop_callback forward(
       control != nullptr ? control->stop.get_token() : std::stop_token(),
       [&] { stop.request_stop(); });
@@ -73,7 +73,7 @@ void run_batch(Control* control, const std::function<void(const BatchControl&)>&
       box.total = total;
     };
   }
-  std::exception_ptr raised;  // by Python
+  std::exception_ptr raised;  // exception from Python
   {
     const WithoutGil without_gil;
     std::jthread worker([&] {
@@ -118,8 +118,8 @@ Parameters
 ----------
 progress : callable, optional
     Called with ``(done, total)`` on the calling thread about every 50 ms and at the end; for an
-    empty batch with ``(0, 0)``. A false result other than ``None`` (``False``, ``numpy.False_``, 0)
-    stops the call; an exception stops it too and is raised from it.
+    empty batch with ``(0, 0)``. The call stops if the result is false but not ``None`` (``False``,
+    ``numpy.False_``, 0). An exception also stops the call, which then raises it.
 
 Notes
 -----

@@ -47,13 +47,14 @@ sensor : Sensor
 background_radius : float
     Radius of a diffuse sphere around the origin that stands for the room [m]; 0: none.
 noise : bool
-    Gaussian noise along the ray and of the amplitude, from the sensor's model.
+    Add Gaussian noise along the ray and noise of the amplitude, from the sensor's model.
 lateral_noise : bool
-    Displaces readings across their rays with the model's lateral sigma.
+    Shift rays sideways by a Gaussian with the model's lateral sigma.
 scale_error : float
-    Ranges read 1 + scale_error times the true value.
+    Relative error of all ranges: measured ranges are 1 + scale_error times the true ones.
 sub_rays : int
-    Rays per pixel and side, 1 to 16; returns mix for sensors with a modulation frequency.
+    Traces sub_rays**2 rays per pixel, 1 to 16; the returns mix for sensors with a modulation
+    frequency.
 seed : int
     Seed of the noise.
 support_plane : float, optional
@@ -64,8 +65,8 @@ num_threads : int
 Notes
 -----
 ``acquire`` may run in many threads at once and releases the GIL. Cost of a frame: linear in pixels
-and sub_rays**2, 2 ms for 176x144 pixels on two threads; of the constructor: grows with the
-triangles.)");
+and sub_rays**2, 2 ms for 176x144 pixels on two threads. The cost of the constructor grows with the
+number of triangles.)");
   refuse_pickling(type);
   type.def(py::init([](const py::object& vertices, const py::object& triangles,
                        const Given<Sensor>& of, double background_radius, bool noise,
@@ -121,7 +122,7 @@ SimulatedFrame)")
 
 namespace {
 
-// The entries of a matrix [px] that must be 0 or 1: rounding of a calibration's file is no fault.
+// Tolerance for matrix entries that must be 0 or 1, for rounding in calibration files [px].
 constexpr double kExact = 1e-9;
 
 PinholeCamera camera_of_matrix(const py::object& matrix, int width, int height,

@@ -27,8 +27,7 @@ namespace viewgain::python {
 
 namespace {
 
-// So few poses are through before anybody could wait for Ctrl-C; a thread for them would cost more
-// than they do.
+// So few poses finish before Ctrl-C could matter, and a thread would cost more than they do.
 constexpr std::size_t kFewPoses = 8;
 
 py::array_t<std::int64_t> index_array(const std::vector<std::size_t>& indices) {
@@ -105,7 +104,7 @@ std::unique_ptr<Evaluator> with_scene(const Evaluator& self, const Given<Scene>&
               outside_gil([&] { return self.evaluator.with_scene(scene.scene); }));
 }
 
-// What most evaluations begin with: the poses, and a warning if they do not look at the map.
+// Converts the poses, and warns if they do not look at the map.
 PoseBatch batch_of(const Evaluator& self, const py::object& T_world_camera, bool strict = false) {
   PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", strict);
   const auto& scene = self.scene.cast<const Scene&>().scene;
@@ -143,7 +142,7 @@ py::object evaluate_detailed(const Evaluator& self, const py::object& T_world_ca
   return scalar_or_array(views);
 }
 
-// What best() and race() may subtract and ask instead of the gain.
+// Costs and custom gain for best() and race().
 struct Worth {
   std::vector<double> costs;
   std::optional<PythonMeasure> measure;
@@ -195,8 +194,7 @@ py::object best_set(const Evaluator& self, const py::object& T_world_camera, std
                set.complete);
 }
 
-// The way between poses by a table, or by a function of Python's to which the start is -1; none:
-// none.
+// Path costs from a table, or from a Python function for which the start is -1; empty for None.
 WayCost way_of(const py::object& way, std::size_t poses) {
   if (way.is_none()) return {};
   if (PyCallable_Check(way.ptr()) == 0) {

@@ -20,7 +20,7 @@
 namespace viewgain::python {
 namespace {
 
-// Of an array (n, columns), or of None.
+// Calls f for each row of an array (n, columns); None has no rows.
 template <typename F>
 void for_each_row(const py::object& given, const char* name, py::ssize_t columns, const F& f) {
   if (given.is_none()) return;
@@ -56,14 +56,14 @@ ReachRegion region_of(const py::object& boxes, const py::object& shells,
   return region;
 }
 
-// By value; a predicate is the same as itself alone.
+// Equality by value; regions with a predicate are equal only to themselves.
 bool is_same(const ReachRegion& a, const ReachRegion& b) {
   if (&a == &b) return true;
   return !a.predicate && !b.predicate && a.boxes == b.boxes && a.shells == b.shells &&
          a.half_spaces == b.half_spaces && a.poses == b.poses && a.tolerance == b.tolerance;
 }
 
-// Of the constructor. A predicate is a function, which may not be pickled.
+// Keywords of the constructor. Refuses a predicate, because functions cannot always be pickled.
 py::dict keywords_of(const py::object& self) {
   const auto& region = self.cast<const ReachRegion&>();
   if (region.predicate) throw py::type_error("a ReachRegion with a predicate cannot be pickled");
@@ -91,8 +91,8 @@ void bind_reach(py::module_& module) {
       bound_class<ReachRegion>(module, "ReachRegion",
                                R"(Region of camera poses that a robot can reach, world frame.
 
-A pose is reachable if all conditions that are present hold: its centre lies in one of the boxes, in
-one of the shells and in all half-spaces; it is one of the poses; and the predicate returns true.
+A pose is reachable if it meets every condition that is given: its centre lies in one of the boxes,
+in one of the shells and in all half-spaces; it is one of the poses; and the predicate returns true.
 
 Parameters
 ----------
@@ -111,8 +111,9 @@ predicate : callable, optional
 
 Notes
 -----
-Regions without a predicate are equal by value and can be pickled; one with a predicate only equals
-itself. Holds the GIL, except for files. Cost: about 10 ns per part and pose.)");
+Regions without a predicate are equal by value and can be pickled; a region with a predicate only
+equals itself. Holds the GIL, except to read and write files. Cost: about 10 ns per part and
+pose.)");
   pickle_as_call(type, &keywords_of);
   type.def(py::init(&region_of), py::kw_only(), "boxes"_a = py::none(), "shells"_a = py::none(),
            "half_spaces"_a = py::none(), "poses"_a = py::none(), "distance"_a = tolerance.distance,
@@ -152,7 +153,7 @@ ndarray, (...), bool
 
 namespace {
 
-// Codes of Infeasibility, one a pose.
+// Codes of Infeasibility, one per pose.
 py::array_t<std::uint8_t> codes_of(const FeasibilityChecker& self, const py::object& T_world_camera,
                                    const py::object& taken) {
   const PoseBatch batch = pose_batch(T_world_camera, "T_world_camera", false);
@@ -180,17 +181,17 @@ void bind_feasibility(py::module_& module) {
   auto type = bound_class<FeasibilityChecker>(module, "FeasibilityChecker",
                                               R"(Checks which camera poses are possible in a scene.
 
-The sensor's housing, a box, must not overlap voxels that are not free, obstacles or the scene's
-support plane; the pose must be reachable and not taken yet. Space outside the workspace counts as
-free. Arguments after the scene are keyword-only.
+The sensor's housing is a box. It must not overlap voxels that are not free, obstacles or the
+scene's support plane. The pose must be reachable and not taken yet. Space outside the workspace
+counts as free. Arguments after the scene are keyword-only.
 
 Parameters
 ----------
 scene : VoxelScene
 body_size : array_like, (3,), optional
-    Width, height, depth of the housing, flange frame [m]; default: the sensor's, or an SR4000's. It
-    is centred on the flange's z axis and extends from z = 0 to its depth; without T_flange_camera
-    the camera is in the middle of its front face.
+    Width, height, depth of the housing, flange frame [m]; default: the sensor's, or an SR4000's.
+    The housing is centred on the flange's z axis and extends from z = 0 to its depth. Without
+    T_flange_camera the camera is in the middle of the front face.
 T_flange_camera : array_like, (4, 4), optional
     Mounting of the camera on the flange; default: the sensor's.
 clearance : float
@@ -199,15 +200,15 @@ reach : ReachRegion, optional
 sensor : Sensor, optional
     If given, rejects views where much of the image would be nearer than its min_range.
 max_near_share : float
-    Largest share of the rays that end in the map that may end nearer than min_range.
+    Of the rays that end in the map, the largest fraction that may end nearer than min_range.
 num_threads : int
-    For arrays of poses; 0: all hardware threads. They call the predicate of ``reach`` one at a
-    time.
+    For arrays of poses; 0: all hardware threads. The predicate of ``reach`` is called by one thread
+    at a time.
 
 Notes
 -----
 Methods may run in many threads at once and release the GIL. Cost: 0.5 to 1 µs per pose; with a
-sensor 10 to 50 µs where much is near, for the SR4000's 400 rays.)");
+sensor 10 to 50 µs for an SR4000 close to the map.)");
   refuse_pickling(type);
   type.def(py::init([](const Given<Scene>& scene, const py::object& body_size,
                        const py::object& T_flange_camera, double clearance,

@@ -25,7 +25,7 @@
 namespace viewgain::python {
 namespace {
 
-// A preset's name or the file's.
+// Name of a preset or a file.
 std::string preset_or_file(const py::object& value) {
   std::string text = file_path(value);
   return is_sensor_file(text) ? readable_file(value) : text;
@@ -82,7 +82,7 @@ py::list suspicions(const Given<Sensor>& sensor, const py::sequence& frames) {
     if (frame.size() < 2) throw py::value_error("each of frames must be (depth, T_world_camera)");
     const Pose pose =
         pose_batch(doubles(frame[1], "T_world_camera", {4, 4}), "T_world_camera", false).poses[0];
-    if (!rigid_pose(pose)) continue;  // it is lost
+    if (!rigid_pose(pose)) continue;  // the pose is lost
     images.push_back(depth_frame_of_any_unit(*sensor, frame[0]));
     poses.push_back(pose);
   }
@@ -130,7 +130,8 @@ Runs without the GIL. Cost: 0.1 ms.
 Parameters
 ----------
 preset_or_file : str or path-like
-    A name that ends in .toml is a file, such as those of ``save`` and the program's ``simulate``.
+    A name that ends in .toml is a file, such as one written by ``save`` or the program's
+    ``simulate``.
 
 Returns
 -------
@@ -171,7 +172,7 @@ ReachRegion)")
             outside_gil([&, file = writable_file(path)] { write_reach_toml(file, self); });
           },
           "path"_a,
-          R"(Writes a .toml file; poses go to NAME.poses.txt next to it, which replaces an existing one.
+          R"(Writes a .toml file; poses go to NAME.poses.txt next to it, replacing an existing file.
 
 A region with a predicate raises ValueError.
 
@@ -188,14 +189,14 @@ void bind_frames(py::module_& module) {
       module, "FrameSequence",
       R"(A folder of depth frames, read on access. Made by ``read_frames``.
 
-``frames[i]`` and iteration give a ``Frame``: its depth is corrected with the sensor's
-range_calibration, its pose is not finite if it is lost or missing. ``ViewPlanner.add_frame`` reads,
+``frames[i]`` and iteration give a ``Frame``. Its depth is corrected with the sensor's
+range_calibration. Its pose is NaN if it is missing or invalid. ``ViewPlanner.add_frame`` reads,
 checks and adds a frame.
 
 Notes
 -----
-Reads a frame on access, without the GIL; many threads may read at once. Cost: linear in the pixels
-of a frame; ``poses`` is a copy.)");
+Frames are read without the GIL; many threads may read at once. Cost: linear in the pixels of a
+frame; ``poses`` is a copy.)");
   refuse_pickling(type);
   type.def(
           "__len__", [](const FrameSequence& self) { return self.images.size(); },
@@ -203,7 +204,7 @@ of a frame; ``poses`` is a copy.)");
       .def(
           "__iter__",
           [](const py::object& self) {
-            (void)py::cast<const FrameSequence&>(self);  // refuses what was never initialised
+            (void)py::cast<const FrameSequence&>(self);  // refuses an uninitialised object
             return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
           },
           "The frames in order.\n\nReturns\n-------\niterator")
@@ -241,9 +242,9 @@ Reads all poses and no image, without the GIL. Cost: linear in the frames.
 Parameters
 ----------
 folder : path-like
-    With frame-NNNNNN.depth.png, 16 bit, and either poses.txt (TUM) and sensor.toml, as from the
-    program's ``simulate``, or frame-NNNNNN.pose.txt and camera-intrinsics.txt, as in recordings.
-    Its frames.toml states how to read them; a UserWarning lists assumptions.
+    Contains frame-NNNNNN.depth.png (16 bit), and either poses.txt (TUM) and sensor.toml, as written
+    by the program's ``simulate``, or frame-NNNNNN.pose.txt and camera-intrinsics.txt, as in
+    recordings. frames.toml, if present, states how to read them. A UserWarning lists assumptions.
 sensor : str or path-like, optional
     A preset's name or a .toml file; default: the folder's own.
 depth_scale : float, optional
@@ -259,17 +260,17 @@ FrameSequence)");
   module.def("suspect_frames", &suspicions, "sensor"_a, "frames"_a,
              R"(Probable mistakes in units, conventions or intrinsics of frames of one scene.
 
-Searches for the readings of a dozen frames in the others, as given and under common mistakes,
-including other focal lengths. Ignores frames without overlap. Runs without the GIL. Cost: up to
-0.7 s.
+Compares the surfaces of a dozen frames, as given and as they would be under common mistakes,
+including other focal lengths. Ignores frames without overlap. Runs without the GIL. Cost: up to 0.7
+s.
 
 Parameters
 ----------
 sensor : Sensor
     For example ``frames.sensor`` of ``read_frames``.
 frames : sequence of frames
-    A FrameSequence, or pairs (depth, T_world_camera) as for ``ViewPlanner.add``, with depths in any
-    unit. Frames without a rigid pose are ignored.
+    A FrameSequence, or pairs (depth, T_world_camera) as for ``ViewPlanner.add``, except that depths
+    may be in any unit. Frames without a rigid pose are ignored.
 
 Returns
 -------

@@ -52,7 +52,7 @@ py::tuple order_stops_of(const py::object& costs) {
   return py::make_tuple(stops, tour.cost);
 }
 
-// Of the docstrings: what all lattices have in common.
+// Parts of the docstrings that all lattices share.
 constexpr const char* kCenter = R"(center : array_like, (3,)
     World frame [m].
 )";
@@ -60,7 +60,7 @@ constexpr const char* kReturns = R"(
 Returns
 -------
 ndarray, (n, 4, 4), float64
-    T_world_camera, count of them: 1 to 100 million.)";
+    T_world_camera; count is 1 to 100 million.)";
 
 std::string doc_of(const char* summary, const char* parameters) {
   return std::string(summary) +
@@ -95,7 +95,7 @@ eyes : array_like, (..., 3)
 target : array_like, (3,) or the shape of eyes
     Point on each optical axis, world frame [m].
 up : array_like, (3,)
-    Direction in the world, of any length, that image up approximates.
+    Direction of image up, as closely as possible, in the world frame; of any length.
 
 Returns
 -------
@@ -111,13 +111,13 @@ Parameters
 ----------
 costs : array_like, (k + 1, k)
     Row i, column j: cost of the path from stop i to stop j in a unit of your choice, such as metres
-    or seconds; last row: from the current pose. At least 0; inf: no path. Ignores the diagonal of
-    the first k rows.
+    or seconds. The last row has the costs from the current pose. At least 0; inf: no path. The
+    diagonal of the first k rows is ignored.
 
 Returns
 -------
 stops : ndarray, (k,), int64
-    All stops in order; empty if no order without infinite costs was found.
+    All stops in order; empty if every order has infinite cost.
 cost : float
     Total cost; inf if no order was found.)");
   def_lattice<sphere_poses>(

@@ -87,7 +87,7 @@ std::unique_ptr<Planner> make(const Given<Sensor>& of, double voxel_size,
   return std::make_unique<Planner>(sensor, std::move(planner));
 }
 
-// A pose that may be lost, and is NaN then: numbers in the right shape.
+// A pose that may be invalid, and is then NaN; only the shape is checked.
 Pose loose_pose(const py::object& T_world_camera) {
   return one_pose(T_world_camera, "T_world_camera", false);
 }
@@ -102,7 +102,7 @@ py::object to_python(const AddedView& added) {
                std::string(frame_verdict_name(added.update.verdict)));
 }
 
-// What add() came to, and what may be wrong with the frame or its pose.
+// Result of add(), and suspected faults of the frame or its pose.
 struct Judged {
   AddedView added{};
   Suspicion suspicion{};

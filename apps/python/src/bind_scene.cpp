@@ -34,8 +34,8 @@ Obstacles obstacles_of(const py::object& boxes, const py::iterable& meshes) {
 
 namespace {
 
-// A number, the rate everywhere, a path of a .vdb file, or an array of a rate for each voxel of the
-// workspace.
+// Hazard from a number (a constant rate), a path of a .vdb file, or an array with one rate per
+// voxel.
 HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_size,
                        const py::object& hazard) {
   HazardConfig config;
@@ -72,7 +72,7 @@ void bind_scene(py::module_& module) {
   auto type = bound_class<Scene>(module, "VoxelScene",
                                  R"(An immutable snapshot of a grid for ray tracing.
 
-The grid may change or go afterwards. Any number of evaluators and threads may share a scene.
+Later changes to the grid do not affect it. Any number of evaluators and threads may share a scene.
 
 Parameters
 ----------
@@ -82,23 +82,23 @@ boxes : array_like, (n, 2, 3), optional
 meshes : iterable of (vertices, triangles), optional
     Obstacles as triangles: (n, 3), world frame [m], and (m, 3) indices.
 support_plane : float, optional
-    Height z of an infinite table [m]. Bodies stay above it; it ends rays of the gains "surface" and
+    Height z of an infinite table [m]. Bodies stay above it. It ends rays of the gains "surface" and
     "combined".
 object_size : float, optional
     Longest side of the object [m], for the surface gain; default: that of its seen part.
 hazard : float, path or array_like, the grid's shape, optional
-    Rate at which a ray meets the surface in unknown voxels [1/m], for the surface gain: constant,
-    from a .vdb file (its float grid "hazard", or the only one), or one per voxel; default: from the
-    distance to seen surface and the elevation above it.
+    Rate at which a ray meets the surface in unknown voxels [1/m], for the surface and combined
+    gains: one number, one number per voxel, or a .vdb file with a float grid "hazard" or only one
+    float grid. Default: from the location relative to known surface.
 num_threads : int
     Threads of the build; 0: all hardware threads.
 
 Notes
 -----
-Releases the GIL while building a scene of at most 2**23 blocks of voxels. Cost: about 0.2 ms per
-1,000 blocks that are not free; some ms more when an evaluator of the surface or combined gain first
-needs it.
-``update`` is several times faster if little has changed; properties take constant time.)");
+Releases the GIL while building. A scene can have at most 2**23 blocks of voxels. Cost: about 0.2 ms
+per 1,000 blocks that are not free, and some ms when an evaluator of the surface or combined gain
+first uses the scene. ``update`` is several times faster if little has changed; properties take
+constant time.)");
   refuse_pickling(type);
   type.def(py::init([](const Given<SharedGrid>& grid, const py::object& boxes,
                        const py::iterable& meshes, std::optional<double> support_plane,

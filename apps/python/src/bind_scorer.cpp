@@ -30,20 +30,20 @@
 namespace viewgain::python {
 namespace {
 
-/// Python's ViewScorer. Its map is looked at by many threads or changed by one; gains need no lock.
+/// Python's ViewScorer. Many threads may read its map, or one may change it; gains need no lock.
 class Scorer {
  public:
   Scorer(ViewScorer scorer, py::dict settings)
       : scorer_(std::move(scorer)), settings_(std::move(settings)) {}
 
   [[nodiscard]] const ViewScorer& get() const noexcept { return scorer_; }
-  /// The keywords that it was made with, the map's not.
+  /// The keywords of its constructor, without those of the map.
   [[nodiscard]] const py::dict& settings() const noexcept { return settings_; }
 
-  /// Without the GIL; f must not touch Python.
+  /// Calls f without the GIL; f must not touch Python.
   template <typename F>
   auto read(const F& f) const {
-    const WithoutGil without_gil;  // before the lock, or two threads hold one each
+    const WithoutGil without_gil;  // before the lock, to avoid a deadlock
     const std::shared_lock lock(mutex_);
     return f(scorer_);
   }
@@ -69,7 +69,7 @@ std::unique_ptr<Scorer> make_scorer(
     std::optional<double> object_size, const py::object& body_size, double clearance,
     bool jump_edges, int coarsest, const py::object& fine, int finest, const py::object& map,
     const std::string& tracer, int num_threads) {
-  const py::tuple meshes(given_meshes), weights(given_weights);  // of iterators: once
+  const py::tuple meshes(given_meshes), weights(given_weights);  // iterators can be read only once
   Sensor sensor = *of;
   ScorerConfig config;
   config.voxel_size = voxel_size.value_or(config.voxel_size);
@@ -110,7 +110,7 @@ std::unique_ptr<Scorer> make_scorer(
                       exec);
   });
   warn(suspicions_of_set_up(scorer, {}));
-  // Copies, which stay as they are when the caller's arrays change.
+  // Copies, so that later changes of the caller's arrays have no effect.
   const py::object settings = py::module_::import("copy").attr("deepcopy")(
       py::dict("sensor"_a = py::cast(*of), "support_plane"_a = support_plane, "boxes"_a = boxes,
                "meshes"_a = meshes, "gain"_a = gain, "criterion"_a = criterion,

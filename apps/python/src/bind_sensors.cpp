@@ -196,19 +196,20 @@ range_calibration : array_like, (n, 2), optional
     Systematic error: rows of measured range and measured minus true range [m], by increasing
     measured range. ``read_frames`` subtracts it.
 pose_sigma : sequence of float, (2,), optional
-    Standard deviations of the poses of frames about the camera centre: of the position per axis
-    [m], and per component of the rotation vector [rad]. Maps and gains add it to each reading.
+    Standard deviations of the poses of frames: of the camera centre, per axis [m], and of the
+    rotation about it, per component of the rotation vector [rad]. Maps and gains add this
+    uncertainty to each measured depth.
 scale_sigma : float, optional
-    Relative standard deviation of one factor common to all ranges. More readings do not reduce it;
-    see ``BeliefGrid.points``.
+    Standard deviation of a scale error, a relative error that all ranges share, so that more
+    readings do not reduce it; see ``BeliefGrid.points``.
 out_of_range : str, optional
-    Meaning of 65535 in its depth images: carve (free up to max_range) or invalid (no reading);
-    default: from the layout of their folder.
+    Meaning of 65535 in the sensor's depth images: carve (free up to max_range) or invalid (no
+    reading); default: depends on the layout of their folder.
 
 Notes
 -----
-Equal by value; can be pickled. Invalid noise parameters raise ValueError. Holds the GIL. Cost: some
-µs; linear in the rows of range_calibration.)");
+Sensors are equal by value and can be pickled. Invalid noise parameters raise ValueError. Holds the
+GIL. Cost: some µs, and linear in the rows of range_calibration.)");
   pickle_by_attributes(type, {"camera", "min_range", "max_range", "working_distance", "noise",
                               "name", "T_flange_camera", "body_size", "range_calibration",
                               "pose_sigma", "scale_sigma", "out_of_range"});

@@ -104,13 +104,14 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 ndarray, (height', width'), structured
-    One per ray, image size divided by the stride, rounded up: kind (index into ``HIT_KIND_NAMES``),
-    voxel (int32, 3; on the lattice), range along the ray [m], inf: nothing.)")
+    One per ray; the size is the image size divided by the stride, rounded up. Fields: kind (index
+    into ``HIT_KIND_NAMES``), voxel (int32, 3; on the lattice), range along the ray [m] (inf:
+    nothing was hit).)")
       .def(
           "depth", &depth, "T_world_camera"_a,
           R"(The depth image of a view of the map: each ray ends in the first voxel that is not free.
 
-Unknown voxels end rays too. Cost: as ``trace``, and with distortion its removal per pixel.
+Unknown voxels end rays too. Cost: that of ``trace``, and with lens distortion its removal.
 
 Parameters
 ----------
@@ -119,7 +120,7 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 ndarray, (height', width'), float32
-    Along the optical axis [m], inf: nothing; size as for ``trace``.)")
+    Along the optical axis [m]; inf: nothing was hit. Size as for ``trace``.)")
       .def("contributions", &contributions, "T_world_camera"_a,
            R"(Explains a gain: the contribution of each voxel.
 
@@ -132,9 +133,10 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 ndarray, (n,), structured
-    voxel (int32, 3; on the lattice, subtract the grid's ``min_index`` for arrays), state, rays that
-    end in it, expected_rays (surface and combined gains: the sum of their probabilities), gain in
-    the unit of ``evaluate``. Largest gain first; the gains add up to that of the view.)")
+    Fields: voxel (int32, 3; on the lattice, subtract the grid's ``min_index`` for arrays), state,
+    rays (number of rays that end in the voxel; surface and combined gains: that reach it),
+    expected_rays (surface and combined gains: the sum of their probabilities), gain in the unit of
+    ``evaluate``. Largest gain first; the gains add up to that of the view.)")
       .def("outcomes", &outcomes, "T_world_camera"_a,
            R"(Where a view's rays end, to explain its gain. Cost: twice ``trace``.
 
@@ -145,29 +147,30 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 RayOutcomes
-    The counts add up to its ``rays``.)")
+    The other counts add up to ``rays``.)")
       .def("evaluate_own", &evaluate_own, "T_world_camera"_a, "measure"_a, py::kw_only(),
            "control"_a = py::none(),
-           R"(A custom gain: computes a number from the rays of a view.
+           R"(A custom gain: computes a number from the voxels that a view's rays hit.
 
-Slow: calls the function for one view after the other, with the GIL; C++'s ViewMeasure is faster.
-Cost: 1.4 times ``evaluate``, and one call of the function per pose.
+Calls the function for one view after the other, with the GIL; C++'s ViewMeasure is faster. Cost:
+1.4 times ``evaluate``, and one call of the function per pose.
 
 Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)
 measure : callable
     Takes T_world_camera (4, 4) and the hits of a view, a structured array (n,) with one row per ray
-    that ends in a voxel: voxel (int32, 3), state, readings (that ended in the voxel), information
-    (float32, 6: xx yy zz xy xz yz [1/m**2]), ray (pixel number, row-major, strided), range along
-    the ray [m], direction (unit, world frame). Returns a float. Its exceptions pass through.
+    that ends in a voxel: voxel (int32, 3), state, readings (number of measured depths that ended in
+    the voxel), information (float32, 6: xx yy zz xy xz yz [1/m**2]), ray (pixel number, row-major,
+    strided), range along the ray [m], direction (unit, world frame). Returns a float. Its
+    exceptions pass through.
 control : BatchControl, optional
 
 Returns
 -------
 ndarray, (...), float64
-    Results of measure; NaN for invalid poses and 0 for cameras in an occupied voxel, without a
-    call. A single pose gives a scalar.)");
+    Results of measure. For invalid poses (NaN) and cameras in an occupied voxel (0), measure is not
+    called. A single pose gives a scalar.)");
 }
 
 }  // namespace viewgain::python

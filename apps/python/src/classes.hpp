@@ -14,19 +14,18 @@
 
 namespace viewgain::python {
 
-// What every class of the package has in common: how it is made, used before it is made, and
-// pickled.
+// Common to all classes of the package: construction, use before construction, and pickling.
 
-/// Where pybind11 asks for memory for the value of an object that has none.
+/// Called when pybind11 needs memory for an object without a value.
 template <typename Class>
 [[noreturn]] void* refuse_uninitialized(std::size_t) {
   const auto name = pybind11::type::of<Class>().attr("__name__").template cast<std::string>();
   throw pybind11::type_error(name + ".__init__ has not been called on this object");
 }
 
-/// A class of the module. An object without a value, as X.__new__(X) makes one and as a subclass
-/// has before it calls super().__init__(), raises TypeError wherever it is used. Take such objects
-/// by reference or pointer, not by holder.
+/// A class of the module. Using an object before __init__ raises TypeError, for example after
+/// X.__new__(X), or in a subclass before super().__init__(). Take such objects by reference or
+/// pointer, not by holder.
 template <typename Class, typename... Options>
 [[nodiscard]] pybind11::class_<Class, Options...> bound_class(pybind11::module_& module,
                                                               const char* name, const char* doc) {
@@ -36,10 +35,10 @@ template <typename Class, typename... Options>
   return type;
 }
 
-// Every class says how it is pickled: what Python does by itself with the protocols 0 and 1 ends
-// the process, because pybind11's base class cannot be made alone.
+// Every class defines pickling, because Python's default with protocols 0 and 1 ends the process:
+// pybind11's base class cannot be constructed alone.
 
-/// Pickles, and copies, as a call of the class with the keywords of `keywords_of(self)`.
+/// Pickles and copies as a call of the class with the keywords of `keywords_of(self)`.
 template <typename Class, typename Keywords>
 void pickle_as_call(Class& type, Keywords keywords_of) {
   type.def("__reduce_ex__", [keywords_of](const pybind11::object& self, int) {
@@ -49,7 +48,7 @@ void pickle_as_call(Class& type, Keywords keywords_of) {
   });
 }
 
-/// With these attributes as keywords.
+/// As above, with these attributes as keywords.
 template <typename Class>
 void pickle_by_attributes(Class& type, std::vector<const char*> attributes) {
   pickle_as_call(type, [names = std::move(attributes)](const pybind11::object& self) {
@@ -59,7 +58,7 @@ void pickle_by_attributes(Class& type, std::vector<const char*> attributes) {
   });
 }
 
-/// Refuses by TypeError, as Python does for what cannot be pickled.
+/// Refuses pickling with TypeError, like Python for objects that cannot be pickled.
 template <typename Class>
 void refuse_pickling(Class& type) {
   type.def("__reduce_ex__", [](const pybind11::object& self, int) -> pybind11::object {

@@ -25,7 +25,7 @@
 
 namespace viewgain::python {
 
-/// Python's VoxelScene. Not the scene itself, because pybind11 holds no pointers to const.
+/// Python's VoxelScene. A wrapper, because pybind11 cannot hold pointers to const.
 struct Scene {
   std::shared_ptr<const VoxelScene> scene;
 };
@@ -51,7 +51,7 @@ struct Evaluator {
   [[nodiscard]] int height() const { return (sensor.camera.height - 1) / pixel_stride + 1; }
 };
 
-/// What a GainEvaluator's keywords say. Throws ValueError for those that do not go together.
+/// Settings from a GainEvaluator's keywords. Throws ValueError for incompatible ones.
 [[nodiscard]] GainConfig gain_config(const std::string& gain, const std::string& criterion,
                                      int pixel_stride, std::optional<double> prior_sigma,
                                      std::optional<double> min_range,
@@ -62,10 +62,10 @@ struct Evaluator {
 /// A BestViews of results.py. Needs the GIL.
 [[nodiscard]] py::object named_views(const BestViews& best);
 
-/// Adds what looks into single views: trace, depth, contributions, gains of the user's own.
+/// Adds functions for single views: trace, depth, contributions and custom gains.
 void bind_views(py::module_& module, py::class_<Evaluator>& evaluator);
 
-/// What a gain of the user's own sees of a ray.
+/// Data of a ray for a custom gain.
 struct OwnHitRow {
   std::array<std::int32_t, 3> voxel;
   std::uint8_t state;
@@ -76,8 +76,8 @@ struct OwnHitRow {
   std::array<double, 3> direction;
 };
 
-/// A Python callable as a gain; takes the GIL for each view. Throws TypeError for what cannot be
-/// called.
+/// A Python callable as a gain; takes the GIL for each view. Throws TypeError if it is not
+/// callable.
 class PythonMeasure : public ViewMeasure {
  public:
   explicit PythonMeasure(const py::object& callable) : call_(checked(callable)) {}
@@ -120,7 +120,7 @@ class PythonMeasure : public ViewMeasure {
   return std::optional<PythonMeasure>(std::in_place, measure);
 }
 
-/// Costs of a keyword that may be None, then empty. Throws ValueError for none at all.
+/// Costs of a keyword, empty for None. Throws ValueError for an empty array.
 [[nodiscard]] inline std::vector<double> costs_or_none(const py::object& costs) {
   if (costs.is_none()) return {};
   const Doubles given = doubles(costs, "costs", {-1});

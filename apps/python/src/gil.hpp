@@ -11,24 +11,24 @@
 
 namespace viewgain::python {
 
-// The GIL. A daemon thread that wants it back while the interpreter ends does not get it: Python up
-// to 3.13 calls pthread_exit there, which unwinds the stack, runs destructors that need the GIL and
-// aborts the process at the first noexcept function. Here such a thread stays where it is until the
-// process is gone, as Python itself does it from 3.14 on. pybind11's own guards do not.
+// Guards for the GIL. While the interpreter ends, a daemon thread does not get the GIL back: Python
+// up to 3.13 calls pthread_exit, which runs destructors that need the GIL, and aborts the process
+// at the first noexcept function. With these guards such a thread waits until the process ends, as
+// in Python 3.14. pybind11's own guards do not do this.
 
 /// Waits for the end of the process.
 [[noreturn]] inline void stay() {
   for (;;) ::pause();
 }
 
-/// Leaves the GIL as long as it lives. Make it with the GIL held.
+/// Releases the GIL while it exists. Create it with the GIL held.
 class WithoutGil {
  public:
   WithoutGil() : state_(PyEval_SaveThread()) {}
   ~WithoutGil() {
     try {
       PyEval_RestoreThread(state_);
-    } catch (...) {  // the unwinding of pthread_exit, which must not be swallowed: never leave
+    } catch (...) {  // unwinding of pthread_exit, which must not be caught: never leave
       stay();
     }
   }
@@ -39,14 +39,14 @@ class WithoutGil {
   PyThreadState* state_;
 };
 
-/// f() without the GIL, with which it is called; f must not touch Python.
+/// Calls f() without the GIL. Call it with the GIL; f must not touch Python.
 template <typename F>
 auto outside_gil(const F& f) {
   const WithoutGil without_gil;
   return f();
 }
 
-/// Holds the GIL as long as it lives, on any thread. For callbacks use with_gil.
+/// Holds the GIL while it exists, on any thread. For callbacks use with_gil.
 class WithGil {
  public:
   WithGil() noexcept : state_(ensure()) {}
@@ -55,8 +55,8 @@ class WithGil {
   WithGil& operator=(const WithGil&) = delete;
 
  private:
-  // PyGILState_Ensure asks nobody: when the interpreter has forgotten this thread it makes a state
-  // for it in an interpreter that is no more.
+  // PyGILState_Ensure does not check whether the interpreter still exists, and would make a state
+  // in an interpreter that has ended.
   static PyGILState_STATE ensure() noexcept {
     if (Py_IsInitialized() == 0) stay();
     try {
@@ -68,8 +68,8 @@ class WithGil {
   PyGILState_STATE state_;
 };
 
-/// f() with the GIL held, on any thread; exceptions of C++ pass. Python code in f may lose the GIL
-/// and not get it back, so the callers, who catch everything, are kept from that.
+/// Calls f() with the GIL, on any thread; C++ exceptions pass. Python code in f can lose the GIL
+/// and not get it back; the unwinding then never reaches the callers, which catch everything.
 template <typename F>
 auto with_gil(const F& f) {
   const WithGil guard;
@@ -80,8 +80,8 @@ auto with_gil(const F& f) {
   }
 }
 
-/// Calls a callable of Python's; throws py::error_already_set. Stops an unwinding before the
-/// arguments would be dropped without the GIL.
+/// Calls a Python callable; throws py::error_already_set. Stops an unwinding before the arguments
+/// would be destroyed without the GIL.
 template <typename... Args>
 pybind11::object call_python(const pybind11::object& callable, Args&&... args) {
   const pybind11::tuple tuple = pybind11::make_tuple(std::forward<Args>(args)...);
@@ -95,7 +95,7 @@ pybind11::object call_python(const pybind11::object& callable, Args&&... args) {
   return pybind11::reinterpret_steal<pybind11::object>(answer);
 }
 
-/// A callable of Python's that C++ may keep, copy and drop on any thread, with the GIL or without.
+/// A Python callable that C++ may keep, copy and destroy on any thread, with or without the GIL.
 class PythonCall {
  public:
   explicit PythonCall(pybind11::object callable)

@@ -20,9 +20,9 @@ class SharedGrid;
 struct Control;
 struct Scene;
 
-// Arguments of the package's own classes. What is of another class raises a TypeError that says
-// what is needed and where it comes from, instead of pybind11's list of signatures. Not for
-// functions with several signatures.
+// Arguments of the package's own classes. For another class, a TypeError states what is needed and
+// how to get it, instead of pybind11's list of signatures. Not for functions with several
+// signatures.
 
 /// An object of the class.
 template <typename Class>
@@ -38,7 +38,7 @@ struct GivenOrNone {
   operator Class*() const { return value; }
 };
 
-/// What an argument of the class is called wherever one is taken, and where one comes from.
+/// Name of arguments of the class in messages, and how to get one.
 struct ArgumentWords {
   const char *name, *source;
 };
@@ -98,7 +98,7 @@ struct type_caster<viewgain::python::Given<Class>> {
   operator viewgain::python::Given<Class>() const { return {value_}; }
 
  protected:
-  Class* value_ = nullptr;  // the object's, which Python keeps during the call
+  Class* value_ = nullptr;  // owned by the Python object, which exists during the call
 };
 
 template <typename Class>

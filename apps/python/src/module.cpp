@@ -23,7 +23,7 @@ void bind_control(py::module_&), bind_noise(py::module_&), bind_camera(py::modul
 
 namespace {
 
-// viewgain.Error. Alive as long as the process: exceptions may come until the very end.
+// viewgain.Error. Never destroyed, because exceptions can occur until the process ends.
 PyObject* error_type = nullptr;
 
 PyObject* python_type(ErrorCode code) {
@@ -32,11 +32,10 @@ PyObject* python_type(ErrorCode code) {
   return error_type;
 }
 
-// Debian's OpenVDB loads log4cplus, which starts threads as soon as it is loaded. A forked child
-// has none of them, but it has the exit handler that waits for them, for ever. What is registered
-// last runs first, so this one ends the process before it comes to that; Python has by then been
-// through its own end, atexit functions included. Handlers that the parent registered in C are left
-// out, which is how a child should end that did not exec.
+// Debian's OpenVDB loads log4cplus, which starts threads when it is loaded. A forked child does not
+// have these threads, but its exit handler waits for them forever. Handlers registered last run
+// first, so this one ends the process earlier; Python has then finished, including atexit
+// functions. C handlers of the parent are skipped, as they should be in a child that did not exec.
 void leave_at_exit() {
   const int failed = on_exit(
       [](int status, void*) {
@@ -60,7 +59,7 @@ void bind_errors(py::module_& module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& error) {
-      // The text may have a file's name in it, whose bytes need not be UTF-8.
+      // The text can contain a file name whose bytes are not UTF-8.
       const auto text = py::reinterpret_steal<py::object>(PyUnicode_DecodeFSDefault(error.what()));
       if (text) PyErr_SetObject(python_type(error.code()), text.ptr());
     }
@@ -74,12 +73,13 @@ PYBIND11_MODULE(_viewgain, module) {
   using namespace viewgain::python;
   module.doc() = "The C++ part of viewgain. Import viewgain instead.";
   module.attr("__version__") = VIEWGAIN_PYTHON_VERSION;
-  // Classes and functions are of the package that users import: so say reprs, help and pickles.
+  // Sets the module of classes and functions to the package that users import, for repr, help and
+  // pickles.
   const pybind11::object name = module.attr("__name__");
   module.attr("__name__") = "viewgain";
   pybind11::module_::import("os").attr("register_at_fork")(
       pybind11::arg("after_in_child") = pybind11::cpp_function(&leave_at_exit));
-  // In the order in which they need each other.
+  // In order of dependency.
   for (const auto bind :
        {bind_errors, bind_control, bind_noise, bind_camera, bind_sensors, bind_generators,
         bind_grid, bind_scene, bind_integrator, bind_cloud, bind_reach, bind_feasibility,

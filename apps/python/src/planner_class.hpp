@@ -18,18 +18,18 @@
 
 namespace viewgain::python {
 
-/// Python's planner: whoever calls it while it is at work is told so.
+/// Python's planner. A concurrent call raises RuntimeError.
 class Planner {
  public:
   Planner(Sensor of, ViewPlanner planner) : sensor_(std::move(of)), planner_(std::move(planner)) {}
 
   [[nodiscard]] const Sensor& sensor() const noexcept { return sensor_; }
-  /// For people; asks nothing of a planner that is at work.
+  /// Text for repr(). Does not query a planner that is busy.
   [[nodiscard]] std::string text() const {
     return std::string("<ViewPlanner of ").append(sensor_.name).append(busy_ ? ", at work>" : ">");
   }
 
-  /// Calls f(ViewPlanner&); with the GIL, which f may let go.
+  /// Calls f(ViewPlanner&) with the GIL, which f may release.
   template <typename F>
   auto use(const F& f) {
     if (busy_.exchange(true)) {
@@ -38,7 +38,7 @@ class Planner {
     const Free free{busy_};
     return f(planner_);
   }
-  /// The same without the GIL; f must not touch Python.
+  /// As above without the GIL; f must not touch Python.
   template <typename F>
   auto run(const F& f) {
     return use([&](ViewPlanner& planner) {
@@ -58,10 +58,10 @@ class Planner {
   std::atomic<bool> busy_{false};
 };
 
-/// VIEWPOINTSGENERATION by a function of Python's.
+/// VIEWPOINTSGENERATION by a Python function.
 class PythonGeneration : public ViewpointGeneration {
  public:
-  /// The map is its planner's.
+  /// `scorer` is that of the planner.
   PythonGeneration(py::object callable, std::string name, const ViewScorer& scorer)
       : call_(std::move(callable)), name_(std::move(name)), scorer_(scorer) {}
 

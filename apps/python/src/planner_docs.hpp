@@ -4,13 +4,13 @@
 
 namespace viewgain::python {
 
-// What the class ViewPlanner and its methods say of themselves.
+// Docstrings of the class ViewPlanner.
 
 inline constexpr const char* kPlannerDoc =
-    R"(Next-best views step by step, for a robot's program: frames in, views out.
+    R"(Next-best views step by step: takes frames and proposes views, for a robot's program.
 
-``add`` a frame, ``propose`` candidates, ``rank`` them and ask ``should_stop``. Then move, report
-the result with ``tried``, and ``add`` the next frame.
+``add`` a frame, ``propose`` candidates, ``rank`` them and ask ``should_stop``. Then move the
+camera, report the result with ``tried``, and ``add`` the next frame.
 
 Parameters
 ----------
@@ -18,17 +18,17 @@ sensor : Sensor
 voxel_size : float
     [m]
 workspace : array_like, (2, 3)
-    Lowest and highest corner of the mapped space, grid frame [m]. Start it at the table, because
-    the space below stays unknown.
+    Lowest and highest corner of the mapped space, grid frame [m]. Let it start at the table,
+    because the space below the table stays unknown.
 T_world_grid : array_like, (4, 4), optional
     Pose of the grid frame in the world; default: identity.
 prior_sigma : float, optional
     Standard deviation of an unknown voxel [m]; default: ``default_prior_sigma``.
 support_plane : float, optional
-    Height z of the table [m]. Its readings mark free space but do not hit.
+    Height z of the table [m]. Measured depths of the table mark free space, but hit no voxel.
 boxes : array_like, (n, 2, 3), optional
-    Known obstacles: lowest and highest corners, world frame [m]. They block rays and the body;
-    their readings mark free space but do not hit.
+    Known obstacles: lowest and highest corners, world frame [m]. They block rays and the body.
+    Measured depths of obstacles mark free space, but hit no voxel.
 meshes : iterable of (vertices, triangles), optional
     Obstacles as triangles: (n, 3), world frame [m], and (m, 3) indices.
 gain : {"combined", "surface", "paper"}
@@ -49,22 +49,22 @@ jump_edges : bool
 check_feasibility : bool
     False: accepts all candidates except those taken or tried.
 max_views, idle_views : int
-    Stop after this many views; after this many in a row that changed entropy and unknown voxels by
-    less than 0.1 % (0: never).
+    Stop after max_views views, or after idle_views views in a row that changed entropy and unknown
+    voxels by less than 0.1 % (0: never).
 broken_promises : int
-    Stop after this many views in a row, taken at the best pose of the last ranking, that brought
-    less than a fifth of the predicted new surface (with gain "paper": entropy); 0: never.
+    Stop after this many views in a row that showed less than a fifth of the predicted new surface
+    (with gain "paper": entropy); 0: never. Only views at the best pose of the last ranking count.
 plan, take : int
-    Number of views to plan together, in a short order, and number of them to take before
-    replanning, at most ``plan``; 1, 1: one at a time. ``rank`` returns the plan; ``propose``
-    returns its remaining views that are still possible and promise enough, with the generator
-    "plan".
+    Number of views to plan together, with a short path through them, and number of views to take
+    before replanning, at most ``plan``; 1, 1: one at a time. ``rank`` returns the plan. ``propose``
+    then returns those remaining views that are still good, with the generator "plan".
 stop_gain : float, optional
     With gain "paper": stop when the best candidate's gain per touched voxel is below this [nat,
-    m**2 for trace]. Default: 1.2; for trace 0.01 of the first ranking's.
+    m**2 for trace]. Default: 1.2; for trace 0.01 of the gain in the first ranking.
 stop_area : float, optional
-    With gain "surface" and "combined": stop when the expected new surface of all candidates is
-    below this share of the surface so far, mean of three rankings; 0: never. Default: 0.004.
+    With gain "surface" and "combined": stop when the largest expected new surface of a candidate,
+    divided by the surface so far, is below this on average over three rankings; 0: never. Default:
+    0.004.
 coarsest : int
     As in ``FrameIntegrator``.
 fine : array_like, (n, 2, 3), optional
@@ -81,27 +81,27 @@ num_threads : int
 Notes
 -----
 One call at a time: a concurrent call raises RuntimeError. Calls release the GIL, except while your
-generators and the predicate of ``reach`` run. Cost: a new planner takes some ms, one with a state
-as ``BeliefGrid.load``; methods take some microseconds unless they state otherwise; ``grid`` is a
-copy, 0.3 ms for 128**3 voxels.)";
+generators and the predicate of ``reach`` run. Cost: some ms to make a planner, with a state also
+``BeliefGrid.load``. Methods take some microseconds unless they state otherwise; ``grid`` is a copy,
+0.3 ms for 128**3 voxels.)";
 
 inline constexpr const char* kLoadDoc =
-    R"(A planner that continues after ``save``, bit for bit.
+    R"(A planner that continues after ``save``, with bit-identical results.
 
 Parameters
 ----------
 path : path-like
 sensor, **settings
-    Those of the constructor, as before; only the map's layout is checked. Add candidates and
-    propose again. ``max_views``, ``idle_views`` and ``broken_promises`` apply at once: a planner
-    that had stopped can continue with larger values.
+    As for the saved planner; only the map's layout is checked. Add the candidates again, and call
+    ``propose``. A planner that had stopped can continue with larger values of ``max_views``,
+    ``idle_views`` or ``broken_promises``.
 
 Returns
 -------
 ViewPlanner)";
 
 inline constexpr const char* kSaveDoc =
-    R"(Writes the state, a map with notes, atomically.
+    R"(Writes the state atomically, as a map with additional notes.
 
 Omits the settings, poses, generators and the last proposal. ``BeliefGrid.load`` and the program
 read the map. Cost: ``BeliefGrid.save``, and linear in the tried poses.
@@ -127,17 +127,17 @@ inline constexpr const char* kAddGeneratorDoc =
 Parameters
 ----------
 generator : callable
-    Takes a copy of the map, a BeliefGrid with the views so far, and returns poses (n, 4, 4). Its
-    exceptions pass through. It must not call or reference the planner: the two would never be
-    released.
+    Takes a copy of the map, a BeliefGrid with the views so far, and returns poses (n, 4, 4).
+    Exceptions pass through. The function must not call or reference the planner, because both would
+    then never be released.
 name : str
     Name of the generator in ``propose``.)";
 
 inline constexpr const char* kAddDoc =
     R"(Integrates a frame; invalidates the last proposal.
 
-Warns (UserWarning) if hardly any reading lies in the workspace, but most would under another
-convention of poses or depths.
+Warns (UserWarning) if almost no measured depth lies in the workspace, but most would under another
+convention for poses or depths.
 
 Cost: grows with the pixels and the crossed voxels: 12 ms for 176x144 pixels and voxels of 5 mm on
 two threads.
@@ -156,15 +156,15 @@ amplitude : array_like, (height, width), optional
 Returns
 -------
 AddedView
-    new_area is perpendicular to the rays, like the expected area; oblique surface is larger.
-    verdict gives the outcome: a frame that cannot be used, for example because its pose is not
-    rigid, leaves the map unchanged and counts as a view that brought nothing. After Error from
-    building the scene, the frame is in the map.)";
+    new_area is measured perpendicular to the rays, like the expected area, so oblique surface is
+    larger. verdict states whether the frame could be used. A frame that cannot be used, for example
+    because its pose is not rigid, leaves the map unchanged and counts as a failed view. If building
+    the scene raises Error, the frame is already in the map.)";
 
 inline constexpr const char* kAddFrameDoc =
-    R"(Reads a frame of a folder and adds it, or counts why it cannot be used.
+    R"(Reads a frame of a folder and adds it, or records why it cannot be used.
 
-Cost: reading, and ``add``.
+Cost: reading the frame, and ``add``.
 
 Parameters
 ----------
@@ -178,7 +178,7 @@ Returns
 AddedView)";
 
 inline constexpr const char* kConsistencyDoc =
-    R"(Agreement of the frames in the map.
+    R"(How well the frames in the map agree.
 
 Cost: 20 ms for a dozen frames, 0.5 s if they disagree.
 
@@ -187,17 +187,16 @@ Returns
 FrameConsistency)";
 
 inline constexpr const char* kDropDoc =
-    R"(Records a view that failed before there was a frame, or whose frame is left out. Cost: one
-pass over the map.
+    R"(Records a view without a usable frame. Cost: one pass over the map.
 
-It counts as a view that brought nothing; its pose is not proposed again.
+The view counts as a failed view; its pose is not proposed again.
 
 Parameters
 ----------
 verdict : str
     A value of AddedView.verdict except "used" and "carved".
 T_world_camera : array_like, (4, 4), optional
-    Its pose, if known.
+    Pose of the view, if known.
 
 Returns
 -------
@@ -206,10 +205,11 @@ AddedView)";
 inline constexpr const char* kRegisterFrameDoc =
     R"(Estimates the camera pose from the frame and the map. Changes nothing.
 
-Minimises the distances of the frame's readings from the map's points along the surface normals
-(Gauss-Newton), with the reported pose as prior. Add a frame that is "registered" at the estimated
-pose, one with "too_little_overlap" as reported, and leave out one that is "refused": it contradicts
-the map, or would move by more than five sigmas. Cost: about 100 to 300 ms per frame.
+Minimises the distances of the frame's depths from the map's points along the surface normals
+(Gauss-Newton), with the reported pose as prior. Then ``add`` the frame: at the estimated pose if
+its status is "registered", at the reported pose for "too_little_overlap". ``drop`` a frame that is
+"refused", because it contradicts the map or would move by more than five sigmas. Cost: about 100 to
+300 ms per frame.
 
 Parameters
 ----------
@@ -249,22 +249,23 @@ Parameters
 ----------
 k : int
 poses : array_like, (n, 4, 4), optional
-    T_world_camera to rank instead of the proposal, without a check of feasibility. Omits invalid
-    ones. Does not affect ``should_stop``.
+    T_world_camera to rank instead of the proposal, without a check of feasibility. Invalid poses
+    are omitted. Does not affect ``should_stop``.
 costs : array_like, (n,), optional
     Costs to subtract from the gains, in their unit.
 cost_per_metre : float
     Cost of the straight path from ``current_pose``, in the gain's unit per metre. The combined gain
-    of new surface is proportional to 1 / voxel**2; scale this cost accordingly.
+    of new surface is proportional to 1 / voxel**2, so this cost should be as well.
 current_pose : array_like, (4, 4), optional
     Current camera pose, T_world_camera; only its centre is used. Default: the pose of the last
-    frame, usable or not, or of a later ``tried`` that was reached. Plans start there too.
+    frame, or of a later ``tried`` that was reached. Plans start there too.
 together : bool
-    Ranks views by their marginal gain, so that no two show the same; cannot be used with measure.
+    Ranks views by their marginal gain, so that they do not show the same surface twice; cannot be
+    used with measure.
 exact : bool
-    Scores all in full. Default: in two stages (``GainEvaluator.race``), except with gain "paper".
-    With together the first view is found so; the others are chosen among a few poses, at least 32,
-    with a quarter of their rays.
+    Scores all poses in full. Default: in two stages (``GainEvaluator.race``), except with gain
+    "paper". With together, views after the first are then chosen among at least 32 poses with a
+    quarter of their rays.
 measure : callable, optional
     Custom gain that replaces the planner's, as in ``GainEvaluator.evaluate_own``; gain and area are
     then NaN.
@@ -276,7 +277,7 @@ Ranking
     Its arrays are best first.)";
 
 inline constexpr const char* kTriedDoc =
-    R"(Reports a commanded pose: it is not proposed again and leaves the current proposal.
+    R"(Reports a commanded pose. It is not proposed again, and is removed from the current proposal.
 
 Call it for each pose that the robot was sent to, and for no other.
 
@@ -284,7 +285,7 @@ Parameters
 ----------
 T_world_camera : array_like, (4, 4)
 reached : bool
-    True if the camera got there: the pose counts as taken; False: as missed.)";
+    Whether the camera reached the pose. If so, the pose counts as taken, otherwise as missed.)";
 
 inline constexpr const char* kShouldStopDoc =
     R"(Reason to stop, if any.
@@ -292,7 +293,8 @@ inline constexpr const char* kShouldStopDoc =
 Returns
 -------
 str or None
-    After ``add`` max_views, idle or promises; after ``propose`` no_candidates or unreachable; after
-    ``rank`` of the proposal gain, area or, with costs, cost (no view is worth its cost).)";
+    After ``add``: max_views, idle or promises. After ``propose``: no_candidates or unreachable.
+    After ``rank`` of the proposal: gain, area or, with costs, cost (every view costs more than it
+    gains).)";
 
 }  // namespace viewgain::python

@@ -18,7 +18,7 @@ constexpr const char* kPoseShapes = "(..., 4, 4), (..., 3, 4) or (..., 7) of tx 
 constexpr std::size_t kQuaternion = 7;
 constexpr double kMendableNorm = 1e-2;  // as in files of poses
 
-// How many axes of the array are a pose; 0: it holds none.
+// Number of the last axes that form a pose; 0 if the array has no poses.
 py::ssize_t pose_axes(const py::array& array) {
   const py::ssize_t n = array.ndim();
   if (n >= 2 && array.shape(n - 1) == 4 && (array.shape(n - 2) == 4 || array.shape(n - 2) == 3)) {
@@ -31,7 +31,7 @@ double norm_of(std::span<const double> m) {
   return std::hypot(std::hypot(m[3], m[4]), std::hypot(m[5], m[6]));
 }
 
-// The pose of 16, 12 or 7 numbers; NaN if its last row or its quaternion is none.
+// The pose from 16, 12 or 7 numbers; NaN if its last row or its quaternion is invalid.
 Pose pose_of(std::span<const double> m) {
   Pose pose;
   if (m.size() == kQuaternion) {
@@ -52,7 +52,7 @@ Pose pose_of(std::span<const double> m) {
   return pose;
 }
 
-// What is wrong with the pose, which is pose_of(m); empty if nothing.
+// What is wrong with pose = pose_of(m); empty if nothing.
 std::string fault_of(const Pose& pose, std::span<const double> m) {
   if (!std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); })) {
     return "has a number that is not finite";

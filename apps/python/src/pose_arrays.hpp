@@ -11,7 +11,7 @@
 
 namespace viewgain::python {
 
-// Poses from Python's arrays and back, as in arrays.hpp.
+// Conversions of poses from and to Python's arrays, as in arrays.hpp.
 
 /// Poses and the shape of their array without the axes of a pose.
 struct PoseBatch {
@@ -19,13 +19,13 @@ struct PoseBatch {
   Shape shape;
 };
 
-/// T_world_camera as (..., 4, 4), (..., 3, 4) or (..., 7) of tx ty tz qx qy qz qw [m], [1]. A last
-/// row or a rotation that is off by more than 1e-3, or a quaternion's norm by 1e-2, makes a bad
-/// pose (NaN); with `strict` it throws and names the pose's index.
+/// T_world_camera as (..., 4, 4), (..., 3, 4) or (..., 7) of tx ty tz qx qy qz qw [m], [1]. A pose
+/// is invalid (NaN) if its last row or its rotation deviates by more than 1e-3, or a quaternion's
+/// norm by more than 1e-2; with `strict`, throws with the pose's index instead.
 [[nodiscard]] PoseBatch pose_batch(const py::handle& value, const char* name, bool strict);
 [[nodiscard]] Pose one_pose(const py::handle& value, const char* name, bool strict = true);
 [[nodiscard]] std::optional<Pose> optional_pose(const py::object& value, const char* name);
-/// Of one leading axis, every one good.
+/// Poses with one leading axis, which must all be valid.
 [[nodiscard]] std::vector<Pose> pose_list(const py::handle& value, const char* name);
 
 [[nodiscard]] py::array_t<double> to_array(std::span<const Pose> poses, const Shape& leading);

@@ -4,12 +4,12 @@
 
 namespace viewgain::python {
 
-// What the class ViewScorer and its methods say of themselves.
+// Docstrings of the class ViewScorer.
 
 inline constexpr const char* kScorerDoc =
-    R"(Depth frames or labelled voxels in, gains of camera poses out.
+    R"(Takes depth frames or labelled voxels and returns gains of camera poses.
 
-Keeps a map, its scene and its evaluator in step: ``add`` frames, or ``set`` labels; then
+Keeps a map, its scene and its evaluator up to date. ``add`` frames, or ``set`` labels; then
 ``evaluate`` poses, or ask for the ``best``.
 
 Parameters
@@ -25,10 +25,11 @@ T_world_grid : array_like, (4, 4), optional
 prior_sigma : float, optional
     Standard deviation of the surface in an unknown voxel [m]; default: ``default_prior_sigma``.
 support_plane : float, optional
-    Height z of the table [m]. Readings of it carve free space, but never make a voxel occupied.
+    Height z of the table [m]. Measured depths of the table mark free space, but never make a voxel
+    occupied.
 boxes : array_like, (n, 2, 3), optional
-    Known obstacles: lowest and highest corners, world frame [m]. They block rays and bodies; their
-    readings only mark free space.
+    Known obstacles: lowest and highest corners, world frame [m]. They block rays and bodies.
+    Measured depths of obstacles only mark free space.
 meshes : iterable of (vertices, triangles), optional
     Obstacles as triangles: (n, 3), world frame [m], and (m, 3) indices.
 gain : {"combined", "surface", "paper"}
@@ -59,7 +60,7 @@ finest : int
     As in ``FrameIntegrator``.
 map : BeliefGrid or path-like, optional
     A map to continue, which is copied, or its file: a .vdb of ``save`` or another map, or an
-    OctoMap .ot or .bt. It has its own voxel_size, workspace and T_world_grid.
+    OctoMap .ot or .bt. Cannot be combined with voxel_size, workspace and T_world_grid.
 tracer : {"automatic", "embree", "sweep"}
     Tracer, as in ``GainEvaluator``. Does not affect results.
 num_threads : int
@@ -67,10 +68,10 @@ num_threads : int
 
 Notes
 -----
-``evaluate``, ``best``, ``scene`` and ``evaluator`` may run in any thread at any time, even while
-the map changes: they use the map before or after that change. ``save``, ``consistency`` and
-``grid`` wait for a change that is running. The GIL is released. Pickles hold settings and map, but
-not the frames that ``consistency`` compares. Cost of a change: the change of the map, and some
+``evaluate``, ``best``, ``scene`` and ``evaluator`` may run in any thread at any time. During a
+change of the map they use the map before or after that change. ``save``, ``consistency`` and
+``grid`` wait until a running change ends. The GIL is released. Pickles hold settings and map, but
+not the frames that ``consistency`` compares. Cost of a change: that of changing the map, and some
 milliseconds for the scene.)";
 
 inline constexpr const char* kScorerAddDoc = R"(Adds a depth frame to the map.
@@ -94,7 +95,8 @@ MapUpdate
 
 inline constexpr const char* kScorerSetDoc = R"(Labels a box of voxels.
 
-Labelled voxels have no refinement. Cost: one pass over the labels, and the scene's update.
+Labelled voxels add no refinement to the gain. Cost: one pass over the labels, and the scene's
+update.
 
 Parameters
 ----------
@@ -109,7 +111,7 @@ int
     Number of changed voxels.)";
 
 inline constexpr const char* kScorerForgetDoc =
-    R"(Resets the voxels of a region to unknown, for moved objects.
+    R"(Resets the voxels of a region to unknown, for example after objects have moved.
 
 Parameters
 ----------
@@ -142,7 +144,7 @@ ndarray, (...), float64
 inline constexpr const char* kScorerBestDoc =
     R"(The k best poses with high probability, in two stages: as ``GainEvaluator.race``.
 
-With a body, omits infeasible poses: no room for the body, or over 20 % of the view too near.
+With a body, omits poses where the body has no room, or where over 20 % of the view is too near.
 
 Parameters
 ----------
@@ -157,13 +159,13 @@ control : BatchControl, optional
 Returns
 -------
 BestViews
-    Best first; fewer than k if fewer poses have a gain. A gain of 0 means that the view would show
-    nothing new.)";
+    Best first; fewer than k if fewer poses are valid and feasible. A gain of 0 means that the view
+    would show nothing new.)";
 
 inline constexpr const char* kScorerConsistencyDoc =
-    R"(Agreement of the frames added so far.
+    R"(How well the frames added so far agree.
 
-Cost: 50 ms, 0.5 s if they disagree.
+Cost: 50 ms; 0.5 s if frames disagree.
 
 Returns
 -------

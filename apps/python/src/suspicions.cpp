@@ -19,7 +19,7 @@ void warn(std::span<const Suspicion> suspicions) {
 
 Suspicion suspicion_of_poses(const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor,
                              std::span<const Pose> poses) {
-  constexpr std::size_t kFew = 10;  // of these none may be meant to see the map
+  constexpr std::size_t kFew = 10;  // so few poses may all look elsewhere on purpose
   if (!mostly_look_away(scene->snapshot(), sensor, poses)) return {};
   std::vector<Pose> rigid;
   std::copy_if(poses.begin(), poses.end(), std::back_inserter(rigid),

@@ -17,18 +17,18 @@
 
 namespace viewgain::python {
 
-/// One UserWarning that names all suspicions; none without any. Needs the GIL. Throws
-/// py::error_already_set where a filter makes warnings errors.
+/// Issues one UserWarning that names all suspicions, if any. Needs the GIL. Throws
+/// py::error_already_set if a filter turns warnings into errors.
 void warn(std::span<const Suspicion> suspicions);
 inline void warn(const Suspicion& suspicion) { warn(std::span(&suspicion, 1)); }
 
-/// What is wrong with poses of which most do not see the scene's map (suspect_poses()). A few
-/// microseconds where they do. Runs with or without the GIL.
+/// What is probably wrong if most poses do not see the scene's map (suspect_poses()). Takes a few
+/// microseconds if they do. Runs with or without the GIL.
 [[nodiscard]] Suspicion suspicion_of_poses(const std::shared_ptr<const VoxelScene>& scene,
                                            const Sensor& sensor, std::span<const Pose> poses);
 
-/// What is wrong with a frame that shows hardly anything of the grid (suspect_frame()); nothing
-/// where `counts` say that it does.
+/// What is probably wrong with a frame that shows almost nothing of the grid (suspect_frame());
+/// empty if `counts` has enough readings inside.
 [[nodiscard]] Suspicion suspicion_of_frame(const Sensor& sensor, const DepthFrame& frame,
                                            const Pose& T_world_camera, const BeliefGrid& grid,
                                            const IntegrationReport& counts);

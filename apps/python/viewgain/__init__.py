@@ -11,16 +11,15 @@
 >>> gains = scorer.evaluate(poses)                              # (500,), nat
 >>> best = scorer.best(poses, 3).indices                        # best first
 
-Frames and units: a pose is ``T_world_camera``, a 4x4 matrix that maps points of the camera's optical
-frame (x right, y down, z forward) to the world. 3x4 matrices and rows of tx ty tz qx qy qz qw work too, as float32 or
-float64 in any memory order. Lengths are in metres, gains in nats. Surfaces and the whole reconstruction loop are in
-``viewgain.mesh``, which is GPL-3.0-or-later. ``viewgain.plot`` draws with matplotlib.
+Frames and units: a pose is ``T_world_camera``, a 4x4 matrix that maps points of the camera's optical frame (x right, y down, z forward) to the
+world. 3x4 matrices and rows of tx ty tz qx qy qz qw are also accepted, as float32 or float64 in any memory order. Lengths are in metres, gains
+in nats. Surfaces and the whole reconstruction loop are in ``viewgain.mesh``, which is GPL-3.0-or-later. ``viewgain.plot`` draws with
+matplotlib.
 
-Errors: ``ValueError`` names an argument of the wrong shape, without real numbers, masked or out of bounds, and an invalid pose
-where a valid one is required. ``TypeError`` names an argument of the wrong class or that is not callable, and how to get an
-object of the right class. ``OSError`` (``FileNotFoundError``) names a file that cannot be opened or written; ``viewgain.Error``
-names one that is damaged or of another kind, and sizes that a data structure does not support. Exceptions of your functions
-pass through. Docstrings list further exceptions.
+Errors: ``ValueError`` names an argument that has the wrong shape, is not numeric, is masked or is out of bounds, or a pose that is invalid.
+``TypeError`` names an argument of the wrong class and how to get an object of the right class. ``OSError`` (``FileNotFoundError``) names a file
+that cannot be opened or written. ``viewgain.Error`` names a file that is damaged or of another kind, or a size that a data structure does not
+support. Exceptions of your functions pass through. Docstrings list further exceptions.
 """
 
 import importlib.util as _util

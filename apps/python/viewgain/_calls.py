@@ -7,7 +7,7 @@ import functools
 import re
 import types
 
-# What a simple type is made of; by its name in signatures.
+# The attribute that a value needs to be accepted as each simple type.
 _MADE_OF = {"int": "__index__", "float": "__float__", "bool": "__bool__", "str": "isidentifier"}
 
 

@@ -37,7 +37,7 @@ def _rows(poses: ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
 
 
 def _answers(client: distributed.Client, scorer: ViewScorer, chunks: dict[int, NDArray[np.float64]], measure: Any):
-    """Number and gains of each finished chunk; sends the map to each worker once. Omits chunks lost with their workers."""
+    """Yields number and gains of each finished chunk; sends the map to each worker once. Omits chunks lost with their workers."""
     try:
         (shared,) = client.scatter([scorer], broadcast=True, hash=False)
     except (TimeoutError, distributed.TimeoutError) as error:
@@ -67,18 +67,19 @@ def evaluate(client: distributed.Client, map: Union[BeliefGrid, str, os.PathLike
     ----------
     client : distributed.Client
     map : BeliefGrid or path-like
-        Its file is read here: workers need not see it.
+        A file is read on this machine; workers need not see it.
     poses : array_like, (..., 4, 4), (..., 3, 4) or (..., 7)
         T_world_camera.
     sensor : Sensor, or the name of a preset or .toml file
     chunk_size : int, optional
-        Poses of a task; default: about four tasks for each thread of the cluster, at most 4096 poses each.
+        Number of poses per task; default: about four tasks per thread of the cluster, at most 4096 poses each.
     measure : callable, optional
         A gain of your own, as in ``ViewScorer.evaluate``.
     progress : callable, optional
-        Is called with how many poses are scored and how many there are.
+        Called with the number of poses scored so far and the number of all poses.
     **gain
-        As in ``ViewScorer``: gain, criterion, pixel_stride, weights, boxes, meshes, ...; num_threads is that of a task, 1.
+        As in ``ViewScorer``: gain, criterion, pixel_stride, weights, boxes, meshes, ...; num_threads is the number per task, by
+        default 1.
 
     Returns
     -------

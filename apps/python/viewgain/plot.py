@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of poses, gains and maps with matplotlib, which is imported on the first drawing.
 
-Each function draws into ``axes``, or a new figure's, and returns them. matplotlib's pyplot is for one thread, and takes most of
-the time.
+Each function draws into ``axes``, by default those of a new figure, and returns the axes. Call them from one thread, because
+matplotlib's pyplot requires it.
 """
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (
     values : array_like, (n,)
         In the unit that the label names [nat].
     center : array_like, (3,)
-        What azimuth and elevation are seen from, world frame [m].
+        Point from which azimuth and elevation are measured, world frame [m].
     label : str
         What the values are.
     """
@@ -81,14 +81,14 @@ def depth(image: ArrayLike, *, axes: Any = None) -> Any:
 
 
 def contributions(evaluator: GainEvaluator, T_world_camera: ArrayLike, *, axes: Any = None) -> Any:
-    """Contribution of each ray of a view's image to its gain: its share of the voxel in which it ends.
+    """Contribution of each ray of a view to the gain. The gain of a voxel is divided among the rays that end in it.
 
     Cost: 4 times ``GainEvaluator.evaluate`` for the pose, and a Python step per ray.
 
     Parameters
     ----------
     evaluator : GainEvaluator
-        By the paper's gain; the others' rays do not end in one voxel.
+        With the paper's gain, because rays of other gains do not end in one voxel.
     T_world_camera : array_like, (4, 4)
     """
     if evaluator.gain != "paper":

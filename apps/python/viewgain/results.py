@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""What calls give back when it is more than one thing: named tuples."""
+"""Named tuples that calls return."""
 from typing import Annotated, Any, NamedTuple, Optional
 
 import numpy as np
@@ -11,8 +11,8 @@ _Image = NDArray[np.float32]
 
 
 def named(module: str) -> Any:
-    """Of a class of named tuples: it is the module's, its fields have their annotations' words, and ``result["field"]``
-    gives a field as well, as numpy's structured arrays do."""
+    """Class decorator for named tuples. Sets the module, takes the fields' docstrings from their annotations, and makes ``result["field"]``
+    return a field, as with numpy's structured arrays."""
 
     def finish(result: Any) -> Any:
         result.__module__ = module
@@ -37,7 +37,7 @@ def named(module: str) -> Any:
 
 @named("viewgain")
 class Sigmas(NamedTuple):
-    """Standard deviations of a reading, from ``Sensor.sigmas``."""
+    """Standard deviations of a reading (one measured depth), from ``Sensor.sigmas``."""
 
     axial: Annotated[float, "Along the ray [m]."]
     lateral: Annotated[float, "Across the ray [m]."]
@@ -48,7 +48,7 @@ class IntegrationReport(NamedTuple):
     """Counts of ``integrate``, from ``FrameIntegrator`` and ``CloudIntegrator``."""
 
     readings: Annotated[int, "Pixels or points whose range is within the sensor's limits."]
-    plane_readings: Annotated[int, "Pixels or points that see the support plane; not among readings."]
+    plane_readings: Annotated[int, "Pixels or points that show the support plane or a known object; not counted as readings."]
     out_of_range: Annotated[int, "Pixels or points that are free up to max_range."]
     invalid: Annotated[int, "Pixels or points without information."]
     readings_inside: Annotated[int, "Readings that lie in the workspace."]
@@ -61,22 +61,22 @@ class Suspicion(NamedTuple):
     """A probable fault of frames, from ``suspect_frames`` and ``FrameConsistency``."""
 
     kind: Annotated[str, "The mistake, such as depth_scale, world_to_camera or quaternion_order."]
-    what: Annotated[str, "A sentence with the figure that raised the suspicion."]
+    what: Annotated[str, "A sentence with the number that raised the suspicion."]
 
 
 @named("viewgain")
 class FrameConsistency(NamedTuple):
-    """Agreement of frames, from ``consistency`` of ``ViewScorer`` and ``ViewPlanner``."""
+    """How well frames agree, from ``consistency`` of ``ViewScorer`` and ``ViewPlanner``."""
 
-    share_in_free: Annotated[float, "Share of all readings in space that other frames saw as free."]
-    share_seen_past: Annotated[float, "Share of readings of earlier frames that later frames see past."]
+    share_in_free: Annotated[float, "Fraction of all readings (measured depths) in space that other frames saw as free."]
+    share_seen_past: Annotated[float, "Fraction of readings of earlier frames that later frames see past."]
     contradicting: Annotated[tuple, "Indices of the frames that contradict the others; empty unless something is suspected."]
     suspicion: Annotated[Optional[Suspicion], "Likely cause; None: the frames agree."]
     in_free: Annotated[_Floats, "(N,), float64: share_in_free of each frame in the map."]
     seen_past: Annotated[_Floats, "(N,), float64: share_seen_past of each frame."]
     displacement: Annotated[float, "Median displacement of the frames relative to earlier ones [m]; NaN if none could be compared."]
-    expected: Annotated[float, "Displacement explained by the declared errors [m]."]
-    displacements: Annotated[_Floats, "(N,), float64: displacement of each frame; NaN if it shares too little with others."]
+    expected: Annotated[float, "Displacement that the declared errors explain [m]."]
+    displacements: Annotated[_Floats, "(N,), float64: displacement of each frame; NaN if it shares too little surface with others."]
 
 
 @named("viewgain")
@@ -100,15 +100,15 @@ class GridStatistics(NamedTuple):
     free: Annotated[int, "Voxels known to be free."]
     occupied: Annotated[int, "Voxels known to be occupied."]
     bytes: Annotated[int, "Memory of the map."]
-    entropy_removed: Annotated[float, "Sum over the occupied voxels [nat, or m**2 for trace]."]
+    entropy_removed: Annotated[float, "Entropy removed, summed over the occupied voxels [nat, or m**2 for trace]."]
 
 
 @named("viewgain")
 class ViewSet(NamedTuple):
-    """Poses that are good together, from ``GainEvaluator.best_set``."""
+    """Poses with a large gain together, from ``GainEvaluator.best_set``."""
 
     indices: Annotated[NDArray[np.int64], "(<= k,), int64: indices into the poses with their leading axes flattened, in the order chosen."]
-    gains: Annotated[NDArray[np.void], "(<= k,), structured: marginal gains, the increase over the views before, as from ``evaluate_detailed``."]
+    gains: Annotated[NDArray[np.void], "(<= k,), structured: marginal gains (the increase over the earlier views), with the fields of ``evaluate_detailed``."]
     gain: Annotated[float, "Gain of the set, in the gain's unit."]
     complete: Annotated[bool, "False: a stop ended the call before the last choice."]
 
@@ -118,10 +118,10 @@ class BestViews(NamedTuple):
     """The best of many poses, from ``best`` of ``ViewScorer`` and ``GainEvaluator``, and ``GainEvaluator.race``."""
 
     indices: Annotated[NDArray[np.int64], "(k,), int64: indices into the poses with their leading axes flattened, best first."]
-    gains: Annotated[NDArray[np.void], "(k,), structured: as from ``evaluate_detailed``, in its unit, without costs; empty with a measure."]
+    gains: Annotated[NDArray[np.void], "(k,), structured: results of ``evaluate_detailed``, without costs; empty with a measure."]
     worth: Annotated[_Floats, "(k,), float64: gain, or measure, minus cost."]
     complete: Annotated[bool, "False: the time limit or a stop ended the call early."]
-    estimated: Annotated[int, "Number of poses scored with some of their rays; 0 if all are scored in full."]
+    estimated: Annotated[int, "Number of poses scored with only some of their rays; 0 if all are scored in full."]
     scored: Annotated[NDArray[np.int64], "(n,), int64: indices of the poses that were scored in full, ascending."]
     scored_gains: Annotated[NDArray[np.void], "(n,), structured: their gains; empty with a measure."]
 
@@ -164,18 +164,18 @@ class FrameRegistration(NamedTuple):
     """Estimated camera pose of a frame, from ``ViewPlanner.register_frame``."""
 
     status: Annotated[str, "\"registered\", \"too_little_overlap\" or \"refused\"."]
-    reason: Annotated[str, "Reason of the status, for people; empty if registered."]
+    reason: Annotated[str, "Reason of the status, in words; empty if registered."]
     T_world_camera: Annotated[_Floats, "(4, 4), float64, corrected if registered, otherwise as reported."]
-    covariance: Annotated[_Floats, "(6, 6), float64, of the translation [m], then the rotation [rad], world axes."]
+    covariance: Annotated[_Floats, "(6, 6), float64: covariance of the translation [m], then the rotation [rad], world axes."]
     translation: Annotated[float, "Displacement of the camera centre by the correction [m]."]
     rotation: Annotated[float, "Angle of the correction [rad]; the program's JSON has rotation_deg."]
-    residual_before: Annotated[float, "RMS distance of the pairs at the reported pose [m]."]
-    residual_after: Annotated[float, "RMS distance of the pairs at the estimated pose [m]."]
-    readings: Annotated[int, "Number of evaluated readings."]
-    pairs: Annotated[int, "Readings that correspond to a point of the map."]
-    overlap: Annotated[float, "Share: pairs / readings."]
-    contradiction: Annotated[float, "The larger of two shares: readings in known free space, and surface of the map that the frame sees past."]
-    smallest_information: Annotated[float, "Smallest information of the frame over all motions, relative to the prior."]
+    residual_before: Annotated[float, "RMS distance of readings from the map's surface at the reported pose [m]."]
+    residual_after: Annotated[float, "RMS distance of readings from the map's surface at the estimated pose [m]."]
+    readings: Annotated[int, "Number of readings (measured depths) used."]
+    pairs: Annotated[int, "Number of readings that correspond to a point of the map."]
+    overlap: Annotated[float, "pairs / readings."]
+    contradiction: Annotated[float, "The larger of two fractions: of readings that lie in known free space, and of the map's surface that the frame sees past."]
+    smallest_information: Annotated[float, "How well the frame determines the pose: smallest information over all motions, relative to that of the reported pose."]
     free_directions: Annotated[int, "Number of motions that the frame does not determine, which stay as reported."]
     pose_sigma: Annotated[tuple, "(2,): standard deviations per axis from the covariance [m], [rad], for ``ViewPlanner.add``."]
 
@@ -185,7 +185,7 @@ class AddedView(NamedTuple):
     """Effect of a frame, from ``ViewPlanner.add``."""
 
     readings: Annotated[int, "Pixels or points whose range is within the sensor's limits."]
-    plane_readings: Annotated[int, "Pixels or points that see the support plane; not among readings."]
+    plane_readings: Annotated[int, "Pixels or points that show the support plane or a known object; not counted as readings."]
     out_of_range: Annotated[int, "Pixels or points that are free up to max_range."]
     invalid: Annotated[int, "Pixels or points without information."]
     readings_inside: Annotated[int, "Readings that lie in the workspace."]
@@ -196,8 +196,8 @@ class AddedView(NamedTuple):
     new_area: Annotated[float, "New surface shown by this view, perpendicular to the rays [m**2]; NaN with gain \"paper\"."]
     total_entropy_removed: Annotated[float, "Entropy removed so far [nat, or m**2 for trace]."]
     total_area: Annotated[float, "Sum of the new areas so far [m**2]."]
-    unknown_voxels: Annotated[int, "Remaining unknown voxels."]
-    verdict: Annotated[str, "Outcome for the frame: used, carved (only free space), lost_pose, no_pose, unreadable, wrong_size, nothing_in_range, outside, contradicts."]
+    unknown_voxels: Annotated[int, "Number of voxels that are still unknown."]
+    verdict: Annotated[str, "How the frame was used: used, carved (only free space), or why it was not: lost_pose, no_pose, unreadable, wrong_size, nothing_in_range, outside, contradicts."]
 
 
 @named("viewgain")
@@ -205,7 +205,7 @@ class MapUpdate(NamedTuple):
     """Effect of a frame, from ``ViewScorer.add``."""
 
     readings: Annotated[int, "Pixels or points whose range is within the sensor's limits."]
-    plane_readings: Annotated[int, "Pixels or points that see the support plane; not among readings."]
+    plane_readings: Annotated[int, "Pixels or points that show the support plane or a known object; not counted as readings."]
     out_of_range: Annotated[int, "Pixels or points that are free up to max_range."]
     invalid: Annotated[int, "Pixels or points without information."]
     readings_inside: Annotated[int, "Readings that lie in the workspace."]
@@ -213,28 +213,28 @@ class MapUpdate(NamedTuple):
     voxels_crossed: Annotated[int, "Voxels that rays cross and that contain no readings."]
     flying_pixels: Annotated[int, "Pixels removed by the jump-edge filter."]
     new_area: Annotated[float, "New surface shown by the frame, perpendicular to the rays [m**2]; NaN with gain \"paper\"."]
-    verdict: Annotated[str, "Outcome for the frame: used, carved (only free space), nothing_in_range or outside."]
+    verdict: Annotated[str, "How the frame was used: used, carved (only free space), or why it was not: nothing_in_range, outside."]
 
 
 @named("viewgain")
 class Proposal(NamedTuple):
     """Candidates that are currently possible, from ``ViewPlanner.propose``.
 
-    A tuple of these three: ``len(proposal)`` is 3, and ``len(proposal.T_world_camera)`` is the number of candidates.
+    A tuple of three fields: ``len(proposal)`` is 3, and ``len(proposal.T_world_camera)`` is the number of candidates.
     """
 
     T_world_camera: Annotated[_Floats, "(n, 4, 4), float64."]
-    generator: Annotated[list[str], "Set or generator of each."]
-    dropped: Annotated[dict[str, int], "Number by reason: ``INFEASIBILITY_NAMES``, and \"missed\": commanded and not reached."]
+    generator: Annotated[list[str], "Name of the set or generator of each candidate."]
+    dropped: Annotated[dict[str, int], "Number of dropped candidates by reason: ``INFEASIBILITY_NAMES``, and \"missed\" (commanded and not reached)."]
 
 
 @named("viewgain")
 class ViewTour(NamedTuple):
-    """Views in driving order, from ``GainEvaluator.plan_tour``."""
+    """Views in the order of a short path, from ``GainEvaluator.plan_tour``."""
 
     indices: Annotated[NDArray[np.int64], "(k,), int64: indices of the poses."]
-    gains: Annotated[NDArray[np.void], "(k,), structured: marginal gains, the increase over the views chosen before."]
-    worth: Annotated[_Floats, "(k,), float64: gain minus costs of view and path when it was chosen."]
+    gains: Annotated[NDArray[np.void], "(k,), structured: marginal gains, the increase over the views chosen earlier."]
+    worth: Annotated[_Floats, "(k,), float64: gain minus costs of view and path when the view was chosen."]
     way: Annotated[float, "Total path cost, in the unit of way."]
 
 
@@ -242,12 +242,12 @@ class ViewTour(NamedTuple):
 class Ranking(NamedTuple):
     """The best candidates, best first, from ``ViewPlanner.rank``.
 
-    A tuple of these six: ``len(ranking)`` is 6, and ``len(ranking.indices)`` is the number of views.
+    A tuple of six fields: ``len(ranking)`` is 6, and ``len(ranking.indices)`` is the number of views.
     """
 
-    indices: Annotated[NDArray[np.int64], "(k,), int64: indices into ``poses`` if given, otherwise into the proposal's candidates, not into those of ``add_poses``."]
+    indices: Annotated[NDArray[np.int64], "(k,), int64: indices into ``poses`` if given, otherwise into the candidates of the proposal (not of ``add_poses``)."]
     gain: Annotated[_Floats, "(k,), float64 [nat; with gain \"surface\" m**2]; marginal with together or in a new plan; NaN with ``measure``, whose value is in ``worth``."]
-    worth: Annotated[_Floats, "(k,), float64: gain minus cost, in the gain's unit; 0 or less: the view is not worth its cost."]
+    worth: Annotated[_Floats, "(k,), float64: gain minus cost, in the gain's unit; 0 or less if the view costs more than it gains."]
     complete: Annotated[bool, "False: stopped early."]
     area: Annotated[_Floats, "(k,), float64: expected new surface [m**2]; NaN with gain \"paper\"."]
     T_world_camera: Annotated[_Floats, "(k, 4, 4), float64."]

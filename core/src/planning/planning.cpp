@@ -11,7 +11,7 @@
 namespace viewgain {
 namespace {
 
-// What a step of the loop returns; the time that it takes goes to its stage.
+// Runs a step of the loop, and adds its duration to its stage.
 template <typename Step>
 auto timed(ViewRecord& record, const char* stage, Step&& step) {
   const Stopwatch watch;
@@ -31,8 +31,8 @@ class Planner {
         config_(config),
         rules_(config) {}
 
-  // Steps 1 and 2: measure, and put the measurements into the model. What was measured is never
-  // thrown away, so nothing stops in between.
+  // Steps 1 and 2: measure, and put the measurements into the model. A stop does not separate them,
+  // because measurements always go into the model.
   void take_view(const Pose& T_world_camera, ViewRecord& record, const ViewRecord* before) {
     const Measurements measurements = timed(
         record, "acquire", [&] { return acquisition_.acquire(T_world_camera, record.index); });
@@ -120,7 +120,7 @@ PlanningResult active_view_planning(const Pose& x_0, DataAcquisition& acquisitio
   PlanningResult result;
   Pose next = x_0;
   std::optional<Candidate> chosen;
-  DecisionMaking::Decision choice{};  // of the view at hand; x_0 was not chosen
+  DecisionMaking::Decision choice{};  // that led to the current view; none for x_0
   for (;;) {
     ViewRecord record;
     record.index = result.views.size();

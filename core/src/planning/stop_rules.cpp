@@ -25,8 +25,8 @@ void check(const PlanningConfig& config) {
   if (config.stop_coverage) check_finite("stop_coverage", *config.stop_coverage);
 }
 
-// No change at all is nothing even where the total is 0. So is NaN: a run that cannot tell what it
-// gains must end.
+// No change counts as nothing even if the total is 0. NaN counts as nothing too, because a run
+// whose gain is unknown must end.
 bool is_nothing(double change, double total, double fraction) {
   return !(change > 0) || change < fraction * total;
 }
@@ -44,7 +44,7 @@ StopRules::StopRules(const PlanningConfig& config, const StopMemory& memory)
   check(config);
 }
 
-// What was known before the first view is not known here, so that one is never idle.
+// The state before the first view is unknown here, so the first view is never idle.
 bool StopRules::brought_nothing(const ModelProgress& now) const {
   if (memory_.views == 0) return false;
   const auto unknown = static_cast<double>(memory_.unknown_voxels);
@@ -54,7 +54,7 @@ bool StopRules::brought_nothing(const ModelProgress& now) const {
                     config_.idle_fraction);
 }
 
-// A view that nobody promised anything of, or nobody knows what it brought, says nothing.
+// Ignores a view without a prediction or without a measured result.
 void StopRules::hold_against_promise(const ModelProgress& now) {
   double promised = memory_.promised_area, came = now.new_area;
   if (std::isnan(promised) || std::isnan(came)) {
@@ -84,20 +84,20 @@ std::optional<StopReason> StopRules::after_view(const ModelProgress& progress) {
   return std::nullopt;
 }
 
-// A policy without a gain per voxel (NaN) never stops for it.
+// A policy without a gain per voxel (NaN) is never stopped by this rule.
 bool StopRules::stops_for_gain(double gain_per_voxel) {
   if (std::isnan(gain_per_voxel)) return false;
   if (!config_.stop_gain_is_relative) return gain_per_voxel < config_.stop_gain;
   if (std::isnan(memory_.first_gain_per_voxel)) {
-    // The best view brings nothing from the start: a share of that is no limit.
+    // The best view has no gain at the first decision, so a fraction of it cannot be a limit.
     if (!(gain_per_voxel > 0)) return true;
     memory_.first_gain_per_voxel = gain_per_voxel;
   }
   return gain_per_voxel < config_.stop_gain * memory_.first_gain_per_voxel;
 }
 
-// No candidate promises enough, on the mean of some decisions. A decision whose areas are not known
-// (NaN) makes a mean that is not under the limit; so does a model without a surface.
+// The expected new surface of all candidates is too small, on average over some decisions. With
+// unknown areas (NaN), or a model without a surface, the mean is not below the limit.
 bool StopRules::stops_for_area(double share) {
   memory_.area_shares[memory_.decisions++ % memory_.area_shares.size()] = share;
   if (memory_.decisions < memory_.area_shares.size()) return false;
@@ -111,7 +111,7 @@ std::optional<StopReason> StopRules::after_decision(
     const std::optional<DecisionMaking::Decision>& decision, const Proposal& proposal,
     double surface_area) {
   if (!decision) return nowhere_to_go(proposal);
-  // A policy that never stops for them promises nothing.
+  // A policy without this rule makes no prediction of the area.
   if (!std::isnan(decision->best_area)) memory_.promised_area = decision->area;
   if (!std::isnan(decision->gain_per_voxel)) memory_.promised_gain = decision->gain;
   const bool little_area = stops_for_area(decision->best_area / surface_area);

@@ -13,11 +13,11 @@ namespace viewgain {
 namespace {
 
 constexpr double kNoWay = std::numeric_limits<double>::infinity();
-// Gains of an exchange that are less than this share of the cost are rounding.
+// Smaller improvements, relative to the cost, are rounding errors.
 constexpr double kRounding = 1e-12;
-constexpr std::size_t kMostMoved = 3;  // stops at once
+constexpr std::size_t kMostMoved = 3;  // stops per Or-opt move
 
-// The costs of all ways; the start is stop `count`.
+// The costs of all paths; the start is stop `count`.
 class Costs {
  public:
   Costs(std::size_t count, const WayCost& cost) : count_(count), costs_((count + 1) * count) {
@@ -48,7 +48,8 @@ class Costs {
   std::vector<double> costs_;
 };
 
-// Held and Karp: the cheapest way through each subset that ends in each of its stops.
+// Held and Karp: for each subset and each of its stops, the cheapest path through the subset that
+// ends there.
 std::vector<std::size_t> exact_order(std::size_t count, const Costs& costs) {
   const std::size_t subsets = std::size_t{1} << count;
   std::vector<double> least(subsets * count, kNoWay);
@@ -83,7 +84,7 @@ std::vector<std::size_t> exact_order(std::size_t count, const Costs& costs) {
   return stops;
 }
 
-// Each stop in turn, where it costs least.
+// Inserts the stops one by one at the cheapest place.
 std::vector<std::size_t> inserted_order(std::size_t count, const Costs& costs) {
   std::vector<std::size_t> stops;
   for (std::size_t stop = 0; stop < count; ++stop) {
@@ -102,7 +103,7 @@ std::vector<std::size_t> inserted_order(std::size_t count, const Costs& costs) {
   return stops;
 }
 
-// Infinite ways count first, the cost of the others next.
+// Compares orders by the number of infinite costs first, then by the sum of the others.
 std::pair<std::size_t, double> rank_of(const std::vector<std::size_t>& stops, std::size_t count,
                                        const Costs& costs) {
   std::pair<std::size_t, double> rank{0, 0.0};

@@ -61,13 +61,13 @@ void append_ring(std::size_t count, double radius, double height, double tilt, d
     const Eigen::Vector3d eye = center + radius * outward + Eigen::Vector3d(0, 0, height);
     const Eigen::Vector3d direction =
         -std::cos(tilt) * outward - Eigen::Vector3d(0, 0, std::sin(tilt));
-    // From the origin, so that the direction is not rounded on its way through a far eye.
+    // Computed at the origin, so that a distant eye does not round the direction.
     poses.emplace_back(look_at(Eigen::Vector3d::Zero(), direction).rotation(), eye);
   }
 }
 
-/// Cylinder rings at `heights` and, on top of the highest, a dome of rings at `elevations` on a
-/// sphere of the cylinder's radius; `tilts` are added to the level or inward direction of each.
+/// Rings on a cylinder at `heights`. Above the highest, rings at `elevations` on a sphere of the
+/// same radius. Each ring is repeated with each of `tilts` added to its direction.
 struct RingPattern {
   std::vector<double> heights;     // [m]
   std::vector<double> elevations;  // [rad]
@@ -89,7 +89,7 @@ void append_pattern(const RingPattern& pattern, double radius, double scale,
   }
 }
 
-/// Not <random>, whose distributions differ between standard libraries.
+/// Replaces <random>, whose distributions differ between standard libraries.
 class PortableRandom {
  public:
   explicit PortableRandom(std::uint64_t seed) : seed_(seed) {}
@@ -97,8 +97,8 @@ class PortableRandom {
   /// Uniform in [0, 1).
   double unit() { return unit_number(mix64(counter_++ * kMixStep + seed_)); }
 
-  /// Uniform on the unit sphere (Marsaglia 1972): no sine or cosine, whose last bits depend on the
-  /// mathematical library.
+  /// Uniform on the unit sphere (Marsaglia 1972), without sine and cosine, whose last bits depend
+  /// on the mathematical library.
   Eigen::Vector3d direction() {
     for (;;) {
       const double a = 2.0 * unit() - 1.0, b = 2.0 * unit() - 1.0;
@@ -196,7 +196,7 @@ std::vector<Pose> shell_poses(std::size_t count, double min_radius, double max_r
   std::vector<Pose> poses;
   poses.reserve(count);
   while (poses.size() < count) {
-    // Uniform in the radius, kept with probability (r / max)²: uniform in the volume.
+    // Keeping a uniform radius with probability (r / max)² gives a uniform density in the volume.
     const double radius = min_radius + (max_radius - min_radius) * random.unit();
     const double ratio = radius / max_radius;
     if (random.unit() >= ratio * ratio) continue;

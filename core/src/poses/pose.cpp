@@ -33,7 +33,7 @@ Pose orthonormalized(const Pose& pose) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(pose.rotation(),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d U = svd.matrixU();
-  // A reflection's nearest rotation gives up the weakest axis.
+  // For a reflection, the nearest rotation flips the weakest axis.
   if ((U * svd.matrixV().transpose()).determinant() < 0) U.col(2) = -U.col(2);
   return {U * svd.matrixV().transpose(), pose.translation()};
 }
@@ -59,7 +59,7 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Ei
   if (x.norm() < kParallelSine) x = z.cross(Eigen::Vector3d::UnitX());
   if (x.norm() < kParallelSine) x = z.cross(Eigen::Vector3d::UnitY());
   x.normalize();
-  // A short cross product carries a relative error: once more, now both are unit vectors.
+  // A short cross product has a large relative error. Orthogonalises again, now with unit vectors.
   x = (x - z * z.dot(x)).normalized();
 
   Eigen::Matrix3d R;

@@ -21,10 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMendable = 1e-2;   // rotations off by more are refused
-constexpr double kUnnoticed = 1e-9;  // rotations off by less are taken as they are
-constexpr double kTold = 1e-5;       // six decimals are as good as none
-constexpr double kLastRow = 1e-6;    // how far a matrix's last row may be from 0 0 0 1
+constexpr double kMendable = 1e-2;   // larger deviations are refused
+constexpr double kUnnoticed = 1e-9;  // smaller deviations are ignored
+constexpr double kTold = 1e-5;       // smaller deviations come from printing six decimals
+constexpr double kLastRow = 1e-6;    // tolerance for a matrix's last row 0 0 0 1
 constexpr std::uint64_t kMaxFileSize = std::uint64_t{1} << 30U;  // [bytes]
 
 }  // namespace

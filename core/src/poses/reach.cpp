@@ -16,7 +16,7 @@ namespace {
   refuse(std::string("reach: ") + part + " " + std::to_string(index) + " " + what);
 }
 
-/// Unlike Box::contains, faces included: a camera may stand on the limit.
+/// Includes the faces, unlike Box::contains, because a camera may be exactly at the limit.
 bool contains(const Box& box, const Eigen::Vector3d& p) {
   for (std::size_t k = 0; k < 3; ++k) {
     const double value = p[static_cast<Eigen::Index>(k)];
@@ -40,7 +40,8 @@ bool in_any(const std::vector<Part>& parts, const Eigen::Vector3d& p) {
                                       [&p](const Part& part) { return contains(part, p); });
 }
 
-// Angle of the rotation between two poses [rad]. An arc cosine would lose the small angles.
+// Angle of the rotation between two poses [rad]. An arc cosine would be inaccurate for small
+// angles.
 double angle_between(const Pose& a, const Pose& b) {
   const Eigen::Matrix3d R = a.rotation().transpose() * b.rotation();
   const Eigen::Vector3d twice_sine(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));

@@ -15,8 +15,9 @@ namespace {
 
 constexpr int kMaxSize = 16384;  // [px]
 constexpr int kMaxPixels = 1 << 24;
-constexpr double kTolerance = 1e-12;      // of normalised coordinates
-constexpr int kFixedPointIterations = 4;  // brings usual lenses into Newton's basin
+constexpr double kTolerance = 1e-12;  // of normalised coordinates
+// Enough for Newton's method to converge with usual lenses.
+constexpr int kFixedPointIterations = 4;
 constexpr int kNewtonIterations = 30;
 constexpr int kBranchChecks = 16;  // points between the axis and a solution
 constexpr int kContinuationSteps = 64;
@@ -49,14 +50,15 @@ bool newton(const std::array<double, 5>& d, const Eigen::Vector2d& target, Eigen
     const Eigen::Vector2d residual = target - at.point;
     if (!(at.jacobian.determinant() > 0)) return false;
     p += at.jacobian.inverse() * residual;
-    // Tested before the step: the step that follows a residual this small is the last improvement.
+    // Checked before the step, because the step after a residual this small is the last
+    // improvement.
     if (residual.lpNorm<Eigen::Infinity>() < kTolerance) return true;
   }
   return false;
 }
 
-/// A folded lens model maps several points to one pixel; the real one is joined to the optical axis
-/// by points where the model has not folded yet.
+/// A folded lens model maps several points to one pixel. The real point is the one that is
+/// connected to the optical axis by points before the fold.
 bool on_central_branch(const std::array<double, 5>& d, const Eigen::Vector2d& p) {
   for (int i = 1; i <= kBranchChecks; ++i) {
     const Eigen::Vector2d q = p * (static_cast<double>(i) / kBranchChecks);
@@ -70,7 +72,7 @@ Eigen::Vector2d undistort(const std::array<double, 5>& d, const Eigen::Vector2d&
   for (int i = 0; i < kFixedPointIterations; ++i) p += target - distort(d, p).point;
   if (newton(d, target, p) && on_central_branch(d, p)) return p;
 
-  // Strong distortion: follow the solution outwards from the axis.
+  // With strong distortion, follows the solution outwards from the axis.
   p.setZero();
   for (int i = 1; i <= kContinuationSteps; ++i) {
     if (!newton(d, target * (static_cast<double>(i) / kContinuationSteps), p)) {

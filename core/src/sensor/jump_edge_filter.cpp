@@ -16,18 +16,18 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;  // [rad]
 constexpr double kMinAngle = 1 * kDegree;
 constexpr double kMaxAngle = 10 * kDegree;
-constexpr double kAngleSlack = 1e-9;  // bounds given in degrees and converted
+constexpr double kAngleSlack = 1e-9;  // for bounds that were converted from degrees
 
-/// Is the edge from p to q within the angle of p's viewing ray? By the cross product, which keeps
-/// its digits at small angles.
+/// Whether the edge from p to q is within the angle of p's viewing ray. Uses the cross product,
+/// which is accurate at small angles.
 bool along_ray(const Eigen::Vector3d& p, const Eigen::Vector3d& q, double sin2_angle) {
   const Eigen::Vector3d edge = q - p;
   return p.cross(edge).squaredNorm() < sin2_angle * p.squaredNorm() * edge.squaredNorm();
 }
 
-/// Ranges r and (1 + t) r of directions d apart span an edge within angle a of the farther one's
-/// ray if t² + 2 (1 + t) (1 - cos d) > sin² d / sin² a: not below the bound found here on (1 + t)²,
-/// for the least d of neighbours in the image; at right angles and beyond none is.
+/// Two readings at ranges r and (1 + t) r, whose rays differ by the angle d, form an edge within
+/// angle a of the farther ray if t² + 2 (1 + t) (1 - cos d) > sin² d / sin² a. Returns a bound on
+/// (1 + t)² below which this is false for the smallest d in the image.
 double smooth_ratio(const std::vector<Eigen::Vector3d>& rays, std::size_t width,
                     double sin2_angle) {
   double sin2_least = std::numeric_limits<double>::infinity();
@@ -45,7 +45,7 @@ double smooth_ratio(const std::vector<Eigen::Vector3d>& rays, std::size_t width,
     look(p, p + width);
     if (!is_last) look(p, p + width + 1);
   }
-  // With t <= 1/2 and d <= 30 degrees 2 (1 + t) (1 - cos d) is below 1.7 sin² d.
+  // For t <= 1/2 and d <= 30 degrees, 2 (1 + t) (1 - cos d) is below 1.7 sin² d.
   if (!(sin2_least <= 0.25)) return 1;
   const double t = 0.99 * std::min(std::sqrt(sin2_least * (1 / sin2_angle - 1.7)), 0.5);
   return (1 + t) * (1 + t);
@@ -70,7 +70,7 @@ std::size_t JumpEdgeFilter::apply(DepthFrame& frame) const {
   const auto width = static_cast<std::size_t>(camera_.width);
   const auto height = static_cast<std::size_t>(camera_.height);
 
-  // Zero where there is no reading; a reading cannot be at the camera's centre.
+  // Zero means no reading, because a reading cannot be at the camera's centre.
   std::vector<double> squared_ranges(pixels, 0.0);
   std::vector<float> depth = frame.depth;
   const auto point = [&](std::size_t i) -> Eigen::Vector3d {
@@ -84,7 +84,8 @@ std::size_t JumpEdgeFilter::apply(DepthFrame& frame) const {
   const double sin_angle = std::sin(config_.angle);
   const double sin2_angle = sin_angle * sin_angle;
   std::size_t removed = 0;
-  // Of three rows the least squared range, and so of all neighbours; infinite where nothing is.
+  // Smallest squared range of three rows, to compare with all neighbours at once; infinite without
+  // readings.
   std::vector<double> least(width + 2);
   for (std::size_t v = 0; v < height; ++v) {
     std::fill(least.begin(), least.end(), std::numeric_limits<double>::infinity());

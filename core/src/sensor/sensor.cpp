@@ -33,7 +33,7 @@ PinholeCamera make_camera(int width, int height, double fx, double fy, double cx
       .width = width, .height = height, .fx = fx, .fy = fy, .cx = cx, .cy = cy, .distortion = {}};
 }
 
-/// But for the laser's, the models' default parameters are those of the presets that use them.
+/// Except for the laser, presets use the default parameters of their noise models.
 const std::vector<Sensor>& presets() {
   static const std::vector<Sensor> sensors{
       Sensor{},  // sr4000
@@ -46,17 +46,17 @@ const std::vector<Sensor>& presets() {
       with_body(make_sensor("d435", make_camera(640, 480, 447.0, 447.0, 319.5, 239.5), 0.2, 3.0,
                             0.5, StereoNoise{}),
                 {0.090, 0.025, 0.025}),
-      // A line scanner of one row, for comparison with sure sensors.
+      // A line scanner of one row, for comparison with precise sensors.
       make_sensor("laser_line", make_camera(640, 1, 800.0, 800.0, 319.5, 0.0), 0.1, 1.0, 0.4,
                   ConstantNoise{.sigma_axial = 0.2e-3, .sigma_lateral = 0.2e-3}),
   };
   return sensors;
 }
 
-// Within the sensor's ranges, of a surface seen frontally [m].
+// Within the sensor's range limits, for frontal incidence [m].
 double range_of_least_sigma(const Sensor& sensor) {
   const auto* structured = std::get_if<StructuredLightNoise>(&sensor.noise);
-  if (structured == nullptr) return sensor.min_range;  // the others do not fall with the range
+  if (structured == nullptr) return sensor.min_range;  // other models grow with the range
   return std::clamp(structured->vertex, sensor.min_range, sensor.max_range);
 }
 

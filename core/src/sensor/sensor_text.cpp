@@ -15,7 +15,7 @@
 namespace viewgain {
 namespace {
 
-// One column of the table, ten numbers a line.
+// One column of the table, ten numbers per line.
 void write_column(std::ostream& text, const char* key, const RangeCalibration& calibration,
                   std::size_t column) {
   constexpr std::size_t kInALine = 10;

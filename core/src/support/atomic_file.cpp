@@ -39,9 +39,9 @@ namespace fs = std::filesystem;
   throw Error(ErrorCode::io, target.string() + ": cannot write: " + why);
 }
 
-// Where a name leads.
+// Resolving names.
 
-/// N if `at` is /proc/self/fd/N, perhaps under another name of that folder; else -1.
+/// N if `at` is /proc/self/fd/N, also under another name of that folder; else -1.
 int own_descriptor(const fs::path& at) {
   const std::string name = at.filename().string();
   int number = -1;
@@ -53,12 +53,12 @@ int own_descriptor(const fs::path& at) {
 }
 
 struct Destination {
-  fs::path path;        ///< no link; need not be there
-  int descriptor = -1;  ///< of this process, if the name stands for one (/dev/stdout)
+  fs::path path;        ///< not a link; need not exist
+  int descriptor = -1;  ///< of this process, if the name refers to one (/dev/stdout)
 };
 
 Destination follow_links(const fs::path& target) {
-  constexpr int kMostLinks = 40;  // as the kernel has it
+  constexpr int kMostLinks = 40;  // the kernel's limit
   fs::path at = target;
   for (int links = 0; links < kMostLinks; ++links) {
     if (const int descriptor = own_descriptor(at); descriptor >= 0) return {target, descriptor};
@@ -71,7 +71,8 @@ Destination follow_links(const fs::path& target) {
   fail(target, ELOOP);
 }
 
-/// Shares the descriptor's place in the file, so that what others wrote there stays.
+/// Shares the descriptor's position in the file, so that the output of other writers is not
+/// overwritten.
 int duplicate_for_writing(const fs::path& target, int descriptor) {
   const int mode = ::fcntl(descriptor, F_GETFL);
   if (mode < 0 || (mode & O_ACCMODE) == O_RDONLY) fail(target, EBADF);
@@ -82,8 +83,8 @@ int duplicate_for_writing(const fs::path& target, int descriptor) {
 
 // Temporary files, locked as long as their writer lives.
 
-/// Removes what writers of this target left behind when they were killed. A process that runs
-/// elsewhere, on another machine or in another container, is known by its lock.
+/// Removes files that killed writers of this target left. A lock shows that a writer still runs,
+/// also on another machine or in another container.
 void remove_leftovers(const fs::path& target, const TemporaryNames& names) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   std::error_code code;
@@ -99,18 +100,18 @@ void remove_leftovers(const fs::path& target, const TemporaryNames& names) {
   }
 }
 
-/// Creates the file, which must not be there yet. Its descriptor, or -1 and errno.
+/// Creates the file, which must not exist yet. Returns its descriptor, or -1 and errno.
 int create_new(const fs::path& path, mode_t mode) {
   const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   if (file >= 0) (void)::flock(file, LOCK_EX | LOCK_NB);  // not every file system has locks
   return file;
 }
 
-/// The names of temporary files that remove_temporary_files() is to remove; files beyond these are
-/// not listed. A handler and a destructor may look for the same name at once: the one that takes it
-/// out of the list, in one step, has it to itself.
+/// Names of temporary files that remove_temporary_files() removes; more files than this are not
+/// listed. A signal handler and a destructor may look for the same name at once. The one that
+/// removes it from the list, in one atomic step, owns it.
 std::array<std::atomic<char*>, 64> temporaries{};
-static_assert(std::atomic<char*>::is_always_lock_free);  // else no handler could use it
+static_assert(std::atomic<char*>::is_always_lock_free);  // required for use in a signal handler
 
 /// The name as it was listed, or null.
 char* list_temporary(const fs::path& path) {
@@ -135,10 +136,11 @@ void unlist_temporary(char* name) {
   }
 }
 
-constexpr mode_t kPermissionBits = S_IRWXU | S_IRWXG | S_IRWXO;  // a write clears the others, too
+// A write also clears the other bits.
+constexpr mode_t kPermissionBits = S_IRWXU | S_IRWXG | S_IRWXO;
 
 bool is_synced(int file) {
-  // Some file systems have nothing to wait for and say so.
+  // Some file systems do not support syncing and report that.
   return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP;
 }
 
@@ -151,12 +153,12 @@ void Permissions::give(int file) const noexcept {
   struct stat own {};
   if (::fstat(file, &own) != 0) return;
   mode_t mode = mode_;
-  // The group first: its bits are for nobody else. Whoever may not give the file to the group
-  // gives his own what everybody has.
+  // The group is set first, because its permissions apply to this group only. If that is not
+  // allowed, the file's group gets the permissions of others.
   if (own.st_gid != group_ && ::fchown(file, static_cast<uid_t>(-1), group_) != 0) {
     mode = (mode & ~mode_t{S_IRWXG}) | (mode & S_IRWXO) << 3U;
   }
-  // Some file systems have no modes; then this one is that of all their files.
+  // Some file systems have no modes, and the mode cannot be changed.
   if ((own.st_mode & kPermissionBits) != mode) (void)::fchmod(file, mode);
 }
 
@@ -172,26 +174,25 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
   const bool is_there = ::stat(target.c_str(), &status) == 0;
   if (!is_there && errno == ENAMETOOLONG) fail(target, errno);
   if (is_there && S_ISDIR(status.st_mode)) fail(target, EISDIR);
-  // Opened by the first write: to open a pipe is to wait for its reader.
+  // The first write opens it, because opening a pipe waits for its reader.
   if (is_there && !S_ISREG(status.st_mode)) return;
   if (!resolved_.has_filename()) fail(target, EISDIR);
   if (is_there) replaced_ = Permissions(status);
   syncs_ = !are_synced_together(resolved_);
   const TemporaryNames names = TemporaryNames::of_file(resolved_);
-  // What a killed process left in a folder that is synced as a whole is its owner's to remove.
+  // In a folder that is synced as a whole, the folder's owner removes leftovers.
   if (syncs_) remove_leftovers(resolved_, names);
-  // Listed for as long as the file may be there, and so from before on: a signal may come at any
-  // time.
+  // Listed before the file is created, because a signal may arrive at any time.
   do {
     temporary_ = names.next();
     listed_ = list_temporary(temporary_);
-    // What replaces a file is its owner's alone until it has the permissions of that one.
+    // A replacement is private until it gets the permissions of the file that it replaces.
     file_ = create_new(temporary_, replaced_ ? 0600 : 0666);
     if (file_ >= 0) return;
     const int error = errno;
     unlist_temporary(listed_);
     errno = error;
-  } while (errno == EEXIST);  // of a process that had the same number
+  } while (errno == EEXIST);  // left by a process with the same number
   fail(target, errno);
 }
 
@@ -229,7 +230,7 @@ void AtomicFile::commit() {
     std::error_code code;
     fs::rename(temporary_, resolved_, code);
     if (code) fail(target_, code.value());
-    // What was there before is whole, too, if this fails.
+    // If this fails, the previous file is still complete.
     if (syncs_) sync_folder(resolved_.has_parent_path() ? resolved_.parent_path() : fs::path("."));
   }
   committed_ = true;
@@ -241,7 +242,7 @@ void remove_temporary_files() noexcept {
     char* const name = place.exchange(nullptr);
     if (name == nullptr) continue;
     ::unlink(name);
-    // Back to where its file frees it, which a handler may not do.
+    // Returns it to the list, because a signal handler must not free it.
     char* nothing = nullptr;
     place.compare_exchange_strong(nothing, name);
   }
@@ -252,7 +253,7 @@ bool is_open_file(const fs::path& path) noexcept {
   try {
     return follow_links(path).descriptor >= 0;
   } catch (const std::exception&) {
-    return false;  // of links in a circle
+    return false;  // links form a cycle
   }
 }
 

@@ -31,7 +31,7 @@ std::string too_many_bytes(std::uint64_t most) {
 class Input {
  public:
   Input(const std::filesystem::path& path, bool may_be_a_pipe) : path_(path) {
-    // Before it is opened: opening a device may already do something.
+    // Checked before opening, because opening a device can have effects.
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0) fail("cannot be opened", errno);
     if (S_ISDIR(status.st_mode)) fail("cannot be read: it is a directory");
@@ -47,7 +47,7 @@ class Input {
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
-  /// As the file system says; 0 for pipes, and for the files of /proc.
+  /// Size according to the file system; 0 for pipes and for files in /proc.
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
   /// The next bytes, at most `count`; fewer only at the end.
@@ -84,7 +84,7 @@ std::string bytes_of(Input& input, std::uint64_t most) {
   if (input.size() > most) refuse();
   try {
     std::string bytes;
-    bytes.reserve(static_cast<std::size_t>(input.size()) + 1);  // one more, to see the end
+    bytes.reserve(static_cast<std::size_t>(input.size()) + 1);  // one more, to detect the end
     for (;;) {
       const std::size_t before = bytes.size(), room = bytes.capacity() - before;
       const std::size_t part = room > 0 ? std::min(room, kPart) : kPart;
@@ -104,7 +104,7 @@ std::string read_bytes(const std::filesystem::path& path, std::uint64_t most) {
   return bytes_of(input, most);
 }
 
-/// What has come from pipes, each read once whatever its name is.
+/// Contents of pipes, each of which is read once under whatever name.
 struct Pipes {
   std::atomic<bool> are_kept = false;
   std::mutex mutex;

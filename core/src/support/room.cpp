@@ -9,7 +9,7 @@
 namespace viewgain {
 
 void check_room(std::size_t bytes) {
-  // Not by an allocator, which would keep it, and from then on larger blocks in its heap.
+  // Not from an allocator, which would keep the memory in its heap.
   void* const room =
       ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (room == MAP_FAILED) throw std::bad_alloc();

@@ -20,13 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 
 std::mutex synced_mutex;
-std::vector<fs::path> synced_folders;  // of those that live
+std::vector<fs::path> synced_folders;  // of existing objects
 
 void sync_one(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   int error = file < 0 || ::fsync(file) != 0 ? errno : 0;
   if (file >= 0) ::close(file);
-  // Some file systems have nothing to wait for and say so.
+  // Some file systems do not support syncing and report that.
   if (error == 0 || error == EINVAL || error == ENOTSUP) return;
   throw Error(ErrorCode::io,
               path.string() + ": cannot write: " + std::generic_category().message(error));
@@ -51,7 +51,7 @@ SyncedTogether::~SyncedTogether() {
 
 void SyncedTogether::sync() const {
   if (file_ >= 0 && ::syncfs(file_) == 0) return;
-  // It may have failed for a file of somebody else on the same disk.
+  // The sync may have failed for an unrelated file on the same disk.
   std::error_code code;
   for (fs::recursive_directory_iterator entry(folder_, code), end; !code && entry != end;
        entry.increment(code)) {

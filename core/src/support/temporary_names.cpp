@@ -17,17 +17,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostNameBytes = 255;   // of Linux's file systems but for a few
+constexpr std::size_t kMostNameBytes = 255;   // in most of Linux's file systems
 constexpr std::size_t kMostNumberBytes = 21;  // PROCESS-COUNTER, of 10 digits each
 
-// Some file systems have less. Those that say more count other units than bytes.
+// Some file systems allow less. Those that report more count other units than bytes.
 std::size_t most_name_bytes(const fs::path& folder) {
   const long most = ::pathconf(folder.empty() ? "." : folder.c_str(), _PC_NAME_MAX);
   return most > 0 ? std::min(static_cast<std::size_t>(most), kMostNameBytes) : kMostNameBytes;
 }
 
 std::string prefix_of(const std::string& name) {
-  // Appended piece by piece: GCC 12 warns, wrongly, of overlap where a literal is first in a sum.
+  // Appended piece by piece, because GCC 12 wrongly warns of overlap if a literal comes first in a
+  // sum.
   std::string prefix(1, '.');
   return prefix.append(name).append(".tmp-");
 }

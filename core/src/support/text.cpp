@@ -34,7 +34,7 @@ std::string quoted(std::string_view word) {
 
 LineReader::LineReader(std::string name, std::string_view bytes)
     : name_(std::move(name)), rest_(bytes) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // what some editors put first
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // written first by some editors
   if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
   const std::size_t end = rest_.find_first_of("\r\n");
   const bool has_return = end != std::string_view::npos && rest_[end] == '\r';
@@ -70,7 +70,7 @@ double LineReader::number(std::size_t word) const { return number_of(word_at(wor
 
 double LineReader::number_of(std::string_view word) const {
   std::string_view digits = word;
-  // from_chars does not take a plus sign, some writers print one.
+  // Some writers print a plus sign, which from_chars does not accept.
   if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
   double value = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);

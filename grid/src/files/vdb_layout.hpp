@@ -91,7 +91,7 @@ inline void initialize_openvdb() {
   }
 }
 
-/// Hazard counters of a file; value(name) reads an Int64Metadata. Throws as value(), and
+/// Hazard counters of a file; value(name) reads an Int64Metadata. Throws like value(), and
 /// Error(invalid_argument) for a count out of bounds.
 template <typename Value>
 [[nodiscard]] HazardCounters read_counters(const openvdb::MetaMap& metadata, Value&& value) {

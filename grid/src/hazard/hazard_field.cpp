@@ -14,11 +14,11 @@
 namespace viewgain {
 namespace {
 
-// Of a voxel, or cube of voxels, with evidence of surface.
+// Minimum hits of a voxel, or cube of voxels, to be evidence of surface.
 constexpr std::uint64_t kLeastHits = 3;
 constexpr double kFar = std::numeric_limits<double>::infinity();
-// Distance within which surface is not new [pooling lengths]: in rank correlation with the surface
-// that views really show, 1.2 and 1.6 are equal; 2 and more are worse once most is seen.
+// Distance within which surface is not new [pooling lengths]. By rank correlation with the surface
+// that views really show, 1.2 and 1.6 are equally good, and 2 and more are worse.
 constexpr double kKnownDistance = 1.2;
 
 void check(bool ok, const char* name, double value) {

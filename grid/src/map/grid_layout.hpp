@@ -12,10 +12,10 @@ struct GridLayout {
   Index3 dims;
 };
 
-/// The box of whole voxels around the workspace. Throws as BeliefGrid's constructor.
+/// The box of whole voxels around the workspace. Throws like BeliefGrid's constructor.
 [[nodiscard]] GridLayout layout_of(const GridConfig& config);
 
-/// Throws as BeliefGrid's constructor.
+/// Throws like BeliefGrid's constructor.
 void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigma,
                   const GridLayout& layout);
 

@@ -15,7 +15,7 @@ namespace viewgain::detail {
 /// the sensor's or the frames' note.
 void check_notes(const MapNotes& notes);
 
-/// Conversion to and from a map file's notes, by name. Throws as check_notes().
+/// Conversion to and from a map file's notes, by name. Throws like check_notes().
 [[nodiscard]] std::map<std::string, std::string> texts_of(const MapNotes& notes);
 [[nodiscard]] MapNotes notes_of(std::map<std::string, std::string> texts);
 
@@ -26,7 +26,7 @@ void check_notes(const MapNotes& notes);
 /// afterwards.
 class FrameNote {
  public:
-  /// `sensor` as in MapNotes. Throws as check_identity().
+  /// `sensor` as in MapNotes. Throws like check_identity().
   FrameNote(const BeliefGrid& grid, const std::string& sensor, const std::string& identity);
   void put(BeliefGrid& grid) noexcept;
 

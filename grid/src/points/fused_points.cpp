@@ -28,8 +28,8 @@ constexpr double kSupportRadius = 4.0;  // pooling lengths
 constexpr double kMostHeight = 6.0;     // half height of a column [voxels]
 constexpr int kSteps = 3;               // iterations of a point towards its column's mean
 constexpr double kRamp = 0.2;           // transition from one sheet to two [voxels]
-// Errors common to readings of one place, and blur from pooling a column, relative to a reading's
-// sigma, the column's scatter and a voxel; perf/results/honesty.md describes the fit.
+// Errors that readings of the same surface share, and blur from pooling a column, relative to a
+// reading's sigma, the column's scatter and a voxel; perf/results/honesty.md describes the fit.
 constexpr double kOfSigma = 0.19, kOfScatter = 0.43, kOfVoxel = 0.02;
 
 void check(const FusedPointsConfig& config) {
@@ -137,9 +137,9 @@ void pool_column(const BeliefBricks& bricks, BrickNeighborhood around, double vo
     const double share = share_of_other(face, other, sigma);
     const double hits = face.hits + share * other.hits;
     if (hits == 0) return;
-    // Only along the normal: laterally the column stays at the seed. Each reading counts once:
-    // grazing readings look precise across the surface, but where it curves their error along the
-    // ray leaves it, and weighting by information would blur thin parts.
+    // Moves only along the normal, and counts each reading once. Weighting by information would
+    // blur thin parts: grazing readings seem precise across the surface, but where the surface
+    // curves their error along the ray leads away from it.
     const double height = (face.height + share * other.height) / hits;
     seed.position += height * n;
     seed.information = face.information + other.information * share;
@@ -149,14 +149,14 @@ void pool_column(const BeliefBricks& bricks, BrickNeighborhood around, double vo
   }
 }
 
-/// Number of times that the surface at a seed was seen, in frontal views: the areas of its readings
-/// relative to the area of its column. One frontal view gives about 1 at any range.
+/// How often the surface at a seed was seen, in frontal views: the areas of its readings divided by
+/// the area of its column. One frontal view gives about 1 at any range.
 double evidence(const Seed& seed, double column_area) {
   return seed.hits * lateral_variance(seed.information, seed.hits) / column_area;
 }
 
-/// F of a pooled point along its normal [m²]: errors common to its readings, and blur of the
-/// column. Decreases as readings of more views lie at other places in a voxel.
+/// F of a pooled point along its normal [m²]: errors that its readings share, and blur of the
+/// column. Decreases with more views, because their readings sample different positions in a voxel.
 double pooled_floor(const Seed& seed, double evidence, double voxel_size) {
   const double own = seed.hits * seed.normal.dot(seed.covariance * seed.normal);  // of one reading
   const double left = std::min(1.0, 0.2 + 2.0 / std::max(evidence, 1.0));
@@ -165,9 +165,9 @@ double pooled_floor(const Seed& seed, double evidence, double voxel_size) {
           voxel_size * voxel_size * (kOfScatter * kOfScatter * seed.scatter + kOfVoxel * kOfVoxel));
 }
 
-/// Displacement of a point if all ranges change by the same factor 1 + x, over x [m]: the mean
-/// vector from the views in front of it (on the side of `normal`), weighted by the readings that
-/// each has of a piece of surface, cosθ / t². Zero without such views. World frame.
+/// How far a point moves per relative change of all ranges [m]: the mean vector to it from the
+/// views on the side of `normal`. Each view is weighted by cosθ / t², which is proportional to its
+/// readings of the surface. Zero without such views. World frame.
 Eigen::Vector3d mean_way(const std::vector<Pose>& views, const Eigen::Vector3d& point,
                          const Eigen::Vector3d& normal) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

@@ -14,8 +14,8 @@
 namespace viewgain::detail {
 
 /// Sums over the readings in balls around the voxels of one brick: w = hits, d = vector from the
-/// ball's centre to a voxel's centre [voxels]. A ball ignores voxels that face the other way, so
-/// that a wall's two faces do not look like one thick cloud. Ignored are voxels whose free side is
+/// ball's centre to a voxel's centre [voxels]. A ball ignores voxels on the other face of a wall,
+/// because both faces together would look like one thick cloud. These are voxels whose free side is
 /// more than 120° from the coordinate axis nearest to the central voxel's free side. With prefix
 /// sums along z, a ball costs two look-ups per row. Sums are integers below 2^53, hence exact in
 /// any order.

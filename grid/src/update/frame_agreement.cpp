@@ -299,8 +299,8 @@ void FrameAgreement::keep(std::vector<Reading> readings) {
 
 std::vector<FrameContradiction> FrameAgreement::frames(const BeliefGrid& after) const {
   std::vector<FrameContradiction> all = frames_;
-  // Readings in space that was free before and in space that became free since are shares of the
-  // same readings.
+  // Readings in space that was free before, and in space that became free since, are both counted
+  // among the kept readings.
   std::vector<std::size_t> kept(all.size()), carved(all.size());
   for (const Reading& reading : kept_) {
     ++kept[reading.frame];

@@ -20,7 +20,7 @@ namespace viewgain::detail {
 /// -> apply (grid/README.md).
 class MapUpdate {
  public:
-  /// Throws as FrameIntegrator's constructor for invalid scales.
+  /// Throws like FrameIntegrator's constructor for invalid scales.
   MapUpdate(const IntegrationConfig& config, const ExecConfig& exec);
   ~MapUpdate();
   MapUpdate(MapUpdate&&) noexcept;

@@ -18,7 +18,7 @@ namespace viewgain::detail {
 /// in the fine boxes.
 class ScalePlan {
  public:
-  /// Throws as FrameIntegrator's constructor.
+  /// Throws like FrameIntegrator's constructor.
   explicit ScalePlan(const IntegrationConfig& config);
 
   /// Starts a frame and map, which must outlive the queries.

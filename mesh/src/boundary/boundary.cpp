@@ -20,14 +20,14 @@ namespace {
 
 using detail::BoundaryEdge;
 
-// A view, ready to be asked about many edges.
+// A view, prepared for queries about many edges.
 struct ViewAxes {
   Pose T_camera_world;
   Eigen::Matrix3d R_camera_world;
   Eigen::Vector3d eye;  // world [m]
 };
 
-// Where an edge is classified.
+// The class of an edge and the view that classified it.
 struct EdgeClass {
   BoundaryClass boundary_class = BoundaryClass::left;
   std::uint32_t view = 0;
@@ -83,14 +83,14 @@ class EdgeClassifier {
   std::vector<ViewAxes> axes_;
 };
 
-// The length-weighted sum of conormals over the edges whose middles lie within window / 2 of each
-// edge's own along the loop, so that a jagged border counts by its course and not by its teeth. The
-// window is at most a quarter of the loop: round all of it the conormals cancel.
+// Length-weighted sum of the conormals of the edges whose middles lie within window / 2 along the
+// loop, to smooth jagged borders. The window is at most a quarter of the loop, because conormals
+// cancel around the whole loop.
 std::vector<Eigen::Vector3d> smoothed_conormals(std::span<const BoundaryEdge> edges, double length,
                                                 double window) {
   const std::size_t n = edges.size();
   const double reach = 0.5 * std::min(window, 0.25 * length);
-  // Three times round, so that no window of the middle turn meets an end.
+  // Repeats the loop three times, so that windows in the middle copy do not reach an end.
   std::vector<double> middles;
   std::vector<Eigen::Vector3d> sums{Eigen::Vector3d::Zero()};
   double travelled = 0;
@@ -112,7 +112,7 @@ std::vector<Eigen::Vector3d> smoothed_conormals(std::span<const BoundaryEdge> ed
   return smoothed;
 }
 
-// Consecutive edges of one class, in a ring of them.
+// Consecutive edges of one class.
 struct Segment {
   BoundaryClass boundary_class;
   std::size_t first;  // edge of the loop
@@ -121,7 +121,7 @@ struct Segment {
   bool alive = true;
 };
 
-// The loop's edges as a ring of segments of unlike neighbours.
+// The loop's edges as a ring of segments with different classes.
 std::vector<Segment> segments_of(std::span<const EdgeClass> classes,
                                  std::span<const BoundaryEdge> edges) {
   const std::size_t n = classes.size();
@@ -146,8 +146,8 @@ std::vector<Segment> segments_of(std::span<const EdgeClass> classes,
   return segments;
 }
 
-// The shortest of those under min_length joins the longer of its neighbours (of equal ones the
-// previous), again and again. At equal lengths the first comes first.
+// Repeatedly joins the shortest segment under min_length with the longer of its neighbours. Ties go
+// to the first segment, and to the previous neighbour.
 void join_short(std::vector<Segment>& segments, double min_length) {
   std::set<std::pair<double, std::size_t>> by_length;
   for (std::size_t s = 0; s < segments.size(); ++s) by_length.emplace(segments[s].length, s);
@@ -167,7 +167,7 @@ void join_short(std::vector<Segment>& segments, double min_length) {
     const std::size_t after = segments[s].next;
     const bool to_next = segments[after].length > segments[before].length;
     segments[s].boundary_class = segments[to_next ? after : before].boundary_class;
-    // It now has the class of one neighbour, and perhaps of both.
+    // The joined segment can have the same class as its other neighbour.
     if (before != after && segments[after].boundary_class == segments[s].boundary_class) {
       join(s, after);
     }
@@ -191,7 +191,7 @@ BoundaryRun make_run(const BoundaryLoop& loop, std::uint32_t loop_index, const S
     ++votes[classes[i].view];
   }
   if (!run.closed) run.vertices.push_back(loop.vertices[(segment.first + edge_count) % n]);
-  // Of views that are equally common the later.
+  // Ties go to the later view.
   std::size_t most = 0;
   for (const auto& [view, count] : votes) {
     if (count >= most) {

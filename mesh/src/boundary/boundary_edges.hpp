@@ -19,7 +19,7 @@ struct BoundaryEdge {
   double length;            ///< [m]
 };
 
-/// The edges of a chain of vertices, one a triangle; a closed chain returns to its first vertex.
+/// The edges of a chain of vertices, one per triangle; a closed chain returns to its first vertex.
 /// Throws Error(invalid_argument) if the sizes or an index do not fit the surface.
 [[nodiscard]] std::vector<BoundaryEdge> boundary_edges(const SurfaceMesh& surface,
                                                        std::span<const std::uint32_t> vertices,

@@ -57,8 +57,8 @@ std::uint32_t start_of(const SurfaceMesh& surface, std::uint32_t half_edge) {
   return surface.triangles[half_edge / 3][half_edge % 3];
 }
 
-// The half-edge on the other side of each, or kBorder. Edges are sorted into buckets by their lower
-// vertex and inside a bucket by the upper one.
+// The opposite of each half-edge, or kBorder. Edges are sorted by their lower vertex and then by
+// the upper vertex.
 std::vector<std::uint32_t> opposites(const SurfaceMesh& surface) {
   struct Edge {
     std::uint32_t upper;
@@ -125,7 +125,7 @@ std::vector<BoundaryLoop> boundary_loops(const SurfaceMesh& surface) {
       taken[h] = true;
       loop.vertices.push_back(start_of(surface, h));
       loop.triangles.push_back(h / 3);
-      // Through the faces round the end vertex: of all the border there, the one of this fan.
+      // Follows the faces around the end vertex, to find the border edge of the same fan.
       h = next_in_face(h);
       while (opposite[h] != kBorder) h = next_in_face(opposite[h]);
     } while (h != start);

@@ -22,7 +22,7 @@ RegionGrower::RegionGrower(const SurfaceMesh& surface)
     : surface_(surface),
       first_(surface.vertices.size() + 1, 0),
       distance_(surface.vertices.size(), std::numeric_limits<double>::infinity()) {
-  // Each corner of a face has two neighbours in it.
+  // Each corner of a face has two neighbours in that face.
   for (const auto& triangle : surface.triangles) {
     for (const std::uint32_t v : triangle) first_[v + 1] += 2;
   }
@@ -79,14 +79,15 @@ namespace {
 
 constexpr double kMaxCondition = 1e3;
 
-// A curvature that noise can feign turns the extrapolated view away for nothing: as steep as this.
+// Largest uncertainty of the slope: above it, the curvature can come from noise alone and would
+// turn the extrapolated view.
 constexpr double kMaxSlopeSigma = 0.2;
 
 // Sine of the angle under which `outward` counts as parallel to the normal.
 constexpr double kParallelSine = 1e-8;
 
-// The points in the patch's frame, centred and divided by one common spread, so that a condition
-// number says whether they are laid out well, and a band that is narrow for its length is not.
+// The points in the patch's frame, centred and divided by one common spread. The condition number
+// then shows whether their layout determines a fit; a long, narrow band does not.
 struct LayoutInPlane {
   Eigen::Matrix3Xd local;  // u, v, w [m]
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
@@ -111,7 +112,8 @@ struct Solution {
   bool determined = false;
 };
 
-// By the normal equations: at conditions under 1e3 they lose at most six of sixteen digits.
+// Solves the normal equations, which lose at most six of sixteen digits for condition numbers below
+// 1e3.
 template <int N>
 Solution<N> least_squares(const Eigen::Matrix<double, Eigen::Dynamic, N>& A,
                           const Eigen::VectorXd& b) {
@@ -119,7 +121,7 @@ Solution<N> least_squares(const Eigen::Matrix<double, Eigen::Dynamic, N>& A,
   Solution<N> solution;
   const Square square = A.transpose() * A;
   const Eigen::JacobiSVD<Square, Eigen::NoQRPreconditioner> svd(square, Eigen::ComputeFullV);
-  const Eigen::Matrix<double, N, 1> squares = svd.singularValues();  // falling
+  const Eigen::Matrix<double, N, 1> squares = svd.singularValues();  // decreasing
   solution.determined = squares[0] < kMaxCondition * kMaxCondition * squares[N - 1];
   if (!solution.determined) return solution;
   solution.factor = svd.matrixV() * squares.cwiseSqrt().cwiseInverse().asDiagonal();
@@ -140,7 +142,7 @@ double slope_sigma(const Solution<6>& solution, double residual_sum, Eigen::Inde
 
 bool fit_quadric(const LayoutInPlane& layout, QuadraticPatch& patch) {
   const Eigen::Index n = layout.local.cols();
-  // Six points fit exactly and leave nothing by which to judge the fit.
+  // Six points always fit exactly, so the fit could not be judged.
   if (n < 7 || !(layout.spread > 0)) return false;
   const Eigen::ArrayXd s = (layout.local.row(0).array() - layout.center.x()) / layout.spread;
   const Eigen::ArrayXd t = (layout.local.row(1).array() - layout.center.y()) / layout.spread;
@@ -153,7 +155,7 @@ bool fit_quadric(const LayoutInPlane& layout, QuadraticPatch& patch) {
   if (slope_sigma(solution, residual_sum, n, layout, patch.depth, 0.0) > kMaxSlopeSigma) {
     return false;
   }
-  // Back from centred and scaled coordinates.
+  // Converts back from centred and scaled coordinates.
   const double h = layout.spread;
   const double u0 = layout.center.x();
   const double v0 = layout.center.y();
@@ -217,7 +219,7 @@ QuadraticPatch fit_patch(std::span<const Eigen::Vector3d> points, const Eigen::V
   }
   QuadraticPatch patch;
   patch.origin = origin;
-  // Once more: a short difference carries a relative error.
+  // Orthogonalises again, because a short difference has a large relative error.
   const Eigen::Vector3d u = across.normalized();
   patch.axes.col(0) = (u - w * w.dot(u)).normalized();
   patch.axes.col(1) = w.cross(patch.axes.col(0));

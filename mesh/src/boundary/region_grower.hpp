@@ -10,8 +10,8 @@
 
 namespace viewgain::detail {
 
-/// grow_region() for many seeds: the adjacency is built once. Borrows the surface, which must be
-/// valid (check_surface) and outlive it. Not thread safe: members share scratch memory.
+/// grow_region() for many seeds: builds the adjacency once. The surface must be valid
+/// (check_surface) and outlive this object. Not thread safe, because members share scratch memory.
 class RegionGrower {
  public:
   explicit RegionGrower(const SurfaceMesh& surface);
@@ -22,8 +22,8 @@ class RegionGrower {
 
  private:
   const SurfaceMesh& surface_;
-  std::vector<std::uint32_t> first_;      // of each vertex, into neighbors_; one more at the end
-  std::vector<std::uint32_t> neighbors_;  // an edge of two faces is there twice
+  std::vector<std::uint32_t> first_;      // per vertex, index into neighbors_; one more at the end
+  std::vector<std::uint32_t> neighbors_;  // contains an edge with two faces twice
   std::vector<double> distance_;          // infinity between calls
 };
 

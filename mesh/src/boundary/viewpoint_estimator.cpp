@@ -20,7 +20,7 @@
 
 namespace viewgain::detail {
 
-// What the next view of a patch shall look at.
+// Where the next view of a patch should look.
 struct ViewTarget {
   Eigen::Vector3d point;   ///< world [m]
   Eigen::Vector3d normal;  ///< outward
@@ -29,11 +29,12 @@ struct ViewTarget {
 
 namespace {
 
-// Where, along `direction` of the image (unit), a straight line across it lies that has `share`
-// of the image behind it: in units of the focal length, from the optical axis, without
+// Position along `direction` (unit) of the straight line across the image that has the fraction
+// `share` of the image behind it. In units of the focal length, from the optical axis, without
 // distortion.
 double line_for_share(const PinholeCamera& camera, const Eigen::Vector2d& direction, double share) {
-  // A point of the image, along the direction, is the sum of two independent uniform numbers.
+  // The position of a random image point along the direction is the sum of two independent uniform
+  // numbers.
   const double x = std::abs(direction.x()) * camera.width / (2.0 * camera.fx);
   const double y = std::abs(direction.y()) * camera.height / (2.0 * camera.fy);
   const double wide = std::max(x, y);
@@ -48,7 +49,7 @@ double line_for_share(const PinholeCamera& camera, const Eigen::Vector2d& direct
   return (share <= 0.5 ? line : -line) + center.dot(direction);
 }
 
-// The slide is searched in steps, then by bisection: 2^-40 of a step.
+// The position is searched in steps, then by bisection to 2^-40 of a step.
 constexpr int kSteps = 64;
 constexpr int kBisections = 40;
 
@@ -61,7 +62,7 @@ ViewTarget target_at(const QuadraticPatch& patch, double u) {
   return target;
 }
 
-// How much farther out the boundary appears in a view of this target than it should: positive while
+// How much farther out than wanted the boundary appears in a view of this target. Positive while
 // more than the overlap is known.
 double excess(const ViewTarget& target, const Eigen::Vector3d& boundary,
               const PinholeCamera& camera, double distance, double overlap,
@@ -75,9 +76,9 @@ double excess(const ViewTarget& target, const Eigen::Vector3d& boundary,
 
 }  // namespace
 
-// Slides along u, from the boundary on, until a camera that looks straight at the patch from
-// `distance` [m] sees the boundary where it leaves `overlap` of the image on its known side; ends
-// before that at the depth of the patch or a turn of max_turn [rad].
+// Moves outward along u until known surface fills the fraction `overlap` of the image of a camera
+// that looks straight at the patch from `distance` [m]. Ends earlier at the depth of the patch or a
+// turn of max_turn [rad].
 ViewTarget next_view_target(const QuadraticPatch& patch, const PinholeCamera& camera,
                             double distance, double overlap, double max_turn,
                             const Eigen::Vector3d& up) {
@@ -85,7 +86,7 @@ ViewTarget next_view_target(const QuadraticPatch& patch, const PinholeCamera& ca
   const auto excess_at = [&](const ViewTarget& target) {
     return excess(target, boundary.point, camera, distance, overlap, up);
   };
-  // A small overlap asks to go outward, a large one inward.
+  // A small overlap requires moving outward, a large one inward.
   const double sign = excess_at(boundary) > 0 ? 1.0 : -1.0;
   const double min_cosine = std::cos(max_turn);
   const auto may_go_to = [&](double u) {
@@ -115,7 +116,8 @@ void append_variants(const ViewTarget& target, double working_distance,
   for (std::size_t d = 0; d < config.distances.size(); ++d) {
     const double distance = config.distances[d] * working_distance;
     for (const double tilt : config.tilts) {
-      // Turning the normal about `along` moves it towards `across`, about `across` against `along`.
+      // Turning the normal about `along` moves it towards `across`; turning it about `across` moves
+      // it against `along`.
       const std::array<Eigen::Vector3d, 2> sideways{target.across, -along};
       for (std::size_t axis = 0; axis < (tilt == 0 ? 1U : 2U); ++axis) {
         const Eigen::Vector3d direction =
@@ -145,11 +147,12 @@ namespace {
 
 using detail::BoundaryEdge;
 
-// Beyond this a quadric over the boundary's tangent plane follows a round surface badly: at the
-// border of a cylinder of 30 mm radius its normal is 2.9° off with 45°, 8.5° with 60°.
+// A quadric over the boundary's tangent plane approximates a round surface badly beyond this: at
+// the border of a cylinder of 30 mm radius the normal is wrong by 2.9° with 45°, and by 8.5° with
+// 60°.
 constexpr double kMaxRegionTurn = std::numbers::pi / 4;
 
-// Round a whole loop the conormals cancel; in thirds of it they do not.
+// Conormals cancel around a whole loop, but not in a third of it.
 constexpr std::size_t kMinPiecesOfClosedRun = 3;
 
 [[noreturn]] void refuse(const std::string& name, double value) {
@@ -195,14 +198,15 @@ struct Piece {
   std::vector<std::uint32_t> vertices;
 };
 
-// Cuts a run into equal lengths; an edge belongs to the piece that holds its middle.
+// Cuts a run into pieces of equal length; an edge belongs to the piece that contains its middle.
 std::vector<Piece> cut_run(const SurfaceMesh& surface, const BoundaryRun& run,
                            double patch_length) {
   const std::vector<BoundaryEdge> edges =
       detail::boundary_edges(surface, run.vertices, run.triangles, run.closed);
   double length = 0;
   for (const BoundaryEdge& edge : edges) length += edge.length;
-  // A length that is a multiple but for rounding is one; more pieces than edges would be empty.
+  // Tolerates rounding of lengths that are a multiple. More pieces than edges would leave empty
+  // pieces.
   std::size_t count = static_cast<std::size_t>(
       std::clamp(std::ceil(length / patch_length - 1e-6), 1.0, static_cast<double>(edges.size())));
   if (run.closed) count = std::max(count, kMinPiecesOfClosedRun);
@@ -237,7 +241,7 @@ std::vector<Piece> cut_run(const SurfaceMesh& surface, const BoundaryRun& run,
   return pieces;
 }
 
-// Whether a piece says which way is outward: neither its conormals nor its normals cancel.
+// Whether a piece has a defined outward direction: neither its conormals nor its normals cancel.
 bool has_frame(const Piece& piece) {
   const Eigen::Vector3d normal = piece.normal.stableNormalized();
   const Eigen::Vector3d outward = piece.outward.stableNormalized();

@@ -33,7 +33,8 @@ bool ConstrainedTriangulation::build(const std::vector<GridPoint>& flat,
   return true;
 }
 
-// A square far enough away that most edges of the points' hull are edges of theirs.
+// Starts with a square that is so far away that most edges of the points' hull become edges of the
+// triangulation.
 void ConstrainedTriangulation::start() {
   nodes_.clear();
   edge_of_.clear();
@@ -85,8 +86,8 @@ void ConstrainedTriangulation::add_flow(Index edge, std::int32_t count) {
   flow_[twin_[edge]] -= count;
 }
 
-// The other diagonal of the two triangles at an edge. Of the edges round them, that behind the
-// twin takes the edge's place, and that behind the edge takes the twin's.
+// Replaces an edge by the other diagonal of its two triangles. The edge after the twin takes the
+// edge's place, and the edge after the edge takes the twin's place.
 void ConstrainedTriangulation::flip(Index edge) {
   const Index twin = twin_[edge], e1 = next(edge), t1 = next(twin);
   const Index a = origin_[edge], b = origin_[twin], p = apex(edge), q = apex(twin);
@@ -112,7 +113,7 @@ bool ConstrainedTriangulation::is_delaunay(Index edge) const {
                        nodes_[apex(twin)].at);
 }
 
-// From the edges on the stack on.
+// Flips edges, beginning with those on the stack.
 void ConstrainedTriangulation::make_delaunay() {
   while (!stack_.empty()) {
     const Index edge = stack_.back();
@@ -124,8 +125,8 @@ void ConstrainedTriangulation::make_delaunay() {
   }
 }
 
-// Walks from an edge's triangle towards the point. Such a walk ends among Delaunay triangles; where
-// it might go in circles, all are looked at.
+// Walks from an edge's triangle towards the point. The walk ends in a Delaunay triangulation; if it
+// could run in circles, all triangles are searched.
 ConstrainedTriangulation::Index ConstrainedTriangulation::triangle_at(const GridPoint& p,
                                                                       Index edge) {
   edge -= edge % 3;
@@ -149,7 +150,7 @@ ConstrainedTriangulation::Index ConstrainedTriangulation::triangle_at(const Grid
   return kNone;
 }
 
-// The node at or near a point, a new one unless there is one; kNone if the budget is used up.
+// The node at or near a point, created if missing; kNone if the budget is used up.
 ConstrainedTriangulation::Index ConstrainedTriangulation::insert(const GridPoint& p, Index corner,
                                                                  const Point& position,
                                                                  Index edge) {
@@ -188,8 +189,9 @@ ConstrainedTriangulation::Index ConstrainedTriangulation::insert(const GridPoint
   return q;
 }
 
-// In rounds that double the number of corners, chosen by a hash, each along the chain: the
-// expected number of flips is linear whatever the corners' order, and walks are short.
+// Inserts corners in rounds that double their number, chosen by a hash, and within a round along
+// the chain. The expected number of flips is then linear for any order of corners, and walks are
+// short.
 bool ConstrainedTriangulation::insert_corners(const std::vector<GridPoint>& flat,
                                               const std::vector<Point>& corners) {
   const auto count = static_cast<Index>(flat.size());
@@ -215,7 +217,7 @@ bool ConstrainedTriangulation::insert_corners(const std::vector<GridPoint>& flat
 std::vector<ConstrainedTriangulation::Triangle> ConstrainedTriangulation::inside() const {
   std::vector<std::int64_t> winding(origin_.size() / 3, 0);
   std::vector<char> is_known(winding.size(), 0);
-  std::vector<Index> open{edge_of_[0] / 3};  // at the square's corner: outside
+  std::vector<Index> open{edge_of_[0] / 3};  // at the square's corner, which is outside
   is_known[open.front()] = 1;
   while (!open.empty()) {
     const Index triangle = open.back();

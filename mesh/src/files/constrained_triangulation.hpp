@@ -12,37 +12,38 @@
 
 namespace viewgain::detail {
 
-/// What a file's polygons may still cost, so that a hostile file ends in an error.
+/// Remaining cost allowed for a file's polygons, so that a malicious file causes an error.
 struct FillBudget {
-  std::size_t steps = 0;      ///< triangles looked at or turned over
+  std::size_t steps = 0;      ///< triangles visited or flipped
   std::size_t crossings = 0;  ///< vertices added where edges cross
 };
 
 /// Constrained triangulation of one closed chain of edges in the plane, which may cross, touch and
-/// repeat itself. All decisions are exact: points lie on an integer grid. An edge that bends when
-/// its crossing is rounded to the grid stays one chain, so every triangle has a winding number.
+/// repeat itself. All decisions are exact, because points lie on an integer grid. Rounding a
+/// crossing to the grid bends an edge but does not break the chain, so every triangle has a winding
+/// number.
 class ConstrainedTriangulation {
  public:
   using Index = std::uint32_t;
   using Point = std::array<double, 3>;
   struct Triangle {
     std::array<Index, 3> nodes;  ///< turning to the left
-    std::int64_t winding;        ///< how often the chain goes round it, not 0
+    std::int64_t winding;        ///< of the chain around the triangle, not 0
     double twice_area;           ///< [grid units²]
   };
   /// Coordinates lie in [0, kGrid].
   static constexpr std::int64_t kGrid = std::int64_t{1} << 50;
 
-  /// `flat` are the chain's corners in the plane and `corners` the same in space. False if the
-  /// budget is used up. Cost: expected O(n log n) and the crossed triangles.
+  /// `flat` are the chain's corners in the plane, `corners` the same corners in space. False if the
+  /// budget is used up. Expected cost: O(n log n) and the number of crossed triangles.
   [[nodiscard]] bool build(const std::vector<GridPoint>& flat, const std::vector<Point>& corners,
                            FillBudget& budget);
 
-  /// Those inside the chain (winding number not 0), in a fixed order.
+  /// The triangles inside the chain (winding number not 0), in a fixed order.
   [[nodiscard]] std::vector<Triangle> inside() const;
-  /// The first corner at a node's place; kNone for a crossing.
+  /// The first corner at a node's position; kNone for a crossing.
   [[nodiscard]] Index corner_of(Index node) const { return nodes_[node].corner; }
-  /// A node's place in space; midway between its two edges for a crossing.
+  /// A node's position in space; for a crossing, midway between its two edges.
   [[nodiscard]] const Point& position_of(Index node) const { return nodes_[node].position; }
 
   static constexpr Index kNone = 0xffffffffU;
@@ -55,12 +56,12 @@ class ConstrainedTriangulation {
   };
   struct Constraint {
     Index from, to;
-    std::int32_t count;  // passes from `from` to `to`, less those back
+    std::int32_t count;  // passes from `from` to `to`, minus those in the other direction
   };
-  // An edge of the hole that a new edge is laid through: one of the triangulation or, if `is_new`,
-  // of a triangle in the hole.
+  // An edge at the rim of the hole for a new edge: an edge of the triangulation or, if `is_new`, of
+  // a triangle in the hole.
   struct Rim {
-    Index node;  // where it ends
+    Index node;  // end of the edge
     Index edge = kNone, twin = kNone;
     std::int32_t flow = 0;
     bool is_new = false;
@@ -94,13 +95,14 @@ class ConstrainedTriangulation {
   Index fill_side(std::vector<Rim>& rim);
   void attach(const Rim& rim, Index edge);
 
-  std::vector<Node> nodes_;     // the first four are a square round all
-  std::vector<Index> edge_of_;  // one that begins at the node
-  // Half-edges, three a triangle, turning to the left.
+  std::vector<Node> nodes_;     // the first four are a square around all
+  std::vector<Index> edge_of_;  // an edge that begins at the node
+  // Half-edges, three per triangle, counter-clockwise.
   std::vector<Index> origin_, twin_;
-  std::vector<std::int32_t> flow_;  // passes of the chain along it, less those the other way
-  std::vector<Index> moved_;        // where a rim's edge went, while a hole is filled
-  std::vector<Index> node_of_;      // by corner
+  // Passes of the chain along it, minus those in the other direction.
+  std::vector<std::int32_t> flow_;
+  std::vector<Index> moved_;    // new place of a rim's edge, while a hole is filled
+  std::vector<Index> node_of_;  // by corner
   std::vector<Constraint> constraints_;
   std::vector<Index> stack_, hole_;
   std::vector<Rim> left_, right_, rims_, chain_;

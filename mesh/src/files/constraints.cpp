@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// How the constrained triangulation gets its constraints: edges laid through it one by one.
+// Inserts constraints into the triangulation, edge by edge.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ ConstrainedTriangulation::Point between(const ConstrainedTriangulation::Point& a
 
 }  // namespace
 
-// An edge that is gone along there and back bounds nothing.
+// An edge that the chain passes once in each direction bounds nothing.
 void ConstrainedTriangulation::collect_constraints() {
   constraints_.clear();
   for (std::size_t i = 0; i < node_of_.size(); ++i) {
@@ -42,9 +42,9 @@ void ConstrainedTriangulation::collect_constraints() {
   constraints_.resize(kept);
 }
 
-// The edge across which the constraint leaves its first node, at the left of whose triangle that
-// node stands. If it runs along an edge there, that is marked and is_done; the rest of a longer one
-// is put back.
+// The edge across which the constraint leaves the triangles at its first node. If the constraint
+// runs along an existing edge, marks that edge, sets is_done, and queues the rest of a longer
+// constraint.
 ConstrainedTriangulation::Index ConstrainedTriangulation::leave(const Constraint& constraint,
                                                                 bool& is_done) {
   const auto [a, b, count] = constraint;
@@ -85,7 +85,7 @@ bool ConstrainedTriangulation::lay(const Constraint& constraint) {
   if (edge == kNone) return false;
   if (passes(origin_[edge]) || passes(origin_[next(edge)])) return true;
   const auto rim = [this](Index node, Index e) { return Rim{node, e, twin_[e], flow_[e]}; };
-  // Each rim from a on: to the right in the direction of its edges, to the left against it.
+  // Both rims begin at a: the right one along its edges, the left one against them.
   hole_.assign(1, edge - edge % 3);
   right_.assign({{a}, rim(origin_[edge], before(edge))});
   left_.assign({{a}, rim(origin_[next(edge)], next(edge))});
@@ -106,12 +106,12 @@ bool ConstrainedTriangulation::lay(const Constraint& constraint) {
   return fill_hole({a, end, count});
 }
 
-// Where the constraint crosses another, both get a node and are laid anew.
+// If the constraint crosses another, both get a node there and are inserted again.
 bool ConstrainedTriangulation::cross(const Constraint& constraint, Index edge) {
   const auto [a, b, count] = constraint;
   const Index u = origin_[edge], w = origin_[next(edge)];
   const GridPoint p = nodes_[a].at, q = nodes_[b].at, r = nodes_[u].at, s = nodes_[w].at;
-  // Exact before the divisions, whose rounding moves the crossing by a grid unit at most.
+  // Exact up to the divisions, whose rounding moves the crossing by at most one grid unit.
   const auto share = [](Wide x, Wide y) {
     return static_cast<double>(x) / (static_cast<double>(x) - static_cast<double>(y));
   };
@@ -138,9 +138,9 @@ bool ConstrainedTriangulation::cross(const Constraint& constraint, Index edge) {
   return true;
 }
 
-// Fills the triangles that a constraint crosses anew, so that it is an edge.
+// Retriangulates the triangles that a constraint crosses, so that it becomes an edge.
 bool ConstrainedTriangulation::fill_hole(const Constraint& constraint) {
-  // The left rim turned round: from the constraint's end, along its edges.
+  // The left rim reversed, so that it begins at the constraint's end and follows its edges.
   chain_.assign(1, {constraint.to});
   for (std::size_t i = left_.size() - 1; i > 0; --i) {
     Rim rim = left_[i];
@@ -151,7 +151,7 @@ bool ConstrainedTriangulation::fill_hole(const Constraint& constraint) {
   rims_.clear();
   const Index right = fill_side(right_), left = fill_side(left_);
   if (right == kNone || left == kNone || !hole_.empty()) return false;
-  // An edge of the rim may stand on it twice, once from each side.
+  // An edge can be on the rim twice, once from each side.
   for (const Rim& rim : rims_) {
     const Index moved = rim.twin == kNone ? kNone : moved_[rim.twin];
     link(moved_[rim.edge], moved == kNone ? rim.twin : moved);
@@ -164,7 +164,7 @@ bool ConstrainedTriangulation::fill_hole(const Constraint& constraint) {
   return true;
 }
 
-// Puts an edge of the hole into the triangle that has it now.
+// Connects an edge of the hole to the triangle that now has it.
 void ConstrainedTriangulation::attach(const Rim& rim, Index edge) {
   flow_[edge] = rim.flow;
   if (rim.is_new) {
@@ -176,9 +176,8 @@ void ConstrainedTriangulation::attach(const Rim& rim, Index edge) {
   stack_.push_back(edge);
 }
 
-// One side of the hole, a polygon of the rim and the constraint, in each of whose points the
-// constraint can be seen; there Graham's scan cuts triangles that fill it. Returns the constraint's
-// edge.
+// Fills one side of the hole, the polygon between rim and constraint. Graham's scan can do this,
+// because the constraint is visible from every point of the polygon. Returns the constraint's edge.
 ConstrainedTriangulation::Index ConstrainedTriangulation::fill_side(std::vector<Rim>& rim) {
   std::size_t top = 0;
   for (std::size_t i = 1; i < rim.size(); ++i) {

@@ -7,7 +7,7 @@
 
 namespace viewgain::detail {
 
-/// Coordinates of 52 bits, so that what follows is exact.
+/// Coordinates of 52 bits, so that the predicates below are exact.
 struct GridPoint {
   std::int64_t x = 0, y = 0;
   bool operator==(const GridPoint&) const = default;
@@ -15,19 +15,19 @@ struct GridPoint {
 
 __extension__ using Wide = __int128;
 
-/// Nearer than this, points and edges are one [grid units], 1e-12 of the polygon: where edges lie
-/// on one another but for rounding, crossings would breed crossings.
+/// Points and edges nearer than this are merged [grid units]; it is 1e-12 of the polygon. Otherwise
+/// edges that coincide except for rounding would create ever more crossings.
 inline constexpr double kNear = 1024;
 
 inline int sign_of(Wide x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 
-/// Twice the area of a triangle, positive if it turns to the left. Differences have 53 bits.
+/// Twice the area of a triangle, positive if it is counter-clockwise. Differences have 53 bits.
 inline Wide turn_of(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
   return Wide{b.x - a.x} * (c.y - a.y) - Wide{b.y - a.y} * (c.x - a.x);
 }
 
-/// Whether p lies inside the circle through a, b, c, which turn to the left. Sums of products of
-/// two numbers of 107 bits, in digits of 52 bits.
+/// Whether p lies inside the circle through a, b, c, which are counter-clockwise. Adds products of
+/// two numbers of 107 bits in digits of 52 bits.
 inline bool is_in_circle(const GridPoint& a, const GridPoint& b, const GridPoint& c,
                          const GridPoint& p) {
   constexpr int kDigit = 52;
@@ -55,7 +55,7 @@ inline double distance(const GridPoint& a, const GridPoint& b) {
   return std::sqrt(x * x + y * y);
 }
 
-/// Whether p lies almost on the way from a to b, and not at its ends.
+/// Whether p lies almost on the segment from a to b, but not at its ends.
 inline bool is_on_way(const GridPoint& a, const GridPoint& b, const GridPoint& p) {
   const double length = distance(a, b);
   if (std::abs(static_cast<double>(turn_of(a, b, p))) > kNear * length) return false;

@@ -11,7 +11,7 @@
 
 namespace viewgain::detail {
 
-constexpr double kBeyond = 1e30;  // single precision has room for it
+constexpr double kBeyond = 1e30;  // fits in single precision
 
 void MeshBuilder::fail(std::size_t line, const std::string& what) const {
   throw Error(ErrorCode::format,

@@ -15,8 +15,8 @@
 
 namespace viewgain::detail {
 
-/// Makes a mesh of a file's vertices and polygons, in whichever order they come. `line` is where in
-/// the file they stand, 0 if it has no lines. Throws Error(format) that begins with `name`.
+/// Makes a mesh from a file's vertices and polygons, in any order. `line` is their line in the
+/// file, 0 if it has no lines. Throws Error(format) that begins with `name`.
 class MeshBuilder {
  public:
   explicit MeshBuilder(std::string name) : name_(std::move(name)) {}
@@ -24,12 +24,12 @@ class MeshBuilder {
   void add_vertex(const std::array<double, 3>& p, std::size_t line);
   [[nodiscard]] std::size_t vertices() const { return mesh_.vertices.size(); }
 
-  /// Of the face that end_face() ends.
+  /// Adds a corner to the face that end_face() completes.
   void add_corner(double index, std::size_t line);
   void end_face(std::size_t line) { faces_.push_back({corners_.size(), line}); }
 
-  /// Triangles that fill the polygons, none of those with fewer than three corners or without area;
-  /// vertices that no triangle uses are left out.
+  /// Triangles that fill the polygons. Omits polygons with fewer than three corners or without
+  /// area, and unused vertices.
   [[nodiscard]] TriangleMesh finish(MeshRepairs& repairs) &&;
 
  private:
@@ -49,25 +49,25 @@ class MeshBuilder {
   MeshRepairs repairs_;
 };
 
-/// The mesh of a file's bytes; `name` is the file's, for messages. They throw Error(format) that
-/// begins with it and, in text, the line.
+/// Readers of mesh files from their bytes. `name` is the file's name in messages. They throw
+/// Error(format) that begins with the name and, for text, the line.
 
-/// Vertices and faces each on a line of their own, which may go on with colours and normals; or as
-/// words, whatever lines they stand on, as the header says and nothing else.
+/// Reads vertices and faces with one line each, which may continue with colours and normals.
+/// Otherwise reads exactly the words that the header announces, on any lines.
 [[nodiscard]] TriangleMesh off_mesh(std::string_view bytes, const std::string& name,
                                     MeshRepairs& repairs);
 
-/// Of v and f; lines that go on behind a backslash are joined. Free-form surfaces and calls of
+/// Reads v and f; lines that end in a backslash are continued. Free-form surfaces and calls of
 /// other files are refused.
 [[nodiscard]] TriangleMesh obj_mesh(std::string_view bytes, const std::string& name,
                                     MeshRepairs& repairs);
 
-/// ASCII, words in any case, or binary; equal points are one vertex.
+/// ASCII with words in any case, or binary. Equal points become one vertex.
 [[nodiscard]] TriangleMesh stl_mesh(std::string_view bytes, const std::string& name,
                                     MeshRepairs& repairs);
 
-/// Vertices with x, y, z and lists vertex_indices or vertex_index of faces and strips of triangles,
-/// whatever else the file holds.
+/// Reads vertices with x, y, z, and faces and triangle strips with lists vertex_indices or
+/// vertex_index. Ignores other contents.
 [[nodiscard]] TriangleMesh ply_mesh(std::string_view bytes, const std::string& name,
                                     MeshRepairs& repairs);
 

@@ -33,7 +33,7 @@ TriangleMesh read_mesh(const std::filesystem::path& path, MeshRepairs* repairs) 
     throw Error(ErrorCode::format, name + ": not a mesh file (.off, .obj, .stl, .ply)");
   }
   std::string bytes = file_bytes(path);
-  // Some editors put a byte order mark before text; no format of ours begins with one.
+  // Some editors write a byte order mark before text; no mesh format begins with one.
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
   if (bytes.empty()) throw Error(ErrorCode::format, name + ": the file is empty");
   MeshRepairs unasked;

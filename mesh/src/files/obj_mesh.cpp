@@ -13,7 +13,7 @@
 namespace viewgain::detail {
 namespace {
 
-// What a mesh does not need: other elements, names, materials, and curves.
+// Statements that a mesh does not need: other elements, names, materials, and curves.
 constexpr std::array<std::string_view, 34> kSkippedInObj{
     "vt",   "vn",       "vp",       "l",          "p",         "g",      "s",
     "o",    "mg",       "usemtl",   "usemap",     "mtllib",    "maplib", "bevel",
@@ -45,7 +45,7 @@ class ObjReader {
   }
 
  private:
-  // The words up to a line that does not end in a backslash; false at the end.
+  // Reads the words up to a line that does not end in a backslash; false at the end.
   bool next_statement() {
     words_.clear();
     for (bool goes_on = false, is_glued = false; goes_on || words_.empty();) {
@@ -77,7 +77,7 @@ class ObjReader {
                   std::to_string(count) + " numbers");
     }
     for (std::size_t i = 0; i < count; ++i) numbers[i] = lines_.number_of(words_[i + 1]);
-    // Seven are x y z w r g b or x y z r g b a, which is told by the weight or the alpha of 1.
+    // Seven numbers are x y z w r g b or x y z r g b a. The weight or alpha of 1 shows which.
     const bool has_weight = count == 4 || (count == 7 && numbers[6] != 1);
     if (has_weight && numbers[3] != 1) {
       lines_.fail("weights other than 1, the fourth of " + std::to_string(count) +

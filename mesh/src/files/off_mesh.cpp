@@ -29,7 +29,7 @@ class OffReader {
   }
 
  private:
-  // [ST][C][N]OFF and, glued to it in many files, the first count. The keyword may be missing.
+  // [ST][C][N]OFF, in many files directly followed by the first count. The keyword may be missing.
   void read_keyword() {
     if (!words_.more()) lines_.fail("the file is empty");
     std::string_view word = words_.peek();
@@ -82,7 +82,7 @@ class OffReader {
     }
   }
 
-  // Whether nothing follows but this many lines.
+  // Whether exactly this many lines follow.
   [[nodiscard]] bool has_lines(double wanted) const {
     if (words_.more_here()) return false;
     LineReader ahead = lines_;

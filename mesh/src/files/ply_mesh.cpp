@@ -24,7 +24,7 @@ std::optional<std::size_t> find_element(const PlyFile& file, std::string_view na
   return static_cast<std::size_t>(found - elements.begin());
 }
 
-/// The vertices' numbers of faces or strips.
+/// Column with the vertex indices of faces or strips.
 std::size_t indices_of(const PlyFile& file, std::size_t element) {
   const PlyElement& faces = file.elements()[element];
   auto corners = faces.find("vertex_indices", true);
@@ -36,8 +36,8 @@ std::size_t indices_of(const PlyFile& file, std::size_t element) {
   return *corners;
 }
 
-/// Each triangle shares an edge with the one before and turns the other way; -1 ends a strip, and a
-/// corner that comes twice joins two.
+/// Each triangle shares an edge with the previous triangle and has the opposite orientation. -1
+/// ends a strip, and a repeated corner joins two strips.
 void add_strips(MeshBuilder& mesh, std::span<const double> corners, std::size_t line) {
   std::size_t begin = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {

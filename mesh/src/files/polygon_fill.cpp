@@ -14,8 +14,8 @@ namespace {
 
 using Point = std::array<double, 3>;
 
-constexpr std::size_t kMostCorners = 1'000'000;  // of one that is no fan: seconds
-constexpr double kNoArea = 1e-12;                // of a side's square, twice an area
+constexpr std::size_t kMostCorners = 1'000'000;  // of a polygon that is not a fan; takes seconds
+constexpr double kNoArea = 1e-12;                // twice an area, relative to the square of a side
 constexpr double kRounding = 1e-7;               // corners are rounded to single precision
 
 Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -28,13 +28,13 @@ double largest(const Point& p) {
   return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
 }
 
-// Twice the area of a triangle, positive if it turns to the left.
+// Twice the area of a triangle, positive if it is counter-clockwise.
 template <typename Flat>
 double turn_of(const Flat& a, const Flat& b, const Flat& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Whether a triangle is a line or a point, but for rounding.
+// Whether a triangle is a line or a point, up to rounding.
 bool is_line(const Point& a, const Point& b, const Point& c) {
   Point u = minus(b, a), v = minus(c, a);
   const double scale = std::max({largest(u), largest(v), largest(minus(c, b))});
@@ -86,8 +86,8 @@ void PolygonFill::take(std::span<const std::uint32_t> corners, const TriangleMes
   no_area_ = kNoArea * extent_ * extent_;
 }
 
-// Drops the axis along which the normal is longest: what lies inside stays inside. Parts that are
-// gone round in opposite directions may leave no normal; then the axis along which most is seen.
+// Drops the axis along which the normal is longest, which keeps inside and outside. If parts with
+// opposite orientation leave no normal, drops the axis along which the polygon looks largest.
 void PolygonFill::flatten() {
   Point normal{}, seen{};
   for (std::size_t i = 2; i < points_.size(); ++i) {
@@ -104,8 +104,8 @@ void PolygonFill::flatten() {
   for (const Point& p : points_) flat_.push_back({p[x], p[y]});
 }
 
-// True if the fan of the first corner fills the polygon. It does not where the others go round the
-// first one more than once.
+// Whether the fan of the first corner fills the polygon. It does not if the others go around the
+// first corner more than once.
 bool PolygonFill::is_fan() const {
   bool is_back = false, was_beyond = false;
   for (std::size_t i = 2; i < flat_.size(); ++i) {
@@ -129,7 +129,7 @@ bool PolygonFill::triangulate(TriangleMesh& mesh, FillBudget& budget) {
     throw Error(ErrorCode::format,
                 "has reflex corners among more than " + std::to_string(kMostCorners));
   }
-  // Scaled by a power of two, so that few coordinates are rounded.
+  // Scales by a power of two, so that few coordinates are rounded.
   Flat least = flat_.front(), most = least;
   for (const Flat& p : flat_) {
     least = {std::min(least.x, p.x), std::min(least.y, p.y)};

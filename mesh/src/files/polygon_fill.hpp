@@ -13,16 +13,16 @@
 
 namespace viewgain::detail {
 
-/// Splits polygons in space into triangles that fill them: a fan of the first corner where that
-/// does, else a constrained triangulation. A polygon is looked at along the axis nearest to its
-/// normal, so it need not be quite plane. It fills all places that it goes round, that is with a
-/// winding number other than 0; a hole joined to the rim stays open.
+/// Splits polygons in space into triangles: a fan of the first corner if that fills the polygon,
+/// else a constrained triangulation. Projects a polygon along the axis nearest to its normal, so it
+/// need not be exactly plane. Fills all places with a winding number other than 0; a hole joined to
+/// the rim stays open.
 class PolygonFill {
  public:
   /// Adds the triangles of a polygon of three corners or more to the mesh, and a vertex where edges
-  /// cross; triangles without area are left out, so there may be none. Triangles turn as the
-  /// polygon does round them. True if the polygon crosses itself by more than rounding. Throws
-  /// Error(format), whose subject is the face, if the budget is used up.
+  /// cross. Triangles without area are omitted, so there may be none. Triangles have the polygon's
+  /// orientation around them. True if the polygon crosses itself by more than rounding. Throws
+  /// Error(format) about the face if the budget is used up.
   [[nodiscard]] bool fill(std::span<const std::uint32_t> corners, TriangleMesh& mesh,
                           FillBudget& budget);
 
@@ -38,12 +38,12 @@ class PolygonFill {
   [[nodiscard]] bool has_area() const;
   [[nodiscard]] bool triangulate(TriangleMesh& mesh, FillBudget& budget);
 
-  std::vector<std::uint32_t> corners_;  // without those at the place of the one before
-  std::vector<Point> points_;           // from the first one
+  std::vector<std::uint32_t> corners_;  // without repeated positions
+  std::vector<Point> points_;           // relative to the first one
   Point first_{};
   std::vector<Flat> flat_;
   double extent_ = 0;   // the largest coordinate
-  double no_area_ = 0;  // what rounding makes of none, twice an area
+  double no_area_ = 0;  // twice an area that counts as zero because of rounding
   std::vector<GridPoint> grid_;
   std::vector<std::uint32_t> added_;
   ConstrainedTriangulation triangulation_;

@@ -20,14 +20,14 @@ namespace {
 
 constexpr std::size_t kStlHeader = 80, kStlBody = 84, kStlTriangle = 50;  // [bytes]
 
-// `lower` is in small letters; files have them in any case.
+// `lower` is in lower case; files use any case.
 bool is_stl_word(std::string_view word, std::string_view lower) {
   return std::equal(word.begin(), word.end(), lower.begin(), lower.end(), [](char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) == b;
   });
 }
 
-// A mesh of points that are said anew in every triangle.
+// A mesh whose points are repeated in every triangle.
 class StlMesh {
  public:
   explicit StlMesh(const std::string& name) : mesh_(name) {}
@@ -44,7 +44,7 @@ class StlMesh {
   struct Hash {
     std::size_t operator()(const std::array<double, 3>& p) const {
       std::uint64_t hash = 0;
-      // Adding 0 makes +0 of -0, which are equal.
+      // Adding 0 turns -0 into +0, which is equal.
       for (const double x : p) hash = mix64(hash + kMixStep + std::bit_cast<std::uint64_t>(x + 0));
       return hash;
     }
@@ -86,17 +86,17 @@ class StlText {
     (void)words_.next();
     return true;
   }
-  // "endloop" or, as some write, "end loop".
+  // "endloop" or, in some files, "end loop".
   bool is_end(const std::string& what) {
     return is_next("end" + what) || (is_next("end") && (is_next(what) || (fail_at(what), false)));
   }
-  // Whether a facet begins here; a name may have the word.
+  // Whether a facet begins here. A name may contain the word.
   bool is_facet() {
     const std::string_view second = words_.second_here();
     return is_stl_word(words_.peek(), "facet") &&
            (is_stl_word(second, "normal") || is_stl_word(second, "outer"));
   }
-  // A name has any words; some files have all of them in one line.
+  // A name has any words; in some files the whole solid is in one line.
   void skip_name() {
     while (words_.more_here() && !is_facet()) (void)words_.next();
   }
@@ -127,7 +127,7 @@ TriangleMesh binary_stl_mesh(std::string_view bytes, std::uint64_t count, const 
                              MeshRepairs& repairs) {
   StlMesh mesh(name);
   for (std::uint64_t t = 0; t < count; ++t) {
-    const char* at = bytes.data() + kStlBody + t * kStlTriangle + 12;  // behind the normal
+    const char* at = bytes.data() + kStlBody + t * kStlTriangle + 12;  // after the normal
     for (int corner = 0; corner < 3; ++corner) {
       std::array<double, 3> p{};
       for (double& x : p) x = decode(at, {}), at += 4;
@@ -138,7 +138,8 @@ TriangleMesh binary_stl_mesh(std::string_view bytes, std::uint64_t count, const 
   return std::move(mesh).finish(repairs);
 }
 
-// Files of both kinds begin with "solid"; no text has the size that its bytes 80 to 83 would say.
+// Both kinds of files can begin with "solid". No text has the size that its bytes 80 to 83 would
+// state.
 bool is_stl_text(std::string_view bytes, std::uint64_t promised, bool has_nul) {
   if (bytes.size() == kStlBody + kStlTriangle * promised) return false;
   const auto skip_to = [&bytes](std::size_t place) {

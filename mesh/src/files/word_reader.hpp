@@ -12,7 +12,7 @@
 
 namespace viewgain::detail {
 
-/// How many words a line has before a comment, which '#' begins.
+/// Number of words of a line before a comment, which begins with '#'.
 inline std::size_t words_before_comment(const LineReader& lines) {
   const auto& words = lines.words();
   const auto comment = std::find_if(words.begin(), words.end(),
@@ -20,8 +20,8 @@ inline std::size_t words_before_comment(const LineReader& lines) {
   return static_cast<std::size_t>(comment - words.begin());
 }
 
-/// The text, or where its lines end in more than one way, a copy of it in which they all end at \n:
-/// else one that a comment or a name stands before would be lost.
+/// The text. If its lines end in several ways, a copy in which all end in \n; otherwise a line
+/// after a comment or a name would be lost.
 inline std::string_view with_one_line_end(std::string_view text, std::string& copy) {
   const auto is_return_alone = [text](std::size_t i) {
     return text[i] == '\r' && !text.substr(i + 1).starts_with('\n');
@@ -40,14 +40,14 @@ inline std::string_view with_one_line_end(std::string_view text, std::string& co
   return copy;
 }
 
-/// The words of a text one by one, whatever lines they stand on, without its comments.
+/// The words of a text one by one, regardless of lines, without comments.
 class WordReader {
  public:
   explicit WordReader(LineReader& lines) : lines_(lines) {}
 
-  /// Whether another word stands on this line.
+  /// Whether this line has another word.
   [[nodiscard]] bool more_here() const { return at_ < count_; }
-  /// Whether another word follows; goes to its line.
+  /// Whether another word follows; advances to its line.
   bool more() {
     while (!more_here()) {
       if (!lines_.next()) return false;
@@ -56,11 +56,11 @@ class WordReader {
     }
     return true;
   }
-  /// The word behind the next one; empty if that is the last of its line.
+  /// The word after the next one; empty if the next word is the last of its line.
   [[nodiscard]] std::string_view second_here() const {
     return at_ + 1 < count_ ? lines_.words()[at_ + 1] : std::string_view();
   }
-  /// The next word, which is taken by next(). They fail where the file ends.
+  /// The next word, which next() consumes. Both fail at the end of the file.
   std::string_view peek() {
     if (!more()) lines_.fail("the file ends too early");
     return lines_.words()[at_];

@@ -22,13 +22,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kOutlierDistance = 0.010;  // [m], a reading is an outlier from here on
+constexpr double kOutlierDistance = 0.010;  // [m]; farther points are outliers
 constexpr double kClip = 25.0;              // of z²
 constexpr std::size_t kChunk = 256;
 
 Vector3d vector_of(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
 
-// In [0, 1): the same on every machine.
+// In [0, 1), the same on every machine.
 double uniform(std::uint64_t seed, std::uint64_t counter) {
   return unit_number(mix64(seed * 0xD1B54A32D192ED03ULL + counter * kMixStep));
 }
@@ -50,7 +50,7 @@ Vector3d nearest_on_triangle(const Vector3d& p, const Triangle& t) {
   const bool inside_bc = t.normal.cross(t.c - t.b).dot(p - t.b) >= 0;
   const bool inside_ca = t.normal.cross(t.a - t.c).dot(p - t.c) >= 0;
   if (inside_ab && inside_bc && inside_ca) return p - t.normal.dot(p - t.a) * t.normal;
-  // Beyond an edge; at an obtuse corner the nearest point may be on another edge than that.
+  // Beyond an edge. At an obtuse corner the nearest point can be on another edge.
   Vector3d nearest = nearest_on_segment(p, t.a, t.b);
   for (const Vector3d& q : {nearest_on_segment(p, t.b, t.c), nearest_on_segment(p, t.c, t.a)}) {
     if ((q - p).squaredNorm() < (nearest - p).squaredNorm()) nearest = q;
@@ -58,7 +58,7 @@ Vector3d nearest_on_triangle(const Vector3d& p, const Triangle& t) {
   return nearest;
 }
 
-// Triangles without area are left out: they have no normal.
+// Omits triangles without area, which have no normal.
 std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (!vector_of(mesh.vertices[v]).allFinite()) {
@@ -101,8 +101,8 @@ class NearestItem {
     std::uint32_t item = 0;
     double squared_distance = std::numeric_limits<double>::infinity();
   };
-  // The item with the least item_distance(item), the squared distance of p to it; there must be
-  // one.
+  // The item with the smallest item_distance(item), the squared distance of p to it. There must be
+  // an item.
   template <typename ItemDistance>
   [[nodiscard]] Nearest of(const Vector3d& p, const ItemDistance& item_distance) const {
     Minimizer<ItemDistance> minimizer{p, item_distance, {}};
@@ -111,7 +111,7 @@ class NearestItem {
   }
 
  private:
-  // What BVMinimize asks.
+  // Interface that BVMinimize requires.
   template <typename ItemDistance>
   struct Minimizer {
     using Scalar = double;
@@ -139,7 +139,7 @@ std::vector<Eigen::AlignedBox3d> boxes_of(const std::vector<Triangle>& triangles
   return boxes;
 }
 
-// Stratified: sample i lies in the i-th of `count` equal shares of the area.
+// Stratified: sample i lies in the i-th of `count` parts of equal area.
 std::vector<SurfaceSample> sample(const std::vector<Triangle>& triangles, std::size_t count,
                                   std::uint64_t seed) {
   double total = 0;
@@ -168,7 +168,7 @@ void check_finite(std::span<const std::array<double, 3>> points) {
   }
 }
 
-// The smallest value that at least the share q of the values does not exceed.
+// The smallest value that at least a fraction q of the values does not exceed.
 double quantile(std::vector<double>& values, double q) {
   const auto rank = static_cast<std::ptrdiff_t>(std::ceil(q * static_cast<double>(values.size())));
   const auto it = values.begin() + std::max<std::ptrdiff_t>(rank - 1, 0);
@@ -197,7 +197,8 @@ struct GroundTruth::Impl {
         samples(sample(triangles, sample_count, seed)),
         pool(exec.num_threads) {}
 
-  // Of each sample to the nearest of the items with these boxes; item_distance(p, item) is squared.
+  // Distance of each sample to the nearest of the items with these boxes; item_distance(p, item) is
+  // squared.
   template <typename ItemDistance>
   [[nodiscard]] std::vector<double> distances_to(const std::vector<Eigen::AlignedBox3d>& boxes,
                                                  const ItemDistance& item_distance) const {

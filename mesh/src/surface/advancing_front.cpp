@@ -28,9 +28,9 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 
-// CGAL compares handles to vertices and cells by address, and so the side from which it looks at a
-// triangle, hence the rounding of its radius, would depend on where memory was free. Elements that
-// carry the order of their making are compared by that instead.
+// CGAL compares handles to vertices and cells by address. The side from which it sees a triangle,
+// and the rounding of its radius, would then depend on memory addresses. Elements with a time stamp
+// are compared by the time stamp instead.
 template <typename Base>
 class Stamped : public Base {
  public:
@@ -46,11 +46,11 @@ class Stamped : public Base {
   void set_time_stamp(std::size_t stamp) { stamp_ = stamp; }
 
  private:
-  std::size_t stamp_ = static_cast<std::size_t>(-1);  // CGAL's sign for "not yet"
+  std::size_t stamp_ = static_cast<std::size_t>(-1);  // CGAL's value for "not yet"
 };
 
-// The same for the border's edges, which CGAL keeps in a set by priority and, where priorities are
-// equal, as for the edges that want the same triangle, by address.
+// The same for the border's edges. CGAL sorts them by priority, and by address if priorities are
+// equal, as for edges with the same best triangle.
 template <typename Base>
 class OrderedBorder : public Base {
  public:
@@ -60,7 +60,7 @@ class OrderedBorder : public Base {
     using Other = OrderedBorder<typename Base::template Rebind_TDS<Triangulation>::Other>;
   };
 
-  // Stands in for the base's pair of the same name.
+  // Replaces the base's pair of the same name.
   struct Radius_ptr_type {
     typename Base::criteria first;
     typename Base::IO_edge_type* second;
@@ -79,7 +79,7 @@ class OrderedBorder : public Base {
   };
 };
 
-// Keeps the radii of a cell's four facets in place, so that threads can fill them in: CGAL's own
+// Keeps the radii of a cell's four facets inside the cell, so that threads can set them. CGAL's own
 // cell allocates them when the first is known.
 template <typename Base>
 class WithRadii : public Base {
@@ -103,7 +103,7 @@ class WithRadii : public Base {
   }
 
  private:
-  std::array<double, 4> radii_{-1, -1, -1, -1};  // CGAL's sign for "not yet"
+  std::array<double, 4> radii_{-1, -1, -1, -1};  // CGAL's value for "not yet"
 };
 
 using Vertex =
@@ -114,8 +114,8 @@ using Delaunay =
 using Facet = Delaunay::Facet;
 using Triangle = std::array<std::uint32_t, 3>;
 
-// To start a piece of surface, CGAL scans all facets for the best one whose vertices belong to no
-// piece yet. This class lets it scan only the facets that can still be chosen.
+// To start a component, CGAL scans all facets for the best one whose vertices belong to no
+// component yet. This class lets CGAL scan only the facets that can still be chosen.
 class Triangulation : public Delaunay {
  public:
   using Delaunay::Delaunay;
@@ -142,8 +142,8 @@ class Triangulation : public Delaunay {
   std::vector<Facet> seeds_;
 };
 
-// CGAL's own measure, the radius of the smallest empty sphere, but infinite, which means never, for
-// long edges.
+// CGAL's own priority, the radius of the smallest empty sphere, but infinite for long edges, so
+// that these are never used.
 struct BoundedEdges {
   std::span<const double> max_edge;  // by the vertices' id
 
@@ -170,8 +170,8 @@ struct BoundedEdges {
 
 using Front = CGAL::Advancing_front_surface_reconstruction<Triangulation, BoundedEdges>;
 
-// The facets that may become triangles, in CGAL's order. Finds all radii, each from the side from
-// which CGAL would first, as rounding depends on it.
+// The facets that may become triangles, in CGAL's order. Computes all radii, each from the side
+// from which CGAL would compute it first, because rounding depends on the side.
 std::vector<Facet> possible_triangles(const Front& front, const BoundedEdges& priority,
                                       const ExecConfig& exec) {
   const Triangulation& triangulation = front.triangulation_3();
@@ -211,9 +211,9 @@ std::vector<Triangle> selected_triangles(const Triangulation& triangulation) {
   return triangles;
 }
 
-// Turns triangles round so that those that share an edge are oriented alike.
+// Flips triangles so that neighbours have consistent orientations.
 void orient_alike(std::vector<Triangle>& triangles) {
-  std::vector<Keyed> edges;  // with 3 times the triangle plus the corner opposite
+  std::vector<Keyed> edges;  // values: 3 * triangle + opposite corner
   edges.reserve(3 * triangles.size());
   for (std::uint32_t f = 0; f < triangles.size(); ++f) {
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -223,7 +223,8 @@ void orient_alike(std::vector<Triangle>& triangles) {
   }
   sort_by_key(edges);
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> beyond(edges.size(), kNone);  // the other triangle's number of an edge
+  std::vector<std::uint32_t> beyond(edges.size(),
+                                    kNone);  // index of the same edge in the other triangle
   for (std::size_t e = 1; e < edges.size(); ++e) {
     if (edges[e].first != edges[e - 1].first) continue;
     beyond[edges[e].second] = edges[e - 1].second;
@@ -277,7 +278,7 @@ std::vector<std::array<std::uint32_t, 3>> advancing_front(std::span<const Point3
   for (Triangle& t : triangles) {
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   }
-  // The side of a component is arbitrary, so the order must not depend on it.
+  // The orientation of a component is arbitrary, so the order must not depend on it.
   const auto key = [](const Triangle& t) {
     return std::array{t[0], std::min(t[1], t[2]), std::max(t[1], t[2])};
   };

@@ -12,11 +12,11 @@
 
 namespace viewgain::detail {
 
-/// Triangles of the surface through points by CGAL's advancing front over their Delaunay
-/// triangulation, none with an edge over the longer of its ends' `max_edge`, one a point;
-/// consistently oriented in each component, the side being arbitrary. Each begins with its lowest
-/// vertex, and they are sorted. The points should be about 1 apart, as CGAL has absolute
-/// tolerances. The same points give the same triangles but for the side of a component.
+/// Triangles of the surface through points, by CGAL's advancing front over their Delaunay
+/// triangulation. An edge is at most as long as the larger `max_edge` of its ends; there is one
+/// value per point. Each component is oriented consistently, on an arbitrary side; except for that
+/// side, equal points give equal triangles. A triangle begins with its lowest vertex, and triangles
+/// are sorted. The points should be about 1 apart, because CGAL has absolute tolerances.
 [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> advancing_front(
     std::span<const Point3> points, std::span<const double> max_edge, const ExecConfig& exec);
 

@@ -10,7 +10,7 @@
 
 namespace viewgain::detail {
 
-/// A number by a pair of others.
+/// A number with a key of two numbers.
 using Keyed = std::pair<std::uint64_t, std::uint32_t>;
 
 [[nodiscard]] inline std::uint64_t key_of(std::uint32_t first, std::uint32_t second) {

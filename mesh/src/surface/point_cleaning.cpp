@@ -43,7 +43,7 @@ PointGrid::PointGrid(std::span<const Point3> points, double cell_size)
 
 namespace {
 
-constexpr double kMaxMove = 1.25;    // further off the fitted surface is an outlier [spacings]
+constexpr double kMaxMove = 1.25;  // larger distance from the fitted surface: an outlier [spacings]
 constexpr std::size_t kMinFit = 10;  // points for a quadric; it has six coefficients
 
 std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
@@ -53,12 +53,13 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
 
 double dot(const Point3& a, const Point3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// Of the disc that holds smoothing_neighbors points at a density of one a spacing² [spacings].
+// Radius of the disc that contains smoothing_neighbors points at a density of one per spacing²
+// [spacings].
 double disc_radius(const SurfaceConfig& config) {
   return std::sqrt(static_cast<double>(config.smoothing_neighbors) / std::numbers::pi);
 }
 
-// For searches within spacings of points, fine ones and coarse ones [m].
+// Cell size for searches around points of fine and coarse spacings [m].
 double middle_spacing(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
   double largest = config.spacing;
   for (const OrientedPoint& p : points) largest = std::max(largest, spacing_at(p, config));
@@ -80,8 +81,8 @@ class Smoother {
   }
 
  private:
-  // The disc; where the points are sparser, the nearest smoothing_neighbors as far as a triangle
-  // may reach.
+  // The points in the disc. If points are sparser, the nearest smoothing_neighbors within the
+  // longest edge of a triangle.
   void find_neighbors(std::uint32_t i, std::vector<Neighbor>& found) const {
     const std::size_t wanted = config_.smoothing_neighbors;
     const double spacing = spacing_at(points_[i], config_);
@@ -90,7 +91,7 @@ class Smoother {
     const auto collect = [&](double radius) {
       found.clear();
       grid_.for_each_within(positions_[i], radius, [&](std::uint32_t j, double d2) {
-        // Hints that are opposed tell the two sides of a thin part from each other.
+        // Opposed hints distinguish the two sides of a thin part.
         if (dot(points_[i].toward_free, points_[j].toward_free) >= 0) found.emplace_back(d2, j);
       });
     };
@@ -174,7 +175,7 @@ std::vector<std::uint32_t> large_components(std::span<const OrientedPoint> point
     grid.for_each_within(positions[i], config.join_distance * spacing,
                          [&](std::uint32_t j, double) {
                            if (j >= i && spacing_at(points[j], config) == spacing)
-                             return;  // j finds i
+                             return;  // found again from j
                            const std::uint32_t other = root_of(parent, j);
                            parent[std::max(root, other)] = std::min(root, other);
                            root = std::min(root, other);

@@ -18,19 +18,19 @@ namespace viewgain::detail {
   return point.spacing > 0 ? point.spacing : config.spacing;
 }
 
-/// Indices, rising, of the points that lie in a component of at least min_component points; points
-/// within join_distance spacings of either are in one component.
+/// Ascending indices of the points in components of at least min_component points. Points are in
+/// one component if they are within join_distance spacings of either point.
 [[nodiscard]] std::vector<std::uint32_t> large_components(std::span<const OrientedPoint> points,
                                                           const SurfaceConfig& config);
 
 /// The points, moved onto the quadric that is fitted to their neighbours on the same side (jet
-/// smoothing). A point whose neighbours agree on a surface that is more than 1.25 spacings away is
-/// no point of the surface: it gets NaNs. Without enough neighbours for a fit a point stays.
+/// smoothing). A point that would move by more than 1.25 spacings is not on the surface and becomes
+/// NaN. Without enough neighbours for a fit a point stays.
 [[nodiscard]] std::vector<Point3> smoothed(std::span<const OrientedPoint> points,
                                            const SurfaceConfig& config, const ExecConfig& exec);
 
-/// Indices, rising, of points that are at least min_distance apart; of two that are nearer the
-/// earlier one stays. Points that are NaN are left out.
+/// Ascending indices of points that are at least min_distance apart; of two nearer points the
+/// earlier one is kept. Omits points that are NaN.
 [[nodiscard]] std::vector<std::uint32_t> apart(std::span<const Point3> points, double min_distance);
 
 }  // namespace viewgain::detail

@@ -22,7 +22,7 @@ using Point3 = std::array<double, 3>;
 }
 
 /// Points sorted into cubic cells, for searches within about the size of a cell. Cells that are
-/// 2^21 apart share a key, which costs time but no correctness: distances decide.
+/// 2^21 apart share a key, which costs time but not correctness, because distances are checked.
 class PointGrid {
  public:
   PointGrid(std::span<const Point3> points, double cell_size);
@@ -48,14 +48,14 @@ class PointGrid {
     }
   }
 
-  /// All points, those of a cell together.
+  /// Indices of all points, those of a cell together.
   [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
 
  private:
-  static constexpr double kMost = 0x1p62;  // cells along an axis, either way
+  static constexpr double kMost = 0x1p62;  // cells along an axis in each direction
 
   [[nodiscard]] std::int64_t cell_of(double x) const {
-    // What lies beyond the numbers of cells shares the last cell.
+    // Points beyond the last cell belong to the last cell.
     return static_cast<std::int64_t>(std::clamp(std::floor(x * inverse_cell_size_), -kMost, kMost));
   }
   [[nodiscard]] static std::uint64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -64,7 +64,7 @@ class PointGrid {
            (static_cast<std::uint64_t>(y) & kMask) << 21U | (static_cast<std::uint64_t>(z) & kMask);
   }
 
-  // Of the cell with this key, or the free one to put it in.
+  // Slot of the cell with this key, or a free slot for it.
   [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
     std::size_t slot = key * kMixStep >> shift_;
     while (cells_[slot].end != 0 && cells_[slot].key != key) {
@@ -75,14 +75,15 @@ class PointGrid {
 
   double inverse_cell_size_;
   std::vector<std::uint32_t> order_;
-  std::vector<Point3> sorted_;  // the points in that order: a cell's lie side by side
+  std::vector<Point3> sorted_;  // the points in this order, so that those of a cell are adjacent
   struct Cell {
     std::uint64_t key = 0;
     std::uint32_t begin = 0, end = 0;  // into order_; both 0: no cell
   };
-  // A hash table with open addressing, at most half full, as searches look up 27 cells and more.
+  // A hash table with open addressing, at most half full, because searches look up 27 cells and
+  // more.
   std::vector<Cell> cells_;
-  unsigned shift_;  // leaves of a hash the number of a slot
+  unsigned shift_;  // shifts a hash to the number of a slot
 };
 
 }  // namespace viewgain::detail

@@ -43,7 +43,7 @@ void check_surface(const SurfaceMesh& surface) {
   }
 }
 
-// Faces that are connected across edges.
+// Components of faces that are connected across edges.
 struct FaceComponents {
   std::vector<std::uint32_t> of_face;  ///< numbered from 0 in the order of their first faces
   std::size_t count = 0;
@@ -60,10 +60,11 @@ std::uint64_t reversed(std::uint64_t edge) { return edge << 32U | edge >> 32U; }
 
 }  // namespace
 
-// Leaves out every triangle that would give an edge a third face, or a second in the same
-// direction, or that repeats a vertex; of the triangles at fault the earlier ones stay.
+// Omits triangles that repeat a vertex or would give an edge a third face or a second face in the
+// same direction. Earlier triangles are kept.
 void drop_non_manifold(std::vector<Triangle>& triangles) {
-  // With each directed edge in one face at most, an edge has at most two, in opposite directions.
+  // If each directed edge is in at most one face, an edge has at most two faces, in opposite
+  // directions.
   std::vector<Keyed> edges;
   edges.reserve(3 * triangles.size());
   std::vector<bool> at_fault(triangles.size(), false);
@@ -115,7 +116,7 @@ FaceComponents face_components(const std::vector<Triangle>& triangles) {
   return components;
 }
 
-// Leaves out components of fewer than min_vertices vertices.
+// Omits components of fewer than min_vertices vertices.
 void drop_small(std::vector<Triangle>& triangles, FaceComponents& components,
                 std::size_t min_vertices) {
   std::vector<Keyed> members;  // component by vertex
@@ -156,8 +157,8 @@ namespace {
 using detail::Point3;
 using Triangle = std::array<std::uint32_t, 3>;
 
-constexpr double kDuplicate = 0.05;    // nearer points are one [spacings]
-constexpr double kMinArea = 1e-6;      // twice that of a triangle with a normal [spacings²]
+constexpr double kDuplicate = 0.05;  // nearer points are merged [spacings]
+constexpr double kMinArea = 1e-6;  // smallest double area of a triangle with a normal [spacings²]
 constexpr double kMinDistance = 0.25;  // of vertices after smoothing [spacings]
 
 void check(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
@@ -191,7 +192,7 @@ void check(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
   }
 }
 
-// The points worked on: `points` are those of the input that `index` names.
+// The current points; `index` has their indices in the input.
 struct Selection {
   std::vector<std::uint32_t> index;
   std::vector<OrientedPoint> points;
@@ -208,9 +209,8 @@ struct Selection {
 
 Eigen::Vector3d vector_of(const Point3& p) { return {p[0], p[1], p[2]}; }
 
-// In units of the spacing from the first point. The offsets of a ten-thousandth take away
-// ties: points on a lattice leave CGAL choices that it makes by addresses in
-// memory.
+// Positions relative to the first point, in units of the spacing. Offsets of a ten-thousandth avoid
+// ties: for points on a lattice CGAL would choose by memory addresses.
 std::vector<Point3> triangulation_points(std::span<const OrientedPoint> points, double spacing) {
   std::vector<Point3> scaled(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -228,13 +228,13 @@ Eigen::Vector3d area_vector(std::span<const OrientedPoint> points, const Triangl
   return (vector_of(points[t[1]].position) - a).cross(vector_of(points[t[2]].position) - a);
 }
 
-// Turns components round whose faces look away from the free side in the eyes of most corners; a
-// hint counts by the cosine, as one along the face says nothing. Without any hint the side is that
-// in which the first face's vertices rise.
+// Flips components whose faces point away from free space according to the hints of their corners.
+// A hint is weighted by its cosine to the face's normal. Without hints, the first face's vertices
+// are in ascending order.
 void orient(std::vector<Triangle>& triangles, const detail::FaceComponents& components,
             std::span<const OrientedPoint> points) {
   std::vector<double> vote(components.count, 0.0);
-  std::vector<bool> falls(components.count, false);  // the first face's vertices
+  std::vector<bool> falls(components.count, false);  // order of the first face's vertices
   for (std::size_t f = triangles.size(); f-- > 0;) {
     const Triangle& t = triangles[f];
     const Eigen::Vector3d normal = area_vector(points, t).stableNormalized();

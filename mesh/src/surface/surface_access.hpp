@@ -21,8 +21,8 @@ namespace viewgain::detail {
   return vector(surface.normals[vertex]);
 }
 
-/// Throws Error(invalid_argument), naming it, if a triangle's index is out of range, a coordinate
-/// is not finite, or there is not one normal a vertex.
+/// Throws Error(invalid_argument) naming the value if a triangle's index is out of range, a
+/// coordinate is not finite, or there is not one normal per vertex.
 void check_surface(const SurfaceMesh& surface);
 
 }  // namespace viewgain::detail

@@ -73,12 +73,12 @@ void ObstacleView::mark(DepthFrame& frame, const Pose& T_world_camera) const {
       const SurfaceScene::Hit& hit = hits[k];
       if (!std::isfinite(hit.range)) continue;
       const double cosine = std::abs(hit.normal.dot(rays[k].direction));
-      // Along the ray; at a graze all before the obstacle may be a reading of it.
+      // Along the ray. At grazing incidence, any reading before the obstacle may show it.
       const double sigma = sigma_along_normal(m.sensor.sigmas(hit.range, cosine), cosine) /
                            std::max(cosine, kMinCosIncidence);
       const double from = std::max(0.0, hit.range - kKnownSigmas * sigma);
       const std::size_t i = pixels[k];
-      frame.known_depth[i] = static_cast<float>(from / m.rays[i].norm());  // range per depth
+      frame.known_depth[i] = static_cast<float>(from / m.rays[i].norm());  // from range to depth
     }
   });
 }

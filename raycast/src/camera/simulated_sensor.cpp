@@ -24,7 +24,7 @@ using detail::RayReturn;
 
 constexpr int kMaxSubRays = 16;
 constexpr std::size_t kPixelChunk = 1024;
-constexpr std::size_t kRaysAtOnce = 256;  // or those of one pixel
+constexpr std::size_t kRaysAtOnce = 256;  // or all rays of one pixel
 
 void check(const Sensor& sensor, const SimulationConfig& config) {
   sensor.validate();
@@ -44,7 +44,7 @@ void check(const Sensor& sensor, const SimulationConfig& config) {
   }
 }
 
-// A pixel's rays in the camera frame: (x, y, 1) of its centre, and how it changes by one pixel.
+// A pixel's rays in the camera frame: (x, y, 1) of its centre, and the change per pixel.
 struct PixelRays {
   Eigen::Vector3d center;
   Eigen::Vector3d along_u = Eigen::Vector3d::Zero();
@@ -61,7 +61,7 @@ std::vector<PixelRays> pixel_rays(const PinholeCamera& camera, bool with_steps) 
     const auto v = static_cast<double>(i / static_cast<std::size_t>(camera.width));
     const Eigen::Vector3d along_u = camera.ray(u + 0.5, v) - camera.ray(u - 0.5, v);
     const Eigen::Vector3d along_v = camera.ray(u, v + 0.5) - camera.ray(u, v - 0.5);
-    // Where the lens model folds inside the pixel its rays are all that of the centre.
+    // If the lens model folds inside the pixel, all its rays are equal to that of the centre.
     if (!along_u.allFinite() || !along_v.allFinite()) continue;
     pixels[i].along_u = along_u;
     pixels[i].along_v = along_v;
@@ -105,14 +105,14 @@ struct SimulatedSensor::Impl {
         pixels(pixel_rays(sensor.camera, pixel_model.mixes())),
         pool(threads) {}
 
-  // A camera's pose, and which of its frames this is.
+  // A camera's pose and the number of the frame.
   struct View {
     Eigen::Matrix3d R_world_camera;
     Eigen::Vector3d p_world;
     std::uint64_t frame_index = 0;
   };
 
-  // Rays of some pixels and what they meet.
+  // Rays of some pixels and what they hit.
   struct Bundle {
     std::vector<SurfaceScene::Ray> rays;
     std::vector<RayReturn> returns;
@@ -126,8 +126,8 @@ struct SimulatedSensor::Impl {
     }
   };
 
-  // By how much a pixel's rays move, all alike, when it looks beside its place. `center`: what the
-  // ray of its centre meets.
+  // Common shift of a pixel's rays by lateral noise. `center`: what the ray of the pixel's centre
+  // hits.
   [[nodiscard]] Eigen::Vector3d displacement(const RayReturn& center, const Eigen::Vector3d& ray,
                                              const PixelRandom& random) const {
     const double length = ray.norm();
@@ -166,7 +166,7 @@ struct SimulatedSensor::Impl {
     }
   }
 
-  // Pixels [begin, end), all rays of which are traced together.
+  // Pixels [begin, end). All their rays are traced together.
   void acquire(const View& view, std::size_t begin, std::size_t end, Bundle& bundle,
                DepthFrame& frame, SimulatedSensor::PixelTruth* truth) const {
     const auto for_each_pixel = [&](const auto& visit) {

@@ -42,7 +42,7 @@ void check(const TriangleMesh& mesh) {
   }
 }
 
-// Embree aborts the program for a ray from farther away, or with a number that is none.
+// Embree aborts the program for a ray from farther away, or with a NaN.
 bool is_traceable(const Vector3d& origin, const SurfaceScene::Ray& ray) {
   constexpr double kFarthest = 1e18;  // [m]
   return (origin.array().abs() <= kFarthest).all() &&
@@ -53,15 +53,15 @@ bool is_traceable(const Vector3d& origin, const SurfaceScene::Ray& ray) {
 
 struct SurfaceScene::Impl {
   TriangleMesh mesh;
-  Vector3d middle;                // what is traced is relative to it
-  std::vector<Vector3d> normals;  // a triangle each
+  Vector3d middle;                // rays and triangles are relative to it
+  std::vector<Vector3d> normals;  // one per triangle
   std::optional<detail::TriangleScene> scene;
 
-  // At most kAtOnce. Returns the lanes to be traced.
+  // Loads at most kAtOnce rays. Returns the lanes to trace.
   std::uint32_t load(std::span<const SurfaceScene::Ray> rays, TriangleRays& packet) const {
     std::uint32_t lanes = 0;
     for (std::size_t i = 0; i < kAtOnce; ++i) {
-      // Lanes that are not asked for repeat a ray.
+      // Unused lanes repeat a ray.
       const SurfaceScene::Ray& ray = rays[std::min(i, rays.size() - 1)];
       const Vector3d origin = ray.origin - middle;
       if (i < rays.size() && is_traceable(origin, ray)) lanes |= 1U << i;

@@ -9,12 +9,12 @@
 namespace viewgain::detail {
 namespace {
 
-// The sphere and the table, where they are nearer.
+// Hits the sphere and the table if they are nearer.
 void meet_walls(const SimulatedRoom& room, const SurfaceScene::Ray& ray, RayReturn& first) {
   const Eigen::Vector3d &origin = ray.origin, &direction = ray.direction;
   if (const double r = room.background_radius; r > 0) {
     const double b = origin.dot(direction), c = origin.squaredNorm() - r * r;
-    // From outside of the sphere it is not there; what is met inside is nearer than its wall.
+    // The sphere is ignored from outside. A hit inside the sphere is nearer than its wall.
     if (c <= 0 && !(first.range * (first.range + 2 * b) + c < 0)) {
       const double wall = -b + std::sqrt(b * b - c);
       if (wall < first.range)
@@ -85,8 +85,7 @@ PixelReading TofPixel::single(const RayReturn& hit) const {
 
 PixelReading TofPixel::mixed(std::span<const RayReturn> hits) const {
   const double per_metre = kTwoPi / unambiguous_range_;
-  // Phases relative to that of the strongest return: they are small, which is faster and loses
-  // less, and the sum's way is that of most of the light.
+  // Phases relative to that of the strongest return are small, which is faster and more accurate.
   const auto strongest =
       std::max_element(hits.begin(), hits.end(), [](const RayReturn& a, const RayReturn& b) {
         if (!std::isfinite(a.range) || !std::isfinite(b.range))
@@ -113,8 +112,8 @@ PixelReading TofPixel::disturbed(PixelReading reading, const PixelRandom& random
   if (config_.noise) {
     const double sigma = reading.sigma;
     reading.range += sigma * random.normal(RandomStream::axial);
-    // Phase and amplitude come from the same four samples: relative to the amplitude its noise is
-    // what the phase's is in radians.
+    // Phase and amplitude come from the same four samples, so the relative noise of the amplitude
+    // equals the noise of the phase in radians.
     reading.amplitude *= std::max(
         0.0, 1.0 + kTwoPi * sigma / unambiguous_range_ * random.normal(RandomStream::amplitude));
   }

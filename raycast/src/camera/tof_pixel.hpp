@@ -17,24 +17,24 @@
 
 namespace viewgain::detail {
 
-/// Where a ray meets the first surface.
+/// First hit of a ray.
 struct RayReturn {
   double range = std::numeric_limits<double>::infinity();  ///< [m]; infinity: nothing
   double cos_incidence = 0;
 };
 
-/// The object and what stands round it.
+/// The object and its surroundings.
 struct SimulatedRoom {
   std::shared_ptr<const SurfaceScene> object;
-  double background_radius = 0;                      ///< of a sphere round the origin [m]; 0: none
-  std::optional<double> support_plane;               ///< height of a table without end [m]
+  double background_radius = 0;                      ///< of a sphere around the origin [m]; 0: none
+  std::optional<double> support_plane;               ///< height of an infinite table [m]
   std::shared_ptr<const SurfaceScene> surroundings;  ///< may be null
 
-  /// The first returns of rays, which go on for ever, world frame; as many as there are rays.
+  /// The first returns of rays without a range limit, world frame; one per ray.
   void first_returns(std::span<const SurfaceScene::Ray> rays, std::span<RayReturn> returns) const;
 };
 
-/// What a pixel needs random numbers for.
+/// Uses of random numbers in a pixel.
 enum class RandomStream : std::uint64_t { axial, lateral_x, lateral_y, amplitude };
 
 /// The random numbers of one pixel of one frame.
@@ -43,7 +43,7 @@ class PixelRandom {
   PixelRandom(std::uint64_t seed, std::uint64_t frame, std::uint64_t pixel)
       : base_(mix64(mix64(mix64(seed) ^ frame) ^ pixel)) {}
 
-  /// A standard normal number, by Box and Muller; independent for each stream.
+  /// A standard normal number (Box-Muller), independent for each stream.
   [[nodiscard]] double normal(RandomStream stream) const {
     const std::uint64_t a = stream == RandomStream::axial
                                 ? base_
@@ -61,37 +61,37 @@ class PixelRandom {
 /// What a pixel measures.
 struct PixelReading {
   double range = 0;          ///< [m]
-  double cos_incidence = 0;  ///< as the amplitude tells it, in [0, 1]
+  double cos_incidence = 0;  ///< derived from the amplitude, in [0, 1]
   double amplitude = 0;      ///< [m⁻²]
-  double sigma = 0;          ///< of the noise along the ray, by where the light comes from [m]
+  double sigma = 0;          ///< of the noise along the ray [m]
 };
 
-/// The sensor's view of the returns in a pixel: mixing, ambiguity, errors.
+/// How the sensor measures the returns in a pixel: mixing, ambiguity, errors.
 class TofPixel {
  public:
   TofPixel(const Sensor& sensor, const SimulationConfig& config);
 
-  /// Do the pixel's returns mix? Otherwise the centre ray stands for the pixel.
+  /// Whether the pixel's returns mix. Otherwise only the centre ray is used.
   [[nodiscard]] bool mixes() const { return mixes_; }
 
-  /// One return, with infinity for nothing.
+  /// Measures one return; a range of infinity means no return.
   [[nodiscard]] PixelReading single(const RayReturn& hit) const;
 
-  /// Returns of rays that cover the pixel evenly, as the sum of their phasors A exp(i phi),
-  /// A = cosθ / t², phi = 4 pi f t / c. A range of infinity if no ray meets anything.
+  /// Measures returns of rays that cover the pixel evenly: sums their phasors A exp(i phi), with A
+  /// = cosθ / t² and phi = 4 pi f t / c. The range is infinity if no ray hits anything.
   [[nodiscard]] PixelReading mixed(std::span<const RayReturn> hits) const;
 
-  /// Adds the systematic error and the noise, and takes the calibration off.
+  /// Adds the systematic error and the noise, and subtracts the calibration.
   [[nodiscard]] PixelReading disturbed(PixelReading reading, const PixelRandom& random) const;
 
-  /// Too dark to be a reading?
+  /// Whether the pixel is too dark to be a reading.
   [[nodiscard]] bool too_dark(const PixelReading& reading) const {
     return reading.amplitude < min_amplitude_;
   }
 
  private:
   [[nodiscard]] double folded(double range) const;
-  /// Of the noise; 0 without.
+  /// Standard deviation of the noise; 0 if noise is off.
   [[nodiscard]] double sigma_at(double range, double cos_incidence) const;
 
   const Sensor& sensor_;

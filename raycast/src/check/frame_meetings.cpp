@@ -14,10 +14,10 @@
 namespace viewgain::detail {
 namespace {
 
-// That are looked for in the other frames: of all frames, and of one.
+// Number of points to search for in the other frames: in total, and limits per frame.
 constexpr std::size_t kPoints = 2000, kLeastPoints = 160, kMostPoints = 1000;
-constexpr double kGate = 0.04;      // of the range: farther off is another surface
-constexpr double kParallax = 0.05;  // of the range: frames that are nearer tell nothing of poses
+constexpr double kGate = 0.04;      // relative to range: farther points are another surface
+constexpr double kParallax = 0.05;  // relative to range: nearer frames cannot show errors of poses
 
 Pose optical_of_body(const Pose& T) {
   Eigen::Matrix3d R;  // its columns: x right, y down, z forward in axes forward, left, up
@@ -33,14 +33,14 @@ Pose w_first(const Pose& T) {
   const Eigen::Quaterniond q(T.rotation());
   return {Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()).toRotationMatrix(), T.translation()};
 }
-// The camera turned about its optical axis.
+// Rotation of the camera about its optical axis.
 template <int quarters>
 Pose rolled(const Pose& T) {
   const Eigen::AngleAxisd roll(quarters * std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
   return {T.rotation() * roll.toRotationMatrix(), T.translation()};
 }
 
-// The pose `shift` frames after the one at `place`, between two of them on the straight way.
+// The pose `shift` frames after the one at `place`, linearly interpolated.
 std::optional<Pose> pose_after(std::span<const Pose> sequence, std::size_t place, double shift) {
   if (shift == 0) return sequence[place];
   const double at = static_cast<double>(place) + shift, last = std::floor(at);
@@ -92,7 +92,7 @@ std::vector<Convention> other_readings() {
                            " of the time between two frames",
                    .pose_shift = shift});
   }
-  // Cameras have units of 0.1, 0.2, 0.25, 0.5 and 1 mm.
+  // Cameras use units of 0.1, 0.2, 0.25, 0.5 and 1 mm.
   for (const double factor : {2.0, 2.5, 4.0, 5.0, 10.0, 1000.0}) {
     const std::string times = "the depth scale is " + short_text(factor) + " times ";
     all.push_back({kScale, times + "larger", factor});
@@ -132,7 +132,7 @@ FrameMeetings::FrameMeetings(const Sensor& sensor, std::span<const DepthFrame> f
       own = std::move(seen);
       continue;
     }
-    // By the golden section within each step, so that they do not all lie in one column.
+    // Uses the golden section within each step, so that points do not all lie in one column.
     for (std::size_t k = 0; k < points; ++k) {
       const double part = std::fmod(static_cast<double>(k) / std::numbers::phi, 1.0);
       own.push_back(seen[static_cast<std::size_t>((static_cast<double>(k) + part) * step)]);
@@ -165,11 +165,11 @@ Meetings FrameMeetings::under(const Convention& reading) const {
       const Eigen::Vector3d p_world = *T_world[i] * (z * ray(reading, pixel));
       for (std::size_t j = 0; j < frames_.size(); ++j) {
         if (!T_world[j]) continue;
-        // Frames from one place agree however poses and depths are read.
+        // Frames from the same position agree under any convention.
         const double baseline = (T_world[j]->translation() - T_world[i]->translation()).norm();
         if (!(baseline > parallax * z)) continue;
         const std::optional<double> farther = beyond(reading, j, T_camera[j] * p_world);
-        if (!farther || *farther < -1) continue;  // it looks elsewhere, or the point is hidden
+        if (!farther || *farther < -1) continue;  // the point is out of view or hidden
         ++(*farther > 1 ? sum.seen_past : sum.met);
         sum.close += std::abs(*farther) < 0.25 ? 1 : 0;
       }

@@ -21,7 +21,7 @@ bool contradicts(const FrameContradiction& frame, double share) {
          (frame.others >= kEnoughReadings && frame.share_seen_past() > share);
 }
 
-// How frames contradict one another; empty: they do not.
+// How frames contradict each other; empty if they do not.
 std::string contradiction_of(const FrameConsistency& found) {
   if (found.share_in_free > kInFree && found.in_free >= kEnoughContradictions) {
     return percent(found.share_in_free) +
@@ -39,7 +39,7 @@ std::string contradiction_of(const FrameConsistency& found) {
          " of a frame's readings lie in space that other frames saw as free, or are seen past";
 }
 
-// Frames that lie beside one another by too little for the readings to contradict each other.
+// Frames that are displaced, but by too little for their readings to contradict each other.
 Suspicion suspect_displacement(const FrameConsistency& found, double voxel_size) {
   const auto compared =
       std::count_if(found.frames.begin(), found.frames.end(),

@@ -24,8 +24,8 @@ using detail::FrameMeetings, detail::kFocalLength, detail::kScale, detail::Meeti
     detail::Convention, detail::percent;
 
 constexpr double kOffCentre = 0.12;  // of the image's side
-constexpr double kEdges = 0.015;     // of right frames' readings, at edges of surfaces
-constexpr double kAlike = 0.1;       // what fits less well than the best by this is named, too
+constexpr double kEdges = 0.015;     // fraction of readings of correct frames, at edges of surfaces
+constexpr double kAlike = 0.1;  // conventions that fit nearly as well as the best are named too
 
 Suspicion suspect_camera(const PinholeCamera& camera, const std::vector<Eigen::Vector3d>& rays) {
   const auto lost = std::count_if(rays.begin(), rays.end(),
@@ -41,7 +41,7 @@ Suspicion suspect_camera(const PinholeCamera& camera, const std::vector<Eigen::V
             "fx is " + short_text(camera.fx) + " px and fy " + short_text(camera.fy) +
                 " px, more than 10 % apart. Are the intrinsics in the right order?"};
   }
-  if (camera.width == 1 || camera.height == 1) return {};  // such an image has no middle
+  if (camera.width == 1 || camera.height == 1) return {};  // a line has no middle
   const double u = camera.cx / (camera.width - 1), v = camera.cy / (camera.height - 1);
   if (std::abs(u - 0.5) < kOffCentre && std::abs(v - 0.5) < kOffCentre) return {};
   return {
@@ -50,9 +50,10 @@ Suspicion suspect_camera(const PinholeCamera& camera, const std::vector<Eigen::V
           " of its height, far from the middle. Are the intrinsics those of another resolution?"};
 }
 
-// Of the pixels with a depth, those within the sensor's range if depths are so many times larger.
+// Fraction of the pixels with a depth that are within the sensor's range if depths are multiplied
+// by `factor`.
 double share_in_range(const Sensor& sensor, std::span<const DepthFrame> frames, double factor) {
-  constexpr std::size_t kPixels = 10'000;  // of a frame are enough
+  constexpr std::size_t kPixels = 10'000;  // per frame; more are not needed
   std::size_t in_range = 0, all = 0;
   for (const DepthFrame& frame : frames) {
     const std::size_t step = frame.depth.size() / kPixels + 1;
@@ -67,14 +68,15 @@ double share_in_range(const Sensor& sensor, std::span<const DepthFrame> frames, 
   return all == 0 ? 0 : static_cast<double>(in_range) / static_cast<double>(all);
 }
 
-// Where fewer readings would be in range, or few would meet, that says nothing. Right frames
-// contradict each other in up to 7 % of what they have in common, at edges.
+// A convention is impossible if fewer readings would be in range or few would have a counterpart.
+// Correct frames contradict each other in up to 7 % of their overlap, at edges.
 bool is_possible(const Meetings& other, const Meetings& as_said) {
   return 20 * other.points >= 19 * as_said.points && other.has_overlap() &&
          other.share_past() <= 0.15;
 }
 
-// Do many more readings meet, or do frames contradict each other less and lie closer?
+// Whether many more readings have a counterpart, or frames contradict each other less and lie
+// closer.
 bool is_better(const Meetings& other, const Meetings& as_said) {
   if (!is_possible(other, as_said)) return false;
   if (4 * as_said.met < other.met) return true;
@@ -82,7 +84,7 @@ bool is_better(const Meetings& other, const Meetings& as_said) {
          other.share_close() > as_said.share_close();
 }
 
-// By the right one of many readings frames fit nearly as well as right ones do.
+// Under the right convention, frames fit nearly as well as correct frames do.
 bool is_proof(const Meetings& other, const Meetings& as_said) {
   return other.share_past() < 0.05 && other.share_past() < 0.3 * as_said.share_past() &&
          other.share_close() > 0.8;
@@ -94,11 +96,11 @@ bool looks_right(const Meetings& met) {
 
 struct Fit {
   Convention reading;
-  double agreement = 0;  // how much of the readings, in any unit
+  double agreement = 0;  // of the readings, in any unit
   Meetings met{};
 };
 
-// The readings that fit best, and as well as that within `slack` of it.
+// The best fits: those within `slack` of the best one.
 std::vector<Fit> best_of(std::vector<Fit> fits, double slack) {
   std::stable_sort(fits.begin(), fits.end(),
                    [](const Fit& a, const Fit& b) { return a.agreement > b.agreement; });
@@ -120,11 +122,11 @@ std::vector<Fit> fits_by_meetings(const FrameMeetings& meeting, const Meetings& 
   return best_of(std::move(fits), kAlike);
 }
 
-// The focal length by which most of what meets is close: 10 % off moves readings by less than they
-// contradict each other at edges, so that pairs are compared one by one.
+// The focal length that brings most pairs close together. Pairs are compared one by one, because an
+// error of 10 % moves readings by less than the contradictions at edges.
 std::optional<Fit> fit_by_focal_length(const FrameMeetings& meeting, const Meetings& as_said) {
-  constexpr double kMostBetter = 0.65;  // 3 % off: up to 0.6
-  constexpr double kSlightly = 0.15;    // the others are tried if these are better, or frames wrong
+  constexpr double kMostBetter = 0.65;  // an error of 3 % gives up to 0.6
+  constexpr double kSlightly = 0.15;    // others are tried if these are better, or frames disagree
   constexpr double kMuch = 0.015;       // more than noise
   Fit best;
   best.met = as_said;
@@ -149,9 +151,9 @@ std::optional<Fit> fit_by_focal_length(const FrameMeetings& meeting, const Meeti
   return best;
 }
 
-// A scale and a focal length each alone where by it clearly less lies in others' free space. Round
-// an object a wrong convention may look like a wrong focal length: then both are named, the
-// commoner mistake first.
+// Tries a scale and a focal length separately, if fewer readings then lie in other frames' free
+// space. For views around an object a wrong convention can look like a wrong focal length. Both are
+// then named, the commoner mistake first.
 std::vector<Fit> fits_of(const FrameMeetings& meeting, const Meetings& as_said) {
   const auto is_clearly_less = [](double a, double b) { return a < 0.5 * b && b > 0.015; };
   std::vector<Fit> fits;
@@ -177,7 +179,8 @@ std::string words_of(const std::vector<Fit>& fits) {
   return text;
 }
 
-// Several scales may bring the depths into range: the frames tell which, if they meet.
+// Several scales can bring the depths into range. If frames overlap, their agreement selects the
+// scale.
 Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames,
                         const FrameMeetings& meeting) {
   const double now = share_in_range(sensor, frames, 1);
@@ -197,10 +200,10 @@ Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames
   return {kScale, text + words_of(fits)};
 }
 
-// Under a table nothing is seen.
+// Checks for readings below the table, where nothing is visible.
 Suspicion suspect_plane(std::span<const DepthFrame> frames, const FrameMeetings& meeting,
                         double plane) {
-  constexpr double kUnder = 0.05;  // no noise [m]
+  constexpr double kUnder = 0.05;  // more than noise [m]
   const std::vector<Eigen::Vector3d>& rays = meeting.rays();
   std::size_t under = 0, all = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -217,14 +220,14 @@ Suspicion suspect_plane(std::span<const DepthFrame> frames, const FrameMeetings&
                                " m below the support plane at " + short_text(plane) + " m"};
 }
 
-// Depths along the ray: told by readings for which it matters.
+// Detects depths along the ray by readings for which that makes a difference.
 Suspicion suspect_along_ray(const FrameMeetings& meeting, const Meetings& as_said,
                             const std::vector<Fit>& fits) {
   if (!as_said.has_overlap() || as_said.share_past() >= 0.15) return {};
   const std::optional<double> along_ray = meeting.share_better({.is_along_ray = true});
   if (!along_ray || *along_ray < 0.45) return {};
   const Meetings by_ray = meeting.under({.is_along_ray = true});
-  // Poses that are off by what they may be make any reading better for nearly half of the pairs.
+  // With inexact poses, any convention improves nearly half of the pairs.
   if (!(by_ray.share_close() > as_said.share_close())) return {};
   const bool fits_best = std::all_of(fits.begin(), fits.end(), [&](const Fit& fit) {
     return by_ray.close > fit.met.close && by_ray.share_close() > fit.met.share_close();
@@ -236,7 +239,7 @@ Suspicion suspect_along_ray(const FrameMeetings& meeting, const Meetings& as_sai
               "along z"};
 }
 
-// A mistake by which the frames fit one another.
+// The mistake under which the frames fit each other.
 Suspicion suspect_convention(const FrameMeetings& meeting, const Meetings& as_said,
                              bool has_copies) {
   std::vector<Fit> fits = fits_of(meeting, as_said);
@@ -274,8 +277,7 @@ Suspicion detail::suspicion_of(const Sensor& sensor, std::span<const DepthFrame>
     return camera;
   if (Suspicion range = suspect_range(sensor, frames, meeting); !range.kind.empty()) return range;
   const bool has_copies = contradiction.kind == "same_image";
-  // Poses that are shifted or images that are turned may fit a little better by chance where some
-  // images are copies.
+  // If some images are copies, shifted poses or rotated images can fit slightly better by chance.
   if (Suspicion known = suspect_convention(meeting, meeting.under({}), has_copies);
       !known.kind.empty()) {
     return known;
@@ -314,7 +316,7 @@ Suspicion suspect_poses(const std::shared_ptr<const VoxelScene>& scene, const Se
   if (poses.empty()) return {};
   const double now = share_seeing({});
   if (now >= 0.5) return {};
-  // What is some metres off is not in millimetres.
+  // Poses a few metres away are not in millimetres.
   const bool is_far = poses[0].translation().norm() > 10 * sensor.max_range;
   const std::string text = percent(1 - now) + " of the poses see no voxel of the map";
   std::vector<Fit> fits;

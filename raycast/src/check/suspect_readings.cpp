@@ -18,7 +18,7 @@ namespace {
 
 using detail::figure;
 
-// Counts of readings, and of those that masks took.
+// Numbers of readings, and of readings that masks removed.
 struct Taken {
   std::uint64_t all = 0, taken = 0;
 
@@ -35,7 +35,7 @@ constexpr const char* kMaskRule =
     "; pixels are ignored where a mask is nonzero or the confidence is below the least confidence. "
     "If the masks show the object in white, invert them";
 
-// In the middle one of so many equal parts of a side?
+// Whether a position is in the middle one of `parts` equal parts of a side.
 bool is_amid(std::size_t at, std::size_t size, std::size_t parts) {
   return 2 * parts * at >= (parts - 1) * size && 2 * parts * at < (parts + 1) * size;
 }
@@ -93,8 +93,8 @@ Suspicion suspect_frame(const Sensor& sensor, const DepthFrame& frame, const Pos
   if (!rigid_pose(T_world_camera)) return {};
   const auto width = static_cast<std::size_t>(frame.width);
   const auto height = static_cast<std::size_t>(frame.height);
-  // In any unit. A camera that looks past the map may see it at an edge by another convention, so
-  // that those are held against the middle of the image.
+  // In any unit. A camera that looks past the map can see it at an image edge under another
+  // convention, so conventions are judged by the middle of the image.
   std::vector<Eigen::Vector3d> all, middle;
   const std::size_t step = std::max<std::size_t>(1, frame.depth.size() / kPixels) | 1;
   for (std::size_t i = step / 2; i < frame.depth.size(); i += step) {
@@ -157,7 +157,7 @@ Suspicion suspect_masks(const Sensor& sensor, std::span<const DepthFrame> unmask
       if (is_middle) middle_inside.add(is_taken);
     }
   }
-  // Masks of all but a small object leave that, in the middle.
+  // Masks that remove all except a small object keep the middle.
   const bool leaves_middle = middle_inside.all > 0 && middle_inside.share() < 0.5;
   if (inside.taken > 0 && inside.share() >= kNearlyAll && !leaves_middle) {
     const char* const where = map == nullptr ? "" : " in the workspace";

@@ -14,16 +14,17 @@ namespace {
 
 using detail::figure;
 
-// Bounds far from every sensor that is sold, and near enough to tell units by.
+// Bounds that no real sensor exceeds, but wrong units do.
 constexpr double kWidestView = 6;         // width / focal length: 143 degrees
 constexpr double kLongestRange = 300;     // [m]
-constexpr double kNoiseOfDistance = 0.1;  // standard deviation by the working distance
-constexpr double kNoiseOfVoxel = 10;      // by the voxel size
-constexpr double kPoseOfDistance = 0.2;   // standard deviation of the position, likewise
-constexpr double kPoseRotation = 0.05;    // [rad]: 2.9 degrees
-constexpr double kLongestBody = 2;        // [m]
+constexpr double kNoiseOfDistance = 0.1;  // standard deviation relative to the working distance
+constexpr double kNoiseOfVoxel = 10;      // relative to the voxel size
+// Standard deviation of the position relative to the working distance.
+constexpr double kPoseOfDistance = 0.2;
+constexpr double kPoseRotation = 0.05;  // [rad]: 2.9 degrees
+constexpr double kLongestBody = 2;      // [m]
 
-// "3 % of the working distance of 0.4 m", or in voxels where these make it odd.
+// "3 % of the working distance of 0.4 m", or in voxels if the voxel size is what makes it odd.
 std::string compared(double length, double distance, double share,
                      const std::optional<double>& voxel_size) {
   if (length <= share * distance && voxel_size) {
@@ -85,7 +86,7 @@ Suspicion suspect_frequency(const ShotNoise& noise) {
                                 " Hz: frequencies are in hertz, not in megahertz"};
 }
 
-// Parameters that make readings look surer than they are, which no sigma shows.
+// Parameters that make readings seem more precise than they are, which no sigma shows.
 struct OddParameter {
   const Sensor& sensor;
 
@@ -115,7 +116,7 @@ struct OddParameter {
   }
 };
 
-// The parameters that a sigma comes from.
+// Names of the parameters that determine a sigma.
 struct ParameterNames {
   bool is_axial;
 
@@ -152,7 +153,7 @@ Suspicion suspect_noise(const Sensor& sensor, const std::optional<double>& voxel
   };
   Suspicion suspicion = odd(frontal.axial, "along the ray", true);
   if (suspicion.kind.empty()) suspicion = odd(frontal.lateral, "across the ray", false);
-  // At a slant all grow, at most to three times.
+  // All sigmas grow with the angle of incidence, at most threefold.
   if (suspicion.kind.empty() && slanted.axial > 2 * kNoiseOfDistance * at) {
     suspicion = odd(slanted.axial, "along the ray at 70 degrees", true);
   }
@@ -221,7 +222,7 @@ std::vector<Suspicion> suspect_sensor(const Sensor& sensor, std::optional<double
     if (!suspicion.kind.empty()) all.push_back(std::move(suspicion));
     return !all.empty();
   };
-  // What these two say would make the noise look odd, too.
+  // These two mistakes would also make the noise look odd.
   if (!add(suspect_view(sensor.camera)) && !add(suspect_ranges(sensor, voxel_size))) {
     add(suspect_noise(sensor, voxel_size));
   }

@@ -35,10 +35,10 @@ Eigen::AlignedBox3d world_bounds(const BeliefGrid& map) {
 
 double longest(const Eigen::AlignedBox3d& box) { return box.sizes().maxCoeff(); }
 
-// A view that sees the map to its range may look as far beyond.
+// A view of the map can see as far beyond the map again.
 double far_from_map(const Sensor& sensor) { return 2 * sensor.max_range; }
 
-// How near the region's parts of a kind come to the map; the parts must not be empty.
+// Smallest distance of the region's parts from the map; there must be parts.
 template <typename Parts, typename Distance>
 double nearest_part(const Parts& parts, const Distance& distance) {
   double nearest = std::numeric_limits<double>::infinity();
@@ -82,7 +82,7 @@ Box obstacle_bounds(const TriangleMesh& mesh) {
 
 Suspicion suspect_solid_obstacles(const Obstacles& obstacles, std::span<const Pose> views) {
   if (views.empty() || (obstacles.boxes.empty() && obstacles.meshes.empty())) return {};
-  // A map of one voxel, and hardly a body: what blocks is an obstacle.
+  // A map of one voxel and a tiny body, so that only obstacles block.
   const BeliefGrid nothing(
       {.voxel_size = 1, .workspace = {{0, 0, 0}, {1, 1, 1}}, .prior_sigma = 1});
   FeasibilityConfig config;

@@ -14,37 +14,37 @@
 
 namespace viewgain::detail {
 
-/// A frame whose share is at least this contradicts the others.
+/// A frame contradicts the others from this share on.
 inline constexpr double kContradicting = 0.05;
 
-/// Above these shares of all readings frames contradict one another. Right simulated frames have up
-/// to 0.9 % in free space, at edges, and see past 0.2 %; a recorded room up to 1.6 % and 3.6 %.
+/// Frames contradict each other above these shares of all readings. Correct simulated frames reach
+/// 0.9 % and 0.2 %, a recorded room 1.6 % and 3.6 %.
 inline constexpr double kInFree = 0.025, kSeenPast = 0.05;
-/// Of fewer contradicting readings nothing is said.
+/// With fewer contradicting readings, nothing is suspected.
 inline constexpr std::size_t kEnoughContradictions = 20;
-/// The same of a single frame with this many readings or more.
+/// Limit for a single frame that has enough readings.
 inline constexpr double kOfAFrame = 0.2;
 inline constexpr std::size_t kEnoughReadings = 50;
 
-/// Of this many frames or more, the median displacement is over this many times what is declared,
-/// and over this part of a voxel. A recorded room: 1.0 times, parts of it up to 1.4.
+/// Frames are displaced if the median displacement is above this multiple of the declared errors
+/// and this part of a voxel. A recorded room has 1.0 times, parts of it up to 1.4.
 inline constexpr double kDisplaced = 2, kOfAVoxel = 0.15;
 inline constexpr std::size_t kEnoughFrames = 5;
 
-/// The largest share of one frame's readings in others' free space, or of others' in its own, of
-/// frames with enough readings.
+/// Over frames with enough readings, the largest fraction of a frame's readings in other frames'
+/// free space, or of others' readings in its own.
 [[nodiscard]] double largest_share(const FrameConsistency& found);
 
-/// Is a displacement well over the one that the declared errors explain, and over a small part of a
-/// voxel? All in [m].
+/// Whether a displacement is clearly larger than the declared errors explain, and than a small part
+/// of a voxel. All in [m].
 [[nodiscard]] bool is_displaced(double displacement, double expected, double voxel_size);
 
-/// Whether the frames of a map with this voxel size [m] contradict one another, and how: kinds
+/// Whether and how the frames of a map with this voxel size [m] contradict each other: kinds
 /// same_image, contradiction and displacement.
 [[nodiscard]] Suspicion suspect_contradiction(const FrameConsistency& found, double voxel_size);
 
-/// What is probably wrong with the frames `meeting` holds; `contradiction` where no better reason
-/// is found.
+/// What is probably wrong with the frames of `meeting`; `contradiction` if no better reason is
+/// found.
 [[nodiscard]] Suspicion suspicion_of(const Sensor& sensor, std::span<const DepthFrame> frames,
                                      const FrameMeetings& meeting,
                                      std::optional<double> support_plane,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The best views of a batch, by a gain or by a measure of the user's own: exactly, all being scored
-// with all their rays, or very probably, in two stages.
+// The best views of a batch, by a gain or a custom measure: exactly, by scoring all with all rays,
+// or with high probability, in two stages.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -24,16 +24,17 @@ namespace {
 
 using detail::ViewDriver;
 
-// So few poses are scored in full without ado.
+// Up to this number, all poses are scored in full.
 constexpr std::size_t kFewPoses = 24;
-// All poses are scored by about so many rays of the image, and at least this share of them in full.
+// Rays per pose in the first stage, and minimum fraction of poses that the second stage scores in
+// full.
 constexpr double kCoarseRays = 400;
 constexpr double kInFull = 0.016, kInFullByPaper = 0.05;
-// Of the time until the deadline is the first stage's at most.
+// Largest fraction of the time that the first stage gets.
 constexpr double kFirstStage = 0.5;
-// And until then what brings measures of few rays to the scale of all.
+// Fraction of the time by which the scale of coarse measures must be known.
 constexpr double kScaled = 0.75;
-// So many poses say how a measure of few rays compares with that of all.
+// Number of poses that determine the scale between a measure with few rays and with all rays.
 constexpr std::size_t kAnchors = 8;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -66,7 +67,7 @@ std::vector<std::size_t> largest(std::span<const double> values, std::size_t k) 
   return indices;
 }
 
-// Numbers below count in an order of which each beginning is spread over all.
+// Numbers below `count`, in an order in which every prefix is spread over the whole range.
 std::vector<std::size_t> spread(std::size_t count) {
   auto step = static_cast<std::size_t>(0.618 * static_cast<double>(count)) + 1;
   while (std::gcd(step, count) != 1) ++step;
@@ -75,7 +76,7 @@ std::vector<std::size_t> spread(std::size_t count) {
   return order;
 }
 
-// The best poses, of which all are scored by some of their rays and some in full.
+// Search in two stages: scores all poses with some of their rays, then some in full.
 class Search {
  public:
   Search(const VoxelScene& scene, const ViewDriver& driver, std::span<const Pose> poses,
@@ -96,7 +97,8 @@ class Search {
     }
   }
 
-  // Leaves the best `few`, and of them those without an estimate only where k need them.
+  // Keeps the best `few` poses. Poses without an estimate are kept only if fewer than k others
+  // remain.
   void estimate(std::size_t k, std::size_t few) {
     const detail::EvaluatorCore& core = *driver_.core();
     const int step = detail::step_for_rays(core, kCoarseRays);
@@ -129,7 +131,7 @@ class Search {
     while (open_.size() > k && std::isnan(estimates[open_.back()])) open_.pop_back();
   }
 
-  // Scores those that are left with all their rays, the most promising first: the best k of them.
+  // Scores the remaining poses with all rays, the most promising first, and returns the best k.
   BestViews score(std::size_t k) {
     if (was_stopped()) {
       best_.complete = false;
@@ -160,7 +162,7 @@ class Search {
     best_.complete = best_.complete && scored == open_.size();
     best_.rays_traced += scored * std::uint64_t{driver_.core()->ray_count};
 
-    std::vector<std::size_t> order(open_.size());  // by pose
+    std::vector<std::size_t> order(open_.size());  // by index of the pose
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::erase_if(order, [&](std::size_t j) { return is_scored[j] == 0; });
     std::sort(order.begin(), order.end(),
@@ -172,7 +174,7 @@ class Search {
       worth_of_scored.push_back(worth[j]);
     }
     for (const std::size_t j : largest(worth_of_scored, k)) {
-      if (std::isnan(worth_of_scored[j])) continue;  // a bad pose is no choice
+      if (std::isnan(worth_of_scored[j])) continue;  // invalid poses are never chosen
       best_.indices.push_back(best_.scored_indices[j]);
       if (by_gain_) best_.gains.push_back(best_.scored_gains[j]);
       best_.worth.push_back(worth_of_scored[j]);
@@ -186,7 +188,7 @@ class Search {
                                       : detail::measured(driver, pose, lease, *config_.run_measure);
   }
 
-  // What ends a part of the search: the caller, or that this share of the time has passed.
+  // Ends a part of the search when the caller stops it, or after this fraction of the time.
   [[nodiscard]] BatchControl until(double share) {
     BatchControl part;
     part.stop = control_.stop;
@@ -201,7 +203,7 @@ class Search {
     return was_cancelled_ || control_.stop.stop_requested();
   }
 
-  // The median ratio of the measure by all rays to that by few, of poses that have the latter.
+  // Median ratio of the measure with all rays to that with few rays.
   [[nodiscard]] double scale_of(std::span<const double> coarse) {
     std::vector<std::size_t> known;
     for (std::size_t i = 0; i < coarse.size(); ++i) {
@@ -233,8 +235,9 @@ class Search {
   bool by_gain_;
   Stopwatch watch_;
   bool was_cancelled_ = false;
-  std::vector<std::size_t> open_;  // poses that may be the best, the most promising first
-  std::vector<double> full_;       // a measure by all rays of those that said the scale, else NaN
+  std::vector<std::size_t> open_;  // remaining poses, the most promising first
+  // Measure with all rays of the poses that determine the scale, otherwise NaN.
+  std::vector<double> full_;
   BestViews best_;
 };
 

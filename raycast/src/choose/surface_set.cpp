@@ -11,7 +11,7 @@
 namespace viewgain::detail {
 namespace {
 
-// Of a workspace, which has at most 2^16 voxels an axis, the lowest bits tell the voxels apart.
+// A workspace has at most 2^16 voxels per axis, so the lowest bits distinguish its voxels.
 constexpr unsigned kBits = 21;  // of a coordinate in a key
 constexpr std::uint32_t kMask = (1U << kBits) - 1;
 
@@ -21,7 +21,7 @@ std::uint64_t key_of(Index3 v) {
   };
   return bits(v.x) << 2 * kBits | bits(v.y) << kBits | bits(v.z);
 }
-/// `lowest` is no higher than the voxel along any axis.
+/// `lowest` must not be above the voxel along any axis.
 Index3 voxel_of(std::uint64_t key, Index3 lowest) {
   const auto number = [key](unsigned shift, std::int32_t from) {
     const auto above = static_cast<std::uint32_t>(key >> shift) - static_cast<std::uint32_t>(from);
@@ -60,7 +60,7 @@ SurfaceSet::Look SurfaceSet::look(const Pose& T_world_camera, Workspace& workspa
   struct Seen {
     double rate, area;
   };
-  std::vector<Seen> seen;  // by place
+  std::vector<Seen> seen;  // by index of the cell
   const int shift = surface_.cell_shift();
   const auto least = [shift](Index3 cell) {
     return Index3{cell.x << shift, cell.y << shift, cell.z << shift};
@@ -123,7 +123,7 @@ double SurfaceSet::refinement(const Refined& added) const {
 }
 
 ViewGain SurfaceSet::tighter(const Pose& T_world_camera, ViewDriver::Lease& lease) const {
-  if (!driver_.core()->config.weights.empty()) {  // then the kernel is not asked
+  if (!driver_.core()->config.weights.empty()) {  // the kernel is then not used
     ViewGain none;
     none.gain = std::numeric_limits<double>::infinity();
     return none;

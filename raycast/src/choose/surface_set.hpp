@@ -12,34 +12,35 @@
 
 namespace viewgain::detail {
 
-/// Views chosen together by the surface or the combined gain, and what another adds to them
-/// (raycast/README.md, "Choosing views"). after() may be called by several threads at once, for
+/// A set of chosen views with the surface or the combined gain, and the marginal gain of another
+/// view (raycast/README.md, "Choosing views"). Several threads may call after() at once, for
 /// different views.
 class SurfaceSet {
  public:
-  /// To choose from `count` poses. The driver must outlive it, and have a surface().
+  /// For a choice among `count` poses. The driver must outlive this object, and have a surface().
   SurfaceSet(const ViewDriver& driver, std::size_t count)
       : driver_(driver), surface_(*driver.surface()), looks_(count) {}
 
-  /// Poses are scored anew only while their earlier gain could win. What a view adds of new surface
-  /// is never more after another has been chosen; of refinement it hardly ever is.
+  /// Poses are scored again only while their earlier gain could win. The marginal new surface of a
+  /// view never grows when another view is chosen; its refinement grows only rarely.
   [[nodiscard]] static bool is_lazy() { return true; }
   static constexpr bool kBoundIsFirst = false;
-  static constexpr double kBoundFactor = 1 + 1e-4;  // the kernel's single precision
-  /// The view's gain, which its cells cannot exceed but for rounding; an eighth of after()'s time.
+  static constexpr double kBoundFactor = 1 + 1e-4;  // for the kernel's single precision
+  /// The view's own gain, which its marginal gain cannot exceed except by rounding. Takes an eighth
+  /// of the time of after().
   [[nodiscard]] ViewGain bound(std::size_t /*i*/, const Pose& T_world_camera,
                                ViewDriver::Lease& lease) const {
     return driver_.evaluate(T_world_camera, lease);
   }
-  /// The same once views are chosen, closer: no more than the kernel finds if what they show of
-  /// each cell is left out. Infinite with task weights, by which a look is as quick.
+  /// A tighter bound after views are chosen: the kernel's gain without the surface that they show.
+  /// Infinite with task weights, for which after() is as fast.
   static constexpr bool kTightens = true;
   [[nodiscard]] ViewGain tighter(const Pose& T_world_camera, ViewDriver::Lease& lease) const;
-  /// What view `i` adds to those chosen. What it reaches is kept while there is room, so that it is
+  /// Marginal gain of view `i`. What the view reaches is kept while memory allows, so that it is
   /// traced once.
   [[nodiscard]] ViewGain after(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease);
   void choose(std::size_t i, const Pose& T_world_camera, ViewDriver::Lease& lease);
-  /// What the chosen show if each cell is reached by the best of them alone, in the gain's unit.
+  /// Gain of the chosen views if each cell counts only for its best view, in the gain's unit.
   [[nodiscard]] double by_best_alone() const;
 
  private:
@@ -52,7 +53,7 @@ class SurfaceSet {
   };
 
   [[nodiscard]] bool refines() const { return driver_.core()->config.model == GainModel::combined; }
-  // What a view shows by itself.
+  // What one view shows.
   struct Reached {
     std::uint64_t key;
     double worth, share;  // a p [m²], R
@@ -63,20 +64,20 @@ class SurfaceSet {
   };
   struct Look {
     ViewGain seen;                 // status, hits, occupied voxels
-    std::vector<Reached> cells;    // in the order in which it first meets them
-    std::vector<Refined> refines;  // by combined
+    std::vector<Reached> cells;    // in the order in which rays first reach them
+    std::vector<Refined> refines;  // for the combined gain
   };
   [[nodiscard]] Look look(const Pose& T_world_camera, Workspace& workspace) const;
-  // The same of view `i`, as kept; traces it and keeps it if it was not.
+  // The look of view `i`; traces and keeps it if it is not kept yet.
   [[nodiscard]] std::shared_ptr<const Look> look_of(std::size_t i, const Pose& T_world_camera,
                                                     Workspace& workspace);
-  /// The combined gain of these.
+  /// The combined gain of this area and refinement.
   [[nodiscard]] double combined(double area, double refinement) const {
     return surface_.nats_per_area() * area + driver_.core()->config.refinement_weight * refinement;
   }
-  /// a p of a hazard cell, by its least voxel [m²].
+  /// a p of the hazard cell with this lowest voxel [m²].
   [[nodiscard]] double worth_of(Index3 least, double rate) const;
-  /// The refinement of the voxel by the chosen views and `added` beyond that of the chosen.
+  /// Additional refinement of the voxel by `added` after the chosen views.
   [[nodiscard]] double refinement(const Refined& added) const;
 
   const ViewDriver& driver_;
@@ -84,9 +85,9 @@ class SurfaceSet {
   std::vector<std::shared_ptr<const Look>> looks_;  // null: not kept
   std::atomic<std::size_t> kept_ = 0;               // [bytes]
   std::unordered_map<std::uint64_t, Cell> cells_;
-  std::vector<float> missed_;  // of the cells, at the places of rates; those that share one: 1
-  std::unordered_map<std::uint64_t, SymmetricMatrix3> known_;  // Σ T Λ_r of the chosen [m⁻²]
-  double refined_ = 0;                                         // by the chosen [nat]
+  std::vector<float> missed_;  // per cell, indexed like rates; 1 for cells that share a slot
+  std::unordered_map<std::uint64_t, SymmetricMatrix3> known_;  // Σ T Λ_r of the chosen views [m⁻²]
+  double refined_ = 0;  // refinement by the chosen views [nat]
 };
 
 }  // namespace viewgain::detail

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Views that are good together, chosen greedily on a frozen map.
+// Chooses a set of views greedily on a constant map.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,9 +24,10 @@ using detail::ViewDriver;
 
 using Overlay = std::unordered_map<std::uint64_t, SymmetricMatrix3>;
 
-// Gains are sums in two different orders; a gain of an earlier round is a bound but for that.
+// A gain of an earlier round is an upper bound, except that sums in different orders are rounded
+// differently.
 constexpr double kRounding = 1 + 1e-9;
-// Poses that are scored anew together in lazy evaluation, whatever the number of threads.
+// Number of poses that lazy evaluation scores together, independent of the number of threads.
 constexpr std::size_t kLazyBatch = 8;
 constexpr double kNoStop = -std::numeric_limits<double>::infinity();
 
@@ -34,7 +35,7 @@ double log_of_diagonal(const SymmetricMatrix3& sigma) {
   return std::log(sigma.xx) + std::log(sigma.yy) + std::log(sigma.zz);
 }
 
-// The gain of a view after others have been chosen, by what their rays bring to each voxel.
+// Marginal gain of a view, from the information that its rays add to each voxel.
 struct AfterOthersConsumer : detail::GainConsumer {
   const detail::GainSettings& settings;
   const Overlay& chosen;
@@ -62,7 +63,7 @@ struct AfterOthersConsumer : detail::GainConsumer {
   }
 };
 
-// Adds what a view's rays bring to each voxel to what those chosen bring.
+// Adds the information of a view's rays in each voxel to that of the chosen views.
 struct ChosenConsumer : detail::GainConsumer {
   Overlay& chosen;
 
@@ -73,16 +74,16 @@ struct ChosenConsumer : detail::GainConsumer {
   }
 };
 
-// The same by the paper's gain as SurfaceSet by the others.
+// Counterpart of SurfaceSet for the paper's gain.
 class PaperSet {
  public:
   explicit PaperSet(const ViewDriver& driver) : driver_(driver) {}
 
-  // Is a pose scored anew only while its earlier gain could win?
+  // Whether poses are scored again only while their earlier gain could win.
   [[nodiscard]] bool is_lazy() const {
     return driver_.settings().criterion == Criterion::log_determinant;
   }
-  // Before any is chosen what a view adds is the first round's result.
+  // Before the first choice, the marginal gain is the result of the first round.
   static constexpr bool kBoundIsFirst = true;
   static constexpr double kBoundFactor = 1;
   static constexpr bool kTightens = false;
@@ -104,8 +105,8 @@ class PaperSet {
   Overlay chosen_;
 };
 
-// With `config` the choice ends where no view is worth its cost; null: nothing costs, and k are
-// chosen.
+// With `config` the choice ends when no view is worth its cost. If it is null, nothing costs, and k
+// views are chosen.
 template <typename Chosen>
 ViewTour choose_greedily(const ViewDriver& driver, Chosen& chosen,
                          std::span<const Pose> T_world_camera, std::size_t k,
@@ -119,7 +120,7 @@ ViewTour choose_greedily(const ViewDriver& driver, Chosen& chosen,
   if (k == 0) return made;
   if (control.progress) control.progress(0, k);
   const bool lazy = chosen.is_lazy();
-  std::vector<ViewGain> gains(count);     // marginal, as of round[i]
+  std::vector<ViewGain> gains(count);     // marginal gain in round[i]
   std::vector<std::size_t> round(count);  // 0: never scored
   std::vector<std::size_t> open(count);   // poses that may be chosen
   std::vector<std::size_t> stale;
@@ -139,7 +140,7 @@ ViewTour choose_greedily(const ViewDriver& driver, Chosen& chosen,
       return chosen.after(i, T_world_camera[i], lease);
     });
   };
-  // Lowers the bounds of poses of earlier rounds where that is quicker than to score them anew.
+  // Lowers the bounds of poses of earlier rounds if that is faster than scoring them again.
   const auto tighten = [&](std::span<const std::size_t> indices) {
     if constexpr (Chosen::kTightens) {
       set.complete = detail::for_each(
@@ -157,7 +158,7 @@ ViewTour choose_greedily(const ViewDriver& driver, Chosen& chosen,
     if (of_a != of_b) return of_a > of_b;
     return gains[a].gain != gains[b].gain ? gains[a].gain > gains[b].gain : a < b;
   };
-  // A view of an earlier round may yet be worth so much.
+  // Upper bound for a view of an earlier round.
   const auto bound_of = [&](std::size_t i) { return pricing.rank(i, gains[i].gain * kRounding); };
   const auto finished = [&] {
     made.tour = pricing.tour();
@@ -181,7 +182,7 @@ ViewTour choose_greedily(const ViewDriver& driver, Chosen& chosen,
       if (!score(open, now)) return finished();
     }
     if (lazy) {
-      // Earlier gains bound those of now: score from the largest on until one of now beats the
+      // Earlier gains are upper bounds: score from the largest on until a current gain beats the
       // rest.
       std::sort(open.begin(), open.end(), better);
       double largest = kNoStop;
@@ -241,16 +242,16 @@ ViewTour choose_by(const ViewDriver& driver, std::span<const Pose> T_world_camer
   return made;
 }
 
-// Views that are nearer than this share of the working distance and look the same way, by the
-// cosine between them, are alike. First those are taken that are far from alike, so that all sides
-// of what is to be seen have some.
+// Two views are similar if they are nearer than this fraction of the working distance and the
+// cosine between their directions is larger. The first, wider limits spread views over all sides of
+// the object.
 struct Alike {
   double distance, same_way;
 };
 constexpr std::array kAlike{Alike{0.3, 0.866}, Alike{0.1, 0.966}};
 constexpr double kFewRays = 400;
 
-// Those of the largest gains by few rays, less what they cost by themselves, no two of them alike.
+// The poses with the largest estimated gain minus their own cost, without similar ones.
 std::vector<std::size_t> promising(const GainEvaluator& evaluator,
                                    std::span<const Pose> T_world_camera, const TourConfig& config,
                                    const BatchControl& control) {

@@ -108,7 +108,7 @@ void WayPricing::price() {
       least = added;
       place_[pose] = place;
     }
-    // Where ways are longer than by a detour a stop may take something off.
+    // If detours are shorter than direct paths, a stop could reduce the cost.
     added_[pose] = std::max(least, 0.0);
   }
 }

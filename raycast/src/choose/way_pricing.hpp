@@ -10,29 +10,29 @@
 
 namespace viewgain::detail {
 
-/// Throws Error(invalid_argument) if there are costs and they are not one a pose, or not finite.
+/// Throws Error(invalid_argument) for costs that are not finite, or not one per pose.
 void check_costs(std::span<const double> costs, std::size_t poses);
-/// Throws Error(invalid_argument), naming the value, for what plan_tour() refuses of these.
+/// Throws Error(invalid_argument) naming the value for settings that plan_tour() refuses.
 void check_tour(const TourConfig& config, std::size_t poses);
 
-/// What poses cost in a tour that grows stop by stop, and what that makes of their gains.
+/// Costs of poses in a tour that grows stop by stop, and gains minus these costs.
 class WayPricing {
  public:
-  /// Of what check_tour() accepts. Throws Error(invalid_argument) for a bad way.
+  /// `config` must pass check_tour(). Throws Error(invalid_argument) for an invalid path cost.
   WayPricing(const TourConfig& config, std::size_t poses);
 
-  /// What pose `i` is chosen by if it adds `gain`; -infinity: it cannot be a stop.
+  /// Value by which pose `i` is chosen if it adds `gain`; -infinity if it cannot be a stop.
   [[nodiscard]] double rank(std::size_t i, double gain) const;
-  /// The gain less all costs, in its unit.
+  /// The gain minus all costs, in the gain's unit.
   [[nodiscard]] double worth(std::size_t i, double gain) const;
-  /// The pose is the next of the stops.
+  /// Makes the pose the next stop.
   void choose(std::size_t i);
-  /// Through the stops by their places in the order of choice.
+  /// The tour; stops are indices in the order of choice.
   [[nodiscard]] Tour tour() const;
 
  private:
   [[nodiscard]] double way(std::size_t from, std::size_t to) const;
-  /// Between stops by their places.
+  /// Cost between two stops, by their indices in the order of choice.
   [[nodiscard]] double between(std::size_t from, std::size_t to) const {
     return out_[from + 1][stops_[to]];
   }
@@ -41,12 +41,12 @@ class WayPricing {
   const TourConfig& config_;
   std::size_t poses_;
   std::vector<std::size_t> stops_;         // in the order of choice
-  std::vector<std::size_t> order_;         // their places, as they are driven to
-  double cost_ = 0;                        // of the ways of `order_`
+  std::vector<std::size_t> order_;         // indices of stops, in the order of the path
+  double cost_ = 0;                        // cost of the path `order_`
   std::vector<std::vector<double>> out_;   // from the start, then from each stop, to each pose
   std::vector<std::vector<double>> back_;  // from each pose to each stop
-  std::vector<double> added_;              // to the way by each pose, where it adds least
-  std::vector<std::size_t> place_;         // where that is in `order_`
+  std::vector<double> added_;              // per pose: smallest increase of the path cost
+  std::vector<std::size_t> place_;         // per pose: where to insert it in `order_`
 };
 
 }  // namespace viewgain::detail

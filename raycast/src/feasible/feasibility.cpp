@@ -24,22 +24,22 @@
 
 namespace viewgain::detail {
 
-/// Whether much of a view shows what is nearer than the sensor can measure. A coarse bundle of rays
-/// starts at the lens; those that end in the map are counted, and of these those within min_range.
-/// Immutable; thread safe.
+/// Whether much of a view is nearer than the sensor can measure. Traces a coarse bundle of rays;
+/// counts those that end in the map, and of these those that end within min_range. Immutable;
+/// thread safe.
 class SightCheck {
  public:
-  /// Undoes the lens distortion.
+  /// Removes the lens distortion.
   SightCheck(const Sensor& sensor, double max_near_share);
 
-  /// Of a camera whose rotation is orthonormal. Most views have nothing within min_range, which a
-  /// look at the blocks of voxels there tells; else rays are traced until the answer is clear. Rays
-  /// that meet an obstacle before a voxel, in single precision, end there.
+  /// The rotation must be orthonormal. Most views have nothing within min_range, which a look-up of
+  /// the blocks there shows. Otherwise traces rays until the answer is clear. Rays end at
+  /// obstacles, in single precision.
   [[nodiscard]] bool too_near(const Pose& T_grid_camera, const NonFreeVoxels& voxels,
                               const SceneData& scene) const;
 
  private:
-  /// Rays next to each other, and a cone round them.
+  /// Neighbouring rays, and a cone around them.
   struct Bundle {
     std::size_t first = 0, count = 0;
     Eigen::Vector3d axis;
@@ -56,21 +56,21 @@ class SightCheck {
 
 namespace {
 
-constexpr int kStride = 8;  // of the pixels that stand for the view
-constexpr int kEdge = 4;    // rays a bundle and axis
+constexpr int kStride = 8;  // between the pixels that are traced
+constexpr int kEdge = 4;    // rays per bundle and axis
 constexpr std::size_t kAtOnce = TriangleRays::kCount;
 static_assert(kEdge * kEdge == kAtOnce);
 
-// How much of a view ends near, as far as it is known.
+// Counts of the rays of a view so far.
 struct Tally {
   double max_share;
-  std::size_t left;  // rays that were not looked at
+  std::size_t left;  // rays not traced yet
   std::size_t ends = 0, near = 0;
 
-  // Whether there are too many whatever the others do.
+  // Whether too many rays end near, whatever the remaining rays do.
   [[nodiscard]] bool is_too_near() const { return exceeds(ends + left); }
-  // Whether there are too many if no other ends in the map. Where not, and no other ends near,
-  // there never are.
+  // Whether too many rays end near if no other ray ends in the map. If this is false and no other
+  // ray ends near, the view is not too near.
   [[nodiscard]] bool may_be_too_near() const { return exceeds(ends); }
 
  private:
@@ -114,7 +114,7 @@ SightCheck::Bundle SightCheck::bundle_of(const std::vector<Eigen::Vector3d>& ray
   for (std::size_t i = first; i < first + count; ++i) {
     bundle.cosine = std::min(bundle.cosine, bundle.axis.dot(rays[i]));
   }
-  bundle.cosine -= 1e-9;  // against rounding
+  bundle.cosine -= 1e-9;  // for rounding
   bundle.sine = std::sqrt(std::max(0.0, 1.0 - bundle.cosine * bundle.cosine));
   return bundle;
 }
@@ -141,7 +141,7 @@ bool SightCheck::too_near(const Pose& T_grid_camera, const NonFreeVoxels& voxels
   };
   if (!may_be_near(all_)) return false;
 
-  // Counts those of at most kAtOnce rays that end from `begin` to `end`; visits the others.
+  // Counts the rays, at most kAtOnce, that end between `begin` and `end`; visits the others.
   Tally tally{max_near_share_, rays_.size()};
   const Index3& base = scene.snapshot.min_index;
   const Eigen::Vector3f tip_scene = (tip - Eigen::Vector3d(base.x, base.y, base.z)).cast<float>();
@@ -199,8 +199,8 @@ namespace {
 
 using detail::OrientedBox;
 
-constexpr double kTouch = 1e-9;           // smaller overlaps are touching [m]
-constexpr std::size_t kPosesAtOnce = 16;  // that a thread takes
+constexpr double kTouch = 1e-9;           // smaller overlaps count as touching [m]
+constexpr std::size_t kPosesAtOnce = 16;  // per task of a thread
 
 [[noreturn]] void fail(const std::string& what) { refuse("feasibility: " + what); }
 
@@ -238,7 +238,7 @@ std::string_view infeasibility_name(Infeasibility reason) {
 }
 
 struct FeasibilityChecker::Impl {
-  /// What does not depend on the scene; shared by the checkers of all scenes.
+  /// Data that do not depend on the scene; shared by the checkers of all scenes.
   struct Settings {
     Settings(FeasibilityConfig config_in, const ExecConfig& exec)
         : config(std::move(config_in)), num_threads(thread_count(exec.num_threads)) {
@@ -264,7 +264,7 @@ struct FeasibilityChecker::Impl {
     FeasibilityConfig config;
     int num_threads;
     Eigen::Vector3d half;
-    Pose T_camera_body;  ///< the body's frame has its origin in its middle
+    Pose T_camera_body;  ///< the origin of the body's frame is its middle
     std::optional<detail::SightCheck> sight;
     mutable std::once_flag pool_once;
     mutable std::optional<ThreadPool> pool_made;
@@ -358,7 +358,8 @@ Infeasibility FeasibilityChecker::check(const Pose& T_world_camera,
 
 std::vector<Infeasibility> FeasibilityChecker::check(std::span<const Pose> T_world_camera,
                                                      std::span<const Pose> taken) const {
-  // A map may have ten thousand views: by x, so that each pose meets those near it alone.
+  // Sorted by x, so that each pose is compared only with views nearby. A map can have ten thousand
+  // views.
   const double reach = impl_->settings->config.taken_tolerance.distance;
   const auto x_of = [](const Pose& pose) { return pose.translation().x(); };
   std::vector<Pose> by_x(taken.begin(), taken.end());

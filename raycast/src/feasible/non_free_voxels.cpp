@@ -33,14 +33,15 @@ bool is_before(const Index3& a, const Index3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// The number of the cube of this size in the next larger one, of four a side, that holds a voxel.
+/// Number of the cube of this size that contains a voxel, within the next larger cube of four per
+/// side.
 unsigned place_in_four(const Index3& v, std::int32_t size) {
   const int shift = std::countr_zero(static_cast<unsigned>(size));
   const auto part = [&](std::int32_t x) { return static_cast<unsigned>(x >> shift & 3); };
   return part(v.x) << 4U | part(v.y) << 2U | part(v.z);
 }
 
-/// The 64 cubes of this size from `origin` on that the voxels [low, high] touch.
+/// Which of the 64 cubes of this size from `origin` on the voxels [low, high] touch.
 std::uint64_t cubes_within(const Index3& origin, std::int32_t size, const Index3& low,
                            const Index3& high) {
   const auto range = [&](std::int32_t from, std::int32_t a, std::int32_t b) {
@@ -70,7 +71,7 @@ Index3 cube_at(const Index3& origin, std::int32_t size, unsigned number) {
 bool voxels_overlap(const OrientedBox& body, const Box& range, const GridSnapshot::Leaf& leaf,
                     const OrientedBox::Limits& limits) {
   const Eigen::Vector3d origin = vector(leaf.origin);
-  // The voxels [low, high) of the leaf are those within the body's bounds.
+  // Voxels [low, high) of the leaf are within the body's bounds.
   std::array<unsigned, 3> low{}, high{};
   for (std::size_t k = 0; k < 3; ++k) {
     const double base = origin[static_cast<Eigen::Index>(k)];
@@ -109,7 +110,7 @@ NonFreeVoxels::NonFreeVoxels(const GridSnapshot& snapshot)
   for (std::size_t i = 0; i < large; ++i) boxes.push_back(box_of(snapshot.tiles[i]));
   large_ = BoxHierarchy(std::move(boxes));
 
-  // Regions' numbers rise; all but the low six bits are their node's.
+  // Region numbers ascend. All bits except the low six are those of the node.
   Node node;
   for (std::size_t i = 0; i < snapshot.regions.size(); ++i) {
     const std::uint64_t number = snapshot.regions[i].number;
@@ -254,7 +255,7 @@ bool NonFreeVoxels::may_meet(const Cone& cone, const Box& range) const {
   return any_block(
       range,
       [&](const GridSnapshot::Leaf& leaf) {
-        // A ball round the leaf; 6.93 is half its diagonal.
+        // A ball around the leaf; 6.93 is half its diagonal.
         return touches(vector(leaf.origin) + Eigen::Vector3d::Constant(4.0), 6.93);
       },
       [&](const VoxelBox& tile) {
@@ -263,7 +264,7 @@ bool NonFreeVoxels::may_meet(const Cone& cone, const Box& range) const {
       });
 }
 
-// The voxel with this index.
+// Whether the voxel with this index is not free.
 bool NonFreeVoxels::contains(const Index3& voxel) const {
   if (!workspace_.contains(voxel)) return false;
   const Eigen::Vector3d p = voxel_center(voxel, 1.0);

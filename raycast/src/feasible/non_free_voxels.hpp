@@ -12,10 +12,9 @@
 
 namespace viewgain::detail {
 
-/// The voxels of a snapshot that are not free, found by place: cubes of 128³, 32³ and 8³ voxels
-/// that have some. Lengths in voxels, in the grid's frame. Making it looks at the list of regions
-/// and at the tiles that are larger than one; what is in a region is looked up when it is first
-/// asked for. Thread safe.
+/// Spatial index of the voxels of a snapshot that are not free, by cubes of 128³, 32³ and 8³
+/// voxels. Lengths in voxels, grid frame. The constructor only reads the list of regions and the
+/// larger tiles; the contents of a region are read on the first query. Thread safe.
 class NonFreeVoxels {
  public:
   /// The snapshot must outlive it.
@@ -23,20 +22,20 @@ class NonFreeVoxels {
 
   [[nodiscard]] bool overlap(const OrientedBox& body) const;
 
-  /// Whether a point is in voxels that are not free whichever side of a face it may be on.
+  /// Whether a point is in voxels that are not free, on whichever side of a face it lies.
   [[nodiscard]] bool enclose(const Eigen::Vector3d& point, double touch) const;
 
-  /// Whether some of them may be in the range and within a cone from its tip: 8³ blocks that have
-  /// some and touch both.
+  /// Whether a cone can contain such voxels within a distance of its tip. Checks blocks of 8³
+  /// voxels that have some.
   struct Cone {
     Eigen::Vector3d tip, axis;  ///< the axis has unit length
     double sine, cosine;        ///< of the angle between axis and side
   };
   [[nodiscard]] bool may_meet(const Cone& cone, const Box& range) const;
 
-  /// Where the half-line, whose direction has unit length, first enters one of them, or `begin` if
-  /// it is in one there; infinity if nowhere from `begin` to `end`. Visits of zero length do not
-  /// count.
+  /// Distance at which the half-line (unit direction) first enters such a voxel, or `begin` if it
+  /// starts in one. Infinity if there is none between `begin` and `end`. Crossings of zero length
+  /// do not count.
   [[nodiscard]] double first_along(const HalfLine& line, double begin, double end) const;
 
  private:
@@ -45,12 +44,12 @@ class NonFreeVoxels {
     Index3 origin;
     std::uint64_t listed = 0;  ///< regions in the snapshot's list
     std::uint64_t in_use = 0;  ///< regions that have leaves or tiles
-    std::uint32_t first = 0;   ///< the first one's place in that list
+    std::uint32_t first = 0;   ///< index of the first one in that list
 
     [[nodiscard]] std::uint32_t place(unsigned region) const;
   };
-  /// The blocks of 8³ voxels in a region that have some, bits as above: leaves, in the snapshot's
-  /// order, and blocks that are unknown as a whole.
+  /// Blocks of 8³ voxels in a region that have such voxels, bits as above: leaves in the snapshot's
+  /// order, and entirely unknown blocks.
   struct Blocks {
     std::uint64_t leaves = 0, tiles = 0;
   };
@@ -61,7 +60,7 @@ class NonFreeVoxels {
 
   [[nodiscard]] const Node* find_node(const Index3& voxel) const;
   [[nodiscard]] Blocks blocks_of(std::uint32_t region) const;
-  /// The leaf of a block that has one.
+  /// The leaf of a block; there must be one.
   [[nodiscard]] const GridSnapshot::Leaf& leaf_at(std::uint32_t region, const Blocks& blocks,
                                                   unsigned block) const;
   [[nodiscard]] bool contains(const Index3& voxel) const;
@@ -75,7 +74,7 @@ class NonFreeVoxels {
   VoxelBox workspace_;
   BoxHierarchy large_;  ///< tiles larger than a region
   std::vector<Node> nodes_;
-  mutable std::vector<KnownBlocks> blocks_;  ///< of each region in the list
+  mutable std::vector<KnownBlocks> blocks_;  ///< per region of the list
 };
 
 }  // namespace viewgain::detail

@@ -88,8 +88,8 @@ Box around(std::span<const Triangle> triangles) {
   return box;
 }
 
-// How often a closed mesh winds round a point, from the solid angles of its triangles (Van Oosterom
-// and Strackee 1983).
+// Winding number of a closed mesh around a point, from the solid angles of its triangles (Van
+// Oosterom and Strackee 1983).
 double winding_number(std::span<const Triangle> triangles, const Eigen::Vector3d& p) {
   double half_angle = 0;
   for (const Triangle& triangle : triangles) {
@@ -101,8 +101,8 @@ double winding_number(std::span<const Triangle> triangles, const Eigen::Vector3d
   return half_angle / (2.0 * std::numbers::pi);
 }
 
-// Which way the half-line from p along +x goes through a triangle: 1, -1, or 0 if not at all;
-// nothing if it passes an edge too closely to say.
+// Direction in which the half-line from p along +x crosses a triangle: 1, -1, or 0 without a
+// crossing. Empty if it passes an edge too closely to decide.
 std::optional<int> crossing(const Triangle& triangle, const Eigen::Vector3d& p) {
   std::array<double, 3> side{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -173,7 +173,7 @@ bool ObstacleCheck::overlaps(const OrientedBox& body, const Eigen::Vector3d& bod
   if (triangle_boxes_.any(range, [&](std::uint32_t i) { return body.overlaps(triangles_[i]); })) {
     return true;
   }
-  // No triangle meets the body: it is inside a solid as a whole or not at all.
+  // No triangle touches the body, so it is entirely inside a solid or entirely outside.
   return is_in_mesh(body_center);
 }
 

@@ -12,9 +12,9 @@
 
 namespace viewgain::detail {
 
-/// Bodies against obstacles. Boxes are solid, and so are closed meshes (each edge used once in each
-/// direction, corners at the same place being one); an open mesh is a sheet. World frame [m].
-/// Immutable; thread safe.
+/// Checks bodies against obstacles. Boxes and closed meshes are solid; an open mesh is a sheet. A
+/// mesh is closed if each edge is used once in each direction; corners at the same position count
+/// as one. World frame [m]. Immutable; thread safe.
 class ObstacleCheck {
  public:
   explicit ObstacleCheck(const Obstacles& obstacles);
@@ -23,7 +23,7 @@ class ObstacleCheck {
 
   [[nodiscard]] bool overlaps(const OrientedBox& body, const Eigen::Vector3d& body_center) const;
 
-  /// Whether a point is inside of a solid, of a box by more than `touch` [m].
+  /// Whether a point is inside a solid; inside a box by more than `touch` [m].
   [[nodiscard]] bool enclose(const Eigen::Vector3d& point, double touch) const;
 
  private:

@@ -11,8 +11,8 @@
 namespace viewgain::detail {
 namespace {
 
-// Shorter cross products of unit vectors have no direction to speak of; the edges are parallel and
-// the faces' axes decide.
+// Shorter cross products of unit vectors have no reliable direction. The edges are then parallel,
+// and the axes of the faces suffice.
 constexpr double kParallel = 1e-7;
 
 Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }

@@ -12,24 +12,24 @@
 
 namespace viewgain::detail {
 
-/// A box with any orientation against axis-aligned boxes and triangles, by separating axes: exact
-/// but for rounding. Overlaps of less than `touch` along an axis count as touching, not as
-/// overlapping. All lengths in one unit, whatever it is.
+/// Checks a box of any orientation against axis-aligned boxes and triangles, by separating axes:
+/// exact except for rounding. Overlaps of less than `touch` along an axis count as touching. All
+/// lengths are in the same unit, whichever it is.
 class OrientedBox {
  public:
   /// Columns of R: the box's axes, orthonormal; `half`: half its size along them.
   OrientedBox(const Eigen::Vector3d& center, const Eigen::Matrix3d& R, const Eigen::Vector3d& half,
               double touch);
 
-  /// The axis-aligned box round it.
+  /// The axis-aligned bounding box.
   [[nodiscard]] Box bounds() const;
 
-  /// Distances between centres from which on a box of this half size is separated, one an axis. For
-  /// testing many boxes of one size.
+  /// For each axis, the distance between centres from which on a box of this half size is
+  /// separated. For testing many boxes of one size.
   using Limits = std::array<double, 15>;
   [[nodiscard]] Limits limits(const Eigen::Vector3d& half_other) const;
 
-  /// Against an axis-aligned box of the size that the limits are for.
+  /// Checks an axis-aligned box with the size of the limits.
   [[nodiscard]] bool overlaps(const Eigen::Vector3d& center_other, const Limits& limits) const {
     const Eigen::Vector3d offset = center_other - center_;
     for (std::size_t i = 0; i < axis_count_; ++i) {
@@ -39,7 +39,7 @@ class OrientedBox {
   }
   [[nodiscard]] bool overlaps(const Box& box) const;
 
-  /// Against a triangle, which may have no area.
+  /// Checks a triangle, which may have no area.
   [[nodiscard]] bool overlaps(const std::array<Eigen::Vector3d, 3>& corners) const;
 
  private:
@@ -47,14 +47,14 @@ class OrientedBox {
   Eigen::Matrix3d R_;
   Eigen::Vector3d half_;
   double touch_;
-  /// Unit vectors: the box's three axes, the three of the frame, and the cross products of the two
-  /// that are long enough to have a direction.
+  /// Unit vectors: the three axes of the box, the three of the frame, and their cross products, if
+  /// these are long enough.
   std::array<Eigen::Vector3d, 15> axes_;
-  std::array<double, 15> extent_{};  ///< half the box's length along each
+  std::array<double, 15> extent_{};  ///< half the box's extent along each
   std::size_t axis_count_ = 0;
 };
 
-/// Whether boxes have a point in common, limits included.
+/// Whether boxes share a point, including their faces.
 [[nodiscard]] inline bool boxes_meet(const Box& a, const Box& b) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (a.max[k] < b.min[k] || b.max[k] < a.min[k]) return false;
@@ -62,22 +62,21 @@ class OrientedBox {
   return true;
 }
 
-/// A binary tree over axis-aligned boxes, to find those near a place. Items are numbered as the
-/// boxes were.
+/// A binary tree over axis-aligned boxes, to find boxes near a position. Items have the indices of
+/// the boxes.
 class BoxHierarchy {
  public:
   BoxHierarchy() = default;
-  /// n log n for n boxes.
+  /// Cost: O(n log n) for n boxes.
   explicit BoxHierarchy(std::vector<Box> boxes);
 
-  /// Whether visit(item) is true for one of the boxes that meet `range`, limits included. Stops at
-  /// the first.
+  /// Whether visit(item) is true for one of the boxes that touch `range`. Stops at the first.
   template <typename Visit>
   [[nodiscard]] bool any(const Box& range, const Visit& visit) const {
     return any_that([&range](const Box& box) { return boxes_meet(box, range); }, visit);
   }
 
-  /// The same of the boxes that a half-line meets not beyond `end`, which visit may lower.
+  /// As above for the boxes that a half-line hits before `end`, which visit may lower.
   template <typename Visit>
   [[nodiscard]] bool any_along(const HalfLine& line, const double& end, const Visit& visit) const {
     return any_that(
@@ -89,11 +88,11 @@ class BoxHierarchy {
   }
 
  private:
-  static constexpr std::size_t kMaxDepth = 64;  ///< halves of 2^32 items, one waiting a level
+  static constexpr std::size_t kMaxDepth = 64;  ///< for 2^32 items, one pending node per level
 
   struct Node {
     Box box;
-    std::uint32_t first = 0;  ///< the first of two children, or of `count` places in order_
+    std::uint32_t first = 0;  ///< first of two children, or of `count` entries in order_
     std::uint32_t count = 0;  ///< 0: an inner node
   };
 

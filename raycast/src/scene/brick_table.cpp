@@ -10,18 +10,18 @@
 namespace viewgain::detail {
 namespace {
 
-constexpr std::size_t kStatesPerLeaf = 64;  // words, of 2³ voxels each
-// A brick is free at first, or has the far rate throughout.
+constexpr std::size_t kStatesPerLeaf = 64;  // words for 2³ voxels each
+// A brick is initially free.
 constexpr std::uint32_t kFreeBrick = BrickTable::kFree << 30U | BrickIndex::kBrick;
 constexpr std::uint32_t kFreeNode = BrickTable::kFree << 30U | BrickIndex::kNode;
 constexpr std::uint32_t kFarBrick = BrickTable::kUnknown << 30U | BrickTable::kFarSlot;
 
-// Number of the cube of 2³ of a voxel in its brick.
+// Number of a voxel's cube of 2³ voxels in its brick.
 std::size_t cube_in_brick(std::int32_t x, std::int32_t y, std::int32_t z) {
   return static_cast<std::size_t>((x & 7) >> 1 << 4 | (y & 7) >> 1 << 2 | (z & 7) >> 1);
 }
 
-// Normals are kept in tenths of a percent or so: 10 bits each for x, y, z, from -511 to 511.
+// Normals are stored with 10 bits each for x, y, z, from -511 to 511.
 std::uint32_t pack_normal(const Eigen::Vector3f& n) {
   const auto part = [](float v) {
     return static_cast<std::uint32_t>(std::lround(v * 511.0F) & 1023);
@@ -58,7 +58,7 @@ class BrickTableMaker {
     return {at.x + table_.base.x, at.y + table_.base.y, at.z + table_.base.z};
   }
 
-  // Rates for a brick in a slot of its own.
+  // Makes a slot for a brick's rates.
   std::uint32_t add_slot(Index3 origin) {
     const float V = static_cast<float>(hazard_.voxel_size());
     const std::uint32_t slot = slots_++;
@@ -86,7 +86,7 @@ class BrickTableMaker {
     return slots_++;
   }
 
-  // Has a cube the far rate everywhere, and is what is found in it new?
+  // Whether a cube has the far rate everywhere, and surface in it counts as new.
   [[nodiscard]] bool is_far(Index3 origin, int edge) const {
     const VoxelBox box{origin, {origin.x + edge, origin.y + edge, origin.z + edge}};
     const HazardConfig::Volume* volume = hazard_.volume();
@@ -129,7 +129,8 @@ class BrickTableMaker {
     table_.states.insert(table_.states.end(), cubes.begin(), cubes.end());
   }
 
-  // A box of unknown voxels. Bricks that the workspace cuts count whole: no ray goes there.
+  // Adds a box of unknown voxels. Bricks cut by the workspace count as whole, because no ray goes
+  // outside.
   void add_unknown(const VoxelBox& box) {
     const auto is_far_at = [&](Index3 at, int edge) { return is_far(on_lattice(at), edge); };
     table_.put(
@@ -144,8 +145,8 @@ class BrickTableMaker {
         });
   }
 
-  // Free less unknown voxels of a cube of 2³, by its lowest voxel in table coordinates. Voxels
-  // outside the workspace count as neither.
+  // Number of free minus unknown voxels in the cube of 2³ with this lowest voxel, in table
+  // coordinates. Voxels outside the workspace count as neither.
   [[nodiscard]] int balance(Index3 lowest) const {
     const VoxelBox box = VoxelBox::from_dims(lowest, {2, 2, 2}).intersection(table_.workspace());
     if (box.volume() == 0) return 0;
@@ -160,7 +161,7 @@ class BrickTableMaker {
     return all - std::popcount(states & 0xAAAAU) - 2 * unknown;
   }
 
-  // The normal at a cube leads from where voxels around are unknown to where they are free.
+  // The normal at a cube points from the unknown to the free voxels around it.
   void find_normals() {
     table_.normals.assign(table_.states.size(), 0);
     for (const GridSnapshot::Leaf& leaf : snapshot_.leaves) {
@@ -168,7 +169,7 @@ class BrickTableMaker {
       const auto [x, y, z] = table_.in_table(leaf.origin);
       const std::size_t first =
           std::size_t{table_.entries[table_.entry_index(x, y, z)] & BrickTable::kPayload} * 64;
-      // The balances of the leaf's cubes and of those around it.
+      // balance() of the leaf's cubes and of those around the leaf.
       std::array<int, 216> around{};
       for (int i = 0; i < 216; ++i) {
         around[static_cast<std::size_t>(i)] =
@@ -191,7 +192,7 @@ class BrickTableMaker {
     }
   }
 
-  // Tells each free brick of a node how large the aligned cube is that is free round it.
+  // Stores in each free brick of a node the size of the largest aligned free cube around it.
   static void widen_free(std::uint32_t* entries) {
     std::replace(entries, entries + BrickIndex::kEntries, kFreeNode, kFreeBrick);
     widen_cubes(

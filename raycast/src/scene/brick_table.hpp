@@ -12,37 +12,38 @@
 
 namespace viewgain::detail {
 
-/// What rays need that go on through unknown voxels: states and hazard, found by place.
+/// States and hazard by position, for rays that continue through unknown voxels.
 struct BrickTable : BrickIndex {
-  /// Kinds of entries, in the two highest bits. The rest: edge of the largest aligned free cube
-  /// round the brick [voxels], 8 to 128; else the brick's slot.
+  /// Kinds of entries, in the two highest bits. For free bricks the rest is the edge of the largest
+  /// aligned free cube around the brick [voxels], 8 to 128; otherwise the brick's slot.
   static constexpr std::uint32_t kFree = 0, kUnknown = 1, kMixed = 2;
   static constexpr std::uint32_t kPayload = 0x3FFFFFFFU;
-  static constexpr std::uint32_t kFarSlot = 0;  ///< of all bricks with the far rate throughout
+  /// Shared by all bricks that have the far rate everywhere.
+  static constexpr std::uint32_t kFarSlot = 0;
 
-  /// Two bits a voxel; in `states` 16 for each cube of 2³ voxels (x << 2 | y << 1 | z), and above
-  /// them the edge of the largest aligned cube round its voxels that is free or unknown throughout,
-  /// 1, 2 or 4.
+  /// States of two bits. A word of `states` has 16 bits for a cube of 2³ voxels (x << 2 | y << 1 |
+  /// z). Above them is the edge, 1, 2 or 4, of the largest aligned cube around its voxels that is
+  /// entirely free or entirely unknown.
   static constexpr std::uint32_t kFreeVoxel = 0, kUnknownVoxel = 1, kOccupiedVoxel = 2;
   static constexpr std::uint32_t kAllUnknown = 0x5555;
 
-  double pooling_length = 1;          ///< [voxels]: Pooling::length
-  int rate_shift = 0;                 ///< rates are by cubes of 2^rate_shift voxels
-  std::vector<std::uint32_t> states;  ///< 64 a mixed brick, by slot; slots begin with those
-  /// 8^(3 - rate_shift) a slot [1/voxel]; with the sign bit set where surface is not new.
+  double pooling_length = 1;  ///< [voxels]: Pooling::length
+  int rate_shift = 0;         ///< rates are per cube of 2^rate_shift voxels per edge
+  /// 64 per mixed brick, by slot; mixed bricks have the first slots.
+  std::vector<std::uint32_t> states;
+  /// 8^(3 - rate_shift) per slot [1/voxel]; the sign bit is set if surface there is not new.
   std::vector<float> rates;
 
-  /// Where the surface looks, for each cube of 2³ voxels of `states` that holds occupied ones: unit
-  /// normals towards free voxels, 10 bits a number (pack_normal); 0: not known.
+  /// For each cube of 2³ voxels in `states` that contains occupied voxels: unit normal towards free
+  /// voxels, 10 bits per number (pack_normal); 0: unknown.
   std::vector<std::uint32_t> normals;
 
   BrickTable(const GridSnapshot& snapshot, const HazardField& hazard);
 
-  /// The outward normal at an occupied voxel in table coordinates, grid frame; zero if not known.
+  /// The outward normal at an occupied voxel in table coordinates, grid frame; zero if unknown.
   [[nodiscard]] Eigen::Vector3f normal_at(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
-  /// Where `rates` has the hazard cell of an unknown voxel of the lattice; nothing where bricks
-  /// share a slot.
+  /// Index in `rates` of the hazard cell of an unknown voxel; empty if bricks share a slot.
   [[nodiscard]] std::optional<std::size_t> rate_place(Index3 voxel) const {
     const auto [x, y, z] = in_table(voxel);
     const std::uint32_t entry = entries[entry_index(x, y, z)];
@@ -53,7 +54,7 @@ struct BrickTable : BrickIndex {
            static_cast<std::size_t>(cell(x) << 2 * bits | cell(y) << bits | cell(z));
   }
 
-  /// Which of the snapshot's leaves a voxel of the lattice is in; it must be in one.
+  /// Index of the snapshot's leaf that contains a voxel; there must be one.
   [[nodiscard]] std::size_t leaf_of(Index3 voxel) const {
     const auto [x, y, z] = in_table(voxel);
     return (entries[entry_index(x, y, z)] & kPayload) - 1;  // slots begin with kFarSlot

@@ -55,8 +55,8 @@ class Pool {
   }
 
  private:
-  // Cells from -1 to the one behind the leaf's last along x, y, z, each with a row of numbers: Λ
-  // and 1, if it has readings.
+  // Cells from -1 to one past the leaf's last along x, y, z. Each has a row of numbers: Λ and 1 if
+  // it has readings.
   static constexpr std::size_t kRow = 8;
   using Rows = std::array<float, 10 * 10 * 10 * kRow>;
 
@@ -83,7 +83,7 @@ class Pool {
   // this leaf. If the shift is 0, all of them.
   [[nodiscard]] LeafMask near(const LeafMask& occupied, const std::array<int, 3>& shift) const {
     const unsigned edge = 1U << static_cast<unsigned>(scale_);
-    const auto slab = [&](int along) -> std::uint64_t {  // one bit for each of eight places
+    const auto slab = [&](int along) -> std::uint64_t {  // one bit for each of eight positions
       return along < 0 ? 0xFFU << (8 - edge) & 0xFFU : along > 0 ? 0xFFU >> (8 - edge) : 0xFFU;
     };
     std::uint64_t rows = 0;
@@ -100,7 +100,7 @@ class Pool {
   void add(const GridSnapshot::Leaf& leaf, const std::array<int, 3>& shift) {
     const bool is_own = shift == std::array{0, 0, 0};
     const int other = leaf.beliefs->scale, smaller = std::min(scale_, other);
-    // A larger cell gives a cell of this leaf's size its share of the information.
+    // A cell of this leaf's size gets its part of a larger cell's information.
     const auto share =
         static_cast<float>(surface_share(std::max(scale_, other)) / surface_share(scale_));
     for_each_bit(near(leaf.occupied, shift), [&](unsigned offset) {

@@ -113,7 +113,7 @@ class CellMaker {
     cells_.places.push_back(place);
   }
 
-  // On the grid's lattice.
+  // Converts to the grid's lattice.
   [[nodiscard]] std::int32_t voxel(float relative, std::size_t axis) const {
     return static_cast<std::int32_t>(relative) + cells_.base[axis];
   }

@@ -14,7 +14,7 @@ namespace viewgain::detail {
 struct PrimitiveBox;
 struct SceneData;
 
-/// Boxes count as larger by this much [voxels], against rounding.
+/// Margin of boxes for rounding [voxels].
 inline constexpr float kBoxMargin = 0.02F;
 
 /// Boxes are read in vectors of this many.
@@ -30,8 +30,8 @@ struct BoxArrays {
   [[nodiscard]] std::size_t bytes() const { return 6 * sizeof(float) * size(); }
 };
 
-/// Along an axis, how far place low + i of the four from `low` on is from the camera's place on the
-/// same lattice; beyond the four only the camera's side matters. Three axes add up to less than
+/// Distances along an axis between the camera's position and the four positions from `low` on, on
+/// the same lattice. Beyond the four only the camera's side matters. Sums over three axes are below
 /// kDistances.
 inline constexpr std::uint32_t kDistances = 10;
 [[nodiscard]] inline std::int32_t distance_in_four(std::int32_t low, std::int32_t i,
@@ -43,30 +43,31 @@ inline constexpr std::uint32_t kDistances = 10;
 struct CellPlace {
   std::array<std::int32_t, 3> node;  ///< of 128³
   std::array<std::uint8_t, 3> part;  ///< of 32³ in the node, 0 to 3
-  /// Does it reach out of its node? Then it has no place in an order from near to far.
+  /// Whether it extends beyond its node. It then has no place in an order from near to far.
   bool is_larger;
 };
 
-/// The primitives of a scene by cells, to be swept from near to far. A cell is a region of 32³
+/// The primitives of a scene by cells, for sweeping from near to far. A cell is a region of 32³
 /// voxels that has primitives, or a box larger than a region.
 ///
-/// Along a ray the coordinates of the cells of a lattice change one way only, so the sum of their
-/// distances to the camera's cell rises. Cells in that order, nodes first, then the regions of a
-/// node, then the blocks of a region, are met from near to far by every ray of the camera.
+/// Along a ray, lattice coordinates of cells only increase or only decrease, so the sum of their
+/// distances to the camera's cell increases. If cells are visited in this order (nodes, then
+/// regions of a node, then blocks of a region), every ray of the camera reaches them from near to
+/// far.
 struct SceneCells {
-  BoxArrays boxes;  ///< round the primitives of each cell
+  BoxArrays boxes;  ///< around the primitives of each cell
   std::vector<CellPlace> places;
   std::array<std::int32_t, 3> min_node{}, max_node{};  ///< of all places
   std::array<std::int32_t, 3> base;  ///< the workspace's lowest voxel, on the lattices
-  bool has_larger = false;           ///< is any cell larger than its node?
-  /// Cell i has the members [first[i], first[i + 1]), the last of whole vectors.
+  bool has_larger = false;           ///< whether any cell is larger than its node
+  /// Cell i has the members [first[i], first[i + 1]), padded to whole vectors.
   std::vector<std::uint32_t> first;
   BoxArrays members;
-  std::vector<std::uint32_t> primitives;  ///< of the members; kNoPrimitive where padded
-  /// Of the members: the block of 8³ in the region, x | y << 2 | z << 4.
+  std::vector<std::uint32_t> primitives;  ///< of the members; kNoPrimitive for padding
+  /// Per member: the block of 8³ voxels in the region, x | y << 2 | z << 4.
   std::vector<std::uint8_t> blocks;
 
-  /// Of a scene whose primitives are gathered.
+  /// The scene's primitives must be complete.
   explicit SceneCells(const SceneData& data);
 
   [[nodiscard]] std::size_t count() const { return places.size(); }

@@ -19,69 +19,71 @@ namespace viewgain::detail {
 struct SceneData;
 class SceneTracing;
 
-// What the room trace defines.
+// Defined in the folder trace.
 
-/// What a scene whose primitives are gathered needs for being traced; `before`: null, or the scene
-/// that it is an update of. Throws as VoxelScene::build().
+/// Tracing data for a scene whose primitives are complete. `before`: the scene that it updates, or
+/// null. Throws like VoxelScene::build().
 [[nodiscard]] std::shared_ptr<const SceneTracing> make_tracing(const SceneData& data,
                                                                const SceneData* before);
 /// The instruction set that the scene is traced with.
 [[nodiscard]] Isa isa_of(const SceneTracing& tracing);
 
-/// The mask that rays are traced against: 512 bits, one cache line.
+/// Mask of a leaf for tracing: 512 bits, one cache line.
 struct alignas(64) TraceMask {
   std::array<std::uint32_t, 16> words{};  ///< bit of voxel (x,y,z): x << 6 | y << 3 | z
 };
 
-/// A primitive's box in voxels, relative to the workspace's lowest corner: for a leaf the tightest
-/// one round its set bits, whose lowest voxel has the offset first_offset in the leaf.
+/// A primitive's box in voxels, relative to the workspace's lowest corner. For a leaf it is the
+/// tightest box around its set bits; first_offset is the offset of the box's lowest voxel in the
+/// leaf.
 struct alignas(32) PrimitiveBox {
   float min[3];
   float max[3];
   std::uint32_t first_offset;
 };
 
-/// Above every primitive's number, also when compared as a signed one.
+/// Larger than every primitive's number, also in signed comparisons.
 inline constexpr std::uint32_t kNoPrimitive = 0x7FFFFFFFU;
 
-/// How a voxel's offset in its primitive is packed, bits an axis: x << 2 bits | y << bits | z.
-/// Leaves and whole unknown blocks of 8³ have three, larger boxes ten; kMaxBoxEdge is what those
-/// can hold.
+/// Bits per axis of a voxel's packed offset in its primitive: x << 2 bits | y << bits | z. Leaves
+/// and whole unknown blocks of 8³ have three bits, larger boxes ten; kMaxBoxEdge is the limit of
+/// the latter.
 inline constexpr int kBlockBits = 3;
 inline constexpr int kBoxBits = 10;
 inline constexpr int kMaxBoxEdge = 1 << kBoxBits;
 
-/// Where a region's primitives begin, each kind counted by itself: leaves, whole blocks, boxes.
-/// Boxes larger than a region come before all regions' boxes.
+/// First primitives of a region, counted separately for leaves, whole blocks and boxes. Boxes
+/// larger than a region come before all regions' boxes.
 struct SceneRegion {
   std::uint32_t leaf, block, box;
 };
 
-/// What VoxelScene owns. Primitives are numbered: [0, leaf_count) leaves that are traced by their
-/// masks, [leaf_count, block_count) whole blocks of 8³ unknown voxels, the rest larger or clipped
+/// Contents of a VoxelScene. Primitives [0, leaf_count) are leaves, traced by their masks;
+/// [leaf_count, block_count) are whole blocks of 8³ unknown voxels; the rest are larger or clipped
 /// boxes of unknown voxels.
 ///
-/// Blocks are the 8³ cells of the lattice that touch the workspace, numbered x-major; a voxel's key
-/// is block << 9 | x << 6 | y << 3 | z of its place in the block.
+/// Blocks are the 8³ cells of the lattice that touch the workspace, numbered x-major. A voxel's key
+/// is block << 9 | x << 6 | y << 3 | z, with its position in the block.
 struct SceneData {
   GridSnapshot snapshot;
-  std::vector<TraceMask> masks;            ///< one a leaf
-  std::vector<PrimitiveBox> boxes;         ///< one a primitive
-  std::vector<std::uint64_t> block_keys;   ///< block << 9, one a primitive below block_count
-  std::vector<std::uint32_t> leaf_source;  ///< index into snapshot.leaves, one a leaf primitive
-  std::vector<std::uint8_t> has_occupied;  ///< whether it has occupied voxels, one a leaf primitive
+  std::vector<TraceMask> masks;            ///< one per leaf
+  std::vector<PrimitiveBox> boxes;         ///< one per primitive
+  std::vector<std::uint64_t> block_keys;   ///< block << 9, one per primitive below block_count
+  std::vector<std::uint32_t> leaf_source;  ///< index into snapshot.leaves, one per leaf primitive
+  /// Whether it has occupied voxels, one per leaf primitive.
+  std::vector<std::uint8_t> has_occupied;
   std::size_t leaf_count = 0;
   std::size_t block_count = 0;
-  /// Where the primitives of each of the snapshot's regions begin, and behind the last.
+  /// First primitives of each of the snapshot's regions, and one past the last.
   std::vector<SceneRegion> regions;
   std::shared_ptr<const Surroundings> surroundings;  ///< never null; shared by the scenes of a map
   bool has_obstacles = false;
   std::shared_ptr<const HazardConfig> hazard;  ///< never null; shared by the scenes of a map
   std::optional<SceneCells> cells;             ///< for sweeping views
-  /// Kernels and BVH: what the room trace keeps with a scene; opaque here.
+  /// Kernels and BVH, which the folder trace keeps with a scene; opaque here.
   std::shared_ptr<const SceneTracing> tracing;
 
-  /// The hazard of its unknown voxels; found when first asked for. Thread safe.
+  /// The hazard of unknown voxels; computed on the first call. Thread safe.
   [[nodiscard]] const HazardField& hazard_field() const {
     std::call_once(hazard_once_, [&] { hazard_field_.emplace(snapshot, *hazard); });
     return *hazard_field_;
@@ -123,7 +125,7 @@ struct SceneData {
             coordinate(block % nz, base.z, key & 7U)};
   }
 
-  /// The voxel that a hit names, as an index of the grid's lattice.
+  /// The voxel of a hit, as an index of the grid's lattice.
   [[nodiscard]] Index3 voxel_index(std::uint32_t primitive, std::uint32_t offset) const {
     const int bits = primitive < block_count ? kBlockBits : kBoxBits;
     const std::uint32_t low = (1U << bits) - 1U;
@@ -140,7 +142,7 @@ struct SceneData {
             snapshot.min_index.z + static_cast<std::int32_t>(min[2]) + z};
   }
 
-  /// The leaf of the occupied voxel that a hit names; null if the voxel is unknown.
+  /// The leaf of an occupied voxel that was hit; null if the voxel is unknown.
   [[nodiscard]] const GridSnapshot::Leaf* occupied_leaf(std::uint32_t primitive,
                                                         std::uint32_t offset) const {
     if (primitive >= leaf_count) return nullptr;
@@ -160,7 +162,7 @@ struct SceneData {
   mutable std::optional<HazardField> hazard_field_;
 };
 
-/// The way into a scene for this module's other rooms and for perf/.
+/// Access to a scene's data for this module's other folders and for perf/.
 struct SceneAccess {
   [[nodiscard]] static const SceneData& data(const VoxelScene& scene) { return *scene.data_; }
   [[nodiscard]] static std::shared_ptr<const VoxelScene> make(

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxPrimitives = std::size_t{1} << 23U;
 
-// The tightest box round the set bits of a leaf.
+// The tightest box around the set bits of a leaf.
 PrimitiveBox tight_box(const LeafMask& mask, const std::array<float, 3>& origin) {
   unsigned x_min = 8, x_max = 0;
   std::uint64_t any = 0;
@@ -55,8 +55,8 @@ bool is_wholly_unknown(const GridSnapshot::Leaf& leaf) {
   return non_free == ~std::uint64_t{0} && occupied == 0;
 }
 
-/// Makes the three kinds of primitives, region by region; the last two are kept aside until the
-/// leaves, which come first, are all there.
+/// Makes the three kinds of primitives, region by region. Leaves come first, so the other two kinds
+/// are collected and appended.
 class Gatherer {
  public:
   Gatherer(SceneData& data, const SceneData* before)
@@ -75,7 +75,8 @@ class Gatherer {
   void run() {
     const std::size_t large_tiles =
         snapshot_.regions.empty() ? snapshot_.tiles.size() : snapshot_.tiles_of(0)[0];
-    // Boxes all of them, also one of which the workspace leaves but a block: it is in no region.
+    // All of them become boxes, even one that the workspace cuts to a single block, because it is
+    // in no region.
     for (std::size_t i = 0; i < large_tiles; ++i) add_box(snapshot_.tiles[i]);
     std::size_t earlier = 0;
     for (std::size_t i = 0; i < snapshot_.regions.size(); ++i) {
@@ -127,7 +128,7 @@ class Gatherer {
     append(data_.boxes, from.boxes, first.leaf, last.leaf);
     append(data_.block_keys, from.block_keys, first.leaf, last.leaf);
     append(data_.has_occupied, from.has_occupied, first.leaf, last.leaf);
-    // Unsigned differences wrap round, and back again.
+    // Unsigned differences wrap around, and back when added.
     const std::uint32_t shift = region.first_leaf - from.snapshot.regions[earlier].first_leaf;
     for (std::size_t i = first.leaf; i < last.leaf; ++i) {
       data_.leaf_source.push_back(from.leaf_source[i] + shift);
@@ -163,7 +164,7 @@ class Gatherer {
     }
   }
 
-  // In pieces whose offsets fit.
+  // Splits a tile into pieces whose offsets fit.
   void add_box(const VoxelBox& tile) {
     constexpr std::int32_t kEdge = kMaxBoxEdge;
     const Index3 &min = tile.min, &max = tile.max;

@@ -13,8 +13,8 @@
 namespace viewgain::detail {
 namespace {
 
-// In millimetres all readings would be out of range and carve the object away. Where some are near,
-// one value may stand for no reading.
+// Depths in millimetres would all be out of range and mark the object as free. If some depths are
+// near, a single far value may mean "no reading".
 bool has_metres(const DepthFrame& frame, const Sensor& sensor) {
   constexpr double kFar = 10;        // times max_range
   constexpr std::size_t kMost = 19;  // far readings for each near one

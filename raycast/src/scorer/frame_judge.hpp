@@ -8,9 +8,9 @@
 
 namespace viewgain::detail {
 
-/// What is wrong with measurements before they are held against a map: lost_pose, wrong_size,
-/// not_metres, or `used`. Throws Error(invalid_argument) for a sigma that is negative or not
-/// finite, and for an identity of another form. Cost: a pass over the pixels.
+/// Faults of measurements that show without a map: lost_pose, wrong_size, not_metres; otherwise
+/// `used`. Throws Error(invalid_argument) for a sigma that is negative or not finite, and for an
+/// invalid identity. Cost: a pass over the pixels.
 [[nodiscard]] FrameVerdict judged(const Measurements& measurements, const Sensor& sensor);
 
 }  // namespace viewgain::detail

@@ -26,7 +26,7 @@ MapVersion::MapVersion(MapVersion& before, const BeliefGrid& grid) : exec_(befor
     return;
   }
   snapshot_ = grid.snapshot(*before.snapshot_);
-  // What it has in common with the scene that was made last, which is older.
+  // Data shared with the scene that was made last, which can be older.
   snapshot_->shared_until = std::min(snapshot_->shared_until, before.snapshot_->shared_until);
 }
 

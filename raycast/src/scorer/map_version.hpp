@@ -17,15 +17,15 @@
 
 namespace viewgain::detail {
 
-/// A map as it was at one time, and what its views are scored by. Scene, evaluator and checker are
-/// made when they are first asked for, from those of an earlier version. Thread safe. All throw as
-/// VoxelScene::build().
+/// One version of a map, with its scene, evaluator and checker. These are made on the first call,
+/// from those of an earlier version. Thread safe. All members throw like VoxelScene::build().
 class MapVersion {
  public:
-  /// The first version of a map. Makes the evaluator, to refuse settings that are not valid.
+  /// The first version of a map. Makes the evaluator, to check the settings.
   MapVersion(const BeliefGrid& grid, const Sensor& sensor, const ScorerConfig& config,
              const ExecConfig& exec);
-  /// The map as it is now, which was `before`. Costs BeliefGrid::snapshot() of what has changed.
+  /// The current version of a map whose previous version is `before`. Cost: BeliefGrid::snapshot()
+  /// of the changed parts.
   MapVersion(MapVersion& before, const BeliefGrid& grid);
 
   [[nodiscard]] std::shared_ptr<const VoxelScene> scene();
@@ -34,7 +34,7 @@ class MapVersion {
   [[nodiscard]] std::shared_ptr<const FeasibilityChecker> checker();
 
  private:
-  /// What was made last, of this version or of an earlier one.
+  /// The latest existing objects, of this or an earlier version.
   struct Made {
     std::shared_ptr<const VoxelScene> scene;
     std::shared_ptr<const GainEvaluator> evaluator;
@@ -45,7 +45,7 @@ class MapVersion {
 
   std::mutex mutex_;
   ExecConfig exec_;
-  std::optional<GridSnapshot> snapshot_;  ///< until the scene is made of it
+  std::optional<GridSnapshot> snapshot_;  ///< until the scene is made from it
   Made made_;
 };
 

@@ -16,11 +16,12 @@ namespace {
 
 bool sees_plane(const Sensor& sensor, const Eigen::Vector3d& point, const Eigen::Vector3d& sight,
                 double plane) {
-  const double range = sight.norm(), rise = sight.z() / range;  // its size is cosθ on the plane
+  const double range = sight.norm(),
+               rise = sight.z() / range;  // its absolute value is cosθ on the plane
   return is_of_plane(point.z() - plane, rise, sensor.sigmas(range, std::abs(rise)));
 }
 
-// The known surface that rays would come to from behind if nothing new lay before it.
+// Known surface that a ray would reach from behind.
 class SurfaceBehind {
  public:
   explicit SurfaceBehind(const BeliefGrid& map)
@@ -28,15 +29,15 @@ class SurfaceBehind {
         T_grid_world_(map.T_world_grid().inverse()),
         box_(VoxelBox::from_dims(map.min_index(), map.dims())) {}
 
-  /// For a reading in the workspace and its ray [m, world]: the cosine of the ray to the outward
-  /// normal of that surface; 0: there is none.
+  /// For a reading in the workspace and its ray [m, world]: cosine between the ray and the outward
+  /// normal of that surface; 0 if there is none.
   double cosine(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) {
     const Eigen::Vector3d at = T_grid_world_ * point / map_.voxel_size();
     const Eigen::Vector3d along = T_grid_world_.rotation() * direction;
     const Way on = way(at, along);
     if (on.end != VoxelState::occupied) return 0;
     double length = on.length;
-    const bool is_occupied = length == 0;  // then what lies before that voxel counts
+    const bool is_occupied = length == 0;  // then the voxels before it count
     if (length < FromBehind::kLeastStretch) length += way(at, -along, is_occupied).length;
     if (length < FromBehind::kLeastStretch) return 0;
     const double cosine = outward(on.voxel).dot(along);
@@ -44,14 +45,14 @@ class SurfaceBehind {
   }
 
  private:
-  // A way through unknown voxels.
+  // A path through unknown voxels.
   struct Way {
     double length = 0;  // [voxels]
     VoxelState end = VoxelState::unknown;
-    Index3 voxel;  // where it ends
+    Index3 voxel;  // the last voxel
   };
 
-  // `beside`: from where the ray leaves the voxel that it begins in.
+  // `beside`: begins where the ray leaves its first voxel.
   [[nodiscard]] Way way(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
                         bool beside = false) const {
     const HalfLine line(from, along);
@@ -65,7 +66,7 @@ class SurfaceBehind {
     return {walk.from() - begin, VoxelState::unknown, {}};
   }
 
-  // Of a cube of 2³ voxels, towards free and from unknown ones around; zero if not known.
+  // Normal of a cube of 2³ voxels, from unknown towards free voxels around it; zero if unknown.
   const Eigen::Vector3d& outward(Index3 voxel) {
     const Index3 low{voxel.x & -2, voxel.y & -2, voxel.z & -2};
     const auto [entry, is_new] = normals_.try_emplace(low, Eigen::Vector3d::Zero());

@@ -15,18 +15,18 @@
 
 namespace viewgain::detail {
 
-/// What frames of a sensor show of new surface, to be held against ViewGain::area. Immutable;
-/// thread safe. Cost of of(): a pass over the pixels.
+/// Area of new surface that frames show, to compare with ViewGain::area. Immutable; thread safe.
+/// Cost of of(): a pass over the pixels.
 class RealisedArea {
  public:
-  /// Undoes the lens distortion once. Readings of the support plane (world z [m]) show nothing.
+  /// Removes the lens distortion once. Readings of the support plane (world z [m]) do not count.
   RealisedArea(const Sensor& sensor, double voxel_size, std::optional<double> support_plane = {});
 
-  /// Σ ω t² ρ(t) [m²] over the frame's readings of new surface within the sensor's range. They
-  /// lie in unknown voxels of `before`, at d > 1.2 pooling lengths from what is known of the
-  /// surface (`hazard`: that of the same map; null: nothing is known), and show nothing known
-  /// (DepthFrame::known_depth); or their ray would come to known surface from behind (FromBehind).
-  /// Throws Error(invalid_argument) as check_frame_size().
+  /// Σ ω t² ρ(t) [m²] over the frame's readings of new surface within the sensor's range. Such a
+  /// reading lies in an unknown voxel of `before` and does not show a known object
+  /// (DepthFrame::known_depth). It is more than 1.2 pooling lengths from known surface, or its ray
+  /// would reach known surface from behind (FromBehind). `hazard`: that of the same map; null if no
+  /// surface is known. Throws Error(invalid_argument) like check_frame_size().
   [[nodiscard]] double of(const DepthFrame& frame, const Pose& T_world_camera,
                           const BeliefGrid& before, const HazardField* hazard) const;
 

@@ -23,7 +23,7 @@
 namespace viewgain {
 namespace {
 
-// Voxels as large as all that is to be mapped, or as the camera sees, are in another unit.
+// Voxels as large as the workspace, or larger than the sensor's range, have the wrong unit.
 BeliefGrid empty_grid(const GridConfig& config, const Sensor& sensor) {
   BeliefGrid grid(config, sensor);
   const auto& [min, max] = config.workspace;
@@ -34,16 +34,16 @@ BeliefGrid empty_grid(const GridConfig& config, const Sensor& sensor) {
          short_text(sensor.max_range) + " m; lengths are in metres");
 }
 
-// The possible ones of some poses.
+// The feasible ones of some poses.
 struct Possible {
   std::vector<std::size_t> numbers;  // ascending
-  bool is_complete = true;           // false: not all were checked
+  bool is_complete = true;           // false: not all poses were checked
 };
 
-constexpr std::size_t kChecked = 256;      // poses at once
-constexpr double kShareOfDeadline = 0.25;  // that checking may take
+constexpr std::size_t kChecked = 256;      // poses per step
+constexpr double kShareOfDeadline = 0.25;  // largest fraction of the deadline for checking
 
-// Poses from all over the list, so that those checked by a deadline are a fair choice.
+// Takes poses from all over the list, so that a deadline does not favour the first ones.
 Possible possible_ones(const FeasibilityChecker& checker, std::span<const Pose> poses,
                        double seconds, const BatchControl& control) {
   const Stopwatch watch;
@@ -76,7 +76,7 @@ void check_costs(std::span<const double> costs, std::size_t poses) {
   }
 }
 
-// The layout is the map's.
+// Replaces the layout by that of the map.
 ScorerConfig with_layout(ScorerConfig config, const BeliefGrid& grid) {
   if (config.gain.prior_sigma)
     refuse("gain.prior_sigma cannot be used here; set ScorerConfig::prior_sigma");
@@ -98,7 +98,7 @@ struct ViewScorer::Impl {
   ExecConfig exec;
   BeliefGrid grid;
   std::optional<JumpEdgeFilter> filter;
-  std::vector<Eigen::Vector3d> rays;  ///< of the pixels, (x, y, 1); not finite: the lens has none
+  std::vector<Eigen::Vector3d> rays;  ///< per pixel, (x, y, 1); not finite if the pixel has no ray
   ObstacleView obstacles;
   FrameIntegrator integrator;
   FrameCheck check;
@@ -107,8 +107,8 @@ struct ViewScorer::Impl {
   bool learns;
   VoxelBox voxels;  ///< of the workspace
   std::mutex changing;
-  bool is_published = true;    ///< is `current` the grid?
-  mutable std::mutex reading;  ///< of `current`
+  bool is_published = true;    ///< whether `current` shows the grid
+  mutable std::mutex reading;  ///< protects `current`
   std::shared_ptr<detail::MapVersion> current;
 
   Impl(BeliefGrid map, const Sensor& of, const ScorerConfig& with, const ExecConfig& by)
@@ -133,15 +133,15 @@ struct ViewScorer::Impl {
     return current;
   }
 
-  /// After each change of the grid.
+  /// To be called after each change of the grid.
   void publish() {
     auto next = std::make_shared<detail::MapVersion>(*now(), grid);
     is_published = true;
     const std::lock_guard lock(reading);
-    current.swap(next);  // what is old goes without the lock
+    current.swap(next);  // the old version is destroyed without the lock
   }
 
-  /// change() returns how many voxels have changed.
+  /// change() must return the number of changed voxels.
   template <typename Change>
   std::uint64_t change(const Change& change) {
     const std::lock_guard lock(changing);
@@ -155,7 +155,7 @@ struct ViewScorer::Impl {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Eigen::Vector3d p = static_cast<double>(frame.depth[i]) * rays[i];
       const double range = p.norm();
-      // False for pixels without a depth and without a ray.
+      // False for pixels without a depth or without a ray.
       if (!(range >= sensor.min_range && range <= sensor.max_range)) continue;
       if (!frame.shows_known(i) && grid.index_of(T_world_camera * p)) return true;
     }
@@ -173,7 +173,7 @@ struct ViewScorer::Impl {
     }
   }
 
-  /// The frames as they go into the map.
+  /// The frames as they are integrated: filtered, with known objects marked.
   [[nodiscard]] std::vector<DepthFrame> filtered(const Measurements& measurements,
                                                  std::size_t& flying_pixels) const {
     std::vector<DepthFrame> frames = measurements.frames;
@@ -185,7 +185,7 @@ struct ViewScorer::Impl {
     return frames;
   }
 
-  /// The filtered frames into `map`, which is the grid or a copy of it.
+  /// Integrates the filtered frames into `map`, the grid or a copy of it.
   void integrate(BeliefGrid& map, const std::vector<DepthFrame>& frames,
                  const Measurements& measurements, MapUpdate& update) {
     const Pose& T_world_camera = measurements.T_world_camera;
@@ -220,7 +220,7 @@ struct ViewScorer::Impl {
       integrate(grid, frames, measurements, update);
       if (update.counts.readings_inside == 0) update.verdict = FrameVerdict::carved;
     } else {
-      // What carves nothing either leaves no trace, which only carving can tell.
+      // Whether the frame marks any free space is known only after integrating it into a copy.
       BeliefGrid carved = grid.clone();
       integrate(carved, frames, measurements, update);
       const IntegrationReport& counts = update.counts;

@@ -42,7 +42,7 @@ std::string npy_text(const Table& table) {
     text += "'), ";
   }
   text += "], 'fortran_order': False, 'shape': (" + std::to_string(table.size()) + ",), }";
-  constexpr std::size_t kFixed = 10, kAligned = 64;  // as numpy has it
+  constexpr std::size_t kFixed = 10, kAligned = 64;  // numpy's format
   text.append((kAligned - (kFixed + text.size() + 1) % kAligned) % kAligned, ' ').append("\n");
   std::string file("\x93NUMPY\x01\0", 8);
   file += {static_cast<char>(text.size() & 255U), static_cast<char>(text.size() >> 8U)};
@@ -77,7 +77,7 @@ using nlohmann::json;
 
 constexpr std::uint64_t kMostFieldBytes = std::uint64_t{1} << 20U;
 
-// No number with a point or an exponent, which get() would cast.
+// Refuses numbers with a point or an exponent, which get() would cast.
 std::uint64_t count_of(const json& number) {
   return number.get_ref<const json::number_unsigned_t&>();
 }
@@ -111,7 +111,7 @@ class NpyFile {
     return pose_of_numbers(numbers, mended, fail_row);
   }
 
-  // The row's number where the file has no times.
+  // The row's number if the file has no times.
   [[nodiscard]] double time(std::size_t row) const {
     const double time = time_ ? number_at(row, *time_) : static_cast<double>(row);
     if (!std::isfinite(time)) {
@@ -121,7 +121,7 @@ class NpyFile {
   }
 
  private:
-  // Where a number of each row lies.
+  // Position of a number in each row.
   struct Place {
     std::size_t offset;  // from the row's begin [bytes]
     bool is_single;      // float32, else float64
@@ -136,7 +136,7 @@ class NpyFile {
     throw Error(ErrorCode::format, name_ + ": " + what);
   }
 
-  // The header is a dictionary in Python's words, which become JSON's.
+  // The header is a Python dictionary, which is converted to JSON.
   [[nodiscard]] json header() {
     const auto byte = [this](std::size_t i) {
       return std::size_t{static_cast<unsigned char>(bytes_[i])};
@@ -174,11 +174,11 @@ class NpyFile {
 
   [[nodiscard]] static bool is_real(const json& type) { return type == "<f8" || type == "<f4"; }
 
-  // In Fortran's order the first number of all matrices comes before the second of any.
+  // In Fortran order, the first numbers of all matrices come before all second numbers.
   void find_matrices(bool is_single, bool is_fortran) {
     const std::size_t size = is_single ? sizeof(float) : sizeof(double);
     row_bytes_ = 16 * size;
-    if (rows_ > bytes_.size() / row_bytes_) return;  // it is cut off
+    if (rows_ > bytes_.size() / row_bytes_) return;  // the file is truncated
     step_ = is_fortran ? size : row_bytes_;
     for (std::size_t i = 0; i < 16; ++i) {
       places_.push_back({is_fortran ? (i / 4 + i % 4 * 4) * rows_ * size : i * size, is_single});

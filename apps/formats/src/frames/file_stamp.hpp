@@ -9,7 +9,7 @@
 
 namespace viewgain {
 
-/// What the file system says of a file; all 0 where there is none.
+/// Identity, size and time of a file from the file system; all 0 if there is none.
 struct FileStamp {
   std::uint64_t device = 0, inode = 0, size = 0;
   std::int64_t seconds = 0, nanoseconds = 0;  // of the last change
@@ -18,7 +18,7 @@ struct FileStamp {
   [[nodiscard]] bool is_there() const { return *this != FileStamp{}; }
 };
 
-/// Of the file that the path leads to.
+/// Stamp of the file to which the path resolves.
 [[nodiscard]] inline FileStamp stamp_of(const std::filesystem::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return {};

@@ -33,7 +33,7 @@ TimedPoses read_pose_lines(const fs::path& path, PoseLineRules rules) {
   for (LineReader line(path.string(), text); line.next();) {
     if (line.words().empty() || line.words().front().front() == '#') continue;
     if (!rules.allows_heading && read.poses.empty()) {
-      // As a lost pose it would give every image the pose of the one before.
+      // A heading read as a lost pose would give every image the pose of the previous image.
       try {
         (void)line.number(0);
       } catch (const Error&) {
@@ -43,7 +43,7 @@ TimedPoses read_pose_lines(const fs::path& path, PoseLineRules rules) {
     read.times.push_back(std::numeric_limits<double>::quiet_NaN());
     try {
       read.times.back() = line.finite_number(0);
-    } catch (const Error&) {  // the pose has no time then
+    } catch (const Error&) {  // the pose then has no time
     }
     try {
       ReadPose pose;

@@ -16,12 +16,12 @@
 
 namespace viewgain {
 
-/// open_frames() without images and poses: what holds for all of a folder's frames.
+/// open_frames() without images and poses: data common to all frames of a folder.
 [[nodiscard]] FrameSequence open_frame_folder(const std::filesystem::path& dir,
                                               const std::string& sensor,
                                               std::optional<double> depth_scale);
 
-/// A pose as a file has it.
+/// A pose as read from a file.
 struct ReadPose {
   Pose T_world_camera;
   bool is_mended = false;
@@ -32,29 +32,29 @@ struct ReadPose {
   }
 };
 
-/// A pose that nobody knows: not finite.
+/// An unknown pose, which is not finite.
 [[nodiscard]] ReadPose unknown_pose(FrameVerdict verdict, std::string what);
 
-/// The poses of a TUM file in the order of its lines, the lost ones among them.
+/// The poses of a TUM file in the order of its lines, including lost ones.
 struct TimedPoses {
   std::vector<ReadPose> poses;
   std::vector<double> times;  // one per pose [s]; NaN: the line has none
 };
 
-/// Which lines of a TUM file are read.
+/// Rules for reading lines of a TUM file.
 struct PoseLineRules {
-  bool whole_lines_alone = false;  ///< what comes after the last line's end is left out
-  bool allows_heading = false;     ///< a first line of words is a lost pose, no error
+  bool whole_lines_alone = false;  ///< omits text after the last line end
+  bool allows_heading = false;  ///< treats a first line of words as a lost pose instead of an error
 };
 
 /// Throws Error(io) if the file cannot be read, and Error(format) for a heading.
 [[nodiscard]] TimedPoses read_pose_lines(const std::filesystem::path& path,
                                          PoseLineRules rules = {});
 
-/// The pose of a file of a 4x4 matrix; no_pose if there is no such file.
+/// The pose from a file with a 4x4 matrix; no_pose if there is no such file.
 [[nodiscard]] ReadPose read_pose_file(const std::filesystem::path& path);
 
-// The files in a folder of frames.
+// Names of files in a folder of frames.
 inline constexpr std::string_view kFramePrefix = "frame-";
 inline constexpr std::string_view kDepthSuffix = ".depth.png";
 inline constexpr std::string_view kAmplitudeSuffix = ".amplitude.png";
@@ -80,16 +80,17 @@ inline constexpr std::array kNames{kPoses, kSensor,   kIntrinsics, kSimulated,
 /// 50 of "000050"; nothing if it needs more than 64 bits.
 [[nodiscard]] std::optional<std::uint64_t> frame_index(const std::string& digits);
 
-/// By "frame-NNNNNN" the number that another has, too; nothing: it needs more than 64 bits.
+/// Frames left out, by "frame-NNNNNN": the number that another frame also has, or empty if it needs
+/// more than 64 bits.
 using FramesLeftOut = std::map<std::string, std::optional<std::uint64_t>>;
 
-/// The depth images among the names in a folder by their number, as "frame-NNNNNN", of however many
-/// digits. Of two of one number the later name goes to `left_out`, as do numbers of more than 64
-/// bits. Throws Error(format) instead if there is no such map.
+/// The depth images among the names in a folder, by number, as "frame-NNNNNN" with any number of
+/// digits. If two have the same number, the later name goes to `left_out`, and so do numbers of
+/// more than 64 bits. Without `left_out`, throws Error(format) for these.
 [[nodiscard]] std::map<std::uint64_t, std::string> list_frames(
     const std::vector<std::string>& names, FramesLeftOut* left_out = nullptr);
 
-/// The amplitude image that belongs to a depth image, whether there is one or not.
+/// Name of the amplitude image for a depth image; it need not exist.
 [[nodiscard]] std::filesystem::path amplitude_path(const std::filesystem::path& depth_image);
 
 }  // namespace viewgain

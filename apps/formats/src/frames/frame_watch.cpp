@@ -24,28 +24,29 @@ namespace {
 namespace fs = std::filesystem;
 using detail::Entry, detail::Signature, detail::State;
 
-// What came of looking into a frame's files; neither a frame nor a fault: something is missing.
+// Result of reading a frame's files. With neither a frame nor a fault, something is missing.
 struct Finding {
   std::optional<WatchedFrame> frame{};
   FrameFault fault{};
-  fs::path missing_mask{};               // where nothing else is missing
-  std::optional<Pose> T_world_camera{};  // of a fault that is not the pose's
+  fs::path missing_mask{};               // set if only a mask is missing
+  std::optional<Pose> T_world_camera{};  // set for a fault other than the pose's
 };
 
 Finding fault(FrameVerdict verdict, std::string what) { return {{}, {verdict, std::move(what)}}; }
 
-// Frames that are decided on and looked at again with a listing, and looks that one serves at most:
-// both would take longer with each frame.
+// Limits the number of decided frames that a look checks again, and of looks per listing, because
+// both would otherwise take longer with every frame.
 constexpr std::size_t kAgain = 256;
 
-// What is in the folder, and how far the looks have come with it.
+// Contents of the folder, and progress of the looks through them.
 struct Listing {
   std::map<std::uint64_t, std::string> frames{};  // "frame-NNNNNN" by number
   bool needs_amplitude = false;
   bool is_recorded = false;
-  std::uint64_t again_begin = 0, again_end = 0;  // whose turn it is; end 0: all from the begin on
-  std::uint64_t next = 0;                        // the first that had no turn yet
-  std::size_t looks = kAgain;                    // that it has served: a new one is due
+  std::uint64_t again_begin = 0,
+                again_end = 0;  // frames to check next; end 0: all from the begin on
+  std::uint64_t next = 0;       // the first new frame
+  std::size_t looks = kAgain;   // looks that used this listing; initially a new listing is due
 
   [[nodiscard]] bool is_turn(std::uint64_t number) const {
     return number >= again_begin && (again_end == 0 || number < again_end);
@@ -63,12 +64,12 @@ struct FrameWatch::Impl {
   fs::path dir;
   FrameWatchConfig config;
   std::optional<FrameSequence> folder;
-  std::map<std::string, std::string> taken;  // by file name, as frame_identity() has them
+  std::map<std::string, std::string> taken;  // frame_identity() by file name
   std::map<std::uint64_t, Entry> entries;
   Listing listing;
-  std::set<std::string> twins;     // images of numbers that others have, or too large
-  Time looked{};                   // when it was looked at last
-  std::size_t quiet_listings = 0;  // in a row, with which nothing new was found
+  std::set<std::string> twins;     // images whose numbers are used by others, or too large
+  Time looked{};                   // time of the last look
+  std::size_t quiet_listings = 0;  // consecutive listings without anything new
   GrowingPoses lines;              // of poses.txt
 
   [[nodiscard]] Signature signature(std::uint64_t number, const std::string& name,
@@ -86,19 +87,19 @@ struct FrameWatch::Impl {
     return now;
   }
 
-  // Nothing: it is not there yet.
+  // The pose of a frame; empty if it does not exist yet.
   [[nodiscard]] std::optional<ReadPose> pose(const Signature& is, const std::string& name,
                                              bool is_stable) const {
     if (!is.pose_file.is_there()) return is.line;
     const fs::path path = dir / (name + std::string(kPoseSuffix));
     try {
       if (!is_stable && !folder_file_bytes(path).ends_with('\n')) return std::nullopt;
-    } catch (const Error&) {  // read_pose_file() says why
+    } catch (const Error&) {  // read_pose_file() reports the reason
     }
     return read_pose_file(path);
   }
 
-  // Of files that are there and have their end, without what its masks take.
+  // Loads a frame from complete files, without masked pixels.
   [[nodiscard]] Finding load(std::uint64_t number, const fs::path& image, const ReadPose& pose,
                              std::span<const MaskFolder> masks) const {
     FrameSequence one = *folder;
@@ -125,9 +126,9 @@ struct FrameWatch::Impl {
                                 bool needs_amplitude, bool is_stable,
                                 const std::optional<ReadPose>& read) {
     const fs::path depth = dir / (name + std::string(kDepthSuffix));
-    // One that was taken is known without its masks.
+    // A taken frame is recognised without its masks.
     const bool is_known = taken.contains(depth.filename().string());
-    std::vector<fs::path> files{depth};  // of which each needs its end
+    std::vector<fs::path> files{depth};  // files that must be complete
     if (is.amplitude.is_there()) files.push_back(amplitude_path(depth));
     fs::path missing_mask;
     for (std::size_t i = 0; i < is.masks.size() && !is_known; ++i) {
@@ -141,7 +142,7 @@ struct FrameWatch::Impl {
     const bool has_amplitude = !needs_amplitude || is.amplitude.is_there();
     if (!is_stable && !(missing_mask.empty() && has_amplitude)) return {};
     if (!read) return {};
-    // Whoever is told of a fault has to know the folder.
+    // The folder must be known when a fault is reported.
     const auto no_frame = [&](FrameFault found) -> Finding {
       if (is_stable) open_folder();
       return {{}, std::move(found)};
@@ -156,7 +157,7 @@ struct FrameWatch::Impl {
       return no_frame({FrameVerdict::unreadable, error.what()});
     }
     if (!missing_mask.empty()) return {{}, {}, missing_mask};
-    // What is wrong with it is no frame's fault.
+    // Faults of the folder are not faults of a frame.
     open_folder();
     try {
       return load(number, depth, *read,
@@ -195,7 +196,8 @@ struct FrameWatch::Impl {
     return found;
   }
 
-  // Of two images of one number one counts: that which was taken, or else the first by name.
+  // If two images have the same number, only one counts: the one that was taken, otherwise the
+  // first by name.
   void list_numbers(const std::vector<std::string>& names, FolderLook& found) {
     const std::string end(kDepthSuffix);
     FramesLeftOut others;
@@ -247,7 +249,7 @@ struct FrameWatch::Impl {
     ++quiet_listings;
   }
 
-  // Until a frame is found, or to the listing's end.
+  // Continues until a frame is found or the listing ends.
   void look_on(Time now, FolderLook& found) {
     ++listing.looks;
     for (auto it = listing.frames.lower_bound(listing.next); it != listing.frames.end(); ++it) {
@@ -256,7 +258,7 @@ struct FrameWatch::Impl {
       Entry& entry = entries[number];
       if (entry.state != State::waits && !listing.is_turn(number)) continue;
       const Signature is = signature(number, name, listing.is_recorded);
-      if (!is.depth.is_there()) continue;  // since the folder was listed
+      if (!is.depth.is_there()) continue;  // removed since the folder was listed
       if (is != entry.signature) {
         entry = {is, now};
         quiet_listings = 0;
@@ -268,7 +270,7 @@ struct FrameWatch::Impl {
       Finding finding = examine(number, name, is, listing.needs_amplitude, is_stable);
       entry.is_examined = true;
       entry.is_judged = is_stable;
-      // What was written meanwhile is for the next look.
+      // Files that were written meanwhile are left to the next look.
       if (signature(number, name, listing.is_recorded) != is) continue;
       entry.missing_mask = finding.missing_mask;
       if (finding.frame) {
@@ -277,7 +279,7 @@ struct FrameWatch::Impl {
         if (is_new || known->second == finding.frame->frame.identity) entry.state = State::taken;
         if (is_new) {
           found.frame = std::move(finding.frame);
-          quiet_listings = 0;  // those behind it had no turn
+          quiet_listings = 0;  // later frames were not checked
           return;
         }
         if (entry.state == State::taken) continue;
@@ -329,7 +331,7 @@ std::vector<BadFrame> FrameWatch::give_up() {
   if (m.listing.is_recorded) return given_up;
   for (const std::uint64_t number : m.lines.numbers()) {
     const fs::path image = m.dir / frame_name(number, kDepthSuffix);
-    if (m.taken.contains(image.filename().string())) continue;  // and gone since
+    if (m.taken.contains(image.filename().string())) continue;  // and removed since
     const auto [entry, is_new] = m.entries.try_emplace(number);
     if (!is_new) continue;
     given_up.push_back(Impl::set_bad(
@@ -371,8 +373,7 @@ std::map<std::string, std::size_t> FrameWatch::bad() const {
 }
 
 bool FrameWatch::is_settled() const {
-  if (impl_->quiet_listings * kAgain < impl_->entries.size())
-    return false;  // not all had their turn
+  if (impl_->quiet_listings * kAgain < impl_->entries.size()) return false;  // not all were checked
   if (!impl_->lines.is_settled(impl_->looked)) return false;
   return std::all_of(impl_->entries.begin(), impl_->entries.end(), [&](const auto& entry) {
     return entry.second.state != State::waits ||

@@ -30,20 +30,20 @@ constexpr std::string_view kSimulatedText = "frames written by viewgain simulate
 
 constexpr double kMax = std::numeric_limits<std::uint16_t>::max();
 
-// 65535 says out of range, which a depth that is only too large for the file is not.
+// 65535 means out of range, so a depth that is too large for the file becomes invalid.
 std::uint16_t depth_units(double units) {
   if (std::isinf(units) && units > 0) return static_cast<std::uint16_t>(kMax);
   const double whole = std::round(units);
   return whole > 0 && whole < kMax ? static_cast<std::uint16_t>(whole) : std::uint16_t{0};
 }
 
-// In units, from 0 to the largest value of an image; 0 for what is no number.
+// Value in units, clamped to that of an image; 0 for NaN.
 std::uint16_t saturated(double units) {
   return units > 0 ? static_cast<std::uint16_t>(std::min(std::round(units), kMax))
                    : std::uint16_t{0};
 }
 
-// What an earlier simulation left in the folder, which a new one may replace.
+// Files of an earlier simulation in the folder, which a new one may replace.
 std::vector<fs::path> simulated_files(const fs::path& dir) {
   const std::vector<fs::path> files = frame_files(dir);
   if (files.empty()) return files;

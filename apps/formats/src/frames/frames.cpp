@@ -47,7 +47,7 @@ void check_index(std::size_t index, std::size_t count) {
   refuse("no frame " + std::to_string(index) + "; there are " + std::to_string(count) + " frames");
 }
 
-// The numbers of a 3x3 matrix, whatever lines they stand on.
+// Reads the numbers of a 3x3 matrix, on any lines.
 void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorCode::format, path.string() + ": " + what);
@@ -72,7 +72,7 @@ void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
   }
 }
 
-// Metres per unit of the images, where the folder says so.
+// Metres per unit of the images, if the folder states it.
 std::optional<double> said_scale(const fs::path& dir) {
   const fs::path path = dir / kScale;
   if (!is_there(path)) return std::nullopt;
@@ -86,7 +86,7 @@ std::optional<double> said_scale(const fs::path& dir) {
   return scale;
 }
 
-// By the sensor as it is, which need not be the one that the folder was opened with.
+// Uses the current sensor, which can differ from the one at opening.
 void correct_ranges(const FrameSequence& frames, DepthFrame& frame) {
   const Sensor& sensor = frames.sensor;
   const RangeCorrector* made = frames.corrector.get();
@@ -105,7 +105,7 @@ void add_frame(FrameSequence& frames, fs::path image, ReadPose pose) {
   frames.orthonormalized += pose.is_mended ? 1 : 0;
 }
 
-// A line per frame, whether its image is there or not, and the images without a line.
+// Lists one frame per line of poses.txt, with or without an image, and the images without a line.
 void list_own_layout(const fs::path& dir, FrameSequence& frames) {
   TimedPoses lines = read_pose_lines(dir / kPoses);
   std::map<std::uint64_t, std::string> names = list_frames(names_in(dir));
@@ -197,7 +197,7 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
   frames.recorded = said.recorded.value_or(!is_there(dir / kPoses));
   std::optional<double> scale = depth_scale ? depth_scale : said.depth_scale;
   if (!scale) scale = said_scale(dir);
-  // Version 0.1.0 wrote no frames.toml; simulated.txt tells its folders of the own layout.
+  // Version 0.1.0 wrote no frames.toml; its simulated.txt identifies viewgain's layout.
   const bool may_be_otherwise = !frames.recorded && !is_there(dir / kSimulated);
   frames.is_scale_assumed = !scale && may_be_otherwise;
   frames.depth_scale = scale.value_or(frames.recorded ? kRecordedDepthUnit : kDepthUnit);
@@ -220,7 +220,7 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
     apply_intrinsics_file(dir / kIntrinsics, frames.sensor.camera);
   }
   const auto meaning = said.out_of_range ? said.out_of_range : frames.sensor.out_of_range;
-  // Its 65535 was also what lies beyond the largest depth of an image.
+  // In its images 65535 also means depths beyond the largest value.
   const bool may_be_beyond =
       !frames.recorded && frames.sensor.max_range > 65534 * frames.depth_scale;
   frames.is_out_of_range_assumed = !meaning && (may_be_otherwise || may_be_beyond);

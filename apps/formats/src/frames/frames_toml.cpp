@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kPoseFiles = "frame-NNNNNN.pose.txt";
 
-// Which of two texts the key has; nothing: the key is not there.
+// Whether the key has the second of two texts; empty if the key is missing.
 std::optional<bool> is_second(TableReader& reader, std::string_view key, std::string_view first,
                               std::string_view second) {
   if (reader.find(key) == nullptr) return std::nullopt;

@@ -11,7 +11,7 @@
 
 namespace viewgain {
 
-/// What a folder's frames.toml says about its images and poses. Every key may be missing.
+/// Contents of a folder's frames.toml about its images and poses. Every key may be missing.
 struct FramesToml {
   std::optional<double> depth_scale{};               ///< [m] per unit of the depth images
   std::optional<Sensor::OutOfRange> out_of_range{};  ///< meaning of 65535
@@ -20,11 +20,11 @@ struct FramesToml {
   double pose_time_offset = 0;                       ///< added to the times in poses.txt [s]
 };
 
-/// Nothing is said if there is no such file. Throws Error(format), naming the file, the line and
-/// the key, and Error(io).
+/// All keys are missing if there is no such file. Throws Error(io), and Error(format) naming the
+/// file, the line and the key.
 [[nodiscard]] FramesToml read_frames_toml(const std::filesystem::path& dir);
 
-/// The text of a file that says this.
+/// The text of a file with these keys.
 [[nodiscard]] std::string frames_toml(const FramesToml& said);
 
 }  // namespace viewgain

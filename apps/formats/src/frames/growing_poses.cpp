@@ -7,7 +7,7 @@
 namespace viewgain {
 namespace {
 
-// The poses of lines that have their end; none of a file that is being replaced.
+// The poses of complete lines; none while the file is being replaced.
 TimedPoses poses_of_lines(const std::filesystem::path& path) {
   try {
     return read_pose_lines(path, {.whole_lines_alone = true});
@@ -47,7 +47,7 @@ void GrowingPoses::look(std::vector<std::uint64_t> numbers, Time now) {
   }
   if (!numbers.empty()) first_ = numbers.front();
   match_ = match_growing_poses(dir_, lines_, numbers, said_, &misfit_);
-  // Lines with later times may come.
+  // Lines with later times can still arrive.
   if (misfit_.empty() || match_.is_by_stamps()) {
     misfit_since_.reset();
     return;

@@ -18,7 +18,7 @@
 
 namespace viewgain {
 
-/// poses.txt of a folder into which somebody else writes, and what frames.toml says of it.
+/// poses.txt of a folder that another program writes to, and the settings for it in frames.toml.
 class GrowingPoses {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -27,24 +27,25 @@ class GrowingPoses {
   GrowingPoses(std::filesystem::path dir, std::chrono::milliseconds settle)
       : dir_(std::move(dir)), settle_(settle) {}
 
-  /// What frames.toml says of the layout. Throws as read_frames_toml(), unless somebody may be
-  /// writing the file.
+  /// The layout according to frames.toml. Throws like read_frames_toml(), except while the file may
+  /// still be written.
   [[nodiscard]] std::optional<bool> is_recorded(Time now);
 
-  /// The folder had an image of this number, which may be gone.
+  /// Records that the folder had an image of this number, which may be removed by now.
   void add_earlier(std::uint64_t number) { first_ = std::min(first_.value_or(number), number); }
 
-  /// Reads the lines, if there are others, and matches them to the images of these numbers, which
-  /// rise. Throws Error(format) if first numbers do not fit for `settle`, and as read_pose_lines().
+  /// Reads the lines, if they changed, and matches them to the images of these ascending numbers.
+  /// Throws Error(format) if first numbers do not fit for longer than `settle`, and like
+  /// read_pose_lines().
   void look(std::vector<std::uint64_t> numbers, Time now);
 
-  /// Nothing: no line is the image's yet.
+  /// The pose of an image; empty if it has no line yet.
   [[nodiscard]] std::optional<ReadPose> pose_of(std::uint64_t number) const;
   /// Numbers of the images that the lines need.
   [[nodiscard]] std::vector<std::uint64_t> numbers() const;
-  /// Why images and lines do not fit so far; empty: they do.
+  /// Why images and lines do not fit so far; empty if they fit.
   [[nodiscard]] const std::string& misfit() const { return misfit_; }
-  /// Will the images that are there get no other lines than they have?
+  /// Whether the lines of the existing images are final.
   [[nodiscard]] bool is_settled(Time now) const {
     return !match_.is_by_stamps() || now - lines_since_ >= settle_;
   }
@@ -53,14 +54,14 @@ class GrowingPoses {
   std::filesystem::path dir_;
   std::chrono::milliseconds settle_{};
   FileStamp lines_stamp_, toml_stamp_;
-  Time lines_since_{}, toml_since_{};  // when they were first seen as they are
+  Time lines_since_{}, toml_since_{};  // when the current contents were first seen
   FramesToml said_;
   TimedPoses lines_;
   PoseMatch match_;
-  bool is_last_ = false;  // no line is expected to come
+  bool is_last_ = false;  // no further line is expected
   std::string misfit_;
-  std::optional<Time> misfit_since_;    // of first numbers
-  std::optional<std::uint64_t> first_;  // number that was ever seen
+  std::optional<Time> misfit_since_;    // since when the first numbers do not fit
+  std::optional<std::uint64_t> first_;  // smallest number ever seen
 };
 
 }  // namespace viewgain

@@ -16,13 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kLeastStamp = 1'000'000'000;  // no folder has as many images
-constexpr double kMostGap = 0.02;                     // as of ImportConfig [s]
+constexpr std::uint64_t kLeastStamp = 1'000'000'000;  // larger than any number of images
+constexpr double kMostGap = 0.02;                     // as in ImportConfig [s]
 
-// What the first numbers of the lines are like.
+// Properties of the first numbers of the lines.
 struct LineNumbers {
-  bool are_whole = false;    // not negative, and they rise
-  bool are_counted = false;  // and most of them by 1, from less than 1000 on
+  bool are_whole = false;    // not negative, ascending
+  bool are_counted = false;  // mostly consecutive, beginning below 1000
 };
 
 LineNumbers kind_of(std::span<const double> times) {
@@ -38,7 +38,7 @@ LineNumbers kind_of(std::span<const double> times) {
   return kind;
 }
 
-// Of what lines have as time: Unix time has 10 digits in s, 13 in ms, 16 in µs, 19 in ns.
+// Unit of the lines' times: Unix time has 10 digits in s, 13 in ms, 16 in µs, 19 in ns.
 double unit_of(std::span<const double> times) {
   double most = 0;
   for (const double time : times) {
@@ -47,7 +47,7 @@ double unit_of(std::span<const double> times) {
   return most > 1e17 ? 1e-9 : most > 1e14 ? 1e-6 : most > 1e11 ? 1e-3 : 1;
 }
 
-// In s, by the clock of the images.
+// Times in s, in the clock of the images.
 std::vector<double> seconds_of(const TimedPoses& lines, const FramesToml& said) {
   const double unit = unit_of(lines.times);
   std::vector<double> seconds;
@@ -70,10 +70,10 @@ struct StampMatch {
   double unit = 1e-9;       // of the images' numbers [s]
 };
 
-// By the unit of the images' numbers with which most of them have a line.
+// Chooses the unit of the images' numbers with which most images have a line.
 StampMatch match_stamps(const TimedPoses& lines, std::span<const std::uint64_t> numbers,
                         const FramesToml& said) {
-  // Images closer than this in time are numbers that count, not stamps.
+  // If images are closer in time than this, their numbers count frames and are not time stamps.
   constexpr double kLeastSpacing = 0.005;
   const bool are_stamps = numbers.front() >= kLeastStamp;
   const double spacing = usual_spacing(numbers);
@@ -188,7 +188,7 @@ std::optional<std::size_t> PoseMatch::line_of(std::uint64_t number) const {
   };
   auto best = at(time);
   if (best != by_time_.begin()) {
-    const auto before = at(std::prev(best)->first);  // the first of several
+    const auto before = at(std::prev(best)->first);  // the first of equal ones
     if (best == by_time_.end() || time - before->first <= best->first - time) best = before;
   }
   if (best == by_time_.end() || std::abs(best->first - time) > gap_) return std::nullopt;
@@ -198,7 +198,7 @@ std::optional<std::size_t> PoseMatch::line_of(std::uint64_t number) const {
 std::optional<std::uint64_t> PoseMatch::number_of(std::size_t line) const {
   if (is_in_order_) return first_ + line;
   if (gap_ > 0) return std::nullopt;
-  return static_cast<std::uint64_t>(by_time_.at(line).first);  // numbers rise with the lines
+  return static_cast<std::uint64_t>(by_time_.at(line).first);  // numbers ascend with the lines
 }
 
 bool PoseMatch::may_change(std::uint64_t number) const {
@@ -225,7 +225,7 @@ PoseMatch match_poses(const fs::path& dir, const TimedPoses& lines,
   const LineNumbers kind = kind_of(lines.times);
   if (kind.are_whole) {
     PoseMatch match = PoseMatch::by_time(lines.times, 1, 0);
-    // Both ends agree: what is missing between them is missing.
+    // Both ends agree, so images or lines in between are really missing.
     if (has_all(match, std::array{numbers.front(), numbers.back()}) && has_all(match, numbers) &&
         match.line_of(numbers.front()) == 0 && match.line_of(numbers.back()) == count - 1) {
       return match;
@@ -253,7 +253,7 @@ PoseMatch match_growing_poses(const fs::path& dir, const TimedPoses& lines,
     return std::move(stamps.match);
   }
   const LineNumbers kind = kind_of(lines.times);
-  std::uint64_t first = 0;  // of the images, as the lines have it
+  std::uint64_t first = 0;  // first image according to the lines
   PoseMatch match = PoseMatch::in_order(0, count);
   if (kind.are_whole) {
     PoseMatch numbered = PoseMatch::by_time(lines.times, 1, 0);

@@ -14,11 +14,12 @@
 
 namespace viewgain::detail {
 
-/// What a frame's files are like. A line of poses.txt counts, and not the file, which grows.
+/// State of a frame's files. Has the frame's line of poses.txt instead of the file, because the
+/// file grows.
 struct Signature {
   FileStamp depth, amplitude, pose_file;
   std::optional<ReadPose> line{};
-  std::vector<FileStamp> masks{};  // one a folder
+  std::vector<FileStamp> masks{};  // one per folder
 
   bool operator==(const Signature&) const = default;
 };
@@ -27,13 +28,13 @@ enum class State { waits, taken, bad };
 
 struct Entry {
   Signature signature{};
-  FrameWatch::Time since{};              // when it was first seen
-  bool is_examined = false;              // since then
-  bool is_judged = false;                // likewise, when nobody was writing any more
-  std::filesystem::path missing_mask{};  // when it was judged: all that it waits for
+  FrameWatch::Time since{};              // when this state was first seen
+  bool is_examined = false;              // whether it was read in this state
+  bool is_judged = false;                // whether it was read after writing had ended
+  std::filesystem::path missing_mask{};  // the mask that alone is missing, when it was judged
   std::string name{};                    // of the depth image
   State state = State::waits;
-  FrameVerdict verdict = FrameVerdict::used;  // of a bad one
+  FrameVerdict verdict = FrameVerdict::used;  // of a bad frame
 };
 
 }  // namespace viewgain::detail

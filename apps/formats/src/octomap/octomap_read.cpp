@@ -27,14 +27,13 @@ static_assert(std::endian::native == std::endian::little, "OctoMap files are lit
 
 struct Header {
   bool binary = false;          ///< .bt
-  std::size_t extra_bytes = 0;  ///< of a node of a .ot, behind its log-odds
+  std::size_t extra_bytes = 0;  ///< of a node of a .ot file, after its log-odds
   std::uint64_t nodes = 0;
   double resolution = 0;  ///< [m]
   std::size_t size = 0;   ///< of the header [bytes]
 };
 
-/// The words of OctoMap's header, "data" being the last; words that are unknown are skipped, as
-/// OctoMap does.
+/// Reads the words of OctoMap's header up to "data". Skips unknown words, like OctoMap.
 Header read_header(std::string_view bytes, const std::string& name) {
   Header header;
   if (bytes.starts_with(kOctomapBinaryMark)) {
@@ -154,7 +153,7 @@ class TreeWalk {
     }
   }
 
-  // Two bits a child: 0 unknown, 1 free, 2 occupied, 3 has children, which follow.
+  // Two bits per child: 0 unknown, 1 free, 2 occupied, 3 has children, which follow.
   void binary_node(Index3 origin, std::int32_t size) {
     if (size == 1) fail("the tree is deeper than 16 levels");
     const char* pair = take(2);
@@ -182,7 +181,7 @@ class TreeWalk {
   std::uint64_t nodes_ = 0;
 };
 
-/// Puts leaves into a grid, those smaller than a block when all of the block have come.
+/// Puts leaves into a grid. Leaves smaller than a block are collected until the block is complete.
 class BlockFiller {
  public:
   BlockFiller(BeliefGrid& grid, const std::string& name)
@@ -215,7 +214,7 @@ class BlockFiller {
   }
 
  private:
-  // The blocks of a cube that lie in the workspace.
+  // Counts the blocks of a cube that lie in the workspace.
   void count_solid(Index3 origin, std::int32_t size) {
     const auto low = [](std::int32_t from, std::int32_t least) {
       return std::max(from, least & ~(kBlockSize - 1));
@@ -235,8 +234,7 @@ class BlockFiller {
   std::array<std::uint8_t, kBlockVoxels> codes_{};
 };
 
-/// The box of a tree's leaves [m], all of whose bytes are checked on the way; nothing if it has
-/// none.
+/// Checks all bytes of a tree. Returns the box of its leaves [m], or nothing if it has none.
 std::optional<Box> check_tree(std::string_view bytes, const Header& header,
                               const std::string& name) {
   constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();

@@ -29,11 +29,11 @@ using namespace detail;
 constexpr int kBlockLevel = 3;
 static_assert(1 << kBlockLevel == kBlockSize);
 
-/// OctoMap calls a log-odds of 0 occupied; this one is free and rounds to 0.
+/// In OctoMap a log-odds of 0 means occupied. This value is free, and is rounded to 0 when read.
 constexpr float kFreeZero = -1e-3F;
 
-// Voxels to move the grid by, so that the tree's frame is the world's; nothing where that is no
-// whole number of them, turns, or leaves a tree's space.
+// Shift of the grid in voxels that makes the tree's frame the world's. Empty if there is a
+// rotation, the shift is not a whole number of voxels, or the map would leave a tree's space.
 std::optional<Index3> shift_to_world(const BeliefGrid& grid) {
   constexpr double kTurn = 1e-9, kWhole = 1e-6;
   const Pose& T = grid.T_world_grid();
@@ -68,14 +68,13 @@ Index3 child(Index3 at, std::int32_t half, unsigned i) {
 struct Part {
   int level = kBlockLevel;  // the size is 2^level voxels
   std::uint8_t code = kUnknownCode;
-  std::unique_ptr<std::array<std::uint8_t, kBlockVoxels>> codes{};  // of a block that is mixed
+  std::unique_ptr<std::array<std::uint8_t, kBlockVoxels>> codes{};  // of a mixed block
 };
-// The known cubes of a tree by the places of their lowest voxels on the curve of children's
-// numbers.
+// The known cubes of a tree, in the order of nodes, by their lowest voxels.
 using Parts = std::map<std::uint64_t, Part>;
 
-// The part of a block or tile of the grid that lies in the workspace, in voxels from the lowest
-// corner of the tree's space.
+// The part of a block or tile of the grid inside the workspace, in voxels from the lowest corner of
+// the tree's space.
 struct Piece {
   VoxelBox box;
   Index3 origin;              // of the block
@@ -92,8 +91,8 @@ std::uint64_t place(Index3 at) {
   return result;
 }
 
-// The tree's cubes start at multiples of their size from a corner that is shifted against the
-// grid's, so a piece is cut where a cube of the tree ends.
+// The tree's cubes are shifted relative to the grid's blocks, so a piece is cut at the ends of the
+// tree's cubes.
 void add_piece(Parts& parts, const Piece& piece, Index3 at, int level) {
   const std::int32_t size = std::int32_t{1} << level;
   const VoxelBox cube = VoxelBox::from_dims(at, {size, size, size});
@@ -122,7 +121,7 @@ void add_piece(Parts& parts, const Piece& piece, Index3 at, int level) {
   }
 }
 
-// Throws Error(capacity) if a known block lies outside of a tree's space.
+// Throws Error(capacity) if a known block lies outside a tree's space.
 Parts parts_of(const BeliefGrid& grid, Index3 shift) {
   const BlockLattice lattice(grid.min_index(), grid.dims());
   const auto in_tree = [](std::int32_t v, std::int32_t by) {
@@ -159,7 +158,7 @@ Parts parts_of(const BeliefGrid& grid, Index3 shift) {
   return parts;
 }
 
-// Nodes depth first, equal leaves joined.
+// Writes nodes depth first, and joins equal leaves.
 class TreeBytes {
  public:
   explicit TreeBytes(const Parts& parts) { cube(parts.begin(), parts.end(), kOctomapLevels); }
@@ -169,11 +168,11 @@ class TreeBytes {
 
  private:
   static constexpr std::size_t kNodeBytes = 5;
-  // What was written for a cube; nothing if it is unknown.
+  // Result of writing a cube; nothing was written if it is unknown.
   struct Written {
     bool known = false;
     bool leaf = false;
-    std::uint8_t code = kUnknownCode;  // the greatest in it
+    std::uint8_t code = kUnknownCode;  // the largest code in the cube
   };
 
   void put(std::size_t at, std::uint8_t code, unsigned children) {

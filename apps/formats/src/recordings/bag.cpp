@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// ROS 1's bags, version 2.0 (wiki.ros.org/Bags/Format/2.0): records of a header of named fields and
-// data, in the file and in chunks.
+// ROS 1 bags, version 2.0 (wiki.ros.org/Bags/Format/2.0). A record has a header of named fields,
+// and data; records are in the file and in chunks.
 #include <map>
 #include <string>
 #include <utility>

@@ -14,8 +14,8 @@ namespace viewgain {
 
 static_assert(std::endian::native == std::endian::little);
 
-/// Little-endian numbers and texts from the front of some bytes. Every length is compared with what
-/// is left before it is used; throws Error(format) without a file's name where it is too large.
+/// Reads little-endian numbers and texts from the front of some bytes. Checks every length against
+/// the remaining bytes; throws Error(format) without a file's name if it is too large.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
@@ -39,7 +39,7 @@ class ByteReader {
     return value;
   }
 
-  /// With its length in 32 bits before it.
+  /// A text after its length in 32 bits.
   std::string_view text() { return bytes(number<std::uint32_t>()); }
 
  private:

@@ -22,20 +22,20 @@ class Db3Reader {
  public:
   Db3Reader(const std::filesystem::path& path, const MessageVisitor& visit, Warnings& warnings)
       : path_(path), visit_(visit), warnings_(warnings) {
-    // No value is larger than the file; pages that lead to one another could make one up.
+    // No value is larger than the file, but pages that refer to each other could form one.
     const std::uint64_t most = std::min(kMostRecordBytes, InputFile(path).left() + 4096);
     sqlite3* opened = nullptr;
-    // Immutable: nothing is written beside the file, and no lock is waited for.
+    // Immutable mode writes no files next to the database and waits for no lock.
     const int code = sqlite3_open_v2(uri(path).c_str(), &opened,
                                      SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
     db_.reset(opened);
     if (code != SQLITE_OK) fail(ErrorCode::io, "cannot be opened");
-    // The file may be of anybody: no functions in its schema, no huge values.
+    // The file is untrusted: no functions in its schema, no huge values.
     sqlite3_limit(opened, SQLITE_LIMIT_LENGTH, static_cast<int>(most));
     sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(opened, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
     sqlite3_db_config(opened, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
-    // Else a file that is cut would not be read at all. Nothing can be written.
+    // Needed to read a truncated file at all. Nothing can be written.
     sqlite3_exec(opened, "PRAGMA writable_schema = ON; PRAGMA cell_size_check = ON", nullptr,
                  nullptr, nullptr);
   }
@@ -91,12 +91,12 @@ class Db3Reader {
     return {statement, &sqlite3_finalize};
   }
 
-  // False at the end, also where the rest is damaged or missing; SQLite calls damaged sizes, too, a
+  // False at the end, also if the rest is damaged or missing. SQLite reports damaged sizes as a
   // lack of memory.
   bool next(sqlite3_stmt* statement) {
     int code = sqlite3_step(statement);
     if (code == SQLITE_ROW) {
-      // Rows that come again are pages that lead in a circle.
+      // Repeated rows come from pages that form a cycle.
       const std::int64_t row = sqlite3_column_int64(statement, 0);
       if (row > last_row_) return last_row_ = row, true;
       code = SQLITE_CORRUPT;

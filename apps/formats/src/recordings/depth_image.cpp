@@ -49,7 +49,7 @@ DepthImage decode_png(const DepthMessage& message, double unit) {
   return depth;
 }
 
-// Mean step between neighbours, as a share of the mean depth; NaN for under 16 pairs.
+// Mean difference between neighbours, relative to the mean depth; NaN for under 16 pairs.
 double roughness(const DepthImage& depth) {
   double steps = 0, sum = 0;
   std::size_t pairs = 0;

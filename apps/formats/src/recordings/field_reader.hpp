@@ -20,8 +20,8 @@ struct RosHeader {
   std::string frame;
 };
 
-/// The fields of a message in their order, of ROS 1 or of CDR in either byte order. Throws
-/// Error(format) where the message ends early.
+/// Reads the fields of a message in order, of ROS 1 or of CDR in either byte order. Throws
+/// Error(format) if the message ends early.
 class FieldReader {
  public:
   FieldReader(std::string_view bytes, MessageEncoding encoding)
@@ -30,7 +30,7 @@ class FieldReader {
     (void)reader_.number<std::uint8_t>();
     const auto kind = reader_.number<std::uint8_t>();
     (void)reader_.number<std::uint16_t>();
-    // CDR and plain CDR 2, which aligns to 4 bytes at most, each in two byte orders.
+    // CDR, and plain CDR 2, which aligns to at most 4 bytes, each in two byte orders.
     if (kind != 0 && kind != 1 && kind != 6 && kind != 7) {
       throw Error(ErrorCode::format, "CDR of kind " + std::to_string(kind) + " is not supported");
     }
@@ -92,7 +92,7 @@ class FieldReader {
   bool is_cdr_;
   bool is_big_endian_ = false;
   std::size_t most_aligned_ = 1;
-  std::size_t size_ = 0;  // behind CDR's own header, from where fields are aligned
+  std::size_t size_ = 0;  // after CDR's own header, from which fields are aligned
 };
 
 }  // namespace viewgain

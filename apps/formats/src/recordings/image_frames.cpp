@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Recordings whose images are PNGs beside a list of them.
+// Recordings that consist of PNG images and a list of them.
 #include <algorithm>
 #include <optional>
 #include <system_error>
@@ -17,14 +17,14 @@ namespace fs = std::filesystem;
 
 constexpr std::uint16_t kSaturated = 65535;
 
-// Masks may lie anywhere, but what lies in the recording may be of anybody, too.
+// Masks may be anywhere, but files inside the recording are untrusted.
 void refuse_mask_link_out(const fs::path& source, const fs::path& mask) {
   const fs::path within = mask.lexically_normal().lexically_relative(source.lexically_normal());
   if (!within.empty() && *within.begin() != "..") refuse_link_out(source, source / within);
 }
 
-// The image, of the camera's size, which the first one gives where the camera has none; else why
-// not.
+// The image if it has the camera's size, otherwise the reason. If the camera has no size, the first
+// image sets it.
 std::optional<GrayImage> read_image_file(const fs::path& file, PinholeCamera& camera,
                                          Dropped& dropped) {
   try {
@@ -53,7 +53,7 @@ void refuse_link_out(const fs::path& source, const fs::path& file) {
   for (const fs::path& name : file.lexically_relative(source)) {
     path /= name;
     if (!fs::is_symlink(path, ignored)) continue;
-    std::error_code code;  // of one that leads nowhere, too
+    std::error_code code;  // also for a broken link
     const std::string to = (fs::canonical(path, code) / "").string();
     if (!code && to.starts_with(root.string())) continue;
     throw Error(ErrorCode::format, path.string() + ": is a link that leaves the recording");

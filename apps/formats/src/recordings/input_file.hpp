@@ -14,10 +14,10 @@
 
 namespace viewgain {
 
-/// The largest record, chunk or message that is taken into memory [bytes].
+/// The largest record, chunk or message that is read into memory [bytes].
 inline constexpr std::uint64_t kMostRecordBytes = std::uint64_t{1} << 28U;
 
-/// A regular file, read from the front a record at a time.
+/// A regular file, read from the front, one record at a time.
 class InputFile {
  public:
   explicit InputFile(const std::filesystem::path& path) : path_(path) {
@@ -33,7 +33,7 @@ class InputFile {
   [[nodiscard]] std::uint64_t offset() const noexcept { return offset_; }
   [[nodiscard]] std::uint64_t left() const noexcept { return size_ - offset_; }
 
-  /// The next bytes, until the next call; there must be as many left.
+  /// The next bytes, valid until the next call; at least `count` must be left.
   std::string_view read(std::uint64_t count) {
     if (count > left()) fail("the file ends early");
     if (count > kMostRecordBytes) {
@@ -62,7 +62,7 @@ class InputFile {
   [[noreturn]] void fail_at(std::uint64_t offset, const std::string& what) const {
     throw Error(ErrorCode::format, at(offset, what));
   }
-  /// What `parse` returns; its errors get the file and the place of the record.
+  /// Returns the result of `parse`; adds the file and the record's position to its errors.
   template <typename Parse>
   auto checked(std::uint64_t begin, Parse parse) const {
     try {
@@ -76,7 +76,7 @@ class InputFile {
                     "the file ends here, within a record: the recording was interrupted or the "
                     "file is truncated; reading it up to here"));
   }
-  /// `why` a chunk could not be unpacked as a whole.
+  /// `why`: the reason why a chunk could not be unpacked completely.
   void warn_of_chunk(std::uint64_t begin, const std::string& why, Warnings& warnings) const {
     warnings.add(at(begin, "a damaged chunk: " + why + "; reading it up to the damage"));
   }

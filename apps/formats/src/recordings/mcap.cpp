@@ -47,7 +47,8 @@ class McapReader {
   }
 
  private:
-  // Schemas and channels, which the summary repeats: their own record may be in a damaged chunk.
+  // Reads schemas and channels, which the summary repeats, because their first records may be in a
+  // damaged chunk.
   void read_summary() {
     constexpr std::size_t kFooter = kMcapHead + 20;  // before the magic bytes at the end
     const std::uint64_t begin = file_.offset();
@@ -69,7 +70,7 @@ class McapReader {
           file_.skip(length);
         }
       }
-    } catch (const Error&) {  // the summary is damaged, and is seldom needed
+    } catch (const Error&) {  // the summary is damaged; it is rarely needed
     }
     file_.seek(begin);
   }
@@ -107,7 +108,7 @@ class McapReader {
 
   void read_chunk(std::string_view bytes, bool is_cut) {
     std::uint32_t checksum = 0;
-    constexpr std::size_t kFixed = 32;  // before the name of the packing
+    constexpr std::size_t kFixed = 32;  // bytes before the name of the compression
     if (is_cut && bytes.size() < kFixed + 16) return;
     const std::string why = file_.checked(begin_, [&] {
       ByteReader chunk(bytes);

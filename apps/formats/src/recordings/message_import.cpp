@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Recordings of messages, read twice: first what there is, all transforms and the camera, then the
-// images, one at a time.
+// Recordings of messages are read twice: first topics, transforms and the camera, then the images,
+// one at a time.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -24,8 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kTransformGap = 0.1;      // between an image and the transforms beside it [s]
-constexpr const char* kBody = "the body";  // of the topic of poses
+constexpr double kTransformGap = 0.1;      // between an image and the surrounding transforms [s]
+constexpr const char* kBody = "the body";  // name for the child of the pose topic
 
 class MessageImport {
  public:
@@ -33,7 +33,7 @@ class MessageImport {
                 const ImportConfig& config)
       : source_(source), files_(files), format_(format), config_(config) {
     for (std::string* frame : {&report_.world, &camera_frame_}) {
-      if (frame->starts_with('/')) frame->erase(0, 1);  // as FieldReader::frame() does
+      if (frame->starts_with('/')) frame->erase(0, 1);  // like FieldReader::frame()
     }
   }
 
@@ -51,7 +51,7 @@ class MessageImport {
     choose_camera(topic);
     const bool is_float = topic.encoding == "32FC1";
     scale_ = is_float ? unit_of_floats(topic) : config_.depth_scale.value_or(kMillimetre);
-    warn_of_way(topic.frame, way_to(topic.frame));  // known before anything is written
+    warn_of_way(topic.frame, way_to(topic.frame));  // before anything is written
     RecordedFolder folder(out);
     read_all([&](const Message& message) {
       if (message.topic.name == report_.depth_topic) take(message, topic, folder);
@@ -69,7 +69,7 @@ class MessageImport {
                   is_float ? Sensor::OutOfRange::carve : Sensor::OutOfRange::invalid);
     return std::move(report_);
   } catch (const Error& error) {
-    // A file that was read only in part may be the reason.
+    // The reason may be a file that was read only in part.
     if (warnings_.texts().empty()) throw;
     throw Error(error.code(), std::string(error.what()) + "; " + warnings_.texts().front());
   }
@@ -131,8 +131,8 @@ class MessageImport {
     }
   }
 
-  // Robots may have transforms of the same names, each in its own namespace: those of the images'
-  // namespace count, then those around it.
+  // Several robots can use the same frame names, each in its own namespace. Transforms of the
+  // images' namespace come first, then those of the enclosing namespaces.
   void join_trees() {
     const auto nearness = [&](const auto& tree) {
       return report_.depth_topic.starts_with(tree.first) ? tree.first.size() + 1 : 0;
@@ -170,7 +170,7 @@ class MessageImport {
                                            report_.depth_topic + ": " + error.what() +
                                            " (--intrinsics)");
       }
-      // Of a stereo pair's second camera, whose frame is the first one's.
+      // For the second camera of a stereo pair, whose frame is that of the first.
       if (is_rectified) {
         T_first_camera_.m[3] = -info->p[3] / info->p[0];
         T_first_camera_.m[7] = -info->p[7] / info->p[5];
@@ -190,7 +190,7 @@ class MessageImport {
     require_sensor_for_distortion(report_.camera, config_);
   }
 
-  // All that the sensor measures, else all that there is up to 65 m, in the finest unit.
+  // The finest unit that covers the sensor's range, or without a sensor all depths up to 65 m.
   [[nodiscard]] double unit_of_floats(const SeenTopic& topic) const {
     if (config_.depth_scale) return *config_.depth_scale;
     if (config_.sensor) return std::min(depth_scale_for(*config_.sensor), kMillimetre);
@@ -200,7 +200,7 @@ class MessageImport {
     return kMillimetre;
   }
 
-  // How an image with this frame is found in the world. Throws Error(format).
+  // The transforms from the world to images with this frame. Throws Error(format).
   const Way& way_to(const std::string& image_frame) try {
     const std::string& frame = camera_frame_.empty() ? image_frame : camera_frame_;
     const auto known = ways_.find(frame);
@@ -307,7 +307,7 @@ class MessageImport {
     }
     if (!is_wrong_order_) is_wrong_order_ = is_wrong_byte_order(image);
     if (is_wrong_order_.value_or(false)) {
-      is_wrong_order_ = false;  // said once
+      is_wrong_order_ = false;  // reported once
       warnings_.add(of_message(message,
                                "the image would be much smoother with its bytes in the other "
                                "order. Is its is_bigendian wrong?"));
@@ -357,7 +357,7 @@ class MessageImport {
   const ImportConfig& config_;
   Warnings warnings_;
   MessageTopics topics_;
-  std::map<std::string, TransformTree> trees_;  // by the topics' namespace
+  std::map<std::string, TransformTree> trees_;  // by namespace of the topics
   TransformTree tree_, poses_;
   std::string body_frame_, camera_frame_ = config_.camera_frame;
   std::size_t bad_transforms_ = 0;
@@ -365,9 +365,9 @@ class MessageImport {
   Dropped dropped_{report_.bad};
   double scale_ = kMillimetre;
   Pose T_first_camera_;
-  std::map<std::string, Way> ways_;     // by the images' frame
-  std::uint64_t number_ = 0;            // of the image
-  std::optional<bool> is_wrong_order_;  // of bytes, by the first image that tells
+  std::map<std::string, Way> ways_;     // by frame of the images
+  std::uint64_t number_ = 0;            // of the current image
+  std::optional<bool> is_wrong_order_;  // of bytes, according to the first conclusive image
   std::size_t stamps_back_ = 0;
   std::int64_t last_stamp_ = INT64_MIN;
   MissingPoses missing_;

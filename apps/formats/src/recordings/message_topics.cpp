@@ -22,7 +22,8 @@ auto calibration_of(const CameraInfoMessage& info) {
   return std::tie(info.width, info.height, info.d, info.k, info.p, info.binning, info.roi);
 }
 
-// Of "/camera/depth/image_raw/compressedDepth" the topic before the transport.
+// The topic without the transport: "/camera/depth/image_raw" for
+// "/camera/depth/image_raw/compressedDepth".
 std::string image_topic(std::string topic) {
   constexpr std::string_view kTransport = "/compressedDepth";
   if (topic.ends_with(kTransport)) topic.resize(topic.size() - kTransport.size());
@@ -150,7 +151,7 @@ bool MessageTopics::is_rectified(const std::string& depth_topic, const CameraInf
   const std::string name = depth_topic.substr(namespace_of(depth_topic).size());
   const bool has_distortion =
       std::any_of(info.d.begin(), info.d.end(), [](double value) { return value != 0; });
-  // Without distortion K is that of rectified images, too; some drivers have no P.
+  // Without distortion, K also holds for rectified images; some drivers send no P.
   const bool is_rectified =
       name.find("rect") != std::string::npos && (has_distortion || info.p[0] != 0);
   if (!is_rectified && has_distortion && name.find("raw") == std::string::npos) {

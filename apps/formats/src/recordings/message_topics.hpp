@@ -11,32 +11,32 @@
 
 namespace viewgain {
 
-/// A topic as the first pass saw it.
+/// A topic as found in the first pass.
 struct SeenTopic {
   std::string type;
   std::size_t messages = 0;
   std::string encoding, frame;  ///< of the first image
-  double farthest = 0;          ///< finite depth of 32FC1 [m]
-  bool is_read = true;          ///< ROS 1 or CDR
+  double farthest = 0;          ///< largest finite depth of 32FC1 images [m]
+  bool is_read = true;          ///< whether its messages can be read: ROS 1 or CDR
   std::string fault{};          ///< why its first image cannot be read
 };
 
-/// The topics of a recording: which one has the depth images, and their camera.
+/// The topics of a recording: finds the depth images and their camera.
 class MessageTopics {
  public:
-  /// Takes any message; damaged ones are only counted.
+  /// Takes a message of any type; damaged ones are only counted.
   void note(const Message& message);
 
   [[nodiscard]] const std::map<std::string, SeenTopic>& all() const noexcept { return topics_; }
 
-  /// `wanted`, or the only one with depth images where that is empty; images that are compressed
-  /// beside their originals do not count. Throws Error(format), naming
-  /// the recording and the topics, if there is none or there are several.
+  /// `wanted`, or if empty the only topic with depth images. Ignores compressed copies of other
+  /// images. Throws Error(format), naming the recording and the topics, if there is none or there
+  /// are several.
   [[nodiscard]] std::string chosen_depth_topic(const std::filesystem::path& source,
                                                const std::string& wanted) const;
 
-  /// The first CameraInfo of the images: of the topic camera_info beside theirs, else of the only
-  /// one with their frame; null if there is none.
+  /// The first CameraInfo for the images: from the topic camera_info in the same namespace, else
+  /// from the only topic with the same frame; null if there is none.
   [[nodiscard]] const CameraInfoMessage* info_of(const std::string& depth_topic,
                                                  const std::string& frame,
                                                  Warnings& warnings) const;
@@ -47,7 +47,8 @@ class MessageTopics {
   /// "/calib/camera_info (frame 'lens', 640x480 px, --intrinsics 600,600,319.5,239.5)", or "none".
   [[nodiscard]] std::string listed_infos() const;
 
-  /// By the topic's name, which contains "rect" for rectified images. Warns where it may mislead.
+  /// Whether images are rectified: the topic's name then contains "rect". Warns if the name may
+  /// mislead.
   [[nodiscard]] static bool is_rectified(const std::string& depth_topic,
                                          const CameraInfoMessage& info, Warnings& warnings);
 
@@ -57,7 +58,7 @@ class MessageTopics {
  private:
   struct Info {
     CameraInfoMessage first;
-    std::size_t others = 0;  // that differ from it
+    std::size_t others = 0;  // number of different ones
   };
 
   std::map<std::string, SeenTopic> topics_;

@@ -13,7 +13,7 @@
 
 namespace viewgain {
 
-/// How a topic's messages are written.
+/// Encoding of a topic's messages.
 enum class MessageEncoding : std::uint8_t { ros1, cdr, other };
 
 /// A topic of a recording.
@@ -23,18 +23,17 @@ struct Topic {
   MessageEncoding encoding = MessageEncoding::other;
 };
 
-/// A message as the file has it, until the next one is read.
+/// A message as in the file, valid until the next one is read.
 struct Message {
   const Topic& topic;
   std::string_view bytes;
   const std::filesystem::path& file;
-  std::uint64_t place = 0;  ///< in the file: a byte, or in a database a row
+  std::uint64_t place = 0;  ///< byte in the file, or row in a database
 };
 
 using MessageVisitor = std::function<void(const Message&)>;
 
-/// Warnings for the user, each text once, since recordings are read twice;
-/// the first 50.
+/// Warnings for the user. Each text is kept once, because recordings are read twice; at most 50.
 class Warnings {
  public:
   void add(const std::string& text) {
@@ -56,13 +55,13 @@ inline void warn_of_left_out(const std::filesystem::path& file, std::size_t coun
                " are left out");
 }
 
-/// Visits the messages of one file in its order, in memory that does not grow with the file. A file
-/// that is cut is read as far as it goes, with a warning. Throw Error(io), and Error(format) that
-/// names the file and the place for one that is damaged otherwise.
+/// Visits the messages of one file in order, with constant memory. A truncated file is read up to
+/// its end, with a warning. Throws Error(io), and Error(format) with file and position for other
+/// damage.
 void read_mcap(const std::filesystem::path& file, const MessageVisitor& visit, Warnings& warnings);
-/// As above: ROS 1.
+/// As above, for ROS 1.
 void read_bag(const std::filesystem::path& file, const MessageVisitor& visit, Warnings& warnings);
-/// As above: ROS 2 with SQLite.
+/// As above, for ROS 2 with SQLite.
 void read_db3(const std::filesystem::path& file, const MessageVisitor& visit, Warnings& warnings);
 
 /// "sensor_msgs/Image" of "sensor_msgs/msg/Image".

@@ -28,7 +28,7 @@ std::string MissingPoses::text(const TransformTree::Chain& chain, bool are_all) 
   text.pop_back();
   if (counts_[2] > 0) text += "; the largest gap is " + TransformTree::largest_gap(chain);
   const std::array<std::int64_t, 2> span = TransformTree::span_of(chain);
-  if (span[0] == INT64_MIN) return text;  // all are static
+  if (span[0] == INT64_MIN) return text;  // all transforms are static
   text += "; transforms are from " + seconds_text(span[0]) + " to " + seconds_text(span[1]) +
           " s, these images from " + seconds_text(from_) + " to " + seconds_text(to_) + " s";
   const bool is_apart = are_all && counts_[2] + counts_[3] == 0 &&

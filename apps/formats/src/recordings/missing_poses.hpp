@@ -13,18 +13,18 @@ namespace viewgain {
 
 inline constexpr std::int64_t kNanoseconds = 1'000'000'000;  ///< in a second
 
-/// "1700000000.250" of a stamp [ns].
+/// "1700000000.250" for a time stamp [ns].
 [[nodiscard]] std::string seconds_text(std::int64_t stamp);
 
-/// Counts images for which the transforms have no pose, by the reason.
+/// Counts images without a pose from the transforms, by reason.
 class MissingPoses {
  public:
-  /// `why`: not Found::yes; `stamp`: of the image [ns].
+  /// `why` must not be Found::yes; `stamp` is that of the image [ns].
   void add(TransformTree::Found why, std::int64_t stamp);
 
   [[nodiscard]] bool empty() const noexcept { return to_ == INT64_MIN; }
 
-  /// The counts, and which times the transforms of `chain` and these images have. `are_all`: no
+  /// The counts, and the time spans of the transforms of `chain` and of these images. `are_all`: no
   /// image has a pose.
   [[nodiscard]] std::string text(const TransformTree::Chain& chain, bool are_all) const;
 

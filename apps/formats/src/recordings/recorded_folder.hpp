@@ -19,15 +19,15 @@
 
 namespace viewgain {
 
-/// A folder in the recorded layout, which appears, or changes, only when all is written.
+/// A folder in the recorded layout that appears, or changes, only when everything is written.
 class RecordedFolder {
  public:
-  /// Throws Error(invalid_argument) for a folder with frames that no import has left.
+  /// Throws Error(invalid_argument) for a folder with frames that were not imported.
   explicit RecordedFolder(const std::filesystem::path& dir);
 
   void write(std::uint64_t number, const GrayImage& depth, const Pose& T_world_camera);
 
-  /// `depth_scale` [m per unit], `out_of_range`: what 65535 means.
+  /// `depth_scale` [m per unit]; `out_of_range`: the meaning of 65535.
   void commit(const PinholeCamera& camera, const std::optional<Sensor>& sensor, double depth_scale,
               Sensor::OutOfRange out_of_range);
 
@@ -36,11 +36,10 @@ class RecordedFolder {
 
   std::vector<std::filesystem::path> earlier_;
   StagedFolder staged_;
-  std::set<std::string> files_;  // written
+  std::set<std::string> files_;  // written files
 };
 
-/// Counts frames that cannot be used, and keeps the first fault that a file's contents are to blame
-/// for.
+/// Counts frames that cannot be used, and keeps the first fault of a file's contents.
 struct Dropped {
   FrameCounts& counts;
   std::string fault{};

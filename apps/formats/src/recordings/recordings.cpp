@@ -27,7 +27,7 @@ constexpr std::array<std::pair<const char*, RecordingFormat>, 3> kMessageFiles{
      {".db3", RecordingFormat::rosbag2},
      {".bag", RecordingFormat::rosbag1}}};
 
-// By the file's first bytes, whatever its name.
+// Determined by the file's first bytes, not by its name.
 RecordingFormat file_format(const fs::path& file) {
   const std::string head = file_head(file, 16);
   if (head.starts_with("\x89MCAP0\r\n")) return RecordingFormat::mcap;
@@ -42,7 +42,7 @@ RecordingFormat file_format(const fs::path& file) {
               file.string() + ": is not a recording (MCAP, rosbag2, bag, transforms.json)");
 }
 
-// Files of one recording in their order: NAME_2.mcap comes before NAME_10.mcap.
+// Files of one recording in order: NAME_2.mcap comes before NAME_10.mcap.
 std::vector<fs::path> message_files(const fs::path& folder, const std::string& ending) {
   std::vector<fs::path> files;
   for (const std::string& name : names_in(folder)) {

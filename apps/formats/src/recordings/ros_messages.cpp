@@ -24,7 +24,7 @@ auto read_fields(const Message& message, Parse parse) {
   }
 }
 
-// What image_transport puts before the PNG: four bytes, and how 32FC1 was quantised.
+// image_transport's header before the PNG: four bytes, and the quantisation of 32FC1.
 void split_compressed(std::string_view bytes, DepthMessage& depth) {
   ByteReader reader(bytes);
   (void)reader.number<std::uint32_t>();
@@ -71,7 +71,7 @@ DepthMessage read_depth(const Message& message) {
       depth.encoding = format.substr(0, format.find(';'));
       depth.is_compressed = true;
       if (format.find("compressedDepth") == std::string::npos) {
-        depth.encoding = format.substr(0, 32);  // a picture
+        depth.encoding = format.substr(0, 32);  // not a depth image
         return depth;
       }
       split_compressed(fields.blob(), depth);
@@ -148,7 +148,7 @@ PinholeCamera camera_of(const CameraInfoMessage& info, bool is_rectified) {
   camera.cx -= info.roi[0], camera.cy -= info.roi[1];
   const std::uint32_t x = std::max(info.binning[0], 1U), y = std::max(info.binning[1], 1U);
   camera.fx /= x, camera.fy /= y;
-  // The middle of a binned pixel is the middle of its pixels.
+  // The centre of a binned pixel is the centre of its pixels.
   camera.cx = (camera.cx + 0.5) / x - 0.5, camera.cy = (camera.cy + 0.5) / y - 0.5;
   size[0] /= x, size[1] /= y;
   constexpr std::uint32_t kMost = std::numeric_limits<std::int32_t>::max();

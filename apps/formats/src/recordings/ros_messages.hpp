@@ -18,18 +18,18 @@ namespace viewgain {
 struct DepthMessage {
   RosHeader header;
   std::string encoding;        ///< "16UC1", "32FC1", "mono16", ...
-  bool is_compressed = false;  ///< `data` is a PNG, which has the size
+  bool is_compressed = false;  ///< `data` is a PNG, which contains the size
   std::uint32_t width = 0, height = 0, step = 0;
   bool is_big_endian = false;
-  std::array<float, 2> inverse{};  ///< of compressed 32FC1: z = inverse[0] / (value - inverse[1])
-  std::string_view data;           ///< of the message's bytes
+  std::array<float, 2> inverse{};  ///< for compressed 32FC1: z = inverse[0] / (value - inverse[1])
+  std::string_view data;           ///< inside the message's bytes
 };
 
 /// sensor_msgs/CameraInfo.
 struct CameraInfoMessage {
   RosHeader header;
   std::uint32_t width = 0, height = 0;
-  std::string model;  ///< of distortion
+  std::string model;  ///< distortion model
   std::vector<double> d;
   std::array<double, 9> k{}, r{};
   std::array<double, 12> p{};
@@ -37,10 +37,10 @@ struct CameraInfoMessage {
   std::array<std::uint32_t, 4> roi{};  ///< x, y, height, width
 };
 
-/// A transform of tf, or a pose as one: T_parent_child as tx, ty, tz, qx, qy, qz, qw.
+/// A transform of tf, or a pose in the same form: T_parent_child as tx, ty, tz, qx, qy, qz, qw.
 struct TransformMessage {
-  RosHeader header;   ///< with the parent
-  std::string child;  ///< empty of a PoseStamped
+  RosHeader header;   ///< its frame is the parent
+  std::string child;  ///< empty for a PoseStamped
   std::array<double, 7> numbers{};
 };
 
@@ -48,25 +48,25 @@ struct TransformMessage {
 [[nodiscard]] bool is_image_type(const std::string& type);
 /// Whether read_transforms() reads messages of this type.
 [[nodiscard]] bool is_pose_type(const std::string& type);
-/// Whether messages of this type are those of tf.
+/// Whether this is a type of tf messages.
 [[nodiscard]] inline bool is_tf_type(const std::string& type) {
   return type == "tf2_msgs/TFMessage" || type == "tf/tfMessage";
 }
 inline constexpr const char* kCameraInfoType = "sensor_msgs/CameraInfo";
 
-// Each throws Error(format), naming file, place and topic, for a message that is not as its type
-// says.
+// Each function throws Error(format), naming file, position and topic, for a message that does not
+// match its type.
 [[nodiscard]] DepthMessage read_depth(const Message& message);
 [[nodiscard]] CameraInfoMessage read_camera_info(const Message& message);
-/// Of TFMessage, TransformStamped, PoseStamped, PoseWithCovarianceStamped or Odometry.
+/// Reads TFMessage, TransformStamped, PoseStamped, PoseWithCovarianceStamped or Odometry.
 [[nodiscard]] std::vector<TransformMessage> read_transforms(const Message& message);
 
 /// "FILE: byte N: TOPIC: what".
 [[nodiscard]] std::string of_message(const Message& message, const std::string& what);
 
-/// The camera of the images: of rectified ones by P, else by K and D, for the region of interest
-/// and binning. Throws Error(format), without a file, for a camera that is not calibrated and for a
-/// distortion that PinholeCamera does not have.
+/// The camera of the images: from P for rectified images, else from K and D, adapted to the region
+/// of interest and binning. Throws Error(format), without a file, for an uncalibrated camera and
+/// for an unsupported distortion model.
 [[nodiscard]] PinholeCamera camera_of(const CameraInfoMessage& info, bool is_rectified);
 
 }  // namespace viewgain

@@ -45,10 +45,10 @@ bool TransformTree::add(const std::string& parent, const std::string& child, std
   const auto [found, is_new] = edges_.try_emplace({child, parent});
   Edge& edge = found->second;
   if (is_new) edge.parent = parent, edge.child = child, edge.is_static = is_static;
-  // A moving transform takes the place of a static one of the same frames.
+  // A moving transform replaces a static one between the same frames.
   if (edge.is_static && !is_static) edge.poses.clear(), edge.is_static = false;
   if (!edge.is_static && is_static) return true;
-  if (is_static) edge.poses.clear();  // the last one holds
+  if (is_static) edge.poses.clear();  // the last one counts
   if (edge.latest > stamp) edge.went_back = std::max(edge.went_back, edge.latest - stamp);
   edge.latest = std::max(edge.latest, stamp);
   edge.poses.push_back({stamp, numbers});
@@ -64,7 +64,7 @@ void TransformTree::join(TransformTree& other, bool is_near) {
 }
 
 void TransformTree::finish(Warnings& warnings) {
-  constexpr std::int64_t kOutOfOrder = 500'000'000;  // which several senders make [ns]
+  constexpr std::int64_t kOutOfOrder = 500'000'000;  // tolerated, as with several senders [ns]
   for (auto& [key, edge] : edges_) {
     const auto is_earlier = [](const Stamped& a, const Stamped& b) { return a.stamp < b.stamp; };
     std::stable_sort(edge.poses.begin(), edge.poses.end(), is_earlier);
@@ -84,7 +84,7 @@ std::set<std::string> TransformTree::frames() const {
 
 TransformTree::Chain TransformTree::chain(std::string& world, const std::string& frame) const {
   const auto fail = [](const std::string& what) -> void { throw Error(ErrorCode::format, what); };
-  // How each frame is reached from `frame`, and by how many transforms all of those are joined.
+  // How each frame is reached from `frame`, and how many transforms connect all these frames.
   std::map<std::string, std::pair<const Edge*, bool>> reached{{frame, {nullptr, false}}};
   std::set<std::string> roots, joined{frame};
   std::size_t edges = 0;

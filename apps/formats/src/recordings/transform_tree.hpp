@@ -15,21 +15,21 @@
 
 namespace viewgain {
 
-/// The transforms of a recording by time, as tf has them. Interpolates between two of them and
-/// never beyond the first or the last; static ones hold at all times.
+/// The transforms of a recording by time, as in tf. Interpolates between two of them, and never
+/// extrapolates; static ones hold at all times.
 class TransformTree {
  public:
-  /// T_parent_child as tx, ty, tz [m], qx, qy, qz, qw, at `stamp` [ns]. False, and nothing is
-  /// added, if a number is not finite, the quaternion's norm is off by over 1e-2, or both frames
-  /// are one.
+  /// Adds T_parent_child as tx, ty, tz [m], qx, qy, qz, qw, at `stamp` [ns]. False, without adding,
+  /// if a number is not finite, the quaternion's norm deviates by more than 1e-2, or both frames
+  /// are the same.
   bool add(const std::string& parent, const std::string& child, std::int64_t stamp,
            const std::array<double, 7>& numbers, bool is_static);
 
-  /// Takes the transforms of `other` between frames that have none here. Those of near topics come
-  /// first; chain() refuses transforms of which several far topics have some.
+  /// Adds the transforms of `other` between frames that have none here. Add those of near topics
+  /// first; chain() refuses a transform that several far topics contain.
   void join(TransformTree& other, bool is_near);
 
-  /// Sorts by time; to be called once, before what follows. Warns of clocks that went back.
+  /// Sorts by time. Call it once, before the members below. Warns of clocks that went back.
   void finish(Warnings& warnings);
 
   [[nodiscard]] bool empty() const noexcept { return edges_.empty(); }
@@ -37,22 +37,23 @@ class TransformTree {
   [[nodiscard]] std::set<std::string> frames() const;
 
   struct Edge;
-  /// The transforms to multiply, from the world to a frame; true: inverted.
+  /// The transforms to multiply, from the world to a frame; true for inverted ones.
   using Chain = std::vector<std::pair<const Edge*, bool>>;
-  /// From `world`, or with an empty one from the topmost parent, which it then names. Throws
-  /// Error(format) that lists what there is if no chain joins both, or more than one.
+  /// From `world` to `frame`. An empty `world` is set to the topmost parent. Throws Error(format)
+  /// that lists the frames if no chain, or more than one, connects both.
   [[nodiscard]] Chain chain(std::string& world, const std::string& frame) const;
 
   enum class Found : std::uint8_t { yes, before, after, gap, unconnected };
-  /// T_world_frame at `stamp` [ns]; not if a transform of the chain begins after it, ends before
-  /// it, or has two beside it that are over 2 `max_gap` [ns] apart.
+  /// T_world_frame at `stamp` [ns]. Not found if a transform of the chain begins later, ends
+  /// earlier, or is interpolated over more than 2 `max_gap` [ns].
   static Found look_up(const Chain& chain, std::int64_t stamp, std::int64_t max_gap,
                        Pose& T_world_frame);
 
-  /// The first and last times [ns] that all moving transforms of the chain have.
+  /// The first and last times [ns] that all moving transforms of the chain cover.
   static std::array<std::int64_t, 2> span_of(const Chain& chain);
 
-  /// "1 s, from 'map' to 'base'": between two moving transforms of the chain.
+  /// "1 s, from 'map' to 'base'": the largest gap between consecutive moving transforms of the
+  /// chain.
   static std::string largest_gap(const Chain& chain);
 
   struct Stamped {
@@ -63,8 +64,8 @@ class TransformTree {
     std::string parent, child;
     bool is_static = false, is_near = true, is_ambiguous = false;
     std::vector<Stamped> poses;       // by time
-    std::int64_t went_back = 0;       // the farthest that a stamp was before an earlier one [ns]
-    std::int64_t latest = INT64_MIN;  // stamp so far
+    std::int64_t went_back = 0;       // largest step back in time [ns]
+    std::int64_t latest = INT64_MIN;  // largest time stamp so far
   };
 
  private:

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // transforms.json of nerfstudio and instant-ngp, with depth images. Their cameras look along -z,
-// their pixel (0, 0) has its corner at (0, 0).
+// and the corner of pixel (0, 0) is at (0, 0).
 #include <array>
 #include <cmath>
 #include <optional>
@@ -25,8 +25,8 @@ using app::Json;
 
 constexpr std::uint64_t kMostJsonBytes = std::uint64_t{1} << 28U;
 
-// The camera of a frame: each key by the frame, else by the top of the file; nothing for missing
-// ones.
+// The camera of a frame. Each key comes from the frame, else from the top of the file; empty if
+// missing.
 class JsonCamera {
  public:
   JsonCamera(const fs::path& file, const Json& top, const Json& frame)
@@ -56,7 +56,8 @@ class JsonCamera {
     }
   }
 
-  // In pixels of images of w x h, else of `image_size`, with the first pixel's middle at (0, 0).
+  // In pixels of images of w x h, else of `image_size`, with the centre of the first pixel at (0,
+  // 0).
   [[nodiscard]] PinholeCamera camera(const std::array<int, 2>& image_size) const {
     PinholeCamera camera;
     for (const auto& [key, size] :
@@ -73,7 +74,7 @@ class JsonCamera {
                   file_.string() + ": has only one of w and h; both are required");
     }
     if (camera.width == 0) camera.width = image_size[0], camera.height = image_size[1];
-    // A frame's angle comes before the file's focal length.
+    // A frame's angle has priority over the file's focal length.
     const auto focal = [&](const char* key, const char* angle, int size) -> std::optional<double> {
       for (const Json* const level : levels_) {
         if (const Json* const length = find(key, *level)) return number_of(key, *length);
@@ -96,7 +97,7 @@ class JsonCamera {
   }
 
  private:
-  // Null for a missing one.
+  // Null if the key is missing.
   static const Json* find(const char* key, const Json& level) {
     const auto found = level.find(key);
     return found == level.end() || found->is_null() ? nullptr : &*found;
@@ -142,25 +143,25 @@ ReadPose json_pose(const Json& frame, const std::string& where) {
   } catch (const Error& error) {
     return lost(error.what());
   }
-  // From y up and -z forward to y down and z forward.
+  // Converts from y up and -z forward to y down and z forward.
   for (const std::size_t i : {1, 5, 9, 2, 6, 10}) {
     pose.T_world_camera.m[i] = -pose.T_world_camera.m[i];
   }
   return pose;
 }
 
-// Of the first image that can be read; 0 where there is none.
+// Size of the first image that can be read; 0 if there is none.
 std::array<int, 2> size_of_images(const std::vector<RecordedFrame>& frames) {
   for (const RecordedFrame& frame : frames) {
     try {
       return png_size(frame.image);
-    } catch (const Error&) {  // counted where it is read
+    } catch (const Error&) {  // counted when it is read
     }
   }
   return {};
 }
 
-// Images of another size than w x h, such as a phone's depth, show the same field of view.
+// Images of another size than w x h, such as a phone's depth images, show the same field of view.
 void scale_to_images(const std::array<int, 2>& size, PinholeCamera& camera,
                      std::vector<std::string>& warnings) {
   if (size == std::array{camera.width, camera.height}) return;
@@ -172,7 +173,7 @@ void scale_to_images(const std::array<int, 2>& size, PinholeCamera& camera,
   camera.width = size[0], camera.height = size[1];
 }
 
-// The one camera of all frames that have a focal length, of images of this size, if any is known.
+// The common camera of all frames that have a focal length, for images of this size, if known.
 // Throws Error(format).
 PinholeCamera camera_of_frames(const fs::path& file, const Json& json,
                                const std::array<int, 2>& size) {
@@ -244,7 +245,7 @@ ImportReport import_transforms(const fs::path& file, const fs::path& out,
   } else {
     const std::array<int, 2> size = size_of_images(frames);
     report.camera = camera_of_frames(file, json, size);
-    if (size[0] > 0) {  // else no frame can be used
+    if (size[0] > 0) {  // otherwise no frame can be used
       scale_to_images(size, report.camera, report.warnings);
       try {
         check_recorded_camera(report.camera);

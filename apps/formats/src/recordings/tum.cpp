@@ -32,7 +32,7 @@ TimedPoses read_timed_poses(const fs::path& path) {
   return read;
 }
 
-// The pose nearest in time, the first of several; null if it is farther than the gap.
+// The pose nearest in time, the first of equal ones; null if it is farther than the gap.
 const ReadPose* nearest(const TimedPoses& poses, double time, double gap) {
   const ReadPose* best = nullptr;
   for (std::size_t i = 0; i < poses.times.size(); ++i) {
@@ -59,7 +59,7 @@ std::vector<RecordedFrame> read_tum_frames(const fs::path& source, double max_ti
       line.fail("expected a timestamp and an image; found " + std::to_string(line.words().size()) +
                 " words");
     }
-    // A recording may be of anybody, and names no files of elsewhere.
+    // A recording is untrusted, and must not name files outside.
     const fs::path image = path_inside(std::string(line.words()[1]));
     if (image.empty()) {
       line.fail("the image " + quoted(line.words()[1]) + " is outside the recording");

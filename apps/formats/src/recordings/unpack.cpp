@@ -16,7 +16,7 @@
 namespace viewgain {
 namespace {
 
-// What is left of the input and of the room for output.
+// The remaining input, and the remaining room for output.
 struct Buffers {
   const char* in;
   std::size_t in_left;
@@ -103,7 +103,7 @@ std::string unpack_bz2(std::string_view packed, std::uint64_t size, std::string&
                                                                          &BZ2_bzDecompressEnd);
   return unpack_by(
       [&](Buffers& b) {
-        stream.next_in = const_cast<char*>(b.in);  // which it does not write to
+        stream.next_in = const_cast<char*>(b.in);  // not written to
         stream.next_out = b.out;
         stream.avail_in = static_cast<unsigned>(b.in_left);
         stream.avail_out = static_cast<unsigned>(b.out_left);

@@ -183,7 +183,7 @@ std::vector<Pose> hazard_views(const VoxelScene& scene, double distance, double 
 std::vector<Pose> reachable_hazard_views(const VoxelScene& scene, const ReachRegion& reach,
                                          double distance, double spacing, std::size_t count) {
   constexpr std::array<double, 3> kDistances{1, 1.6, 2.5}, kToMiddle{0, 0.5, 1};
-  constexpr std::size_t kTries = 16;  // for a view
+  constexpr std::size_t kTries = 16;  // attempts per view
   const double least_cosine = std::cos(75 * std::numbers::pi / 180);
   const std::vector<Target> targets = targets_in(scene, distance, spacing);
   std::vector<double> sums;

@@ -17,8 +17,8 @@ namespace viewgain {
 namespace {
 
 constexpr std::size_t kMostPlanned = 1000;
-// Sampling for views ranked together: share of rays, and minimum number of poses in total and per
-// stop.
+// Sampling for views ranked together: fraction of rays, and minimum number of poses in total and
+// per stop.
 constexpr double kFewRays = 0.25;
 constexpr std::size_t kByStop = 3, kFewPoses = 32;
 
@@ -60,7 +60,7 @@ Ranking ranking_of(ViewTour tour, std::span<const Pose> T_world_camera) {
   return ranking;
 }
 
-// The views that were chosen with few rays, each alone.
+// Scores the views that were chosen with few rays in full, each alone.
 void score_in_full(const GainEvaluator& evaluator, Ranking& ranking) {
   std::vector<std::size_t>& indices = ranking.scored_indices;
   indices.clear();
@@ -75,7 +75,7 @@ void score_in_full(const GainEvaluator& evaluator, Ranking& ranking) {
   ranking.scored_gains = evaluator.evaluate(poses);
 }
 
-// Unless it must be exact: few poses, with some of their rays.
+// Unless results must be exact, uses few poses with some of their rays.
 Ranking chosen_together(const GainEvaluator& evaluator, std::span<const Pose> T_world_camera,
                         TourConfig tour, bool exact, const BatchControl& control) {
   if (!exact) {

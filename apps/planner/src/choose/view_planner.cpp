@@ -139,7 +139,7 @@ struct ViewPlanner::Impl {
     return added;
   }
 
-  // The view is one of the plan, or replaces its next one.
+  // The view is one of the plan, or replaces the plan's next view.
   void pass_planned(const std::optional<Pose>& T_world_camera) {
     if (state.planned.empty()) return;
     const auto is_it = [&](const Pose& pose) {
@@ -150,7 +150,7 @@ struct ViewPlanner::Impl {
     state.planned.erase(found == state.planned.end() ? state.planned.begin() : found);
   }
 
-  // The remaining views of the plan; empty if they no longer promise enough.
+  // The remaining views of the plan that are still good.
   Proposal planned_proposal() {
     Proposal left = proposer.propose_these({std::string(kPlanned), state.planned}, scorer.grid(),
                                            scorer.scene(), state.reached, state.missed);

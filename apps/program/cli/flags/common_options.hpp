@@ -13,7 +13,7 @@
 
 namespace viewgain::app {
 
-/// What the program itself has, before or after the subcommand's name.
+/// Options of the program itself, before or after the subcommand's name.
 struct CommonOptions {
   bool json = false;
   bool quiet = false;
@@ -38,15 +38,15 @@ inline void add_common_options(App& program, CommonOptions& options) {
   return {options.threads, parse_tracer(options.trace)};
 }
 
-// What the subcommands are for, as the program's help groups them.
+// Groups of subcommands in the program's help.
 inline constexpr const char* kLoopGroup = "The whole loop";
 inline constexpr const char* kMapGroup = "Make a map";
 inline constexpr const char* kViewsGroup = "Choose views";
 inline constexpr const char* kLookGroup = "Look and convert";
 
-/// Where the subcommand stands in the program's help, and a call that works where those of
-/// simulate, integrate, score and so on were made before it. Help shows defaults but of what must
-/// be given or may be repeated. To be called last.
+/// Sets the subcommand's group in the program's help, and an example that works after the examples
+/// of the earlier commands. Help shows defaults, except of options that are required or may be
+/// repeated. Call it last.
 inline void add_help(App& app, const char* group, const char* example) {
   for (Option* option : app.get_options()) {
     if (option->get_required() || option->get_expected_max() > 1) option->default_str("");
@@ -66,7 +66,7 @@ inline constexpr const char* kBodyHelp =
     "x,y,z: width, height and depth of the sensor's housing [m] (default: from the sensor, else "
     "the SR4000's)";
 
-/// --seed, the same bounds in every subcommand.
+/// Adds --seed, with the same bounds in every subcommand.
 inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {
   app.add_option("--seed", seed, of_what)->check(a_seed());
 }

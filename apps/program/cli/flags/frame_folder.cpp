@@ -22,7 +22,7 @@ FrameSequence frames_of(const FrameFolderOptions& options) {
   return frames;
 }
 
-// Throws Error as MaskFolder, also where none of the images has one.
+// Throws Error like MaskFolder, also if no image has a mask.
 std::vector<MaskFolder> mask_folders(const FrameFolderOptions& options,
                                      const std::vector<std::filesystem::path>& images) {
   std::vector<MaskFolder> folders;

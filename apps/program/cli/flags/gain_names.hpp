@@ -14,12 +14,12 @@
 
 namespace viewgain::app {
 
-/// What --gain is unless given.
+/// Default of --gain.
 [[nodiscard]] inline std::string default_gain() {
   return std::string(gain_model_name(kDefaultGain));
 }
 
-/// What --gain takes: the models, then the registered gains, those of the literature.
+/// Values of --gain: the models, then the registered gains, which are those of the literature.
 [[nodiscard]] inline std::vector<std::string> all_gain_names() {
   std::vector<std::string> names = gain_model_names();
   const std::vector<std::string>& others = registered_gains().names();
@@ -27,7 +27,7 @@ namespace viewgain::app {
   return names;
 }
 
-/// What --gain takes where views are chosen one after another: the models.
+/// Values of --gain for choosing several views: only the models.
 [[nodiscard]] inline CLI::Validator one_of_gain_models() {
   CLI::Validator check = one_of(gain_model_names(), "gain");
   check.operation([](std::string& value) {

@@ -19,7 +19,7 @@ std::string why(const NextView& view) {
   return text;
 }
 
-// What becomes of rays: its name in JSON and in words.
+// Where rays end: its name in JSON and in words.
 struct Outcome {
   const char* key;
   const char* words;
@@ -139,7 +139,7 @@ Json to_json(const NextViews& next) {
 std::string help_text(std::size_t candidates, const std::map<std::string, std::size_t>& dropped) {
   std::size_t all = candidates;
   for (const auto& [reason, count] : dropped) all += count;
-  // What would help where most are dropped for one reason.
+  // Advice if most candidates are dropped for one reason.
   for (const auto& [reason, what] :
        {std::pair(kUnreachable,
                   "out of reach: widen --reach, or add candidates with --generator boundary,shell"),

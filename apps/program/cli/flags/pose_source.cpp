@@ -25,14 +25,14 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Of "sphere:2000,0.6" the generator and its numbers.
+// Generator and numbers of a value such as "sphere:2000,0.6".
 struct SetOfPoses {
   std::string_view kind, numbers;
 };
 
 constexpr std::array<std::string_view, 5> kKinds{"sphere", "dome", "rings", "shell", "orbit"};
 
-// Nothing for the name of a file.
+// Empty for the name of a file.
 std::optional<SetOfPoses> set_in(std::string_view value) {
   const std::size_t colon = value.find(':');
   const std::string_view kind = value.substr(0, colon);
@@ -127,7 +127,7 @@ PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {
     if (!options.center.empty()) center = parse_point("--center", options.center);
     try {
       return {poses_of(*set, center, seed)};
-    } catch (const Error& error) {  // generators know nothing of flags
+    } catch (const Error& error) {  // generators do not name flags
       if (std::string_view(error.what()).starts_with("--poses")) throw;
       throw Error(error.code(), "--poses " + options.poses + ": " + error.what());
     }

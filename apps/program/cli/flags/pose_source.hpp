@@ -15,13 +15,13 @@
 
 namespace viewgain::app {
 
-/// Poses that the command line asked for.
+/// Poses given on the command line.
 struct PoseSource {
   std::vector<Pose> poses;          ///< T_world_camera
-  std::size_t orthonormalized = 0;  ///< of a file: how many rotations were mended
-  std::vector<double> costs{};      ///< of each, in the gain's unit; empty: none
+  std::size_t orthonormalized = 0;  ///< number of repaired rotations of a file
+  std::vector<double> costs{};      ///< cost of each pose, in the gain's unit; empty: none
 
-  /// The gain of a pose less its cost.
+  /// The gain of a pose minus its cost.
   [[nodiscard]] double worth(std::size_t i, double gain) const {
     return costs.empty() ? gain : gain - costs.at(i);
   }
@@ -29,50 +29,52 @@ struct PoseSource {
 
 /// --poses and --center.
 struct PoseOptions {
-  std::string poses;   ///< a file, TUM or .npy, or a set as sphere:N,RADIUS
-  std::string center;  ///< x,y,z that a set looks at; empty: the origin
+  std::string poses;   ///< a file (TUM or .npy), or a set such as sphere:N,RADIUS
+  std::string center;  ///< point x,y,z that a set looks at; empty: the origin
 };
 
-/// Does a value of --poses name a set, and not a file?
+/// Whether a value of --poses names a set instead of a file.
 [[nodiscard]] bool is_set_of_poses(const std::string& value);
 
-/// The flags of PoseOptions, the same in every subcommand that is given one set of poses.
+/// Adds the flags of PoseOptions, which are the same in every subcommand that takes one set of
+/// poses.
 void add_pose_options(App& app, PoseOptions& options);
 
-/// What is subtracted from gains, in their unit.
+/// Costs that are subtracted from gains, in their unit.
 struct CostOptions {
-  std::string file;      ///< --costs: one number a pose
-  double per_metre = 0;  ///< --cost-per-metre of the way
-  std::string from;      ///< --from x,y,z: where ways begin; empty: at the last pose known
+  std::string file;      ///< --costs: one number per pose
+  double per_metre = 0;  ///< --cost-per-metre of path
+  std::string from;      ///< --from x,y,z: start of paths; empty: the last known pose
 
   [[nodiscard]] bool none() const { return file.empty() && per_metre == 0; }
 };
 
-/// `has_way`: there is one whatever ways cost. Throws Error(invalid_argument), naming the flag.
+/// `has_way`: paths matter even if they cost nothing. Throws Error(invalid_argument), naming the
+/// flag.
 void check(const CostOptions& options, bool has_way = false);
 
-/// Of a map; nothing: it has none.
+/// The last view of a map, if any.
 [[nodiscard]] std::optional<Pose> last_view(const BeliefGrid& grid);
 
-/// Where ways begin, of which only the centre counts: at --from, else at `last_pose`. Throws
-/// Error(invalid_argument) where ways cost and there is neither.
+/// Start of paths, of which only the centre counts: --from, else `last_pose`. Throws
+/// Error(invalid_argument) if paths have a cost and both are missing.
 [[nodiscard]] std::optional<Pose> begin_of_ways(const CostOptions& options,
                                                 const std::optional<Pose>& last_pose);
 
 inline constexpr const char* kCostPerMetreHelp =
     "cost per metre of path from the camera's position, subtracted from gains, in the gain's unit";
-/// The flags of CostOptions; `of`: whose costs a file has.
+/// Adds the flags of CostOptions; `of`: what the costs of a file are for.
 void add_cost_options(App& app, CostOptions& options, const std::string& of);
 
-/// Of a file with one number a line, blank lines and comments aside. Throws Error that names the
-/// file, and the line or how many `poses` there are.
+/// Reads a file with one number per line; skips blank lines and comments. Throws Error that names
+/// the file, and the line or the number of `poses`.
 [[nodiscard]] std::vector<double> read_costs(const std::string& file, std::size_t poses);
 
-/// `seed`: of the shell. Throws Error(invalid_argument), naming the flag, or what load_poses
-/// throws.
+/// `seed` is used for a shell. Throws Error(invalid_argument), naming the flag, and like
+/// load_poses().
 [[nodiscard]] PoseSource make_poses(const PoseOptions& options, std::uint64_t seed);
 
-/// Those of a file of --poses. Throws as make_poses().
+/// Poses of a file of --poses. Throws like make_poses().
 [[nodiscard]] std::vector<Pose> poses_in(const std::string& file);
 
 }  // namespace viewgain::app

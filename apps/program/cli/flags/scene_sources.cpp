@@ -25,7 +25,7 @@ std::string readings_of(Sensor sensor) {
   return sensor_toml(sensor);
 }
 
-// Of their files the first line that differs: "fx = 585.0 there, fx = 525.0 here".
+// The first line in which the sensors' files differ: "fx = 585.0 there, fx = 525.0 here".
 std::string difference(const Sensor& there, const Sensor& here) {
   std::istringstream of_there(readings_of(there)), of_here(readings_of(here));
   std::string a, b;
@@ -41,7 +41,7 @@ std::string difference(const Sensor& there, const Sensor& here) {
 
 namespace {
 
-// Without what it says of the object's size.
+// The value without the object's size.
 std::string rates_of(const std::string& hazard) {
   if (!hazard.starts_with("size=")) return hazard;
   const std::size_t comma = hazard.find(',');
@@ -181,7 +181,7 @@ bool warn_of_other_sensor(const std::string& path, const BeliefGrid& grid, const
   return true;
 }
 
-// Of another planner's map: no reading is known of what is occupied.
+// Whether occupied voxels have no readings, as in a map of another program.
 bool has_states_alone(const BeliefGrid& grid) {
   if (!grid.views().empty() || grid.statistics().occupied == 0) return false;
   bool is_measured = false;

@@ -15,17 +15,17 @@
 
 namespace viewgain::app {
 
-// What is allowed and seldom meant (suspect_set_up.hpp): one line per suspicion on the error
-// output.
+// Warnings about values that are valid but rarely intended (suspect_set_up.hpp): one line per
+// suspicion on the error output.
 
 /// Prints "viewgain: warning: `about`: ..." if there is a suspicion; an empty `about` is left out.
 void warn(const Suspicion& suspicion, const std::string& about = {});
 
-/// What a command is set up with, as far as it has it.
+/// The set-up of a command, as far as known.
 struct SetUp {
   const Sensor& sensor;
   const BeliefGrid& map;
-  /// The frames are compared later, and then suspect_frames() names what explains them.
+  /// Whether frames are compared later; suspect_frames() then names the causes that explain them.
   bool frames_follow = false;
   const std::vector<std::string>* obstacle_values = nullptr;  ///< of --obstacle
   const Obstacles* obstacles = nullptr;                       ///< obstacles_of() these

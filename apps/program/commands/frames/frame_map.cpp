@@ -26,7 +26,7 @@ ScorerConfig config_of(const FrameFolder& folder, const FrameMapOptions& options
   const BeliefGrid empty(config.grid());
   warn_of_few_voxels(empty);
   config.hazard = hazard_source(proposal.hazard, empty);
-  config.gain.model = GainModel::paper;  // no view is scored before all frames are in
+  config.gain.model = GainModel::paper;  // no view is scored before all frames are integrated
   return config;
 }
 

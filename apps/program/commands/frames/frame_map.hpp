@@ -18,7 +18,7 @@
 
 namespace viewgain::app {
 
-/// How a folder of frames becomes a map on the way to something else.
+/// Settings for making a map from a folder of frames.
 struct FrameMapOptions {
   FrameFolderOptions folder;
   double voxel = 0;
@@ -27,49 +27,49 @@ struct FrameMapOptions {
   ScaleOptions scales;
 };
 
-/// FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter, --scales, --fine and those of a
-/// folder.
+/// Adds FRAMES_DIR, --sensor, --voxel, --workspace, --jump-edge-filter, --scales, --fine and the
+/// flags of a folder.
 void add_frame_map_options(App& app, FrameMapOptions& options);
 
-/// Settings of the map but for workspace, hazard and gain. Throws Error, naming the flag.
+/// Settings of the map without workspace, hazard and gain. Throws Error, naming the flag.
 [[nodiscard]] ScorerConfig scorer_config(const FrameMapOptions& options,
                                          const ProposalOptions& proposal);
 
-/// The workspace for what the frames see, but for the pixels that --jump-edge-filter takes; reads
-/// all of them. Throws Error(invalid_argument) if none has a reading.
+/// The workspace for what the frames see, without pixels that --jump-edge-filter removes. Reads all
+/// frames. Throws Error(invalid_argument) if none has a reading.
 [[nodiscard]] Box seen_workspace(const FrameFolder& folder, const ScorerConfig& config,
                                  double voxel, bool quiet);
 
-/// The map as frames of a folder go into it, in the folder's order.
+/// A map into which the frames of a folder are integrated, in order.
 class FrameMap {
  public:
-  /// Throws Error, naming the flag or the file, as FrameFolder, parse_box(), hazard_source(),
-  /// obstacles_of() and ViewScorer. Without --workspace all frames are read for
-  /// their bounds; throws if none has a reading.
+  /// Throws Error, naming the flag or the file, like FrameFolder, parse_box(), hazard_source(),
+  /// obstacles_of() and ViewScorer. Without --workspace, reads all frames for their bounds, and
+  /// throws if none has a reading.
   FrameMap(const FrameMapOptions& options, const ProposalOptions& proposal, bool quiet,
            const ExecConfig& exec);
 
-  /// At the pose that the folder says, or at another that may be off by `pose_sigma`; what became
-  /// of the frame is in MapUpdate::verdict and counted.
+  /// Adds a frame at the folder's pose, or at another pose with the uncertainty `pose_sigma`.
+  /// Counts the frame by MapUpdate::verdict.
   MapUpdate add(std::size_t index);
   MapUpdate add(std::size_t index, const Pose& T_world_camera, const PoseSigma& pose_sigma = {});
-  /// The frame is left out for another reason.
+  /// Leaves out a frame for another reason.
   void drop(std::size_t index, const FrameFault& fault) {
     count(index, folder_.T_world_camera(index), fault);
   }
 
-  /// Throws as FrameTally::require_any().
+  /// Throws like FrameTally::require_any().
   void require_frames() {
     consistency_ = scorer_.consistency();
     tally_.require_any(folder_, scorer_.grid(), consistency_);
   }
-  /// Whether the frames fit one another, for JSON; after require_frames().
+  /// Whether the frames agree, for JSON; after require_frames().
   [[nodiscard]] Json consistency_json() const { return to_json(consistency_, tally_.numbers()); }
 
   [[nodiscard]] const FrameCounts& counts() const noexcept { return tally_.counts(); }
-  /// Where frames were taken that brought nothing, as the folder says.
+  /// Poses of frames that could not be used, according to the folder.
   [[nodiscard]] const std::vector<Pose>& tried() const noexcept { return tried_; }
-  /// Where the last frame was taken, whether it could be used or not; nothing: no pose yet.
+  /// Pose of the last frame, even if it could not be used; empty without a pose.
   [[nodiscard]] const std::optional<Pose>& last_pose() const noexcept { return last_pose_; }
   [[nodiscard]] const FrameFolder& folder() const noexcept { return folder_; }
   [[nodiscard]] const ScorerConfig& config() const noexcept { return config_; }

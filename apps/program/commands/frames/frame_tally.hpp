@@ -23,64 +23,65 @@
 
 namespace viewgain::app {
 
-/// frames (in the map), carved (of these, those that have shown free space alone), bad (the
-/// others: reason -> count).
+/// frames (in the map), carved (of these, those that showed only free space), bad (the others:
+/// reason -> count).
 [[nodiscard]] Json frames_json(const FrameCounts& counts);
 /// "2 frames show free space alone; left out: 1 lost_pose, 2 outside", or nothing.
 [[nodiscard]] std::string frames_text(const FrameCounts& counts);
-/// What is to be said if registration left out more than two thirds of the frames; else empty.
+/// A warning if registration left out more than two thirds of the frames; otherwise empty.
 [[nodiscard]] std::string refused_text(const FrameCounts& counts);
 [[nodiscard]] std::string frames_text(std::size_t carved,
                                       const std::map<std::string, std::size_t>& bad);
 
-/// What is probably wrong with the frames of the folder (suspect_frames()); empty: nothing. Reads a
-/// dozen of them.
+/// What is probably wrong with the frames of the folder (suspect_frames()), or empty. Reads a dozen
+/// of them.
 [[nodiscard]] std::string suspicion_of(const FrameFolder& folder);
 
-/// 12 for frame-000012.depth.png; without digits its place among the frames.
+/// 12 for frame-000012.depth.png; without digits its index among the frames.
 [[nodiscard]] std::size_t number_of(const std::filesystem::path& image, std::size_t place);
 /// share_in_free, share_seen_past, kind and what (null: the frames agree), frames (numbers of those
-/// that contradict the others), per_frame. `numbers`: of the frames in the map.
+/// that contradict the others), per_frame. `numbers`: those of the frames in the map.
 [[nodiscard]] Json to_json(const FrameConsistency& found, const std::vector<std::size_t>& numbers);
-/// The suspicion and the frames concerned, as ranges of their numbers; empty: nothing.
+/// The suspicion and the frames concerned, as ranges of their numbers; empty without a suspicion.
 [[nodiscard]] std::string text_of(const FrameConsistency& found,
                                   const std::vector<std::size_t>& numbers);
 
-/// Warns where clouds have points and none is in the sensor's range, as in millimetres.
+/// Warns if clouds have points but none is in the sensor's range, as with millimetres.
 void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum);
 
-/// What became of the frames of a folder, and what is said of it.
+/// How the frames of a folder were used, and messages about it.
 class FrameTally {
  public:
   explicit FrameTally(bool quiet) : quiet_(quiet) {}
 
   void add(const std::filesystem::path& image, const FrameFault& fault);
-  /// Pixels of a frame that went into the map, or did not.
+  /// Adds the pixel counts of a frame, whether it went into the map or not.
   void add(const IntegrationReport& counts);
-  /// Throws Error(invalid_argument) if there were frames and none is in the map, or none has a
-  /// reading in the workspace and something is suspected, with the reasons, and where the folder
-  /// refuses contradictions; else names the first of each kind that was left out, unless quiet, and
-  /// warns of what is suspected (`found`), and where no voxel of their `map` is occupied and no
+  /// Throws Error(invalid_argument) with the reasons if there were frames but none is in the map,
+  /// if none has a reading in the workspace and a fault is suspected, or if frames contradict each
+  /// other and the folder refuses that. Otherwise names the first frame of each kind that was left
+  /// out, unless quiet. Warns of suspicions (`found`), and if no voxel of `map` is occupied and no
   /// frame shows the support plane.
   void require_any(const FrameFolder& folder, const BeliefGrid& map,
                    const FrameConsistency& found) const;
-  /// Warns of what is suspected of frames that go into a map which has others already, or throws
-  /// where the folder refuses contradictions.
+  /// For frames added to an existing map: warns of suspicions, or throws if the folder refuses
+  /// contradictions.
   void warn_of_contradictions(const FrameFolder& folder, const FrameConsistency& found) const;
 
-  /// Names the first of each kind that was left out, unless quiet.
+  /// Names the first frame of each kind that was left out, unless quiet.
   void name_left_out() const;
-  /// What is suspected: of the frames in the map, else of those that were left out.
+  /// The suspicion about the frames in the map, else about those that were left out.
   [[nodiscard]] std::string suspicion_of(const FrameConsistency& found) const;
 
   [[nodiscard]] const FrameCounts& counts() const noexcept { return counts_; }
-  /// Of the frames in the map, in their order, as their names say.
+  /// Numbers of the frames in the map, in order, from their names.
   [[nodiscard]] const std::vector<std::size_t>& numbers() const noexcept { return numbers_; }
-  /// Of the first frame of each kind that was left out.
+  /// Fault of the first frame of each kind that was left out.
   [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
 
  private:
-  /// Says, or throws as require_any(), that masks explain what became of the frames (mask_use.hpp).
+  /// Whether masks explain why frames could not be used (mask_use.hpp). Then warns, or throws like
+  /// require_any().
   [[nodiscard]] bool blames_masks(const FrameFolder& folder, const BeliefGrid& map) const;
   [[nodiscard]] std::string none_inside(const FrameFolder& folder) const;
 
@@ -93,8 +94,8 @@ class FrameTally {
   bool sees_plane_ = false;
 };
 
-/// No frame has a reading that a workspace could be made round: throws Error(invalid_argument) with
-/// the frames that are bad and what is suspected.
+/// For frames without any reading for a workspace: throws Error(invalid_argument) with the bad
+/// frames and the suspicion.
 [[noreturn]] void refuse_without_readings(const FrameFolder& folder, const FrameTally& bad);
 
 /// The keys of `registration` in run.json.
@@ -112,7 +113,7 @@ class FrameTally {
           {"free_directions", registration.free_directions.size()}};
 }
 
-/// How many came to what.
+/// Number of registrations by status.
 [[nodiscard]] inline Json registration_counts(const std::vector<FrameRegistration>& registrations) {
   Json json;
   for (const auto status : {RegistrationStatus::registered, RegistrationStatus::too_little_overlap,
@@ -124,7 +125,7 @@ class FrameTally {
   return json;
 }
 
-/// registration_counts() for people.
+/// registration_counts() as text.
 [[nodiscard]] inline std::string registration_text(const Json& counts) {
   return "registration: " + counts["registered"].dump() + " registered, " +
          counts["too_little_overlap"].dump() + " too_little_overlap, " + counts["refused"].dump() +

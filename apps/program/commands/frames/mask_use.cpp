@@ -15,7 +15,7 @@
 namespace viewgain::app {
 namespace {
 
-constexpr std::size_t kFrames = 12;  // that are looked at
+constexpr std::size_t kFrames = 12;  // number of checked frames
 
 }  // namespace
 
@@ -40,7 +40,7 @@ void MaskWatch::add(const FrameSequence& folder, const WatchedFrame& frame) {
   one.images = {frame.image};
   try {
     unmasked_.push_back(load_frame(one, 0));
-  } catch (const Error&) {  // somebody has changed it since
+  } catch (const Error&) {  // the file has changed since
     return;
   }
   masked_.push_back(frame.frame);

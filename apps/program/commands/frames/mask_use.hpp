@@ -13,19 +13,20 @@
 
 namespace viewgain::app {
 
-/// What is probably wrong with the masks of a folder's frames (suspect_masks()); empty: nothing, or
-/// there are none. Reads a dozen frames with and without their masks.
+/// What is probably wrong with the masks of a folder's frames (suspect_masks()); empty if nothing,
+/// or without masks. Reads a dozen frames with and without their masks.
 [[nodiscard]] std::string mask_suspicion(const FrameFolder& folder,
                                          const BeliefGrid* map = nullptr);
 
-/// The same of frames as they come.
+/// The same for frames that arrive one by one.
 class MaskWatch {
  public:
   /// `folder`: FrameWatch::folder(). Reads the image again, without its masks.
   void add(const FrameSequence& folder, const WatchedFrame& frame);
-  /// What is wrong, said once: after six and after twelve frames, or when there will be no more.
+  /// What is probably wrong, reported once. Checked after six and after twelve frames, and at the
+  /// end.
   [[nodiscard]] std::string suspicion(const Sensor& sensor, const BeliefGrid& map, bool is_last);
-  /// It was said: frames need no other explanation.
+  /// Whether it was reported; frames then need no other explanation.
   [[nodiscard]] bool is_suspected() const noexcept { return is_suspected_; }
 
  private:
@@ -35,8 +36,7 @@ class MaskWatch {
   bool is_suspected_ = false;
 };
 
-/// A line for people about pixels with a depth that masks took; empty without --mask and
-/// --confidence.
+/// A line about pixels with a depth that masks removed; empty without --mask and --confidence.
 [[nodiscard]] std::string masked_text(const FrameFolderOptions& options, std::uint64_t pixels);
 
 }  // namespace viewgain::app

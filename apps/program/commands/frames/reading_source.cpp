@@ -18,7 +18,7 @@
 namespace viewgain::app {
 namespace {
 
-// How readings change a map. No view is scored.
+// Settings of the map. No view is scored.
 ScorerConfig rules_of(const IntegrateOptions& options) {
   ScorerConfig config;
   options.scales.set(config);
@@ -95,12 +95,12 @@ class FrameSource : public ReadingSource {
   FrameFolder folder_;
   ScorerConfig config_;
   ExecConfig exec_;
-  std::optional<PoseSigma> reported_sigma_;  // if frames are registered
+  std::optional<PoseSigma> reported_sigma_;  // set if frames are registered
   std::optional<FrameAlignment> registration_;
-  std::optional<ViewScorer> map_;  // once it has started
+  std::optional<ViewScorer> map_;  // set after start()
   FrameReading loaded_;
   Pose T_world_camera_;
-  PoseSigma pose_sigma_;  // by which it may be off
+  PoseSigma pose_sigma_;  // uncertainty of the loaded pose
 };
 
 Sensor sensor_of(const IntegrateOptions& options) {
@@ -172,8 +172,8 @@ class CloudSource : public ReadingSource {
   }
 
  private:
-  // Points in the world say where their sensor stood but not how it was turned: towards their
-  // middle. Lines are carved the same; what asks for the views of a map has a view to look at.
+  // For points in the world only the sensor's position is known. The pose looks at their centre, so
+  // that the map has a useful view; the integration does not depend on it.
   [[nodiscard]] Pose looking_at_points(const Eigen::Vector3d& origin) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double count = 0;
@@ -189,10 +189,10 @@ class CloudSource : public ReadingSource {
   Sensor sensor_;
   std::optional<double> support_plane_;
   CloudIntegrator integrator_;
-  std::optional<BeliefGrid> grid_;         // once it has started
-  PoseList poses_;                         // empty: the points are in the world
-  std::optional<Eigen::Vector3d> origin_;  // of all clouds; nothing: each has its own
-  PointCloud cloud_;                       // in the world
+  std::optional<BeliefGrid> grid_;         // set after start()
+  PoseList poses_;                         // empty if the points are in the world frame
+  std::optional<Eigen::Vector3d> origin_;  // of all clouds; empty if each has its own
+  PointCloud cloud_;                       // world frame
   Pose T_world_sensor_;
 };
 

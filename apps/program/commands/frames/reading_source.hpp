@@ -22,10 +22,10 @@
 
 namespace viewgain::app {
 
-/// The flags of `integrate`; see its help.
+/// Flags of `integrate`; see its help.
 struct IntegrateOptions {
   CommonOptions common;
-  FrameFolderOptions frames;        ///< without a folder: clouds
+  FrameFolderOptions frames;        ///< its folder is empty for clouds
   std::vector<std::string> clouds;  ///< --cloud
   std::string origin = "viewpoint";
   std::string poses;
@@ -40,52 +40,53 @@ struct IntegrateOptions {
   std::string out;
   std::string map;
 
-  /// A tree has no place for what is counted.
+  /// Whether frames update the hazard counters, which an OctoMap cannot store.
   [[nodiscard]] bool calibrates_hazard() const { return !is_octomap(out); }
 };
 
-/// What `integrate` puts into a map, one part after the other: depth frames or clouds. The order of
-/// calls is load, then register_loaded and integrate, of one part after the other.
+/// The input of `integrate`, depth frames or clouds. For each part in turn, call load, then
+/// register_loaded and integrate.
 class ReadingSource {
  public:
   virtual ~ReadingSource() = default;
 
   [[nodiscard]] virtual const Sensor& sensor() const = 0;
   [[nodiscard]] virtual std::size_t size() const = 0;
-  /// Poses that were off and were mended.
+  /// Number of repaired poses.
   [[nodiscard]] virtual std::size_t orthonormalized() const = 0;
 
-  /// For what all parts see. Throws Error(invalid_argument) if none has a reading.
+  /// Workspace for what all parts see. Throws Error(invalid_argument) if none has a reading.
   [[nodiscard]] virtual Box seen_workspace(double voxel, bool quiet) = 0;
 
-  /// By name and content, for the map to remember; empty: it is not remembered, or cannot be read,
-  /// as `fault` then says.
+  /// Identity by name and content, which the map stores. Empty if it is not stored, or if it cannot
+  /// be read; `fault` then has the reason.
   [[nodiscard]] virtual std::string identity(std::size_t /*index*/, FrameFault& /*fault*/) const {
     return {};
   }
 
-  /// Says what is wrong with a frame that cannot be used; a cloud is read or throws.
+  /// Reads a part. Returns the fault of a frame that cannot be used; throws for a cloud that cannot
+  /// be read.
   virtual FrameFault load(std::size_t index) = 0;
-  /// The map that the readings go into.
+  /// Sets the map into which the readings go.
   virtual void start(BeliefGrid grid) = 0;
   /// After start().
   [[nodiscard]] virtual const BeliefGrid& grid() const = 0;
-  /// What registering the loaded part against the map came to, from whose pose it is then
-  /// integrated; nothing without --register on.
+  /// Registers the loaded part with the map; it is then integrated at the resulting pose. Empty
+  /// without --register on.
   virtual std::optional<FrameRegistration> register_loaded() { return {}; }
-  /// The part that was loaded, into the map unless the verdict says otherwise.
+  /// Integrates the loaded part, unless the verdict states otherwise.
   virtual MapUpdate integrate() = 0;
-  /// Pixels of the loaded part with a depth that its mask took.
+  /// Pixels of the loaded part with a depth that were masked out.
   [[nodiscard]] virtual std::uint64_t masked_pixels() const { return 0; }
-  /// Whether the frames fit one another; nothing for clouds.
+  /// Whether the frames agree; empty for clouds.
   [[nodiscard]] virtual std::optional<FrameConsistency> consistency() const { return {}; }
-  /// Its file.
+  /// File of a part.
   [[nodiscard]] virtual std::filesystem::path file(std::size_t index) const = 0;
-  /// Of depth images; null for clouds.
+  /// The folder of depth images; null for clouds.
   [[nodiscard]] virtual const FrameFolder* folder() const { return nullptr; }
 };
 
-/// Throws Error for what is wrong with flags or files.
+/// Throws Error for invalid flags or files.
 [[nodiscard]] std::unique_ptr<ReadingSource> open_reading_source(const IntegrateOptions& options);
 
 }  // namespace viewgain::app

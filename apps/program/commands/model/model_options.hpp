@@ -22,18 +22,18 @@ struct ModelOptions {
   std::size_t top = 10;
   RegistrationOptions registration;
   RunOutputs outputs;
-  bool watch = false;  ///< frames are still to come
-  // Only with --watch: when next.json gives a stop_reason.
+  bool watch = false;  ///< --watch: waits for more frames
+  // Only with --watch: number of views after which next.json has a stop_reason.
   std::size_t max_views = PlannerConfig{}.max_views;
   std::string stop;
 };
 
 void add_model_options(App& app, ModelOptions& options);
 
-/// Puts the frames that are there into a map and writes the run's folder. Throws Error.
+/// Puts the existing frames into a map and writes the run's folder. Throws Error.
 void model_recorded_frames(const ModelOptions& options, const App& app);
 
-/// Takes frames as they come until a signal or the file `done`. Throws Error.
+/// Takes frames as they arrive, until a signal or the file `done`. Throws Error.
 void model_arriving_frames(const ModelOptions& options);
 
 }  // namespace viewgain::app

@@ -44,12 +44,13 @@
 namespace viewgain::app {
 namespace {
 
-// Of a recording so many moments are drawn, evenly, the last among them: each is a surface anew.
+// Number of states of the map that are drawn, evenly spaced and including the last. Each needs a
+// new surface.
 constexpr std::size_t kMaxShown = 6;
 
 using Options = ModelOptions;
 
-// At which frames the state of the map is drawn.
+// Frames after which the state of the map is drawn.
 std::set<std::size_t> shown_frames(std::size_t count) {
   std::set<std::size_t> shown;
   const std::size_t most = std::min(count, kMaxShown);
@@ -57,7 +58,7 @@ std::set<std::size_t> shown_frames(std::size_t count) {
   return shown;
 }
 
-// The surface and the next views of the map as it is now.
+// Surface and next views of the current map.
 struct Moment {
   SurfaceModel model;
   CandidateGeneration generation;
@@ -73,8 +74,8 @@ struct Moment {
         evaluator(evaluator_of(proposal, model, map.scorer().sensor(), exec)) {}
 };
 
-// All frames of the folder aligned with one another, for a map into which none has gone yet: by the
-// frame's index, those that cannot be read left out; after a stop those so far.
+// Aligns all frames of the folder with each other, before any is in the map. Results are by frame
+// index, without frames that cannot be read; after a stop, those so far.
 std::map<std::size_t, FrameRegistration> align_folder(const FrameMap& map, const PoseSigma& sigma,
                                                       bool quiet, const ExecConfig& exec,
                                                       const std::stop_token& stop) {
@@ -126,7 +127,8 @@ class Recording {
                   nullptr);
   }
 
-  // The frames, until all are in or `stop` is asked for; those that are aligned by then are kept.
+  // Adds the frames until all are integrated or a stop is requested. Frames that are aligned by
+  // then are kept.
   void add_frames(RunFolder& folder, const std::stop_token& stop) {
     const std::set<std::size_t> shown = shown_frames(map_->folder().size());
     Progress progress("frame", options_.common.quiet);
@@ -148,7 +150,7 @@ class Recording {
     map_->require_frames();
   }
 
-  // Surface, next views, report; what run.json holds.
+  // Makes surface, next views and report. Returns the contents of run.json.
   Json finish(RunFolder& folder) {
     Stopwatch watch;
     Moment moment(*map_, proposal_, exec_);
@@ -181,7 +183,8 @@ class Recording {
     return run;
   }
 
-  // What the run's bytes depend on: settings, flags, program, and the bytes of frames and masks.
+  // Everything that affects the run's results: settings, flags, program, and the bytes of frames
+  // and masks.
   [[nodiscard]] Json head() const {
     Json head = checkpoint_head(settings(), app_);
     const FrameSequence& frames = map_->folder().frames();
@@ -193,7 +196,8 @@ class Recording {
     }
     return head;
   }
-  // A frame that cannot be read is counted when its turn comes; the run is another when it can be.
+  // A frame that cannot be read is counted later. If it becomes readable, the run is a different
+  // one.
   [[nodiscard]] static std::string identity_or_none(const FrameSequence& frames, std::size_t i) {
     try {
       return frame_identity(frames, i);
@@ -201,7 +205,7 @@ class Recording {
       return "unreadable " + frames.images[i].filename().string();
     }
   }
-  // Null where there is no such file.
+  // Null if there is no such file.
   [[nodiscard]] static Json hash_of(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored)) return nullptr;
@@ -222,7 +226,7 @@ class Recording {
     for (const auto& [stage, value] : seconds) views_->add_seconds(stage, value);
   }
 
-  // Null where the poses of --poses alone are candidates.
+  // Null if only the poses of --poses are candidates.
   [[nodiscard]] Json generator() const {
     if (!proposal_.generator.empty()) return proposal_.generator;
     return proposal_.poses.empty() ? Json("boundary") : Json();
@@ -273,11 +277,11 @@ class Recording {
   const App& app_;
   const ProposalOptions& proposal_;
   ExecConfig exec_;
-  Json beside_;  // another run that the page shows
+  Json beside_;  // another run shown on the page
   std::optional<FrameMap> map_;
   std::optional<RunPage> page_;
-  std::optional<PoseSigma> sigma_;  // of the poses, where frames are aligned
-  std::size_t aligned_until_ = 0;   // frames, where they are
+  std::optional<PoseSigma> sigma_;  // of the poses, if frames are aligned
+  std::size_t aligned_until_ = 0;   // number of aligned frames
   std::optional<RecordedViews> views_;
   NextViews next_;
 };
@@ -315,7 +319,7 @@ void model_recorded_frames(const ModelOptions& options, const App& app) {
   const InterruptGuard interrupt;
   Recording recording(options, app, interrupt.token());
   RunFolder folder(options.outputs.out, options.outputs.resume);
-  // Frames are read again, which takes no longer than reading a map; what was drawn is there.
+  // Frames are read again, which takes no longer than reading a map. Pictures are kept.
   const Checkpoint checkpoint(folder, recording.head(), options.outputs.resume);
   recording.add_frames(folder, interrupt.token());
   const Json run = recording.finish(folder);

@@ -19,28 +19,28 @@
 
 namespace viewgain::app {
 
-/// Recorded frames as they go into a map, and what each brought.
+/// Records for frames that go into a map, with the effect of each.
 class RecordedViews {
  public:
-  /// The map must outlive it. `registrations`: by the frame's index, or nothing where the poses are
-  /// taken as the folder says them. `on_contradiction`: what --on-contradiction says.
+  /// The map must outlive this object. `registrations`: by frame index; empty to use the folder's
+  /// poses. `on_contradiction`: the value of --on-contradiction.
   explicit RecordedViews(FrameMap& map,
                          std::optional<std::map<std::size_t, FrameRegistration>> registrations = {},
                          std::string on_contradiction = "skip");
 
-  /// Puts a frame into the map, in order; one that was refused stays out of it, and one that cannot
-  /// be used is no view either. Throws as FrameMap::add().
+  /// Puts the next frame into the map. A frame that was refused or cannot be used is left out and
+  /// is not a view. Throws like FrameMap::add().
   void add(std::size_t index);
   [[nodiscard]] bool empty() const noexcept { return records_.empty(); }
   void add_seconds(const std::string& stage, double seconds) { seconds_[stage] += seconds; }
 
-  /// For what is chosen after it; there must be one.
+  /// The last record, to add what is chosen next; there must be one.
   [[nodiscard]] ViewRecord& last() noexcept { return records_.back(); }
-  /// What run.json holds, without settings and versions. `model` is of the map as it is now.
+  /// Contents of run.json without settings and versions. `model` must show the current map.
   [[nodiscard]] Json json(const SurfaceModel& model, const NextViews& next) const;
 
  private:
-  /// Null without one.
+  /// Null if the frame has no registration.
   [[nodiscard]] const FrameRegistration* registration(std::size_t index) const;
   [[nodiscard]] bool is_refused(std::size_t index) const;
   [[nodiscard]] Json entry_json(std::size_t index) const;
@@ -48,9 +48,9 @@ class RecordedViews {
   FrameMap& map_;
   std::optional<std::map<std::size_t, FrameRegistration>> registrations_;
   std::string on_contradiction_;
-  std::size_t asked_ = 0;  ///< frames, whatever became of them
+  std::size_t asked_ = 0;  ///< number of frames, used or not
   std::vector<ViewRecord> records_;
-  std::vector<double> new_areas_;  ///< one a record [m²]
+  std::vector<double> new_areas_;  ///< one per record [m²]
   IntegrationReport readings_{};   ///< of all frames
   std::size_t jump_edge_removed_ = 0;
   StageSeconds seconds_;

@@ -43,7 +43,7 @@ ViewPlanner planner_of(const Sensor& sensor, const ScorerConfig& map, const Plan
                : ViewPlanner(ViewScorer(sensor, map, exec), config);
 }
 
-// Not yet with a mask in it: they come with the frames.
+// The folder may be empty, because masks arrive with the frames.
 MaskFolder mask_folder(const char* flag, const fs::path& folder, const fs::path& frames,
                        std::optional<std::uint8_t> least_confidence = {}) {
   std::error_code ignored;
@@ -161,7 +161,7 @@ void AskedViews::recall(const fs::path& next_json, const std::set<std::string>& 
     const Json next = Json::parse(folder_file_bytes(next_json));
     check_format(next_json.string(), next);
     for (const Json& name : next.at("left_out")) left_out_.insert(name.get<std::string>());
-    // Else the map has grown since, or is another one.
+    // Otherwise the map has grown since, or is another map.
     if (next.at("asked").get<bool>() && next.at("frames") == identities.size()) {
       for (const Json& view : next.at("next")) {
         Pose pose;
@@ -174,7 +174,7 @@ void AskedViews::recall(const fs::path& next_json, const std::set<std::string>& 
   } catch (const Json::exception&) {
     asked_.clear();
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::format) throw;  // a newer program's
+    if (error.code() == ErrorCode::format) throw;  // from a newer program
     asked_.clear();
   }
   known_ = judged(identities);
@@ -182,7 +182,7 @@ void AskedViews::recall(const fs::path& next_json, const std::set<std::string>& 
 
 void AskedViews::ask(std::vector<Pose> views, const std::set<std::string>& identities) {
   const std::set<std::string> there = images_in(folder_), done = judged(identities);
-  // What came since an earlier asking that nobody has answered may yet be the answer.
+  // Frames that arrived since an earlier, unanswered request may still be its answer.
   if (asked_.empty()) known_ = there;
   asked_ = std::move(views);
   is_asked_ = std::includes(done.begin(), done.end(), there.begin(), there.end());

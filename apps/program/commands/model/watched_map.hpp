@@ -26,14 +26,14 @@
 
 namespace viewgain::app {
 
-/// A folder that one process at a time writes into. The lock ends with the process, however that
-/// ends; where the file system has no locks there is none.
+/// Locks a folder, so that one process at a time writes to it. The lock ends with the process. File
+/// systems without locks are not locked.
 class FolderLock {
  public:
-  /// Makes the folder where it is missing. Throws Error(io) if that cannot be done, and
+  /// Creates the folder if it is missing. Throws Error(io) if that fails, and
   /// Error(invalid_argument) if another process has the lock.
   explicit FolderLock(const std::filesystem::path& folder);
-  /// Removes the folder if it was made and nothing is in it.
+  /// Removes the folder if it was created here and is empty.
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
@@ -44,52 +44,51 @@ class FolderLock {
   int lock_ = -1;
 };
 
-/// What an earlier call has left of a map: which frames are in it and which sensor took them.
+/// The frames in a map that an earlier call saved, and their sensor.
 struct SavedFrames {
-  std::set<std::string> frames{};  ///< as frame_identity() has them
+  std::set<std::string> frames{};  ///< from frame_identity()
   std::optional<Sensor> sensor{};
 };
 
-/// Of WatchedMap::save(); nothing where there is no file. Throws Error(format), naming the file,
-/// for a map that does not say which frames all its views are of, and as load_map().
+/// Reads a file of WatchedMap::save(); empty if there is no file. Throws Error(format), naming the
+/// file, if the map does not state the frame of each view, and like load_map().
 [[nodiscard]] std::optional<SavedFrames> saved_frames(const std::filesystem::path& state,
                                                       const ExecConfig& exec);
 
-/// Settings of the map, without those that depend on the sensor, and of the planner. Throw Error,
+/// Settings of the map, without those that depend on the sensor, and of the planner. Throws Error,
 /// naming the flag.
 [[nodiscard]] ScorerConfig map_config_of(const ModelOptions& options);
 [[nodiscard]] PlannerConfig planner_config_of(const ModelOptions& options);
 
-/// What is looked for in the frames' folder. Throws Error, naming the flag or the file.
+/// A watch on the frames' folder. Throws Error, naming the flag or the file.
 [[nodiscard]] FrameWatch watch_of(const FrameFolderOptions& options,
                                   const std::optional<SavedFrames>& saved);
 
-/// The views that a robot was asked for, and which frames may be its answer: those that were not
-/// in the folder when it was asked. Names are those of depth images, identities as frame_identity()
-/// has them.
+/// The views that a robot was asked for, and which frames can be the answer: those that were not in
+/// the folder at that time. Names are those of depth images, identities from frame_identity().
 class AskedViews {
  public:
   explicit AskedViews(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// What an earlier call has left in next.json, whose map has these frames. A file that viewgain
-  /// did not write is ignored.
+  /// Reads next.json of an earlier call, whose map has these frames. Ignores a file that viewgain
+  /// did not write.
   void recall(const std::filesystem::path& next_json, const std::set<std::string>& identities);
 
-  /// These are asked for now, best first; the map has these frames.
+  /// Asks for these views, best first. The map has these frames.
   void ask(std::vector<Pose> views, const std::set<std::string>& identities);
 
-  /// A frame has come: the views that it may be the answer to, which are asked for no longer; none
-  /// for a frame that was there before.
+  /// A frame has arrived: returns the views that it can be the answer to, and ends the request.
+  /// Empty for a frame that existed before.
   [[nodiscard]] std::vector<Pose> answered_by(const std::string& name);
 
-  /// The frame is left out; false if that was known.
+  /// Leaves out the frame; false if it was left out already.
   bool leave_out(const std::string& name) { return left_out_.insert(name).second; }
-  /// The image is not used and does not count as a view.
+  /// Ignores the image, which does not count as a view.
   void ignore(const std::string& name) { ignored_.insert(name); }
-  /// The frame is in the map after all.
+  /// Records that the frame is in the map after all.
   void take(const std::string& name) { left_out_.erase(name); }
 
-  /// Keys of next.json: asked (no frame waited then), left_out (names).
+  /// Keys of next.json: asked (no frame was waiting then), left_out (names).
   [[nodiscard]] Json json() const {
     return {{"asked", is_asked_},
             {"left_out", std::vector<std::string>(left_out_.begin(), left_out_.end())}};
@@ -100,57 +99,57 @@ class AskedViews {
 
   std::filesystem::path folder_;
   std::vector<Pose> asked_;
-  std::set<std::string> known_;     // images that were there
-  std::set<std::string> left_out_;  // of bad frames
+  std::set<std::string> known_;     // existing images
+  std::set<std::string> left_out_;  // names of bad frames
   std::set<std::string> ignored_;
   bool is_asked_ = false;
 };
 
-/// A map that frames are put into as they come, the next best views on it, and the file that keeps
-/// both. Generation and decision of Algorithm 1; the planner knows where the camera is.
+/// A map into which frames go as they arrive, its next-best views, and the file that stores both.
+/// Generation and decision of Algorithm 1; the planner keeps the camera's pose.
 class WatchedMap final : public ViewpointGeneration, public DecisionMaking {
  public:
-  /// An empty one or, with `saved`, the one of the file state.vdb. `options` must outlive it.
-  /// Throws Error as ViewPlanner's constructor and load(), and Error(invalid_argument) if the saved
-  /// frames are another sensor's than `sensor`.
+  /// An empty map or, with `saved`, the map of the file state.vdb. `options` must outlive this
+  /// object. Throws Error like ViewPlanner's constructor and load(), and Error(invalid_argument) if
+  /// another sensor than `sensor` took the saved frames.
   WatchedMap(const ModelOptions& options, const Sensor& sensor, const ScorerConfig& map,
              const PlannerConfig& config, const std::optional<SavedFrames>& saved);
 
-  /// Where candidates come from; to be said once.
+  /// Sets the sources of candidates; call it once.
   void propose_by(const GenerationConfig& config);
 
   /// Likely fault of the frames so far, reported once; checked after 6, 12, 24, ... frames, and at
   /// the end.
   [[nodiscard]] std::string suspicion(bool is_last);
-  /// Whether the frames of this call fit one another.
+  /// Whether the frames of this call agree.
   [[nodiscard]] Json consistency_json() const {
     return to_json(planner_.scorer().consistency(), numbers_);
   }
 
-  /// What registering the frame against the map comes to; nothing without sigmas.
+  /// Registers the frame with the map; empty without sigmas.
   [[nodiscard]] std::optional<FrameRegistration> register_in(const WatchedFrame& frame) const;
 
-  /// At its own pose, or at the one that registering it came to.
+  /// Adds a frame at its own pose, or at the registered one.
   AddedView add(const WatchedFrame& frame, const std::optional<FrameRegistration>& registration);
 
-  /// A frame is left out; `T_world_camera`: where it was taken, if that is known.
+  /// Leaves out a frame; `T_world_camera`: its pose, if known.
   void drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera);
 
-  /// A frame came after these views were asked for, best first. If it matches none of them, the
-  /// best one counts as not reached and is not proposed again.
+  /// Handles a frame that arrived after these views were asked for, best first. If it matches none
+  /// of them, the best one counts as not reached and is not proposed again.
   void answer(std::span<const Pose> asked, const std::optional<Pose>& T_world_camera);
 
-  /// ViewPlanner::propose(); nothing while no frame could be used.
+  /// ViewPlanner::propose(); empty while no frame could be used.
   Proposal generate(const Pose&) override;
   /// ViewPlanner::rank() of the last generate().
   std::optional<Decision> decide(const Pose&, std::span<const Candidate>) override;
-  /// What these came to: the best candidates, each by what it adds to those before it; or a plan's.
+  /// The best candidates by marginal gain, or the views of a plan.
   [[nodiscard]] const NextViews& next() const { return next_; }
 
-  /// Why to end, as ViewPlanner::should_stop().
+  /// Reason to stop, from ViewPlanner::should_stop().
   [[nodiscard]] std::optional<StopReason> should_stop() const { return planner_.should_stop(); }
 
-  /// Writes the file: map and planner, all at once.
+  /// Writes the file with map and planner, atomically.
   void save() const;
 
   [[nodiscard]] const FrameCounts& frames() const { return planner_.frames(); }
@@ -161,12 +160,12 @@ class WatchedMap final : public ViewpointGeneration, public DecisionMaking {
   const ModelOptions& options_;
   std::filesystem::path state_;
   ViewPlanner planner_;
-  const Proposal* proposal_ = nullptr;  // the planner's last
+  const Proposal* proposal_ = nullptr;  // the planner's last proposal
   NextViews next_;
   std::optional<PoseSigma> sigma_;    // of the poses, if frames are registered
-  std::vector<std::size_t> numbers_;  // of the frames that went in
-  std::size_t due_ = 6;               // frames, when they are next held against one another
-  std::size_t count_ = 0;             // of the frames that came
+  std::vector<std::size_t> numbers_;  // of the integrated frames
+  std::size_t due_ = 6;               // number of frames at the next consistency check
+  std::size_t count_ = 0;             // number of arrived frames
   bool is_suspected_ = false;
 };
 

@@ -41,11 +41,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kPause{100};  // between looks at the folder
-// While frames wait, views are proposed and all is written this often at most [s].
+// While frames wait, shortest time between proposals, and between writes of all files [s].
 constexpr double kLeastInterval = 0.5;
-constexpr std::size_t kTurns = 10;  // per run of the loop, which keeps a record of each turn
+constexpr std::size_t kTurns = 10;  // per run of the loop, which keeps a record per turn
 
-// Files that are somebody else's, or another kind of run's, stay.
+// Refuses a folder with files that this kind of run did not write.
 void check_folder(const fs::path& out, bool goes_on) {
   std::error_code ignored;
   for (const fs::path& name : run_files(out)) {
@@ -56,8 +56,8 @@ void check_folder(const fs::path& out, bool goes_on) {
   }
 }
 
-// Acquisition and update of Algorithm 1 where a robot moves the camera and writes frames into a
-// folder. They go into the map, and what is next into the files.
+// Acquisition and update of Algorithm 1 for a robot that moves the camera and writes frames to a
+// folder. Frames go into the map; the next views go into the files.
 class Watching final : private DataAcquisition, private RepresentationUpdate {
  public:
   explicit Watching(const ModelOptions& options)
@@ -88,8 +88,9 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     watch_.emplace(watch_of(folder_, saved_));
   }
 
-  // Until a signal comes or all is done. The stop reason is the planner's: it is written and ends
-  // nothing. The loop's own rules after a view are off, since they would skip the proposal.
+  // Runs until a signal arrives or all is done. The stop reason is the planner's; it is written,
+  // but does not end the run. The loop's own stopping rules are off, because they would skip the
+  // proposal.
   void run(std::stop_token stop) {
     stop_ = std::move(stop);
     while (wait()) {
@@ -146,10 +147,10 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
   }
 
  private:
-  // Waits for something that goes into the map; false if a signal came or all is done.
+  // Waits for a frame for the map; false if a signal arrived or all is done.
   bool wait() {
     while (!is_done_ && !stop_.stop_requested()) {
-      // Asked before the look: what came before the file is seen.
+      // Checked before the look, so that frames written before the file are seen.
       std::error_code ignored;
       const bool is_last = fs::exists(frames_ / "done", ignored);
       look();
@@ -158,7 +159,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
       is_done_ = is_last && watch_->is_settled();
       if (!is_done_) std::this_thread::sleep_for(kPause);
     }
-    // What is not there by now will not come.
+    // Missing files will not arrive any more.
     if (is_done_) leave_out(watch_->give_up());
     return has_news_;
   }
@@ -170,22 +171,23 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     frame_ = std::move(look.frame);
   }
 
-  // run() has waited for the first turn. The frame stays in frame_, with its name and masks.
+  // run() has waited before the first turn. The frame stays in frame_, with its name and masks.
   Measurements acquire(const Pose&, std::size_t turn) override {
     if (turn > 0 && (turn == kTurns || !wait())) end_.request_stop();
     return {frame_ ? frame_->T_world_camera : Pose(), {}};
   }
 
-  // Takes the frames that wait, too, before views are proposed.
+  // Also takes all waiting frames before views are proposed.
   ModelProgress update(const Measurements&) override {
     while (frame_) {
       take(*std::exchange(frame_, std::nullopt));
       const bool is_due = !since_written_ || since_written_->seconds() > kLeastInterval;
       if (!is_due && !stop_.stop_requested()) look();
     }
-    // What is saved now a later call would go on with.
+    // Checked before saving, because a later call would continue from the saved state.
     if (has_news_ && folder_.on_contradiction == "error") warn_of_contradictions(true);
-    // Before views are proposed: that takes longest, and can be done again from the state.
+    // Saved before views are proposed, which takes longest and can be repeated from the saved
+    // state.
     if (has_news_) map_->save();
     return progress_;
   }
@@ -206,7 +208,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     warn(masks_.suspicion(watch_->folder()->sensor, map_->grid(), is_last));
   }
 
-  // Frames that masks explain need no other explanation.
+  // If masks explain the frames, there is no other warning.
   void warn_of_contradictions(bool is_last) {
     if (masks_.is_suspected()) return;
     const std::string what = map_->suspicion(is_last);
@@ -224,10 +226,10 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     for (const BadFrame& bad : frames) {
       say(bad.fault.what + " (" + std::string(frame_verdict_name(bad.fault.verdict)) +
           "); left out");
-      // One that was taken is in the map, whatever has become of its files.
+      // A frame that was taken is in the map, even if its files have changed.
       if (bad.fault.verdict == FrameVerdict::changed) views_.ignore(bad.name);
       if (!map_ || bad.fault.verdict == FrameVerdict::changed) continue;
-      if (!views_.leave_out(bad.name)) continue;  // it was counted
+      if (!views_.leave_out(bad.name)) continue;  // already counted
       map_->answer(views_.answered_by(bad.name), bad.T_world_camera);
       map_->drop(bad.fault.verdict, bad.T_world_camera);
       has_news_ = true;
@@ -245,8 +247,8 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     map_config_.hazard = hazard_source(proposal_.hazard, empty);
     map_.emplace(options_, sensor, map_config_, planner_config_, saved_);
     map_->propose_by(generation_config(proposal_, sensor, map_->grid(), ""));
-    // What was next may be missing or older than the state, which has not heard of it: a frame that
-    // waits is held against it.
+    // next.json may be missing or older than the saved state, and a waiting frame may be its
+    // answer.
     has_news_ = saved_.has_value();
     warn_of_set_up(proposal_, map_config_.obstacles, map_->grid(), sensor, true);
     if (!saved_) return;
@@ -289,7 +291,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
                  added.update.new_area, added.entropy_removed);
   }
 
-  // For what is next in the map of these frames.
+  // Asks for the next views of the map with these frames.
   void ask(const std::set<std::string>& frames) {
     const NextViews& next = map_->next();
     views_.ask(poses_of(next), frames);
@@ -316,7 +318,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
                  reason ? stop_reason_name(*reason).data() : "");
   }
 
-  // What is made of all frames.
+  // Writes the results of all frames.
   void write_model() const {
     const SurfaceModel model = model_of(map_->grid().clone(), map_->sensor(), proposal_,
                                         map_config_.obstacles, exec_of(options_.common));
@@ -334,7 +336,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     return json;
   }
 
-  // Not before the state is there, which says whose these files are.
+  // Not before the saved state exists, which shows that these files belong to this run.
   void write_new_counts() {
     if (map_ && !has_news_ && since_written_ && said_ != counts()) write_json();
   }
@@ -358,19 +360,19 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
   std::optional<FolderLock> lock_;
   std::optional<SavedFrames> saved_;
   std::optional<FrameWatch> watch_;
-  std::optional<WatchedMap> map_;      // once the sensor is known
-  std::optional<WatchedFrame> frame_;  // that came and is not yet in the map
-  std::stop_token stop_;               // a signal
-  std::stop_source end_;               // of a run of the loop
-  ModelProgress progress_;             // after the last frame
+  std::optional<WatchedMap> map_;      // set when the sensor is known
+  std::optional<WatchedFrame> frame_;  // arrived, but not yet in the map
+  std::stop_token stop_;               // requested by a signal
+  std::stop_source end_;               // ends one run of the loop
+  ModelProgress progress_;             // state after the last frame
   bool is_done_ = false;
   MaskWatch masks_;
-  std::size_t added_ = 0;            // frames, by this call
-  std::uint64_t masked_pixels_ = 0;  // of these
-  bool has_news_ = false;            // that are not yet written
-  bool told_of_obstacles_ = false;   // that hold the views
+  std::size_t added_ = 0;            // number of frames added by this call
+  std::uint64_t masked_pixels_ = 0;  // of these frames
+  bool has_news_ = false;            // whether there are results that are not yet written
+  bool told_of_obstacles_ = false;   // whether it warned of obstacles that contain the views
   std::optional<Stopwatch> since_written_;
-  Json said_;  // counts(), as next.json has them
+  Json said_;  // counts(), as written to next.json
 };
 
 }  // namespace

@@ -30,7 +30,7 @@ bool is_at_boundaries(const ProposalOptions& options) {
   return has_generator(options, "boundary");
 }
 
-// What ranking goes by. The costs that it names must outlive it.
+// Settings of the ranking. The costs must outlive the result.
 RankConfig rank_config(const ProposalOptions& options, const std::vector<double>& costs,
                        const std::optional<Pose>& last_pose) {
   return {.costs = costs,
@@ -44,7 +44,7 @@ BatchControl shown_on(Progress& progress) {
   return control;
 }
 
-// What each candidate costs; empty without --costs.
+// Cost of each candidate; empty without --costs.
 std::vector<double> costs_of(const ProposalOptions& options, const Proposal& proposal) {
   if (options.costs.file.empty()) return {};
   const std::vector<double> given = read_costs(options.costs.file, poses_in(options.poses).size());
@@ -210,7 +210,7 @@ NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
   config.together = true;
   const std::vector<Pose> poses = poses_of(proposal.candidates);
   PlanAhead ahead = parse_plan(options.plan);
-  ahead.least_share = 0;  // what adds little is named, too
+  ahead.least_share = 0;  // views that add little are listed too
   Ranking ranking = ahead.is_on() ? plan_views(evaluator, poses, ahead, 0.0, config, control)
                                   : rank_views(evaluator, poses, top, config, control);
   progress.wipe();

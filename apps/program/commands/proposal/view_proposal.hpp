@@ -21,9 +21,10 @@
 
 namespace viewgain::app {
 
-/// How views for a map are proposed and ranked.
+/// Options for proposing and ranking views.
 struct ProposalOptions {
-  /// Several with commas; empty: boundary, or a sphere where the map has no surface or views.
+  /// Generators, separated by commas. Empty: boundary, or a sphere if the map has no surface or
+  /// views.
   std::string generator;
   std::optional<std::size_t> count{};
   std::optional<double> distance{};
@@ -32,20 +33,19 @@ struct ProposalOptions {
   std::string body;
   std::optional<double> support_plane{};
   std::vector<std::string> obstacles;
-  std::string
-      poses;  ///< file of candidates of the user's own; they alone unless `generator` is set
-  CostOptions costs;  ///< of these, and of the way
+  std::string poses;  ///< file of candidates, which replace the default generator
+  CostOptions costs;  ///< costs of these candidates, and of the path
   std::string plan = "1";
   std::string gain = default_gain();
   std::string hazard;
   std::uint64_t seed = 1;
 };
 
-/// The flags.
+/// Adds the flags.
 void add_next_view_options(App& app, ProposalOptions& options);
 
-/// Throws Error(invalid_argument), naming the flag: also for what a generator or a gain has no use
-/// for, which would be ignored in silence.
+/// Throws Error(invalid_argument), naming the flag, also for flags that the generator or the gain
+/// would silently ignore.
 void check(const ProposalOptions& options);
 
 /// The sensor with --body.
@@ -56,38 +56,36 @@ void check(const ProposalOptions& options);
                                     const ProposalOptions& options, Obstacles obstacles,
                                     const ExecConfig& exec);
 
-/// Without --reach the views at boundaries stay inside of the workspace where all views so far
-/// were, as in a room. `map`: what errors call it, empty for one whose views are still to come;
-/// `tried`: views that brought nothing. Throws Error(invalid_argument) where boundaries are asked
-/// for by name of a map without views, and as read_reach_toml().
+/// Settings of the generation. `map`: its name in messages, or empty if its views are still to
+/// come; `tried`: poses of failed views. Throws Error(invalid_argument) if boundaries are requested
+/// for a map without views, and like read_reach_toml().
 [[nodiscard]] GenerationConfig generation_config(const ProposalOptions& options,
                                                  const Sensor& sensor, const BeliefGrid& grid,
                                                  const std::string& map,
                                                  const std::vector<Pose>& tried = {});
 
-/// Scores views on the model's scene by --gain.
+/// Evaluator of --gain on the model's scene.
 [[nodiscard]] GainEvaluator evaluator_of(const ProposalOptions& options, const SurfaceModel& model,
                                          const Sensor& sensor, const ExecConfig& exec);
 
 /// Warns of implausible numbers of sensor and flags (set_up_warnings.hpp).
 void warn_of_set_up(const ProposalOptions& options, const Obstacles& obstacles,
                     const BeliefGrid& grid, const Sensor& sensor, bool frames_follow = false);
-/// Warns of views of the map inside of obstacles, and of --poses that do not see it.
+/// Warns of views of the map inside obstacles, and of --poses that do not see the map.
 void warn_of_views(const ProposalOptions& options, const Obstacles& obstacles,
                    const SurfaceModel& model, const Sensor& sensor);
 
-/// At most `top` candidates that go together (rank_views()), or the first views of a plan
-/// (plan_views()): each with what it adds to those chosen before it, and that less --costs and
-/// --cost-per-metre of the way from --from, else from `last_pose`. Those that add nothing are not
-/// among them. Throws Error(invalid_argument), naming the file and the line, for costs that are not
-/// one a pose, and as begin_of_ways().
+/// At most `top` candidates ranked together (rank_views()), or the first views of a plan
+/// (plan_views()), without views of no gain. Each has its marginal gain, and that minus --costs and
+/// --cost-per-metre of the path from --from, else from `last_pose`. Throws Error(invalid_argument),
+/// naming the file and the line, if there is not one cost per pose, and like begin_of_ways().
 [[nodiscard]] NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
                                    const ProposalOptions& options,
                                    const std::optional<Pose>& last_pose, std::size_t top,
                                    bool quiet);
 
-/// All candidates, each by itself and scored in full, best first by its gain less its cost. Throws
-/// as best_views().
+/// All candidates, each scored alone and in full, best first by gain minus cost. Throws like
+/// best_views().
 [[nodiscard]] NextViews all_views(const GainEvaluator& evaluator, const Proposal& proposal,
                                   const ProposalOptions& options,
                                   const std::optional<Pose>& last_pose, bool quiet);

@@ -13,34 +13,34 @@
 
 namespace viewgain::app {
 
-/// What a run has decided, kept in its folder from view to view, so that one that was ended goes on
-/// without deciding again: to map and surface the same poses lead again.
+/// The decisions of a run, stored in its folder after each view. A resumed run repeats the poses
+/// without deciding again, and gets the same map and surface.
 class Checkpoint {
  public:
-  /// `head`: all that the run's bytes depend on. With `resume` goes on with the folder's last
-  /// checkpoint, if there is one. Throws Error, naming its file: format for what is none or of a
-  /// newer program, invalid_argument for that of another run, io.
+  /// `head`: everything that affects the run's results. With `resume`, continues from the folder's
+  /// last checkpoint, if there is one. Throws Error naming the file: format if it is invalid or
+  /// from a newer program, invalid_argument if it belongs to another run, or io.
   Checkpoint(RunFolder& folder, const Json& head, bool resume);
 
-  /// After view `index`, where it is known.
+  /// The decision after view `index`, if known.
   [[nodiscard]] std::optional<DecisionMaking::Decision> decision(std::size_t index) const;
 
-  /// To be called once a view, in order, with the hash of the map after it. Writes what was decided
-  /// where that is new. Throws Error(io), and Error(invalid_argument) where the run that was ended
-  /// had another map then.
+  /// Call it once per view, in order, with the hash of the map after the view. Writes a new
+  /// decision. Throws Error(io), and Error(invalid_argument) if the interrupted run had another map
+  /// at that view.
   void add_view(const ViewRecord& record, const std::string& map_hash);
 
  private:
   RunFolder& folder_;
-  std::string file_;  // that it goes on with
+  std::string file_;  // file of the resumed checkpoint
   Json json_;
 };
 
-/// Known decisions, then another's.
+/// Returns known decisions first, then those of another decision maker.
 class ResumedDecision : public DecisionMaking {
  public:
-  /// Keeps all by reference. `remembers`: the other must be asked each time, as its next decision
-  /// depends on it.
+  /// Keeps references. `remembers`: asks the other each time, because its next decision depends on
+  /// the earlier ones.
   ResumedDecision(const Checkpoint& known, DecisionMaking& other, bool remembers)
       : known_(known), other_(other), remembers_(remembers) {}
   std::optional<Decision> decide(const Pose& T_world_camera,

@@ -32,7 +32,7 @@
 namespace viewgain::app {
 namespace {
 
-// By the gain that the policy ranks by, else the paper's.
+// Evaluator of the policy's gain, else of the paper's.
 GainEvaluator step_evaluator(const SurfaceModel& model, const RunSetup& setup,
                              const ExecConfig& exec) {
   GainConfig gain;
@@ -46,7 +46,7 @@ void add_to(StageSeconds& totals, const StageSeconds& seconds) {
   for (const auto& [stage, value] : seconds) totals[stage] += value;
 }
 
-// What a run leaves beside what it wrote after each view. Returns what run.json holds.
+// Writes the final results of a run. Returns the contents of run.json.
 Json write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t seed,
                    const SurfaceModel& model, const std::vector<Pose>& views, const Json& report) {
   save_vdb(model.grid(), folder.file("map.vdb"));
@@ -60,7 +60,7 @@ Json write_results(const RunFolder& folder, const RunSetup& setup, std::uint64_t
   return run;
 }
 
-// What the next view was chosen among; no file where nothing was proposed.
+// Writes the candidates for the next view; no file if there are none.
 void write_candidates(const std::filesystem::path& path, const std::vector<Candidate>& candidates) {
   std::vector<Pose> poses;
   for (const Candidate& candidate : candidates) poses.push_back(candidate.T_world_camera);
@@ -73,7 +73,7 @@ std::string run_title(const ReconstructOptions& options, const RunSetup& setup) 
 
 void warn_of_workspace(const Stage& stage) {
   const Box object = bounds_of(stage.scene->mesh());
-  double share = 1;  // of the object's box
+  double share = 1;  // relative to the object's box
   for (std::size_t a = 0; a < 3; ++a) {
     const double side = object.max[a] - object.min[a];
     const double inside = std::min(object.max[a], stage.workspace.max[a]) -

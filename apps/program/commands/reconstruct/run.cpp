@@ -18,7 +18,7 @@
 namespace viewgain::app {
 namespace {
 
-// A distance [m] from the centre at which nothing of an object of this size is.
+// A distance from the centre [m] that is outside an object of this size.
 double outside(double size) { return 1.1 * 0.5 * std::sqrt(3.0) * size; }
 
 Pose start_pose(const ReconstructOptions& options, const Stage& stage, double distance,
@@ -45,20 +45,20 @@ void check_voxel(const ReconstructOptions& options, const Stage& stage) {
          " m (--size)");
 }
 
-// Most meshes that are far too large are in millimetres.
+// A mesh that is far too large is usually in millimetres.
 void check_size(const RunSetup& setup) {
-  constexpr double kTooLarge = 10;  // times what the sensor sees
+  constexpr double kTooLarge = 10;  // relative to the sensor's range
   if (setup.stage.size <= kTooLarge * setup.sensor.max_range) return;
   refuse("the object's longest side is " + short_text(setup.stage.size) +
          " m, but the sensor's range ends at " + short_text(setup.sensor.max_range) +
          " m. Is the mesh in millimetres? (--size)");
 }
 
-// An obstacle where the run is to start.
+// Refuses an obstacle at the start of the run.
 void check_start(const ReconstructOptions& options, const RunSetup& setup, const ExecConfig& exec) {
   if (options.obstacles.empty()) return;
   const BeliefGrid grid(setup.model.map.grid());
-  // The obstacles alone: at the table the camera may start.
+  // Only the obstacles, because the camera may start at the table.
   const FeasibilityChecker checker(VoxelScene::build(grid, {setup.model.map.obstacles}, exec),
                                    feasibility_of(setup.sensor));
   if (checker.check(setup.start) != Infeasibility::obstacle) return;
@@ -83,7 +83,7 @@ SurfaceModelConfig model_config(const ReconstructOptions& options, const Stage& 
   return model;
 }
 
-// The obstacles as the simulated camera meets them.
+// The obstacles for the simulated camera.
 std::shared_ptr<const SurfaceScene> surroundings_of(const Obstacles& obstacles,
                                                     const ExecConfig& exec) {
   TriangleMesh mesh = mesh_of(obstacles);
@@ -108,7 +108,7 @@ std::vector<std::string> generators(const ReconstructOptions& options, Policy po
 GenerationConfig generation_config(const ReconstructOptions& options, const RunSetup& setup) {
   GenerationConfig config = default_generation(setup.sensor, options.voxel);
   config.at_boundaries = false;
-  // His choice is by class alone.
+  // Kriegel's rule chooses by class alone.
   config.boundary.classes_by_sight = setup.policy.policy == Policy::kriegel;
   const bool spread_out = setup.policy.policy == Policy::fibonacci;
   PoseSetRequest request{setup.stage.center,   setup.distance, options.count,
@@ -146,8 +146,8 @@ StageConfig stage_config(const ReconstructOptions& options) {
   return config;
 }
 
-// What can change the answer, for run.json: what was given, or what the run made of it. Not in it:
-// threads and where results go.
+// Settings that can affect the results, for run.json, as given or as derived. Excludes threads and
+// output paths.
 Json settings_json(const ReconstructOptions& o, const RunSetup& setup) {
   Json generators = Json::array();
   if (setup.generation.at_boundaries) generators.push_back("boundary");

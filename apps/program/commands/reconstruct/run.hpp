@@ -22,44 +22,43 @@
 
 namespace viewgain::app {
 
-/// What the flags of a run come to.
+/// The set-up of a run from its flags.
 struct RunSetup {
   Sensor sensor;
   ReachRegion reach{};
   Stage stage{};
-  double distance = 0;  ///< of the start and of sets of poses from the object's centre [m]
+  double distance = 0;  ///< distance of the start and of pose sets from the object's centre [m]
   Pose start;
   VisibilityConfig visibility{};
   SimulationConfig simulation{};
   SimulatedNoise noise{};
-  /// Of reported poses, by which frames are registered; its pose says nothing. None: they are not.
+  /// Uncertainty of reported poses, if frames are registered.
   std::optional<PoseSigma> registration{};
   SurfaceModelConfig model{};
   GenerationConfig generation{};
   PolicyConfig policy{};
   PlanningConfig planning{};
-  Json settings;  ///< of run.json
+  Json settings;  ///< settings in run.json
 };
 
-/// How the options say that views are chosen; of the oracle without its object. Throws Error.
+/// The policy of the options; for the oracle without the object. Throws Error.
 [[nodiscard]] PolicyConfig policy_config(const ReconstructOptions& options);
 
 /// Reads the files that the options name and checks everything. Throws Error.
 [[nodiscard]] RunSetup set_up(const ReconstructOptions& options, const ExecConfig& exec);
 
-/// The parts of Algorithm 1 on a mesh, wired up as a run's flags say. For one run.
+/// The parts of Algorithm 1 on a mesh, for one run.
 struct RunParts {
-  /// Finds which samples of the mesh are visible, which takes some tenths of a second. Throws
-  /// Error.
+  /// Determines the visible samples of the mesh, which takes some tenths of a second. Throws Error.
   RunParts(RunSetup from, std::size_t frames_per_view, const ExecConfig& exec);
   RunParts(const RunParts&) = delete;
   RunParts& operator=(const RunParts&) = delete;
 
-  /// What takes the measurements: the model, or what registers them first.
+  /// The model, or the registered model if frames are registered.
   [[nodiscard]] RepresentationUpdate& representation() {
     return registered ? static_cast<RepresentationUpdate&>(*registered) : model;
   }
-  /// What registration did to each view; empty without it.
+  /// Registration of each view; empty without registration.
   [[nodiscard]] std::vector<FrameRegistration> registrations() const {
     return registered ? registered->registrations() : std::vector<FrameRegistration>{};
   }
@@ -67,7 +66,7 @@ struct RunParts {
   RunSetup setup;
   std::shared_ptr<const Truth> truth;
   SimulatedAcquisition camera;
-  MisreportedAcquisition acquisition;  ///< the camera's, at the poses that it reports
+  MisreportedAcquisition acquisition;  ///< the camera with its reported poses
   SurfaceModel model;
   std::optional<RegisteredModel> registered;
   CandidateGeneration generation;

@@ -16,11 +16,11 @@
 
 namespace viewgain::app {
 
-/// What a run leaves, of a mesh or of frames.
+/// Output options of a run on a mesh or on frames.
 struct RunOutputs {
   std::string save_maps = "off";
   std::string pictures = "on";
-  std::string report = "off";  ///< on, or another run to show beside it
+  std::string report = "off";  ///< on, off, or another run to show next to this one
   bool resume = false;
   std::string out;
 
@@ -72,10 +72,10 @@ struct ReconstructOptions {
   }
 };
 
-/// Declares the flags, with o's values as defaults.
+/// Adds the flags, with o's values as defaults.
 void add_options(App& app, ReconstructOptions& o);
 
-/// Throws Error(invalid_argument), naming the flag, for numbers that no run on a mesh can have.
+/// Throws Error(invalid_argument), naming the flag, for invalid numbers.
 void check(const ReconstructOptions& options);
 
 }  // namespace viewgain::app

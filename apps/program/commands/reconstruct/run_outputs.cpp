@@ -26,7 +26,7 @@
 namespace viewgain::app {
 namespace {
 
-// The figures that both a view and the whole run have.
+// Values that both a view and the whole run have.
 void put_figures(Json& json, const QualityFigures& quality, const ModelProgress& progress) {
   json.update(quality_json(quality, "coverage_visible"));
   json["entropy_removed"] = progress.entropy_removed;
@@ -45,14 +45,14 @@ std::size_t total(const std::map<std::string, std::size_t>& counts) {
 StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPage& page,
                        const ShownStep& step, const ExecConfig& exec) {
   StageSeconds seconds;
-  // One that the run has drawn before it was ended is there.
+  // A resumed run keeps pictures that already exist.
   std::filesystem::path file;
   if (outputs.with_pictures()) file = folder.view(step.record.index, ".png");
   std::error_code ignored;
   if (!outputs.with_report() && std::filesystem::exists(file, ignored)) return seconds;
   Stopwatch watch;
   const Proposal& proposal = step.record.proposal;
-  // Without a proposal those that the generation holds are of a surface before.
+  // Without a proposal, the generation's boundaries are from an earlier surface.
   const bool is_proposed = !proposal.candidates.empty() || !proposal.dropped.empty();
   const EstimatedViews estimated = is_proposed ? step.generation.estimated() : EstimatedViews{};
   std::vector<VoxelContribution> contributions;
@@ -158,7 +158,7 @@ Json quality_json(const QualityFigures& quality, const char* visible) {
 
 RunReport::RunReport(const PolicyConfig& policy, double tolerance)
     : entropy_unit_(gain_unit(GainModel::paper, policy.criterion)), tolerance_(tolerance) {
-  gain_unit_ = entropy_unit_;  // what a policy without a gain foretells is the paper's
+  gain_unit_ = entropy_unit_;  // a policy without a gain predicts the paper's gain
   if (policy.policy != Policy::gain) return;
   if (!policy.registered.empty()) {
     ranked_by_ = policy.registered;
@@ -215,7 +215,7 @@ Json RunReport::entry_json(std::size_t index) const {
   json["class"] =
       of_boundary ? Json(boundary_class_name(*e.record.chosen_as->boundary_class)) : Json();
   json["generator"] = chosen ? Json(e.record.chosen_as->generator) : Json("start");
-  // The proposal that this view was chosen from came after the view before it.
+  // This view was chosen from the proposal after the previous view.
   const Proposal empty;
   const Proposal& from = index > 0 ? views_[index - 1].record.proposal : empty;
   json["candidates"] = from.candidates.size();
@@ -226,7 +226,7 @@ Json RunReport::entry_json(std::size_t index) const {
   json["realised_area"] = e.record.progress.new_area;
   json["true_new_area"] =
       e.quality.covered_area - (index > 0 ? views_[index - 1].quality.covered_area : 0.0);
-  // What the stopping rules look at: the best view there is now.
+  // Values of the best current view, which the stopping rules use.
   json["next_gain_per_voxel"] =
       e.record.decision ? Json(e.record.decision->gain_per_voxel) : Json();
   json["next_area"] = e.record.decision ? Json(e.record.decision->best_area) : Json();

@@ -21,7 +21,7 @@
 
 namespace viewgain::app {
 
-/// A step of a run as it is to be shown. `evaluator` is of the model's scene.
+/// A step of a run for pictures. `evaluator` must be that of the model's scene.
 struct ShownStep {
   const ViewRecord& record;
   const SurfaceModel& model;
@@ -30,69 +30,67 @@ struct ShownStep {
   const Sensor& sensor;
 };
 
-/// Draws a step into views/NN.png and puts it onto the page, as the outputs ask; boundaries and
-/// candidates where it has a proposal. Returns what `pictures` and `report` took. Throws as
-/// view_picture() and write_png().
+/// Draws a step to views/NN.png and adds it to the page, according to the outputs; with boundaries
+/// and candidates if there is a proposal. Returns the duration of `pictures` and `report`. Throws
+/// like view_picture() and write_png().
 StageSeconds show_step(const RunOutputs& outputs, const RunFolder& folder, RunPage& page,
                        const ShownStep& step, const ExecConfig& exec);
 
-/// `settings` and `versions`, with which run.json begins.
+/// `settings` and `versions`, the first keys of run.json.
 [[nodiscard]] Json run_head(const Json& settings);
 
-/// What a run that goes on must have as the one that was ended, so that their bytes are the same:
-/// run_head(), the instruction set, all `flags` of the parsed call but kSameBytes, and the `files`
-/// that they name.
+/// What must be equal for a run to be resumed with identical results: run_head(), the instruction
+/// set, all `flags` of the parsed call except kSameBytes, and the `files` that they name.
 [[nodiscard]] Json checkpoint_head(const Json& settings, const App& app);
 
-/// Keys of flags that may differ: where the run is written, how fast, what is shown of it, and what
-/// is made at its end alone.
+/// Keys of flags that may differ: output folder, speed, display, and what is made only at the end.
 inline const std::vector<std::string> kSameBytes{"out",   "resume", "threads", "trace",
                                                  "quiet", "json",   "report"};
 
-/// What the page shows of the run that --report names: its name, settings and views; null without
-/// one. Throws Error(io) and Error(format), naming the file.
+/// Data of the run that --report names, for the page: name, settings and views; null without one.
+/// Throws Error(io) and Error(format), naming the file.
 [[nodiscard]] Json beside_json(const RunOutputs& outputs);
 
-/// What the run of beside_json() came to, and which of its settings are others than `own`, for
-/// people; empty for null.
+/// Text about the results of the run of beside_json(), and its settings that differ from `own`;
+/// empty for null.
 [[nodiscard]] std::string beside_text(const Json& beside, const Json& own);
 
-/// Writes the flags of the call into config.toml, for --config, and puts the folder in its place;
-/// `run` is what run.json holds.
+/// Writes the flags of the call to config.toml, for --config, and run.json with the contents `run`,
+/// and commits the folder.
 void commit(RunFolder& folder, const Json& run, const App& app);
 
-/// Says where the run lies; `files` are those that every such run leaves.
+/// Prints where the results are; `files` are those that every such run writes.
 void print_left(const RunOutputs& outputs, const char* files);
 
-/// How far a surface and its points are from the truth, by the keys of run.json; `visible` is the
-/// key of the share of visible samples.
+/// Quality of a surface and its points relative to the reference mesh, with the keys of run.json.
+/// `visible` is the key for the coverage of visible samples.
 [[nodiscard]] Json quality_json(const QualityFigures& quality, const char* visible);
 
-/// What a run came to, for run.json, --json and people. apps/docs/reference/json.md names the keys.
+/// Results of a run, for run.json, --json and the terminal. apps/docs/reference/json.md lists the
+/// keys.
 class RunReport {
  public:
-  /// `tolerance`: of coverage [m].
+  /// `tolerance` is that of coverage [m].
   RunReport(const PolicyConfig& policy, double tolerance);
 
-  /// To be called once a view, in order. `seconds` are the totals so far.
+  /// Call it once per view, in order. `seconds` are the totals so far.
   void add_view(const ViewRecord& record, const QualityFigures& quality,
                 const StageSeconds& seconds);
 
   /// One line about the last view.
   [[nodiscard]] std::string progress_line() const;
 
-  /// What registration did to each view, in the end; empty without it.
+  /// Final registration of each view; empty without registration.
   void set_registrations(std::vector<FrameRegistration> registrations);
 
   /// The keys of `reconstruct --json`.
   [[nodiscard]] Json json(StopReason reason) const;
 
-  /// The same for people.
+  /// The same as text.
   [[nodiscard]] std::string text(StopReason reason) const;
 
  private:
-  /// The latest one that was asked for; a run that ends by its budget asks for none after its last
-  /// view.
+  /// The last proposal. A run that uses up its budget of views makes none after the last view.
   [[nodiscard]] const Proposal& last_proposal() const;
   struct Entry {
     ViewRecord record;
@@ -101,7 +99,7 @@ class RunReport {
   };
   [[nodiscard]] Json entry_json(std::size_t index) const;
 
-  std::string ranked_by_;  ///< the gain; empty: the policy ranks by another thing
+  std::string ranked_by_;  ///< name of the gain; empty if the policy does not rank by a gain
   std::string_view gain_unit_, entropy_unit_;
   double tolerance_;  ///< of coverage [m]
   std::vector<Entry> views_;

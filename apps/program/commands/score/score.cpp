@@ -59,7 +59,7 @@ GainConfig gain_config(const Options& options) {
     refuse("--criterion " + options.criterion + " requires --gain paper, not " + options.gain);
   }
   config.criterion = parse_criterion(options.criterion);
-  config.posterior_entropy = true;  // a column of what is written
+  config.posterior_entropy = true;  // a column of the output
   config.prior_sigma = options.prior_sigma;
   for (const std::string& text : options.weights) {
     const std::vector<double> numbers = parse_numbers("--weight", text, 7, 7);
@@ -76,7 +76,7 @@ std::shared_ptr<const VoxelScene> scene_of(const Options& options, const BeliefG
   return VoxelScene::build(grid, {obstacles, options.support_plane}, exec, hazard);
 }
 
-// The poses that are to be scored: all, those in reach, or those that are possible.
+// The poses to score: all, those in reach, or the feasible ones.
 FeasiblePoses candidates_of(const Options& options, const PoseSource& source, const Sensor& sensor,
                             const BeliefGrid& grid, const std::shared_ptr<const VoxelScene>& scene,
                             const ExecConfig& exec) {
@@ -97,7 +97,7 @@ void check_left(const FeasiblePoses& candidates) {
   refuse("no pose is left to score; dropped: " + counts_text(candidates.dropped));
 }
 
-// What the poses cost, whichever of them are possible.
+// Costs of the poses, feasible or not.
 std::vector<double> costs_of(const Options& options, const PoseSource& source,
                              const BeliefGrid& grid) {
   std::vector<double> costs;
@@ -107,7 +107,7 @@ std::vector<double> costs_of(const Options& options, const PoseSource& source,
                                    .current_pose = begin_of_ways(options.costs, last_view(grid))});
 }
 
-// Calls work(control), which shows how far it is. Returns how long it took [s].
+// Calls work(control) with a progress display. Returns its duration [s].
 template <typename Work>
 double timed(const Options& options, const Work& work) {
   Progress progress("pose", options.common.quiet);
@@ -120,7 +120,7 @@ double timed(const Options& options, const Work& work) {
   return watch.seconds();
 }
 
-// The gains less the costs, where there are any.
+// Ranks by gain minus cost, if there are costs.
 std::vector<std::size_t> best_by_worth(std::vector<ViewGain> gains,
                                        const std::vector<double>& costs, std::size_t k) {
   for (std::size_t i = 0; i < costs.size(); ++i) gains[i].gain -= costs[i];
@@ -183,8 +183,8 @@ Scores estimated(const ScoreOptions& options, const GainEvaluator& evaluator,
   return scores;
 }
 
-/// Scores the poses in the way that the flags ask for. `costs`: one a pose, subtracted from the
-/// gains that rank; empty: none. Indices are those of `poses`.
+/// Scores the poses according to the flags. `costs`: one per pose, subtracted from the gains for
+/// ranking; empty: none. Indices are those of `poses`.
 Scores make_scores(const ScoreOptions& options, const GainEvaluator& evaluator,
                    const std::vector<Pose>& poses, const std::vector<double>& costs,
                    const BatchControl& control) {
@@ -194,7 +194,7 @@ Scores make_scores(const ScoreOptions& options, const GainEvaluator& evaluator,
   return scored(options, evaluator, poses, costs, control);
 }
 
-// Numbers of the candidates become rows of the poses that were given.
+// Converts indices of candidates to rows of the given poses.
 void name_by_input(Scores& scores, const FeasiblePoses& candidates) {
   const auto name = [&](std::vector<std::size_t>& indices) {
     for (std::size_t& i : indices) i = candidates.numbers[i];
@@ -206,7 +206,7 @@ void name_by_input(Scores& scores, const FeasiblePoses& candidates) {
   scores.dropped = candidates.dropped;
 }
 
-// What is not known yet must not count as surer than what a reading would say.
+// Warns if unknown voxels would count as more certain than a reading.
 void warn_of_prior(const GainEvaluator& evaluator, const Sensor& sensor) {
   const double axial = sensor.sigmas(sensor.working_distance).axial;
   if (evaluator.prior_sigma() >= axial) return;
@@ -267,7 +267,7 @@ void score(const Options& options) {
   const GainEvaluator evaluator(scene, sensor, config, exec);
   FeasiblePoses candidates = candidates_of(options, source, sensor, grid, scene, exec);
   check_left(candidates);
-  std::vector<double> costs;  // of the candidates
+  std::vector<double> costs;  // costs of the candidates
   for (const std::size_t i : candidates.numbers) {
     if (!source.costs.empty()) costs.push_back(source.costs[i]);
   }

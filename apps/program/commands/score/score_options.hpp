@@ -31,9 +31,9 @@ struct ScoreOptions {
   CostOptions costs;
   std::size_t top = 10;
   bool race = false;
-  std::optional<double> deadline;     // of the race [s]
-  std::optional<double> approximate;  // share of the rays
-  std::optional<std::size_t> set;     // how many
+  std::optional<double> deadline;     // time limit of the race [s]
+  std::optional<double> approximate;  // fraction of the rays
+  std::optional<std::size_t> set;     // number of views in a set
   std::uint64_t seed = 1;
   std::string out;
   std::string picture;

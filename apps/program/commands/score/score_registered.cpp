@@ -17,7 +17,7 @@
 namespace viewgain::app {
 namespace {
 
-// What there is no such thing of for these gains.
+// Refuses flags that these gains do not support.
 void check_flags(const ScoreOptions& options) {
   const std::array<std::pair<const char*, bool>, 10> given{
       {{"--race", options.race},

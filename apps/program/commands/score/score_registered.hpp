@@ -15,13 +15,12 @@
 
 namespace viewgain::app {
 
-/// The registered gains of --gain NAME[,NAME...]; nothing where it names one of score's own. Throws
-/// Error(invalid_argument) for names of both kinds, several of its own, or flags that do not go
-/// with them.
+/// The registered gains of --gain NAME[,NAME...]; empty if it names a GainModel. Throws
+/// Error(invalid_argument) for names of both kinds, several models, or incompatible flags.
 [[nodiscard]] std::optional<std::vector<std::string>> registered_gains_of(
     const ScoreOptions& options);
 
-/// Candidates by registered gains, ranked by the first, and what was asked for.
+/// Scores of candidates with registered gains, ranked by the first gain.
 struct RegisteredScores {
   const BeliefGrid& grid;
   const Sensor& sensor;
@@ -30,19 +29,19 @@ struct RegisteredScores {
   const std::vector<std::string>& names;
   std::size_t rays_per_pose = 0;
   int threads = 0;
-  std::vector<std::size_t> numbers;            ///< of each candidate among the poses given
+  std::vector<std::size_t> numbers;            ///< index of each candidate in the given poses
   std::map<std::string, std::size_t> dropped;  ///< the others: reason -> count
-  std::vector<double> gains{};                 ///< as FamilyEvaluator::evaluate
+  std::vector<double> gains{};                 ///< as from FamilyEvaluator::evaluate()
   std::vector<ViewGain::Status> statuses{};
   double seconds = 0;
 
   /// Candidates, best first: ties to the lower number, NaN last; at most `top`.
   [[nodiscard]] std::vector<std::size_t> best(std::size_t top) const;
-  /// The rows of the file of `score --out`: index, a column for each gain, status.
+  /// Rows of the file of `score --out`: index, one column per gain, status.
   [[nodiscard]] Table table() const;
-  /// One JSON object; apps/docs/reference/json.md names the keys.
+  /// Prints one JSON object; apps/docs/reference/json.md lists the keys.
   void print_json(std::size_t top) const;
-  /// For people.
+  /// Prints a table for a terminal.
   void print_table(std::size_t top) const;
 };
 

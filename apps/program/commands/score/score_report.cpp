@@ -16,7 +16,7 @@
 namespace viewgain::app {
 namespace {
 
-// Null where the model counts no such voxels.
+// Null if the model does not count such voxels.
 Json unknown_voxels(const ViewGain& view, GainModel model) {
   return model == GainModel::paper ? Json(view.unknown_voxels) : Json();
 }
@@ -100,7 +100,7 @@ Json entries(const Estimates& estimates, const PoseSource& poses) {
   return list;
 }
 
-// What a gain has not, the columns do not show.
+// Prints only the columns that the gain has.
 void print_rows(const ScoredViews& views, const PoseSource& poses, GainModel model) {
   const bool by_paper = model == GainModel::paper, refines = model == GainModel::combined;
   const bool has_costs = !poses.costs.empty();
@@ -142,8 +142,8 @@ void print_rows(const Estimates& estimates, const PoseSource& poses) {
   }
 }
 
-// Poses that a gain is known of, by some of their rays or by all; fewer than there are where a
-// deadline ended the call.
+// Number of poses with a known gain, from some or all of their rays. A deadline can leave poses
+// without one.
 std::size_t looked_at(const Scores& scores) {
   return scores.set_gain ? scores.candidates
                          : std::max(scores.estimated, scores.scored.gains.size());

@@ -19,41 +19,41 @@ namespace viewgain::app {
 
 /// Some of the poses, each with its gain.
 struct ScoredViews {
-  std::vector<std::size_t> indices;  ///< of the poses
-  std::vector<ViewGain> gains;       ///< of those
+  std::vector<std::size_t> indices;  ///< indices of the poses
+  std::vector<ViewGain> gains;       ///< gains of these poses
 };
 
-/// Gains from a share of the rays.
+/// Gains from a fraction of the rays.
 struct Estimates {
-  std::vector<ApproximateGain> gains;  ///< of all candidates
-  std::vector<std::size_t> indices;    ///< of the pose of each gain
-  std::vector<std::size_t> best;       ///< of the gains, best first
+  std::vector<ApproximateGain> gains;  ///< estimates for all candidates
+  std::vector<std::size_t> indices;    ///< index of the pose of each gain
+  std::vector<std::size_t> best;       ///< indices of the gains, best first
 };
 
-/// What scoring came to, by the way that was asked for.
+/// Results of scoring in the requested way.
 struct Scores {
-  ScoredViews scored{};                  ///< with all their rays, in input order or in the set's
-  ScoredViews best{};                    ///< best first, or the set
-  std::optional<double> set_gain{};      ///< of views that are good together: of all
+  ScoredViews scored{};              ///< scored with all rays, in input order or in the set's order
+  ScoredViews best{};                ///< best first, or the set
+  std::optional<double> set_gain{};  ///< gain of the whole set
   double set_gain_by_best_alone = 0;     ///< ViewSet::gain_by_best_alone
-  std::optional<Estimates> estimates{};  ///< instead of both
+  std::optional<Estimates> estimates{};  ///< estimates, instead of both
   std::uint64_t rays_traced = 0;
-  std::size_t estimated = 0;                     ///< poses that a race scored by some rays
-  std::size_t candidates = 0;                    ///< poses that were not dropped
-  std::map<std::string, std::size_t> dropped{};  ///< the others: reason -> count
+  std::size_t estimated = 0;   ///< number of poses that a race scored with some rays
+  std::size_t candidates = 0;  ///< number of poses that were not dropped
+  std::map<std::string, std::size_t> dropped{};  ///< dropped poses: reason -> count
 
-  /// Index of the best pose; nothing if none was to be printed.
+  /// Index of the best pose, if it is printed.
   [[nodiscard]] std::optional<std::size_t> winner() const;
 };
 
-/// The rows of the file of `score --out`; apps/docs/reference/json.md names the columns.
+/// Rows of the file of `score --out`; apps/docs/reference/json.md lists the columns.
 [[nodiscard]] Table table_of(const Scores& scores, GainModel model);
 
-/// Rows that begin with index and gain, each with its pose behind it and, where poses have costs,
-/// its worth before its gain, so that this ranks.
+/// Rows that begin with index and gain, extended by the pose. If poses have costs, gain minus cost
+/// is inserted before the gain, so that it determines the ranking.
 [[nodiscard]] Table with_poses(const Table& table, const PoseSource& source);
 
-/// What was asked and what came out, for the two ways of printing.
+/// Request and results, for printing.
 struct ScoreReport {
   GainModel model;
   const std::string& criterion;

@@ -19,7 +19,7 @@ void warn_of_set_up(const ScoreOptions& options, const Obstacles& obstacles, con
   if (!options.body.empty()) sensor.body_size = parse_size("--body", options.body);
   try {
     sensor.validate();
-  } catch (const Error&) {  // whoever scores refuses it by name
+  } catch (const Error&) {  // scoring reports the error with its name
     return;
   }
   app::warn_of_set_up({.sensor = sensor,

@@ -8,7 +8,8 @@
 
 namespace viewgain::app {
 
-/// Warns of numbers that are allowed and seldom meant (suspect_set_up.hpp); `sensor` is the map's.
+/// Warns of values that are valid but rarely intended (suspect_set_up.hpp). `sensor` is that of the
+/// map.
 void warn_of_set_up(const ScoreOptions& options, const Obstacles& obstacles, const BeliefGrid& grid,
                     Sensor sensor);
 

@@ -48,7 +48,7 @@ std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_s
   GridConfig config;
   config.voxel_size = voxel_size;
   config.prior_sigma = prior_of(prior_sigma, sensor.value, voxel_size);
-  // The lattice goes through the corner of the array, wherever that is.
+  // The corner of the array is on the lattice.
   config.T_world_grid = T_world_grid.is_none()
                             ? Pose(Eigen::Matrix3d::Identity(), vector3(origin, "origin"))
                             : one_pose(T_world_grid, "T_world_grid");
@@ -57,7 +57,7 @@ std::shared_ptr<SharedGrid> from_labels(const py::object& labels, double voxel_s
     config.workspace.max[axis] =
         static_cast<double>(any.shape(static_cast<py::ssize_t>(axis))) * voxel_size;
   }
-  static_cast<void>(BeliefGrid(config));  // throws before what no grid can hold is copied
+  static_cast<void>(BeliefGrid(config));  // throws before a copy that is too large
   require_states(any);
   const Labels array(any);
   const std::span states(array.data(), static_cast<std::size_t>(array.size()));
@@ -145,9 +145,9 @@ void bind_grid(py::module_& module) {
       module, "BeliefGrid",
       R"(The state of a workspace, voxel by voxel.
 
-Voxel (i, j, k) is [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid frame. A new grid
-is unknown everywhere and takes little memory. Grids are equal if their ``content_hash()`` is, and
-can be pickled.
+Voxel (i, j, k) covers [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid frame. A new
+grid is unknown everywhere and takes little memory. Two grids are equal if their ``content_hash()``
+is equal. Grids can be pickled.
 
 Parameters
 ----------
@@ -166,9 +166,9 @@ T_world_grid : array_like, (4, 4), optional
 
 Notes
 -----
-Methods release the GIL. Python threads may share a grid: many read it at once, one changes it, and
-they wait for each other. Cost: linear in the returned or changed voxels, some ms for 128**3 voxels
-with 40,000 occupied ones; properties take constant time.)");
+Methods release the GIL. Python threads may share a grid: several may read it at once, and a thread
+that changes it waits until it is alone. Cost: linear in the returned or changed voxels, some ms for
+128**3 voxels with 40,000 occupied ones; properties take constant time.)");
   bind_grid_files(grid_class);
   bind_voxels(grid_class);
   grid_class
@@ -204,7 +204,8 @@ T_world_grid : array_like, (4, 4), optional
 prior_sigma : float, optional
     Standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional
-    As for a new grid; one of the two is required. It becomes the map's ``sensor`` only with frames.
+    As for a new grid; sensor or prior_sigma is required. The map's property ``sensor`` is set only
+    by frames.
 
 Returns
 -------
@@ -254,13 +255,13 @@ ndarray, (nx, ny, nz), uint8
       .def("update_box", &update_box, "first"_a, "labels"_a,
            R"(Sets the voxels of a box from labels, for planners with their own growing map.
 
-Voxels that already have the state keep log-odds and belief; others lose their belief. Cost: linear
-in the labels.
+Voxels that already have the state keep their log-odds and belief; the others lose their belief.
+Cost: linear in the labels.
 
 Parameters
 ----------
 first : array_like, (3,), whole numbers
-    Lowest voxel of the box, on the lattice; ``min_index`` for a box at the origin of arrays.
+    Lowest voxel of the box, on the lattice; ``min_index`` for a box at index (0, 0, 0) of arrays.
 labels : array_like, (nx, ny, nz), whole numbers
     0 unknown, 1 free, 2 occupied, as in ``from_labels``.
 
@@ -293,22 +294,23 @@ ndarray, (n, 4, 4), float64
           },
           R"(ndarray, (8,), float64: factors of the hazard of unknown space, learnt from frames.
 
-One per class of distance from known surface, nearest first; they multiply the start values, before
-rates are made to decrease with distance. Ones until ``FrameIntegrator.calibrate_hazard`` is called.)")
+The hazard is the rate at which a ray meets the surface in unknown voxels. There is one factor per
+class of distance from known surface, nearest first; it multiplies the rate of the model. All are 1
+until ``FrameIntegrator.calibrate_hazard`` is called.)")
       .def(
           "beliefs",
           [](const SharedGrid& grid) {
             const auto rows = grid.read(belief_rows);
             return to_array_1d<BeliefRow>(rows);
           },
-          R"(Accumulated readings of the voxels that were ever hit.
+          R"(Sums over the readings (measured depths) of each voxel that was ever hit.
 
 Returns
 -------
 ndarray, (n,), structured
-    voxel (int32, 3; on the lattice, subtract ``min_index`` for arrays), hits (a count), information
-    (float32, 6: xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3 [1/m], about the
-    voxel's centre).)")
+    Fields: voxel (int32, 3; on the lattice, subtract ``min_index`` for arrays), hits (number of
+    readings), information (float32, 6: xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3
+    [1/m], relative to the voxel's centre).)")
       .def("points", &points_of, py::kw_only(), "min_hits"_a = 2, "scale_sigma"_a = 0.0,
            "num_threads"_a = 0,
            R"(The surface points of the map.
@@ -318,24 +320,26 @@ Cost: some µs per voxel that was ever hit, 0.25 s for 40,000 occupied ones on t
 Parameters
 ----------
 min_hits : int
-    Omits points with fewer readings.
+    Omits points with fewer readings (measured depths).
 scale_sigma : float
-    The sensor's; adds the common scale error of a point's readings to its covariance.
+    The sensor's scale_sigma; adds the scale error that all readings of a point share to its
+    covariance.
 num_threads : int
     0: all hardware threads. Does not affect the result.
 
 Returns
 -------
 ndarray, (n,), structured
-    position (float64, 3, world frame [m]), covariance (float64, 6: xx yy zz xy xz yz [m**2]),
-    toward_free (float64, 3: unit normal towards free space, world frame), hits.)")
+    Fields: position (float64, 3, world frame [m]), covariance (float64, 6: xx yy zz xy xz yz
+    [m**2]), toward_free (float64, 3: unit normal towards free space, world frame), hits (number of
+    readings).)")
       .def("pooling_length", &pooling_length_of,
            R"(Spacing of the map's points. Cost: a snapshot.
 
 Returns
 -------
 float
-    The voxel size or the sensor's footprint, whichever is larger [m].)")
+    The voxel size or the footprint of a pixel on the surface, whichever is larger [m].)")
       .def("statistics", &statistics_of, "criterion"_a = "log_diagonal",
            R"(Voxel counts and progress.
 

@@ -26,7 +26,7 @@ namespace viewgain::python {
 
 namespace {
 
-/// A folder of this process alone, which goes with it.
+/// A private temporary folder, removed by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -49,7 +49,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-// OpenVDB's own streams know no seal, so bytes are those of a file.
+// OpenVDB's streams have no seal, so the bytes are those of a file.
 py::bytes bytes_of(const SharedGrid& grid) {
   return grid.read([](const BeliefGrid& g) {
     const TemporaryFolder folder;
@@ -79,7 +79,7 @@ void bind_grid_files(GridClass& grid_class) {
   // By name, so that pickles outlive the extension's own names.
   grid_class.def("__reduce_ex__", [](const py::object& self, int) {
     const py::type of_self = py::type::of(self), own = py::type::of<SharedGrid>();
-    if (!of_self.is(own)) {  // what a subclass adds is not ours to keep
+    if (!of_self.is(own)) {  // attributes of a subclass would be lost
       throw py::type_error("cannot pickle '" + of_self.attr("__name__").cast<std::string>() +
                            "' object: it is a subclass of BeliefGrid");
     }
@@ -149,8 +149,8 @@ BeliefGrid)")
           "sensor"_a = py::none(), "occupied_from"_a = py::none(),
           R"(Reads a map: a .vdb of ``save`` or the program viewgain, or OctoMap's .ot or .bt.
 
-An OctoMap keeps states and, in a .ot, log-odds. Runs without the GIL. Cost: 50 ms for a .vdb of
-4 MB, 20 ms for a tree of 128**3 voxels with 40,000 occupied ones.
+An OctoMap file has states and, for .ot, log-odds. Runs without the GIL. Cost: 50 ms for a .vdb of 4
+MB, 20 ms for a tree of 128**3 voxels with 40,000 occupied ones.
 
 Parameters
 ----------
@@ -161,7 +161,7 @@ workspace : array_like, (2, 3), optional
 prior_sigma : float, optional
     OctoMap: standard deviation of an unknown voxel's position [m].
 sensor : Sensor, optional
-    OctoMap: as for a new grid; this or prior_sigma is required.
+    OctoMap: as for a new grid; sensor or prior_sigma is required.
 occupied_from : float, optional
     OctoMap: log-odds above which a voxel of a .ot is occupied; default: 0.
 
@@ -177,8 +177,9 @@ BeliefGrid)")
           "path"_a, py::kw_only(), "with_covariance"_a = false,
           R"(Writes the map as an OpenVDB file, or as an OctoMap .ot. Atomic.
 
-A .ot only has states and log-odds, in the world frame if T_world_grid is a shift by whole voxels,
-otherwise in the grid frame. Cost: 80 ms for 128**3 voxels with 40,000 occupied ones, 4 MB.
+A .ot file has only states and log-odds. They are in the world frame if T_world_grid is a shift by
+whole voxels, otherwise in the grid frame. Cost: 80 ms for 128**3 voxels with 40,000 occupied ones,
+4 MB.
 
 Parameters
 ----------

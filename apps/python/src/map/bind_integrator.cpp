@@ -27,43 +27,46 @@
 namespace viewgain::python {
 namespace {
 
-// What the docstrings of both integrators have in common: parameters of the constructors.
+// Common parts of the docstrings of both integrators: parameters of the constructors.
 constexpr const char* kIntegratorSettings =
     R"(occupancy : {"probabilistic", "literal"}
-    Log-odds, changed once per voxel and call; or crossed -> free and hit -> occupied.
+    How states change: by log-odds, once per voxel and call, or literally: crossed voxels become
+    free and hit voxels occupied.
 support_plane : float, optional
-    Height z [m] of the table under the object; its readings mark free space but do not hit.
+    Height z [m] of the table under the object. Measured depths of the table mark free space, but
+    hit no voxel.
 coarsest : int
-    0 to 3: merges voxels into cells of up to 2**coarsest voxels per edge where a pixel covers them;
-    closer views refine them.
+    0 to 3: merges voxels into cells of up to 2**coarsest voxels per edge, no larger than a pixel on
+    the surface. Closer views refine the cells.
 fine : array_like, (n, 2, 3), optional
     Boxes in the grid frame [m] that keep single voxels.
 finest : int
-    Outside these boxes, cells have at least 2**finest voxels per edge; at most ``coarsest``.
+    Outside the boxes of ``fine``, cells have at least 2**finest voxels per edge; at most
+    ``coarsest``.
 num_threads : int
     0: all hardware threads. Does not affect the map.)";
 
-// What holds for the methods.
+// Notes for the methods.
 constexpr const char* kIntegratorNotes = R"(
 
 Notes
 -----
-One call at a time: others wait. Releases the GIL during integration. Maps are bit-identical for any
-number of threads.)";
+Concurrent calls wait for each other. Releases the GIL during integration. Maps are bit-identical
+for any number of threads.)";
 
-// What integrate() returns and raises.
+// Result and exceptions of integrate().
 constexpr const char* kIntegrateReturns =
     R"(Returns
 -------
 IntegrationReport
-    Counts: readings, plane_readings, out_of_range, invalid, readings_inside (of pixels or points),
-    voxels_hit, voxels_crossed.
+    Counts of pixels or points: readings, plane_readings, out_of_range, invalid, readings_inside.
+    Counts of voxels: voxels_hit, voxels_crossed.
 
 Raises
 ------
 ValueError
-    Also if all readings, or 19 in 20 unequal ones, are beyond 10 times max_range, as in
-    millimetres. The grid then does not change.)";
+    Also if depths seem to be in millimetres: all readings, or 19 of 20 unequal ones, are beyond 10
+    times max_range. The grid then does not change.)";
 
 IntegrationConfig::Occupancy parse_occupancy(const std::string& name) {
   if (name == "probabilistic") return IntegrationConfig::Occupancy::probabilistic;
@@ -87,7 +90,7 @@ struct SharedIntegrator {
   SharedIntegrator(const Sensor& of, const Config& config, int num_threads)
       : sensor(of), integrator(of, config, ExecConfig{num_threads}) {}
 
-  // Calls f(BeliefGrid&, Integrator&) without the GIL, with which it is called.
+  // Calls f(BeliefGrid&, Integrator&) without the GIL. Call it with the GIL.
   template <typename F>
   auto write(SharedGrid& grid, const F& f) {
     return grid.write([&](BeliefGrid& g) {
@@ -153,9 +156,9 @@ py::object load(const py::object& path) {
 void bind_cloud(py::module_& module) {
   const std::string doc = std::string(R"(Puts point clouds of one sensor into a belief grid.
 
-Each point is a reading along the line from the sensor's origin: it marks the voxels on the line as
-free and hits the voxel that contains the point, with the sensor's noise at that range and frontal
-incidence. All points of a call are one frame.
+Each point marks the voxels on the line from the sensor's origin as free and hits the voxel that
+contains the point, with the sensor's noise at that range and frontal incidence. All points of a
+call are one frame.
 
 Parameters
 ----------
@@ -172,8 +175,8 @@ Parameters
 ----------
 grid : BeliefGrid
 points : array_like, (n, 3)
-    Sensor frame [m], with any axes; rays start at its origin. Points that are masked, not finite or
-    nearer than min_range are ignored; beyond max_range they mark free space up to it.
+    Sensor frame [m], with any axes; rays start at the origin. Points that are masked, not finite or
+    nearer than min_range are ignored; points beyond max_range mark free space up to max_range.
 T_world_sensor : array_like, (4, 4)
     Rotations that deviate by up to 1e-3 are orthonormalised.
 
@@ -227,12 +230,13 @@ path : path-like
 Returns
 -------
 Cloud
-    The viewpoint is a PCD's VIEWPOINT; its inverse maps points of the world to the sensor frame.)");
+    viewpoint is the VIEWPOINT of a PCD; its inverse maps points of the world to the sensor
+    frame.)");
 }
 
 namespace {
 
-/// Frames can say what the hazard of unknown space is, too.
+/// Adds the calibration of the hazard, which only frames support.
 struct Integrator : SharedIntegrator<FrameIntegrator> {
   Integrator(const Sensor& of, const IntegrationConfig& config, int num_threads)
       : SharedIntegrator(of, config, num_threads), calibration(of, config.support_plane) {}
@@ -284,7 +288,8 @@ Parameters
 ----------
 sensor : Sensor
 carve : {"cones", "lines"}
-    Which voxels a pixel crosses: those whose centre lies in its pyramid, or those on its ray.
+    Which voxels a pixel crosses: those whose centre lies in the pixel's pyramid, or those on its
+    ray.
 )") + kIntegratorSettings +
                           kIntegratorNotes;
   const std::string integrate_doc = std::string(R"(Updates the grid by one frame.
@@ -303,8 +308,8 @@ T_world_camera : array_like, (4, 4)
 pose_sigma : array_like, (2,), optional
     Uncertainty of this pose in addition to the sensor's pose_sigma [m], [rad].
 amplitude : array_like, (height, width), floating point, optional
-    cos / range**2 [1/m**2], which gives the angle of incidence; default: from the depth, also where
-    it is inf (saturated). NaN or masked: the least information.
+    cos / range**2 [1/m**2], from which the angle of incidence is computed. By default, and where it
+    is inf (saturated), the angle is computed from the depth. NaN or masked: the most oblique angle.
 
 )") + kIntegrateReturns;
   auto type = bound_class<Integrator>(module, "FrameIntegrator", doc.c_str());
@@ -327,10 +332,11 @@ amplitude : array_like, (height, width), floating point, optional
            integrate_doc.c_str())
       .def("calibrate_hazard", &calibrate_hazard, "grid"_a, "scene"_a, "depth"_a,
            "T_world_camera"_a,
-           R"(Counts how often a frame meets the surface in unknown space, before its integration.
+           R"(Counts how often a frame's rays meet the surface in unknown space.
 
-Surface and combined gains of the grid's later scenes use the counts. Has no effect while no surface
-is known, or if the scene's hazard was given. Cost: about 5 ms for 176x144 pixels.
+Call it before the frame is integrated. The surface and combined gains of the grid's later scenes
+use the counts. Has no effect while no surface is known, or if the scene was made with ``hazard``.
+Cost: about 5 ms for 176x144 pixels.
 
 Parameters
 ----------

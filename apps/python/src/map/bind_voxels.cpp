@@ -25,8 +25,7 @@ struct OccupiedRow {
 
 namespace {
 
-// All three numbers of a row where there is no voxel: the index of none, on the lattice or in an
-// array.
+// All three numbers of a row without a voxel. Not a valid index on the lattice or in an array.
 constexpr std::int32_t kNoVoxel = std::numeric_limits<std::int32_t>::min();
 
 std::int32_t index_number(double number) {
@@ -138,8 +137,8 @@ points : array_like, (..., 3)
 Returns
 -------
 ndarray, (..., 3), int32
-    On the lattice; subtract ``min_index`` for arrays. -2**31 in all three places, which is never a
-    valid index, for a point outside the workspace or not finite.)")
+    On the lattice; subtract ``min_index`` for arrays. For a point that lies outside the workspace
+    or is not finite, all three numbers are -2**31, which is never a valid index.)")
       .def("center", &center, "voxels"_a,
            R"(Centres of voxels. Cost: about 25 ns per voxel.
 
@@ -160,8 +159,8 @@ Parameters
 voxels : array_like, (..., 3), whole numbers
     On the lattice.
 log_odds : float or array_like, (...)
-    Occupied above 0, otherwise free; rounded to the nearest step of 0.05 and clamped to -2..3.5.
-    Removes the belief.)")
+    Above 0 the voxel is occupied, otherwise free. Rounded to the nearest step of 0.05 and clamped
+    to -2..3.5. The voxel's belief is removed.)")
       .def(
           "forget",
           [](SharedGrid& grid, const py::object& region) {
@@ -171,7 +170,7 @@ log_odds : float or array_like, (...)
             return count;
           },
           "region"_a,
-          R"(Resets voxels to unknown, for moved objects and maps that follow a robot; views remain.
+          R"(Resets voxels to unknown, after objects or the robot have moved; views remain.
 
 Cost: grows with the map's blocks of voxels, 0.4 ms for 128**3 voxels.
 
@@ -179,7 +178,7 @@ Parameters
 ----------
 region : array_like, (2, 3)
     Lowest and highest corner of a box in the grid frame [m]; bounds may be infinite. Applies to
-    voxels whose centre lies in it.
+    voxels whose centre lies in the box.
 
 Returns
 -------
@@ -208,14 +207,14 @@ ndarray, (...), uint8
           "region"_a, "scale"_a,
           R"(Sets the scale of leaves of 8**3 voxels; larger cells sum hits and information.
 
-Of smaller cells, the one that contains the mean of the readings gets everything; the rest of an
-occupied cell becomes unknown. Cost: grows with the map's blocks of voxels.
+When a cell is split, the new cell that contains the mean of its readings gets them all; the rest of
+an occupied cell becomes unknown. Cost: grows with the map's blocks of voxels.
 
 Parameters
 ----------
 region : array_like, (2, 3)
     Lowest and highest corner of a box in the grid frame [m]; bounds may be infinite. Applies to all
-    leaves that it touches.
+    leaves that the box touches.
 scale : int
     0 to 3: cells of 2**scale voxels per edge.
 
@@ -230,8 +229,8 @@ int
 Returns
 -------
 ndarray, (n,), structured
-    voxel (int32, 3; on the lattice, subtract ``min_index`` for arrays), log_odds (float32), hits
-    (readings that ended in it).)");
+    Fields: voxel (int32, 3; on the lattice, subtract ``min_index`` for arrays), log_odds (float32),
+    hits (number of measured depths that ended in the voxel).)");
 }
 
 }  // namespace viewgain::python

@@ -10,7 +10,8 @@
 namespace viewgain::python {
 namespace {
 
-// Single precision, row by row; NaN where masked. `unit` says what an image of integers is not.
+// Single precision, row by row; NaN where masked. `unit` is the unit in the message for images of
+// integers.
 std::vector<float> image(const py::object& value, const std::string& name, const std::string& unit,
                          int height, int width) {
   const py::dtype type = any_array(value, name + " must be an array of numbers").dtype();

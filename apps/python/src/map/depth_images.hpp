@@ -12,24 +12,25 @@
 
 namespace viewgain::python {
 
-/// A frame of the sensor from floating point arrays (height, width); `amplitude` may be None. What
-/// is no depth (NaN, negative, masked) is invalid; a masked amplitude is NaN. Throws
-/// py::value_error for another shape or dtype, and as MetresCheck.
+/// A frame of the sensor from floating point arrays (height, width); `amplitude` may be None. NaN,
+/// negative and masked depths are invalid; a masked amplitude is NaN. Throws py::value_error for
+/// another shape or dtype, and like MetresCheck.
 [[nodiscard]] DepthFrame depth_frame(const Sensor& sensor, const py::object& depth,
                                      const py::object& amplitude);
 
-/// The same in whatever unit: for what judges units itself.
+/// As above in any unit, for functions that check units themselves.
 [[nodiscard]] DepthFrame depth_frame_of_any_unit(const Sensor& sensor, const py::object& depth);
 
-/// Are readings in metres? In millimetres, all would be out of range and carve the object away.
+/// Checks that depths are in metres. In millimetres, all would be out of range and mark the object
+/// as free.
 class MetresCheck {
  public:
   explicit MetresCheck(const Sensor& sensor) : max_range_(sensor.max_range) {}
 
-  /// A reading [m]; what is not finite is none.
+  /// Adds a range [m]; ignored if it is not finite.
   void add(double range);
-  /// Throws py::value_error if all readings are beyond 10 times max_range, or 19 in 20 are and not
-  /// all at the same: one value may stand for no reading.
+  /// Throws py::value_error if all ranges are beyond 10 times max_range, or 19 of 20 are and
+  /// differ. A single repeated value may mean "no reading".
   void require(const char* name) const;
 
  private:

@@ -17,11 +17,11 @@ using GridClass = pybind11::class_<SharedGrid, std::shared_ptr<SharedGrid>>;
 
 /// Adds reading and writing of files.
 void bind_grid_files(GridClass& grid_class);
-/// Adds what is about single voxels.
+/// Adds functions for single voxels.
 void bind_voxels(GridClass& grid_class);
 
-/// Throws Error(invalid_argument) if there is neither. A default of half a voxel would make unknown
-/// voxels more certain than a reading where voxels are finer than the noise.
+/// Throws Error(invalid_argument) if both are missing. A default of half a voxel would make unknown
+/// voxels more certain than a reading if voxels are finer than the noise.
 inline void require_prior(std::optional<double> prior_sigma, const Sensor* sensor) {
   if (prior_sigma || sensor != nullptr) return;
   refuse(
@@ -29,7 +29,7 @@ inline void require_prior(std::optional<double> prior_sigma, const Sensor* senso
       "position [m]");
 }
 
-/// The prior sigma [m] of a grid: the one given, else what suits the sensor; throws as
+/// The prior sigma [m] of a grid: the given one, else the sensor's default. Throws like
 /// require_prior().
 [[nodiscard]] inline double prior_of(std::optional<double> prior_sigma, const Sensor* sensor,
                                      double voxel_size) {

@@ -13,8 +13,8 @@
 
 namespace viewgain::python {
 
-/// Python's BeliefGrid. Calls that take long leave the GIL, so that another thread of Python may
-/// come to the same grid meanwhile: it waits here, many readers or one writer.
+/// Python's BeliefGrid. Long calls release the GIL, so another Python thread can use the same grid
+/// meanwhile. A lock here allows many readers or one writer.
 class SharedGrid {
  public:
   explicit SharedGrid(BeliefGrid grid) : grid_(std::move(grid)) {}
@@ -23,7 +23,7 @@ class SharedGrid {
   /// with the GIL.
   template <typename F>
   auto read(const F& f) const {
-    const WithoutGil without_gil;  // before the lock, or two threads hold one each
+    const WithoutGil without_gil;  // before the lock, to avoid a deadlock
     const std::shared_lock lock(mutex_);
     return f(grid_);
   }
@@ -34,7 +34,7 @@ class SharedGrid {
     return f(grid_);
   }
 
-  /// For what never changes: layout, prior.
+  /// For data that never change: layout and prior.
   [[nodiscard]] const BeliefGrid& layout() const noexcept { return grid_; }
 
  private:

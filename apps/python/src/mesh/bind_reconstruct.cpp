@@ -23,7 +23,7 @@
 namespace viewgain::python {
 namespace {
 
-/// What Python gets back.
+/// Result for Python.
 struct Reconstruction {
   std::string reason;
   py::list views;
@@ -35,7 +35,7 @@ void check_signals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
-// DATAACQUISITION by a function of Python's.
+// DATAACQUISITION by a Python function.
 class PythonAcquisition : public DataAcquisition {
  public:
   PythonAcquisition(py::object callback, const Sensor& sensor)
@@ -70,7 +70,7 @@ class PythonAcquisition : public DataAcquisition {
   const Sensor& sensor_;
 };
 
-// One turn of the loop.
+// One iteration of the loop.
 py::object to_python(const ViewRecord& record) {
   const bool of_boundary = record.chosen_as && record.chosen_as->boundary_class;
   return named_in("viewgain.mesh.results", "ViewRecord", record.index,
@@ -83,7 +83,7 @@ py::object to_python(const ViewRecord& record) {
                   record.proposal.dropped);
 }
 
-// Whether a policy chooses among boundary candidates by itself; others have a set of their own.
+// Whether a policy uses boundary candidates by default.
 bool is_of_boundaries(Policy policy) {
   return policy != Policy::sequence && policy != Policy::random;
 }
@@ -158,7 +158,7 @@ Reconstruction reconstruct(
     });
   };
   {
-    // On this thread, so that a camera's driver and a plot are called on the thread they know.
+    // Runs on this thread, so that camera drivers and plots are called on their own thread.
     const WithoutGil without_gil;
     const PlanningResult end =
         active_view_planning(x_0, acquisition, model, generation, decision, planning, watch);
@@ -198,17 +198,17 @@ void bind_reconstruct(py::module_& module) {
              "control"_a = py::none(), "tracer"_a = "automatic", "num_threads"_a = 0,
              R"(The whole loop: measure, update map and surface, propose views, rank them, repeat.
 
-Algorithm 1 of the paper with your camera or simulator. Releases the GIL except while your functions
-run, on the calling thread.
+Algorithm 1 of the paper with your camera or simulator. Your functions run on the calling thread;
+the GIL is released in between.
 
 Parameters
 ----------
 acquire : callable
-    Takes T_world_camera (4, 4) of the next view, moves the camera there and returns depth (height,
-    width), floating point, along the optical axis [m] (0, NaN or masked: no reading, inf: free up
-    to max_range); or (depth, amplitude), a ``SimulatedFrame``; or (depth, T_world_camera,
-    amplitude), a ``Frame``, with the pose that it reached. amplitude may be None. Runs on the
-    calling thread; its exceptions end the loop and pass through.
+    Takes T_world_camera (4, 4) of the next view, moves the camera there and returns a frame: depth,
+    or (depth, amplitude) like a ``SimulatedFrame``, or (depth, T_world_camera, amplitude) like a
+    ``Frame``, with the pose that the camera reached. depth has the shape (height, width), floating
+    point, along the optical axis [m]; 0, NaN or masked: no reading, inf: free up to max_range.
+    amplitude may be None. Exceptions end the loop and pass through.
 sensor : viewgain.Sensor
 start : array_like, (4, 4)
     T_world_camera of the first view, which must have readings in the workspace.
@@ -218,16 +218,16 @@ workspace : array_like, (2, 3)
     Lowest and highest corner of the mapped space, world frame [m].
 criterion : {"log_diagonal", "log_determinant", "trace"}
 policy : {"gain", "kriegel", "random", "frontier", "sequence"}
-    How to choose the next view; "frontier" counts unknown voxels in view, "sequence" takes the
+    How to choose the next view. "frontier" counts unknown voxels in view, "sequence" takes the
     candidates in order.
 gain : {"combined", "surface", "paper"}
     Gain of policy "gain": expected new surface and refinement, expected new surface, or entropy
     removed.
 boundary : bool, optional
-    Propose views at open surface boundaries and where more surface is expected, before the
-    candidates; default: True, except for the policies "sequence" and "random".
+    Propose views at open surface boundaries and where more surface is expected, in addition to
+    candidates. Default: True, except for the policies "sequence" and "random".
 candidates : array_like, (n, 4, 4), optional
-    T_world_camera of further poses to propose after every view; required without boundary.
+    T_world_camera of poses to propose after every view; required if boundary is False.
 reach : viewgain.ReachRegion, optional
     Reachable camera poses.
 support_plane : float, optional
@@ -237,18 +237,18 @@ jump_edges : bool
 max_views : int
 stop_gain : float, optional
     With gain "paper": stop when the best candidate's gain per touched voxel is below this [nat,
-    m**2 for trace]. Default: 1.2; for trace 0.01 of the first decision's.
+    m**2 for trace]. Default: 1.2; for trace 0.01 of the gain of the first decision.
 stop_area : float, optional
-    With gain "surface" and "combined": stop when the best candidate's expected new surface is below
-    this share of the surface so far, mean of three decisions; 0: never. Default: as the program's
-    ``reconstruct``.
+    With gain "surface" and "combined": stop when the best candidate's expected new surface, divided
+    by the surface so far, is below this on average over three decisions; 0: never. Default: that of
+    the program's ``reconstruct``.
 idle_views : int
-    Stop after this many views in a row that brought nothing; 0: never.
+    Stop after this many views in a row that changed almost nothing; 0: never.
 broken_promises : int
-    With policy "gain": stop after this many views in a row that brought less than a fifth of the
+    With policy "gain": stop after this many views in a row that showed less than a fifth of the
     predicted new surface (with gain "paper": entropy); 0: never.
 observer : callable, optional
-    Called with the ViewRecord of each view when the next one has been chosen.
+    Called with the ViewRecord of each view after the next view has been chosen.
 control : viewgain.BatchControl, optional
     Its stop() ends the loop with the reason "interrupted"; its progress function is not called.
 tracer : {"automatic", "embree", "sweep"}

@@ -95,7 +95,7 @@ void bind_boundary(py::module_& module) {
              py::kw_only(), "spacing"_a, "working_distance"_a = py::none(),
              "overlap"_a = py::none(), "distances"_a = py::none(), "tilts"_a = py::none(),
              "rolls"_a = py::none(),
-             R"(Views past the open boundaries of a surface, with the reasons.
+             R"(Candidate views that look past the open boundaries of a surface, with reasons.
 
 Runs without the GIL. Cost: grows with the boundary's edges and the views, 3 ms for a surface of
 19,000 vertices and 12 views.
@@ -107,11 +107,11 @@ views : array_like, (n, 4, 4)
     T_world_camera of the views of the surface, in order; at least one.
 sensor : Sensor
 spacing : float
-    Spacing of its points [m]: ``grid.pooling_length()`` of the map.
+    Spacing of the surface's points [m]: ``grid.pooling_length()`` of the map.
 working_distance : float, optional
     Distance from the surface [m]; default: the sensor's.
 overlap : float, optional
-    Share of known surface in the next view, in (0, 1).
+    Fraction of known surface in the next view, in (0, 1).
 distances : sequence of float, (n,), optional
     Multiples of the working distance.
 tilts, rolls : sequence of float, (n,), optional
@@ -121,9 +121,10 @@ Returns
 -------
 BoundaryCandidates
     Check them with ``FeasibilityChecker``. Fields of reasons: boundary_class (index into
-    ``BOUNDARY_CLASS_NAMES``), run (of boundary edges), run_length [m], patch, target (the
-    extrapolated point, 3, world [m]), distance from it [m], tilt, roll [rad], nominal (neither
-    tilted nor rolled, at the first distance).)");
+    ``BOUNDARY_CLASS_NAMES``), run (number of the part of the boundary), run_length [m], patch
+    (number of the fitted patch), target (3, point that the view looks at, world [m]), distance from
+    the target [m], tilt, roll [rad], nominal (neither tilted nor rolled, at the first
+    distance).)");
 }
 
 namespace {
@@ -157,7 +158,7 @@ SurfaceMesh surface_of_grid(const Given<SharedGrid>& grid, std::uint32_t min_hit
   });
 }
 
-// A Python package that viewgain can do without.
+// An optional Python package.
 py::module_ other_package(const char* name, const char* wanted_by) {
   try {
     return py::module_::import(name);
@@ -173,7 +174,7 @@ py::module_ other_package(const char* name, const char* wanted_by) {
 
 py::object to_trimesh(const SurfaceMesh& surface) {
   const py::module_ trimesh = other_package("trimesh", "to_trimesh");
-  // As it is: trimesh would merge vertices and lose their normals.
+  // Unprocessed, because trimesh would merge vertices and lose their normals.
   return trimesh.attr("Trimesh")(
       "vertices"_a = to_array_3(surface.vertices), "faces"_a = to_array_3(surface.triangles),
       "vertex_normals"_a = to_array_3(surface.normals), "process"_a = false);
@@ -203,8 +204,7 @@ Faces are counter-clockwise seen from free space. Lengths are in metres, in the 
 
 Notes
 -----
-Cost: each property is a copy, 30 µs for 20,000 vertices. ``save`` releases the GIL, the rest holds
-it.)");
+Cost: each property is a copy, 30 µs for 20,000 vertices. Only ``save`` releases the GIL.)");
   refuse_pickling(type);
   type.def_property_readonly(
           "vertices", [](const SurfaceMesh& s) { return to_array_3(s.vertices); },
@@ -272,7 +272,8 @@ Parameters
 points : array_like, (n, 3)
     Any frame (the world frame for a map) [m].
 toward_free : array_like, (n, 3), optional
-    Hint on the side of free space: one direction per point, of any length; zero if unknown.
+    One direction per point, of any length, that shows on which side free space lies; zero if
+    unknown.
 spacing : float
     Typical distance of neighbouring points [m].
 smoothing_neighbors : int
@@ -287,7 +288,7 @@ num_threads : int
 Returns
 -------
 Surface
-    Empty for no points, or outliers only.)");
+    Empty if there are no points, or only outliers.)");
   module.def("surface_of_grid", &surface_of_grid, "grid"_a, py::kw_only(), "min_hits"_a = 2,
              "num_threads"_a = 0,
              R"(The surface through ``grid.points(min_hits=min_hits)``.
@@ -299,7 +300,7 @@ Parameters
 ----------
 grid : viewgain.BeliefGrid
 min_hits : int
-    Omits points with fewer readings.
+    Omits points with fewer readings (measured depths).
 num_threads : int
     0: all hardware threads. Does not affect the result.
 

@@ -12,7 +12,7 @@ void bind_surface(pybind11::module_&), bind_boundary(pybind11::module_&),
 
 PYBIND11_MODULE(_mesh, module) {
   module.doc() = "The C++ part of viewgain.mesh. Import viewgain.mesh instead.";
-  // Sensors, grids and what errors become are defined there.
+  // Sensors, grids and exception types are defined there.
   pybind11::module_::import("viewgain._viewgain");
   const pybind11::object name = module.attr("__name__");
   module.attr("__name__") = "viewgain.mesh";

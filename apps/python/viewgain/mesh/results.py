@@ -12,12 +12,12 @@ from ._mesh import BOUNDARY_CLASS_NAMES
 
 BoundaryClass = IntEnum("BoundaryClass", [(word.upper(), code) for code, word in enumerate(BOUNDARY_CLASS_NAMES)],
                         module="viewgain.mesh")
-BoundaryClass.__doc__ = 'Side of the view towards which the surface ends: ``boundary_candidates()``, ``reasons["boundary_class"]``.'
+BoundaryClass.__doc__ = 'Side of the image at which the surface ends: ``boundary_candidates()``, ``reasons["boundary_class"]``.'
 
 
 @named("viewgain.mesh")
 class BoundaryCandidates(NamedTuple):
-    """Views past a surface's open boundaries, from ``boundary_candidates``."""
+    """Views that look past a surface's open boundaries, from ``boundary_candidates``."""
 
     T_world_camera: Annotated[NDArray[np.float64], "(n, 4, 4), float64."]
     reasons: Annotated[NDArray[np.void], "(n,), structured: boundary_class, run, run_length, patch, target, distance [m], tilt, roll [rad], nominal; see ``boundary_candidates``."]
@@ -34,7 +34,7 @@ class ViewRecord(NamedTuple):
     predicted_gain: Annotated[float, "Gain when it was chosen [nat; with gain \"surface\" m**2]; NaN for the start."]
     realised_gain: Annotated[float, "Increase of entropy_removed [nat, or m**2 for trace]."]
     entropy_removed: Annotated[float, "Entropy removed so far [nat, or m**2 for trace]."]
-    unknown_voxels: Annotated[int, "Remaining unknown voxels."]
+    unknown_voxels: Annotated[int, "Number of voxels that are still unknown."]
     predicted_area: Annotated[float, "Expected new surface [m**2]; NaN if unknown."]
     realised_area: Annotated[float, "New surface shown [m**2]."]
     surface_area: Annotated[float, "Area of the surface so far [m**2]."]

@@ -43,7 +43,7 @@ def _arguments(words):
 
 
 def _check_folder(out, spec):
-    """Refuses a folder that has other files than the spec and no runs/.lock of a study."""
+    """Raises SpecError for a folder that has files but no runs/.lock of a study. The spec itself may be in the folder."""
     if out.exists() and not out.is_dir():
         raise SpecError(f"--out {out}: is a file; choose a new folder")
     others = [path for path in out.iterdir() if path.resolve() != spec.resolve()] if out.is_dir() else []
@@ -84,7 +84,7 @@ def _study(options):
         except (ValueError, RuntimeError, MemoryError) as error:
             _warn(f"no {name}: {error}")
     for name in draw.keys() - files.keys():
-        (options.out / name).unlink(missing_ok=True)  # of another spec perhaps
+        (options.out / name).unlink(missing_ok=True)  # may be from another spec
     print(f"{text}\nleft in {options.out}: {', '.join(files)}, runs/")
 
 

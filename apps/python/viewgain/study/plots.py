@@ -20,12 +20,12 @@ def _title(group):
 
 
 def _label(name):
-    return ("\N{ZERO WIDTH SPACE}" if name.startswith("_") else "") + name.replace("$", r"\$")  # no mathematics, none left out
+    return ("\N{ZERO WIDTH SPACE}" if name.startswith("_") else "") + name.replace("$", r"\$")  # matplotlib parses $ and hides names with _
 
 
 def _figure(groups, height):
     """One panel per group, four per row."""
-    import matplotlib.figure  # not pyplot: no window, no state
+    import matplotlib.figure  # not pyplot, which opens windows and keeps state
 
     columns = min(4, len(groups))
     lines = -(-len(groups) // columns)
@@ -47,7 +47,8 @@ def _png(figure):
 
 
 def coverage(rows: list[dict]) -> bytes:
-    """A PNG: mean coverage by view of each policy, with the standard error of the table; one panel per sensor, voxel and size."""
+    """A PNG of the mean coverage after each view, one line per policy, with standard errors as in the table; one panel per sensor, voxel
+    and size."""
     from matplotlib import colormaps
 
     groups, names = list(dict.fromkeys(map(_group, rows))), list(dict.fromkeys(map(name_of, rows)))
@@ -69,7 +70,7 @@ def coverage(rows: list[dict]) -> bytes:
 
 
 def differences(rows: list[dict], against: str) -> bytes:
-    """A PNG: each policy's mean difference in AUC to the policy `against`, with the standard error of the table."""
+    """A PNG of each policy's mean difference in AUC to the policy `against`, with standard errors as in the table."""
     groups = list(dict.fromkeys(map(_group, rows)))
     names = [name for name in dict.fromkeys(map(name_of, rows)) if name != against]
     figure, all_axes = _figure(groups, 1.2 + 0.28 * len(names))

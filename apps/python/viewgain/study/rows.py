@@ -13,11 +13,11 @@ try:
 except ImportError as error:
     raise ImportError(f"viewgain.study needs scipy (Debian: python3-scipy), which cannot be imported: {error}") from error
 
-GOALS = (0.80, 0.90, 0.95)  # shares of the visible surface to which views are counted
+GOALS = (0.80, 0.90, 0.95)  # fractions of the visible surface; the table counts the views needed to reach them
 
 
 class SpecError(ValueError):
-    """A spec, or a file that belongs to a study, is invalid. The text names the file and the cure."""
+    """A spec, or a file that belongs to a study, is invalid. The text names the file and what to do."""
 
 
 def _number(value):
@@ -32,23 +32,23 @@ def _figure(value):
 
 
 def row_of(run, record, max_views):
-    """The row of ``results.json`` for a `Run` of a spec and its run.json, a dict. Raises LookupError, TypeError, ValueError or AttributeError
-    if something in it is missing or not a number."""
+    """The row of ``results.json`` for a `Run` of a spec and its run.json, a dict. Raises LookupError, TypeError, ValueError or
+    AttributeError if run.json lacks a value, or a value is not a number."""
     views = record["per_view"]
     covered = [float(_figure(view["coverage_visible"]) or 0.0) for view in views][:max_views]
-    covered += [covered[-1]] * (max_views - len(covered))  # a run that ended early keeps its last over the rest of the budget
+    covered += [covered[-1]] * (max_views - len(covered))  # after an early end the last coverage counts for the rest of the budget
     row = {"object": run.object.name, "policy": run.policy.policy, "gain": run.policy.gain, "seed": run.seed, "sensor": run.sensor,
            "voxel": run.voxel, "size": run.size, "views": int(record["views"]),
            "decisions": sum(view["generator"] not in ("start", "plan") for view in views), "stop_reason": str(record["stop_reason"])}
     to = [next((i + 1 for i, share in enumerate(covered) if share >= goal), None) for goal in GOALS]
     for goal, count in zip(GOALS, to):
         row[f"views_to_{100 * goal:.0f}"] = count
-    for goal, count in zip(GOALS, to):  # the whole way where it was never reached
+    for goal, count in zip(GOALS, to):  # the whole path if the goal was never reached
         row[f"metres_to_{100 * goal:.0f}"] = _figure(views[min(count or len(views), len(views)) - 1]["travelled"])
     row["auc"], row["coverage_visible"] = float(np.mean(covered)), covered[-1]
     for key in ("coverage", "rms_error", "consistency", "outliers", "travelled"):
         row[key] = _figure(record[key])
-    # A run of one view has decided nothing, a program of one's own does not say how long it took.
+    # A run of one view has made no decision, and a custom program does not report the times of its stages.
     stages = [_figure(record["seconds"].get(stage)) for stage in ("candidates", "score")]
     deciding = sum(stage or 0 for stage in stages) / (row["views"] - 1) if row["views"] > 1 and stages != [None, None] else None
     return {**row, "coverage_by_view": covered, "hash": run.hash, "deciding_seconds": deciding, "seconds": _figure(record["seconds"]["total"])}
@@ -77,13 +77,13 @@ def values_of(rows, key, factor=1.0):
 
 
 def counted_views(rows, goal, max_views):
-    """Views to a goal for means: one more than the budget if it was never reached."""
+    """Number of views to reach a goal, for means: one more than the budget if it was never reached."""
     return np.array([row[f"views_to_{100 * goal:.0f}"] or max_views + 1 for row in rows], float)
 
 
 def mean_and_error(values, clusters):
-    """Mean, standard error and count of the values that are not NaN. The error is by cluster where there are several (CR1 of
-    Cameron and Miller, J. Human Resources 50, 2015), as runs on one object are not independent, else over the values."""
+    """Mean, standard error and count of the values that are not NaN. With several clusters the error is clustered (CR1 of Cameron and
+    Miller, J. Human Resources 50, 2015), because runs on one object are not independent."""
     values = np.asarray(values, float)
     kept = np.isfinite(values)
     n = int(kept.sum())
@@ -100,8 +100,8 @@ def mean_and_error(values, clusters):
 
 
 def half_interval(values, clusters):
-    """Half the 95 % interval of the mean for other seeds on the same objects: Student's t with n - G degrees of freedom over
-    G clusters; NaN where there are none."""
+    """Half the 95 % interval of the mean for other seeds on the same objects: Student's t with n - G degrees of freedom for G clusters; NaN
+    if there are none."""
     groups = collections.defaultdict(list)
     for value, cluster in zip(values, clusters):
         if math.isfinite(value):
@@ -115,15 +115,15 @@ def half_interval(values, clusters):
 
 
 def sign_test(differences):
-    """Two-sided p of the exact sign test; pairs without a difference and NaN are left out. 1 for none."""
+    """Two-sided p of the exact sign test, without pairs that are equal or NaN. 1 if there are no pairs."""
     d = np.asarray(differences, float)
     d = d[np.isfinite(d) & (d != 0)]
     return stats.binomtest(int((d > 0).sum()), len(d)).pvalue if len(d) else 1.0
 
 
 def signed_rank_test(differences):
-    """Two-sided p of Wilcoxon's signed-rank test; zeros and NaN are left out, ties have the mean of their places. Exact up to 50 pairs
-    without ties and 13 with ties, else by the normal distribution with the variance for ties, without a correction for continuity."""
+    """Two-sided p of Wilcoxon's signed-rank test, without zeros and NaN; ties get their mean rank. Exact up to 50 pairs without ties and 13
+    pairs with ties. Otherwise uses the normal distribution with the variance for ties, without a correction for continuity."""
     d = np.asarray(differences, float)
     d = d[np.isfinite(d) & (d != 0)]
     if len(d) == 0:

@@ -24,13 +24,13 @@ from typing import Callable, Optional
 from .rows import SpecError, row_of
 from .spec import Run, Spec
 
-_WORKERS_WITHIN = 60  # that a cluster is waited for [s]
-# Before a command: it ends with the process that called it, even if that is killed (util-linux).
+_WORKERS_WITHIN = 60  # time to wait for the first worker [s]
+# Prefix of a command, so that it ends with its parent process, even if that is killed (util-linux).
 _ENDS_WITH_US = ["setpriv", "--pdeathsig", "KILL", "--"] if shutil.which("setpriv") else []
 
 
 class RunError(RuntimeError):
-    """A failed run; the text names it and quotes the program's message. `code` is the program's exit code."""
+    """A failed run. The text names the run and quotes the program's message. `code` is the program's exit code."""
 
     def __init__(self, text: str, code: int = 1):
         super().__init__(text, code)
@@ -47,8 +47,8 @@ class _Children:
         self._lock, self._running, self._is_over = threading.Lock(), set(), False
 
     def call(self, words, title, beside):
-        """Calls a program in a session of its own, as Ctrl-C is the study's; raises RunError. A program of the user's own finds
-        `beside`, the folder of ``viewgain``, and this Python first in PATH."""
+        """Calls a program in a new session, so that only the study receives Ctrl-C; raises RunError. PATH begins with `beside`, the folder
+        of ``viewgain``, and that of this Python, for custom programs."""
         path = os.pathsep.join([beside, os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)])
         try:
             with self._lock:
@@ -78,7 +78,7 @@ class _Children:
 
 
 def find_program(name: Optional[str] = None) -> str:
-    """The program ``viewgain``: `name` if given, else that of the build or prefix that this package lies in, else that on PATH.
+    """The program ``viewgain``: `name` if given, else the one in the build or prefix that contains this package, else the one on PATH.
     Raises SpecError if there is none."""
     if name is None:
         for folder in pathlib.Path(__file__).resolve().parents[2:]:
@@ -91,7 +91,7 @@ def find_program(name: Optional[str] = None) -> str:
 
 
 def version_of(program: str) -> str:
-    """The program's version. Raises SpecError if it is another program."""
+    """The program's version. Raises SpecError if the program is not viewgain."""
     try:
         said = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace").stdout
     except OSError as error:
@@ -103,9 +103,9 @@ def version_of(program: str) -> str:
 
 
 def make_run(words, title, kept, beside, is_own=False, folder=None, children=None):
-    """Makes one run in a temporary folder inside `folder` (default: the system's), which it removes. Returns run.json as a dict, up to
-    `kept` candidates per view, evenly sampled, as TUM lines whose time stamp is the number of views so far, and the seconds it took.
-    Raises RunError. For a custom program (`is_own`) the seconds are those of the whole call."""
+    """Makes one run in a temporary folder inside `folder` (default: the system's), and removes that folder. Returns run.json as a dict,
+    candidates, and the duration of the run [s]. Candidates are up to `kept` per view, evenly sampled, as TUM lines whose time stamp is the
+    number of views so far. Raises RunError. For a custom program (`is_own`) run.json gets the duration of the whole call."""
     begin = time.monotonic()
     with tempfile.TemporaryDirectory(prefix=".run-", dir=folder) as work:
         split = words.index("--")
@@ -128,7 +128,7 @@ def make_run(words, title, kept, beside, is_own=False, folder=None, children=Non
 
 def write_file(path, content):
     """Writes a file atomically and keeps the mode of an existing one."""
-    temporary = path.with_name(f".{path.name}.tmp")  # one study at a time uses a folder; overwrites that of a killed one
+    temporary = path.with_name(f".{path.name}.tmp")  # only one study uses the folder; a leftover of a killed study is overwritten
     try:
         with open(temporary, "wb") as file:
             file.write(content if isinstance(content, bytes) else content.encode())
@@ -142,11 +142,12 @@ def write_file(path, content):
 
 @contextlib.contextmanager
 def _study_folder(out):
-    """Creates DIR/runs for one study at a time, and clears leftovers of a killed one. A study without a run leaves nothing."""
+    """Creates DIR/runs and locks it, so that one study at a time uses it. Clears leftovers of a killed study. Removes the folders again if
+    no run was kept."""
     runs = out / "runs"
     try:
         runs.mkdir(parents=True, exist_ok=True)
-        lock = open(runs / ".lock", "w")  # released when this process ends, however it does
+        lock = open(runs / ".lock", "w")  # released when this process ends, even if it is killed
     except OSError as error:
         raise SpecError(f"--out {out}: {error.strerror}") from error
     with lock:
@@ -164,7 +165,7 @@ def _study_folder(out):
             if not any(path.is_dir() for path in runs.iterdir()):
                 (runs / ".lock").unlink()
                 for folder in (runs, out):
-                    with contextlib.suppress(OSError):  # others' files are in it
+                    with contextlib.suppress(OSError):  # it has other files
                         folder.rmdir()
 
 
@@ -190,7 +191,8 @@ def _one_view(words):
 
 @contextlib.contextmanager
 def _here(jobs, folder):
-    """A function that makes a run in a process of this machine, as a future. An exception in the block kills running ones."""
+    """Yields a function that starts a run in a process of this machine and returns a future. An exception in the block kills running
+    processes."""
     children = _Children()
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:  # each thread waits for a process
         try:
@@ -203,7 +205,7 @@ def _here(jobs, folder):
 
 @contextlib.contextmanager
 def _on_cluster(scheduler, progress):
-    """The same on the workers of a Dask cluster."""
+    """Like `_here`, on the workers of a Dask cluster."""
     try:
         import distributed
     except ImportError as error:
@@ -211,7 +213,7 @@ def _on_cluster(scheduler, progress):
     if not re.fullmatch(r"(\w+://)?\S+:\d+", scheduler):
         raise SpecError(f"--scheduler {scheduler}: not the address of a scheduler, such as tcp://HOST:8786")
     for name in ("asyncio", "distributed", "tornado"):
-        logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said here
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # errors are reported by this module
     try:
         client = distributed.Client(scheduler, timeout="10s", set_as_default=False)
     except (OSError, ValueError) as error:
@@ -232,13 +234,13 @@ def _on_cluster(scheduler, progress):
         try:
             yield submit
         except BaseException:
-            with contextlib.suppress(Exception):  # where the scheduler is gone
+            with contextlib.suppress(Exception):  # the scheduler may be gone
                 client.cancel(futures)
             raise
 
 
 def _results(futures, title, scheduler):
-    """The futures' keys with their results, or with the RunError, as they finish."""
+    """Yields the futures' values with their results, or with the RunError, as they finish."""
     if scheduler is None:
         done = concurrent.futures.as_completed(futures)
     else:
@@ -257,9 +259,9 @@ def _results(futures, title, scheduler):
 
 def make_runs(spec: Spec, out, jobs: Optional[int] = None, scheduler: Optional[str] = None, program: Optional[str] = None,
               progress: Callable[[str], None] = lambda line: None) -> list[dict]:
-    """Makes the runs that are not in ``out/runs/HASH`` yet, `jobs` at once (default: one per thread of this machine), or on the
-    workers of a Dask cluster, which need the program and the files at the same paths. `progress` gets a line if runs are reused
-    and after each run. Returns the rows of all runs in the spec's order. Raises SpecError and RunError; finished runs stay."""
+    """Makes the runs that are not in ``out/runs/HASH`` yet. Runs `jobs` at once on this machine (default: one per thread), or all on the
+    workers of a Dask cluster, which need the program and the files at the same paths. `progress` receives a line if runs are reused and
+    after each run. Returns the rows of all runs in the spec's order. Raises SpecError and RunError; finished runs are kept."""
     cores = len(os.sched_getaffinity(0))
     threads = max(1, cores // jobs) if jobs and scheduler is None else 1
     program = program or find_program()
@@ -282,7 +284,7 @@ def make_runs(spec: Spec, out, jobs: Optional[int] = None, scheduler: Optional[s
 
 
 def _check(spec, futures, scheduler):
-    """Raises what the first failed call says."""
+    """Raises RunError for the first failed call."""
     for run, made in _results(futures, spec.title, scheduler):
         if isinstance(made, RunError):
             is_word = "--policy" in str(made) and not run.policy.gain and not run.policy.command
@@ -292,7 +294,7 @@ def _check(spec, futures, scheduler):
 
 
 def _gather(spec, folder, futures, scheduler, rows, progress):
-    """Keeps each run as it is done. If some fail, the others are made all the same; then raises RunError."""
+    """Keeps each run when it finishes. If runs fail, makes the remaining runs first and then raises RunError."""
     begin, failures, total = time.monotonic(), [], len(spec.runs)
     for done, (run, made) in enumerate(_results(futures, spec.title, scheduler), start=1):
         if not isinstance(made, RunError):
@@ -324,7 +326,7 @@ def _row_of(spec, run, record, max_views):
 
 
 def _keep(folder, run: Run, record, candidates):
-    """run.json last, so that a run that is there is whole."""
+    """Writes the files of a run, run.json last, so that a run with this file is complete."""
     folder.mkdir(exist_ok=True)
     if candidates:
         write_file(folder / "candidates.txt", candidates)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""The spec of a study: a TOML file whose lists are crossed."""
+"""The spec of a study: a TOML file. All combinations of its lists are run."""
 from __future__ import annotations
 
 import dataclasses
@@ -22,14 +22,14 @@ try:
 except ImportError:  # Python 3.9 and 3.10
     import tomli as tomllib
 
-_FORMAT = 5  # of what is kept of a run; grows when that changes
+_FORMAT = 5  # format of kept runs; increases when it changes
 _MOST_RUNS = 1_000_000
 _KEYS = ("objects", "policies", "against", "seeds", "sensors", "voxels", "sizes", "max_views", "tolerance", "flags", "kept_candidates")
 _OBJECT_KEYS = ("mesh", "name", "reach", "obstacles", "flags")
 _OWN_FLAGS = {f"--{name}" for name in ("sensor voxel size seed policy gain out max-views pictures report save-maps plan threads json "
-                                       "quiet config save-config tolerance resume").split()}  # what the study asks of a run
+                                       "quiet config save-config tolerance resume").split()}  # set by the study itself
 _FILE_FLAGS = ("--reach", "--poses", "--hazard", "--obstacle")
-_REPEATED = ("--obstacle", "--fine", "--stop")  # flags of an object beside those of all, not in their place
+_REPEATED = ("--obstacle", "--fine", "--stop")  # an object's flags add to those of all objects instead of replacing them
 
 
 def _is_file(path):
@@ -41,15 +41,15 @@ def _is_file(path):
 
 @dataclasses.dataclass(frozen=True)
 class Object:
-    """A mesh and what stands round it."""
+    """A mesh and its surroundings."""
     name: str
     mesh: pathlib.Path
-    words: tuple[str, ...]  # of reconstruct, for this object alone
+    words: tuple[str, ...]  # flags of reconstruct for this object alone
 
 
 @dataclasses.dataclass(frozen=True)
 class Policy:
-    """A way to choose views. With a `command` that program is called in the place of ``viewgain reconstruct``."""
+    """A way to choose views. A `command`, if given, replaces ``viewgain reconstruct``."""
     name: str
     policy: str
     gain: Optional[str] = None
@@ -59,7 +59,7 @@ class Policy:
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """One run; `hash` is that of all that can change its result."""
+    """One run. `hash` covers everything that can change its result."""
     object: Object
     policy: Policy
     seed: int
@@ -76,7 +76,7 @@ class Spec:
     path: pathlib.Path
     objects: tuple[Object, ...]
     policies: tuple[Policy, ...]
-    against: str  # the policy that the others are paired with
+    against: str  # the policy with which the others are compared
     max_views: int
     tolerance: float  # of coverage [m]
     flags: tuple[str, ...]
@@ -88,14 +88,14 @@ class Spec:
         return {key for key in ("sensor", "voxel", "size") if len({getattr(run, key) for run in self.runs}) > 1}
 
     def title(self, run: Run) -> str:
-        """"camel, gain:combined, seed 3", and where there are several of them sensor, voxel and size."""
+        """"camel, gain:combined, seed 3", with sensor, voxel and size if the spec has several of these."""
         parts = [run.object.name, run.policy.name, f"seed {run.seed}"]
         texts = {"sensor": run.sensor, "voxel": f"voxel {run.voxel:g}", "size": f"size {run.size or 0:g}"}
         return ", ".join(parts + [text for key, text in texts.items() if key in self._varied])
 
     def words(self, run: Run) -> list[str]:
-        """The command line of a run after ``reconstruct``, but for --out and --threads. No rule ends it before its budget is
-        used up, unless a flag of the spec says so."""
+        """The command line of a run after ``reconstruct``, except --out and --threads. Turns off all stopping rules except the budget of
+        views, unless a flag of the spec sets one."""
         words = [f"--sensor={run.sensor}", f"--voxel={run.voxel!r}", f"--seed={run.seed}", f"--max-views={self.max_views}",
                  f"--tolerance={self.tolerance!r}", "--pictures=off", "--quiet", *run.policy.words]
         if run.size is not None:
@@ -112,7 +112,7 @@ class Spec:
 
 
 class _Reader:
-    """The keys of a TOML file; what is wrong is said with its file and line."""
+    """The keys of a TOML file. Errors name file and line."""
 
     def __init__(self, path):
         self.path, self.folder = path, path.parent
@@ -134,7 +134,7 @@ class _Reader:
         raise SpecError(f"{self.path}{line}: {key} {message}")
 
     def values(self, key, kind, is_right, must):
-        """A list without a value twice."""
+        """A list of distinct values."""
         if key not in self.table:
             raise SpecError(f"{self.path}: {key} is missing; it {must}")
         values = self.table[key]
@@ -162,7 +162,7 @@ class _Reader:
         return value
 
     def flags(self, key, values):
-        """Further flags of reconstruct; files in them from where the program is called."""
+        """Further flags of reconstruct. Relative files in them become absolute, relative to the current folder."""
         if not isinstance(values, list):
             self.fail(key, 'must be a list of strings like "--up=y"')
         flags = []
@@ -183,11 +183,11 @@ class _Reader:
     def file(self, key, name):
         if not isinstance(name, str) or not _is_file(self.folder / name):
             self.fail(key, f"holds {name!r}: no file at {self.folder / str(name)}")
-        return pathlib.Path(os.path.abspath(self.folder / name))  # links stay, as a mesh's kind is told by its name
+        return pathlib.Path(os.path.abspath(self.folder / name))  # does not resolve links, because the name determines the kind of mesh
 
 
 def _file_of(name, value):
-    """What a flag's value has before a file's name, and that name; the whole value and none where it names no file."""
+    """Splits a flag's value into the part before a file's name, and the name. The name is empty if the value names no file."""
     before, comma, last = value.rpartition(",") if name == "--hazard" else ("", "", value)  # size=L,FILE
     return (before + comma, last) if name in _FILE_FLAGS and _is_file(last) else (value, "")
 
@@ -231,7 +231,7 @@ def _policy(reader, value):
             reader.fail("policies", f"holds {value!r}: {error}")
         if not words:
             reader.fail("policies", f"holds {value!r}, which has no command")
-        # Files of the spec's folder by their names there.
+        # Words that name files in the spec's folder become absolute paths.
         return Policy(name, name, command=tuple(os.path.abspath(reader.folder / word) if _is_file(reader.folder / word) else word for word in words))
     if value.startswith("tour:") or value == "tour":
         counts = re.fullmatch(r"tour:([1-9]\d{0,3}):([1-9]\d{0,3})", value)
@@ -245,7 +245,7 @@ def _policy(reader, value):
 
 
 def _identity(path):
-    """A file by its contents; of a reach file also the poses that it names."""
+    """Hash of a file's contents, including the poses that a reach file refers to."""
     data = pathlib.Path(path).read_bytes()
     poses = re.search(rb"^\s*poses\s*=\s*[\"'](.+?)[\"']", data, re.MULTILINE) if str(path).endswith(".toml") else None
     inner = pathlib.Path(path).parent / poses[1].decode(errors="replace") if poses else None
@@ -259,7 +259,8 @@ def _flag_identity(flag):
 
 
 def read_spec(path, version: str = "") -> Spec:
-    """Reads a spec; `version` is the program's version, part of each run's hash. Raises SpecError with the file, the line and the cure."""
+    """Reads a spec. `version` is the program's version, part of each run's hash. Raises SpecError with the file, the line and what to
+    do."""
     reader = _Reader(pathlib.Path(path))
     text = (str, lambda value: bool(value))
     objects = [_object(reader, value) for value in reader.values("objects", (str, dict), bool, "must be a list of mesh files or tables")]

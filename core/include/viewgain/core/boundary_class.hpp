@@ -9,8 +9,8 @@
 
 namespace viewgain {
 
-/// The side of the image towards which a surface ends, in the axes of the view that saw it last.
-/// The order follows section 5 of the paper.
+/// The side of the image at which a surface ends, in the image of the last view that saw it. The
+/// order follows section 5 of the paper.
 enum class BoundaryClass : std::uint8_t { left, right, top, bottom };
 
 /// Names of the classes, in enumeration order.

@@ -8,8 +8,8 @@
 
 namespace viewgain {
 
-/// Axis-aligned box [m]. The member or argument that holds it states its frame, and whether its
-/// faces belong to it.
+/// Axis-aligned box [m]. The member or argument that holds the box states its frame, and whether
+/// points on its faces count as inside.
 struct VIEWGAIN_EXPORT Box {
   std::array<double, 3> min{};  ///< lowest corner [m]
   std::array<double, 3> max{};  ///< highest corner, excluded [m]

@@ -30,8 +30,9 @@ struct VIEWGAIN_EXPORT PinholeCamera {
   void validate() const;
 
   /// Direction (x, y, 1) in the camera frame of the ray through pixel coordinates (u, v) [px], with
-  /// the distortion removed. Solved by fixed-point and Newton iterations to 1e-12; NaN where no
-  /// solution connects to the optical axis without a fold. Exact and cheap without distortion.
+  /// the distortion removed. Iterates to 1e-12. NaN if the distortion model folds between the
+  /// optical axis and this pixel, so that the pixel has no ray. Without distortion the result is
+  /// exact and cheap.
   [[nodiscard]] Eigen::Vector3d ray(double u, double v) const;
 
   /// Pixel coordinates (u, v) [px] of the camera-frame point p [m], with distortion; NaN unless p.z
@@ -51,14 +52,14 @@ struct VIEWGAIN_EXPORT PinholeCamera {
   /// Ignores occlusion and the sensor's range limits.
   [[nodiscard]] bool sees(const Eigen::Vector3d& p_camera) const;
 
-  /// Directions (x, y, 1) [1] of ray() at all pixel centres in the camera frame, row-major, width *
+  /// ray() of every pixel centre: directions (x, y, 1) in the camera frame, row-major, width *
   /// height entries. Cost: one ray() per pixel.
   [[nodiscard]] std::vector<Eigen::Vector3d> ray_table() const;
 
-  /// Solid angle of every pixel [sr], row-major: cos³α / (fx fy) for a ray at angle α to the
-  /// optical axis, with distortion cos³α |∂(x, y) / ∂(u, v)|; 0 where a pixel has no ray. `rays` is
-  /// ray_table(). Derivatives are central differences between pixels, one-sided at the image edge
-  /// and next to pixels without a ray. Throws Error(invalid_argument) for a wrong number of rays.
+  /// Solid angle of every pixel [sr], row-major; 0 for a pixel without a ray. For a ray at angle α
+  /// to the optical axis it is cos³α / (fx fy). With distortion it is cos³α |∂(x, y) / ∂(u, v)|,
+  /// where the derivatives are differences between neighbouring pixels. `rays` must be the result
+  /// of ray_table(). Throws Error(invalid_argument) for a wrong number of rays.
   [[nodiscard]] std::vector<double> solid_angles(std::span<const Eigen::Vector3d> rays) const;
 
   bool operator==(const PinholeCamera&) const = default;

@@ -33,11 +33,12 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
     xx += o.xx, yy += o.yy, zz += o.zz, xy += o.xy, xz += o.xz, yz += o.yz;
     return *this;
   }
-  /// Entrywise sum: fusion of independent measurements in information form, eq. (4) of the paper.
+  /// Entrywise sum. Adding two information matrices fuses independent measurements: eq. (4) of the
+  /// paper.
   friend SymmetricMatrix3 operator+(SymmetricMatrix3 a, const SymmetricMatrix3& b) {
     return a += b;
   }
-  /// Product with the vector `v` of any unit.
+  /// Matrix times vector. `v` may have any unit.
   [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& v) const {
     return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
             xz * v.x() + yz * v.y() + zz * v.z()};
@@ -52,8 +53,8 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   [[nodiscard]] double determinant() const {
     return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
   }
-  /// Inverse by cofactors where they are accurate to about 1e-12, otherwise by a factorisation.
-  /// Handles condition numbers of 1e10. NaN unless positive definite.
+  /// Inverse, for condition numbers up to 1e10. Uses cofactors where they are accurate to about
+  /// 1e-12, otherwise a factorisation. NaN unless the matrix is positive definite.
   [[nodiscard]] SymmetricMatrix3 inverse() const {
     double ignored;
     return inverse(ignored);
@@ -103,9 +104,9 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   }
 };
 
-/// Information of one reading along the unit direction d, in the frame of d: Λ_r = a I + (b - a) d
-/// dᵀ, a = σ_lat⁻², b = σ_ax⁻² (apps/docs/guide/equations.md). Checks nothing: sigmas of 0 give
-/// infinities.
+/// Information of one reading (one measured depth) whose ray has the unit direction d: Λ_r = a I +
+/// (b - a) d dᵀ with a = σ_lat⁻² and b = σ_ax⁻², in the frame of d (apps/docs/guide/equations.md).
+/// Checks nothing: sigmas of 0 give infinities.
 [[nodiscard]] inline SymmetricMatrix3 measurement_information(const Eigen::Vector3d& d,
                                                               const MeasurementSigmas& sigmas) {
   const double a = 1.0 / (sigmas.lateral * sigmas.lateral);

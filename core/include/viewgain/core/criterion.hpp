@@ -14,8 +14,8 @@ namespace viewgain {
 
 /// Measure of the uncertainty of a voxel's position, computed from Σ = Λ⁻¹.
 enum class Criterion : std::uint8_t {
-  log_diagonal,  ///< ½ Σ_k ln Σ_kk in grid axes [nat]: eqs. (3) and (6) of the paper with the ½ of
-                 ///< eq. (2)
+  log_diagonal,  ///< ½ Σ_k ln Σ_kk in grid axes [nat]: eqs. (3) and (6) of the paper, with the
+                 ///< factor ½ of eq. (2)
   log_determinant,  ///< ½ ln det Σ [nat]: eq. (2); the same in every frame
   trace,            ///< tr Σ [m²]: A-optimality; the same in every frame
 };

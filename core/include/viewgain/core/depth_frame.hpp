@@ -12,28 +12,29 @@
 
 namespace viewgain {
 
-/// Depth image along the optical axis (z, not range) [m], row-major. A pixel is a reading (0 < z <
-/// infinity), kInvalid or kOutOfRange. A value type.
+/// Depth image along the optical axis (z, not range) [m], row-major. A pixel is a reading (a
+/// measured depth, 0 < z < infinity), kInvalid or kOutOfRange. A value type.
 struct VIEWGAIN_EXPORT DepthFrame {
   static constexpr float kInvalid = 0.0F;  ///< depth [m] of a pixel without information
-  /// Depth [m] of a pixel that is free up to max_range.
+  /// Depth [m] of a pixel whose ray meets nothing up to max_range.
   static constexpr float kOutOfRange = std::numeric_limits<float>::infinity();
-  /// Amplitude [m⁻²] at full scale: unknown.
+  /// Amplitude [m⁻²] of a saturated pixel, whose true amplitude is unknown.
   static constexpr float kSaturated = std::numeric_limits<float>::infinity();
 
   int width = 0;             ///< [px]
   int height = 0;            ///< [px]
   std::vector<float> depth;  ///< width * height values
-  /// Empty, or width * height values: the returned signal cosθ / t² [m⁻²] of a diffuse surface as
-  /// bright as the noise model assumes, with the angle of incidence θ and the range t. Where it is
-  /// kSaturated, the angle is computed from the depths.
+  /// Empty, or width * height values: the signal cosθ / t² [m⁻²] that a diffuse surface returns,
+  /// where θ is the angle of incidence and t the range. The surface has the brightness that the
+  /// noise model assumes. For kSaturated, θ is computed from the depths.
   std::vector<float> amplitude{};
-  /// Empty, or width * height values: the depth [m] from which a pixel's reading shows a known
-  /// object outside the map, such as the wall of a bin; infinity: no such object. ObstacleView sets
-  /// it. Such readings mark free space, but no surface.
+  /// Empty, or width * height values [m]. A reading at or beyond this depth shows a known object
+  /// that is not part of the map, such as the wall of a bin. It marks free space, but no surface.
+  /// Infinity: no known object. ObstacleView sets these depths.
   std::vector<float> known_depth{};
-  /// Identifies the frame, or empty: 16 hexadecimal digits over its bytes, a space and a name, from
-  /// frame_identity() of viewgain::formats. A map stores the identities of its frames (MapNotes).
+  /// Identifies the frame, or empty. frame_identity() of viewgain::formats makes it from a hash of
+  /// the frame's bytes (16 hexadecimal digits), a space and a name. A map stores the identities of
+  /// its frames (MapNotes).
   std::string identity{};
 
   /// Whether this pixel's reading shows a known object. The row-major index is unchecked.

@@ -16,11 +16,11 @@ namespace viewgain {
 
 /// Settings that affect speed, never results.
 struct VIEWGAIN_EXPORT ExecConfig {
-  /// How to find the first voxel on a ray that is not free. All tracers give identical bits.
+  /// How to find the first voxel on a ray that is not free. All tracers give bit-identical results.
   enum class Tracer : std::uint8_t {
-    automatic,  ///< the sweep: faster for full images, and needs no BVH
-    embree,  ///< a BVH of leaves and boxes: for few rays and many views (perf/results/tracers.md)
-    sweep,   ///< the scene's cells from near to far, each against the rays that can end in it
+    automatic,  ///< the sweep, which is faster for full images and needs no BVH
+    embree,     ///< a BVH: faster for many views with few rays each (perf/results/tracers.md)
+    sweep,  ///< visits cells from near to far and tests each against the rays that can end in it
   };
 
   int num_threads = 0;                ///< including the calling thread; 0: all hardware threads
@@ -35,8 +35,8 @@ struct VIEWGAIN_EXPORT ExecConfig {
 /// Parses a name. Throws Error(invalid_argument) listing the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT ExecConfig::Tracer parse_tracer(std::string_view name);
 
-/// Observes one long call or stops it early. Both ways to stop have the same effect, which the call
-/// documents.
+/// Observes one long call or stops it early. `stop` and `is_cancelled` have the same effect; each
+/// call documents what it then returns.
 struct VIEWGAIN_EXPORT BatchControl {
   std::stop_token stop{};  ///< stops the call from another thread; checked between poses
   std::function<void(std::size_t done, std::size_t total)>

@@ -11,18 +11,18 @@
 
 namespace viewgain {
 
-/// What became of a frame that was to go into a map.
+/// How a frame was used for a map, or why it was not used.
 enum class FrameVerdict : std::uint8_t {
-  used,        ///< the map has readings of it; for a frame that is only read so far: no fault found
-  carved,      ///< in the map; it showed only free space
-  lost_pose,   ///< its pose is not a rigid transform of finite numbers
-  no_pose,     ///< it has no pose
-  unreadable,  ///< a file is missing, truncated, damaged or of another kind
-  wrong_size,  ///< its image or mask differs in size from the sensor
+  used,              ///< its readings are in the map; before integration: no fault was found
+  carved,            ///< in the map, but it showed only free space
+  lost_pose,         ///< its pose is not a rigid transform of finite numbers
+  no_pose,           ///< it has no pose
+  unreadable,        ///< a file is missing, truncated, damaged or of another kind
+  wrong_size,        ///< its image or mask differs in size from the sensor
   nothing_in_range,  ///< all pixels are invalid
   outside,           ///< it shows nothing of the workspace
   contradicts,       ///< after registration it contradicts the map or the other frames
-  changed,           ///< another frame had its number, or its image in a recording's list
+  changed,           ///< another frame already had its number or its image
   no_mask,           ///< its mask never arrived
   not_metres,        ///< nearly all depths are beyond 10 times the sensor's max_range
 };
@@ -43,7 +43,7 @@ inline constexpr std::array<std::string_view, 12> kFrameVerdictNames{
   return verdict <= FrameVerdict::carved;
 }
 
-/// Number of frames per verdict. Missing verdicts had none.
+/// Number of frames per verdict. A verdict that is missing has no frames.
 using FrameCounts = std::map<FrameVerdict, std::size_t>;
 
 /// Count of one verdict. Never throws.
@@ -52,7 +52,7 @@ using FrameCounts = std::map<FrameVerdict, std::size_t>;
   return found == counts.end() ? 0 : found->second;
 }
 
-/// Counts of the frames that are not in the map, by name of the verdict.
+/// Numbers of frames that are not in the map, by name of the verdict.
 [[nodiscard]] inline std::map<std::string, std::size_t> bad_frames(const FrameCounts& counts) {
   std::map<std::string, std::size_t> bad;
   for (const auto& [verdict, count] : counts) {

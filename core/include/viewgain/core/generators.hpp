@@ -11,13 +11,13 @@
 #include "viewgain/core/pose.hpp"
 
 /// @file
-/// Generators of candidate poses without a surface: T_world_camera, ordered by index i. All except
-/// the rings look at `center` [m] in the world frame, with the image up along world up (+z), or +x
-/// at the poles. Deterministic. Cost: O(count).
+/// Generators of candidate poses that need no map. They return T_world_camera, ordered by index i.
+/// All except the rings look at `center` [m] in the world frame, with the image up along world up
+/// (+z), or +x at the poles. Deterministic. Cost: O(count).
 ///
 /// All functions throw Error(invalid_argument) for count 0, a `radius` [m] that is not positive and
-/// finite, and a centre or an angle [rad] that is not finite; Error(capacity) above 100 million
-/// poses.
+/// finite, and a centre or an angle [rad] that is not finite. They throw Error(capacity) above 100
+/// million poses.
 
 namespace viewgain {
 
@@ -44,9 +44,9 @@ namespace viewgain {
     const Eigen::Vector3d& center = Eigen::Vector3d::Zero());
 
 /// View sets of Isler et al. 2016 (ig_active_reconstruction), scaled so that their radius of 0.5 m
-/// (48 poses: 0.6 m) becomes `radius`. Rings of 16 azimuths: level ones on a cylinder, and ones on
-/// a dome above its highest ring that look at the dome's centre. `total` selects the heights above
-/// `center` and the dome rings:
+/// (48 poses: 0.6 m) becomes `radius`. Each ring has 16 azimuths. Rings on a cylinder look
+/// horizontally. Rings on a dome above the highest of them look at the dome's centre. `total`
+/// selects the heights of the rings above `center` and the elevations of the dome's rings:
 /// - 48: 0.15 and 0.35 m; dome 45°.
 /// - 80: 0.15, 0.30 and 0.45 m; dome 30° and 60°.
 /// - 288: 0.1, 0.2, 0.3 and 0.4 m; dome 30° and 60°; each ring also tilted by ±22.5°.

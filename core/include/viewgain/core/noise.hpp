@@ -97,12 +97,12 @@ using NoiseModel =
 [[nodiscard]] VIEWGAIN_EXPORT double sigma_along_normal(const MeasurementSigmas& sigmas,
                                                         double cos_incidence);
 
-/// Readings closer than this to a known surface count as readings of it, in standard deviations
-/// along its normal.
+/// A reading counts as a reading of a known surface if it is closer than this number of standard
+/// deviations, measured along the surface normal.
 inline constexpr double kKnownSigmas = 3;
 
 /// Whether a reading shows a known plane. The reading lies `height` [m] above the plane; `rise` [m]
-/// is the climb along the plane's normal per metre of ray. True if the reading lies below the
+/// is the height that the ray gains over the plane per metre. True if the reading lies below the
 /// plane, or if the ray descends and the reading lies less than kKnownSigmas above it. Checks
 /// nothing; false for a height of NaN.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_of_plane(double height, double rise,

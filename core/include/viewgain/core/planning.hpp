@@ -32,7 +32,7 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT Measurements {
   Pose T_world_camera;             ///< camera pose of the measurements
   std::vector<DepthFrame> frames;  ///< one or several, in acquisition order
-  PoseSigma pose_sigma{};          ///< uncertainty of the pose; adds to the sensor's own
+  PoseSigma pose_sigma{};          ///< uncertainty of this pose, in addition to Sensor::pose_sigma
 };
 
 /// DATAACQUISITION: moves the sensor to x_i and measures.
@@ -46,7 +46,7 @@ class VIEWGAIN_EXPORT DataAcquisition {
 /// Wall-clock time per stage [s].
 using StageSeconds = std::map<std::string, double>;
 
-/// State of the representations, for the stopping rules.
+/// State of map and model, for the stopping rules.
 struct VIEWGAIN_EXPORT ModelProgress {
   double entropy_removed = 0;        ///< of the whole map [nat, or m² for trace]
   std::uint64_t unknown_voxels = 0;  ///< of the workspace
@@ -70,7 +70,7 @@ struct VIEWGAIN_EXPORT Candidate {
   Pose T_world_camera;    ///< camera pose
   std::string generator;  ///< name of the generator
   std::optional<BoundaryClass>
-      boundary_class{};                 ///< class of the boundary that it looks beyond, if any
+      boundary_class{};  ///< class of the surface boundary that it looks beyond, if any
   std::optional<std::size_t> number{};  ///< the generator's number of the candidate, if any
 };
 
@@ -100,15 +100,15 @@ class VIEWGAIN_EXPORT DecisionMaking {
     /// Its expected gain [nat, m² for trace].
     double gain = std::numeric_limits<double>::quiet_NaN();
     /// Expected gain per touched voxel [nat, m² for trace], compared with
-    /// PlanningConfig::stop_gain; NaN: the policy has no such gain, and this rule never stops the
+    /// PlanningConfig::stop_gain. NaN: the policy has no such gain, and this rule never stops the
     /// run.
     double gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
     /// Expected new surface [m²]; NaN: unknown.
     double area = std::numeric_limits<double>::quiet_NaN();
-    /// Largest expected new surface of all candidates evaluated in full [m²], compared with
-    /// PlanningConfig::stop_area; NaN: unknown, and this rule never stops the run.
+    /// Largest expected new surface among the candidates evaluated in full [m²], compared with
+    /// PlanningConfig::stop_area. NaN: unknown, and this rule never stops the run.
     double best_area = std::numeric_limits<double>::quiet_NaN();
-    /// Gain minus path cost, in the gain's unit; NaN: there is no cost, and this rule never stops
+    /// Gain minus path cost, in the gain's unit. NaN: there is no cost, and this rule never stops
     /// the run.
     double worth = std::numeric_limits<double>::quiet_NaN();
   };
@@ -120,17 +120,17 @@ class VIEWGAIN_EXPORT DecisionMaking {
                                          std::span<const Candidate> candidates) = 0;
 };
 
-/// Default of PlanningConfig::stop_gain [nat]: about the gain that is left once a further view
-/// cannot double the information of a touched voxel (3/2 ln 2 = 1.04 nat); see
-/// perf/results/loop.md.
+/// Default of PlanningConfig::stop_gain [nat]. A view that doubles the information of a voxel gains
+/// 3/2 ln 2 = 1.04 nat there. See perf/results/loop.md.
 inline constexpr double kStopGain = 1.2;  // [nat]
-/// Default for the criterion trace, relative to the gain of the first decision.
+/// Default of stop_gain for the criterion trace, relative to the gain of the first decision.
 inline constexpr double kStopGainShare = 0.01;
 
-/// Default of PlanningConfig::stop_area, a share of the surface so far (perf/results/loop.md).
+/// Default of PlanningConfig::stop_area, a fraction of the surface so far (perf/results/loop.md).
 inline constexpr double kStopArea = 4e-3;
 
-/// A view that brings less than this share of its prediction breaks its promise.
+/// A view that gains less than this fraction of its prediction counts for
+/// PlanningConfig::broken_promises.
 inline constexpr double kKeptShare = 0.2;
 
 /// Stopping rules.
@@ -138,20 +138,20 @@ struct VIEWGAIN_EXPORT PlanningConfig {
   std::size_t max_views = 20;  ///< view budget, including the first view
   /// Stops when the best candidate's gain per touched voxel is below this [nat, m² for trace].
   double stop_gain = kStopGain;
-  /// stop_gain is relative to the gain per voxel of the first decision (for trace: kStopGainShare).
+  /// Whether stop_gain is relative to the gain per voxel of the first decision, as kStopGainShare
+  /// is.
   bool stop_gain_is_relative = false;
-  /// Stops when the largest expected new surface (Decision::best_area) is below this share of the
-  /// model's surface (ModelProgress::surface_area), averaged over the last three decisions, because
-  /// single decisions scatter. 0: never.
+  /// Stops when Decision::best_area divided by ModelProgress::surface_area is below this value, on
+  /// average over the last three decisions. 0: never.
   double stop_area = kStopArea;
   std::size_t idle_views = 3;  ///< stops after this many idle views in a row; 0: never
   /// A view is idle if it changes entropy_removed and the number of unknown voxels by less than
-  /// this share, or not at all. The first view is never idle.
+  /// this fraction, or not at all. The first view is never idle.
   double idle_fraction = 1e-3;
-  /// Stops after this many views in a row that brought less than kKeptShare of their prediction; 0:
+  /// Stops after this many views in a row that gained less than kKeptShare of their prediction; 0:
   /// never. Compares Decision::area with ModelProgress::new_area. If one of them is unknown and
   /// there is a gain per voxel, compares the gain with the increase of
-  /// ModelProgress::entropy_removed. Other views neither count nor reset the count.
+  /// ModelProgress::entropy_removed. Views that cannot be compared are skipped.
   std::size_t broken_promises = 3;
   std::optional<double> stop_coverage{};  ///< stops at this coverage, in [0, 1]
   /// Polled after each step except the acquisition, since measurements always go into the model.
@@ -161,13 +161,13 @@ struct VIEWGAIN_EXPORT PlanningConfig {
 
 /// Why a run ended.
 enum class StopReason : std::uint8_t {
-  gain,           ///< the best candidate promises too little
+  gain,           ///< the expected gain of the best candidate is too small
   area,           ///< no candidate is expected to show enough new surface
   cost,           ///< reaching the best candidate costs more than its gain
   no_candidates,  ///< no candidates are left
   unreachable,    ///< all remaining candidates are out of reach
-  idle,           ///< several views in a row brought nothing new
-  promises,       ///< several views in a row brought far less than predicted
+  idle,           ///< several views in a row changed almost nothing
+  promises,       ///< several views in a row gained far less than predicted
   max_views,
   coverage,
   interrupted,
@@ -190,8 +190,8 @@ struct VIEWGAIN_EXPORT ViewRecord {
   /// The choice of the next view, or empty. With StopReason::gain, area and cost it is the rejected
   /// choice.
   std::optional<DecisionMaking::Decision> decision{};
-  /// Duration of the steps: acquire; the stages of the update, or update if it names none;
-  /// candidates; score.
+  /// Duration of the steps acquire, update, candidates and score. If the update reports stages,
+  /// they replace update.
   StageSeconds seconds{};
 };
 
@@ -202,13 +202,13 @@ struct VIEWGAIN_EXPORT PlanningResult {
 };
 
 /// Runs Algorithm 1 of the paper from x_0, a T_world_camera. Calls the parts on the calling thread,
-/// and `observer`, if given, after each complete record. Passes on exceptions of the parts. Throws
-/// Error(invalid_argument) if max_views is 0, a limit is not finite, or a decision refers to a
-/// missing candidate.
+/// and calls `observer`, if given, after each complete record. Passes on exceptions of the parts.
+/// Throws Error(invalid_argument) if max_views is 0, a limit is not finite, or a decision refers to
+/// a missing candidate.
 ///
-/// Order of the rules after each view: interrupted; coverage; max_views; idle; promises; then with
-/// the candidates no_candidates or unreachable (none was chosen, and some were dropped as
-/// unreachable); gain; area; cost.
+/// After each view the rules apply in this order: interrupted, coverage, max_views, idle and
+/// promises. If no candidate is then chosen, the reason is unreachable if some were dropped as
+/// unreachable, otherwise no_candidates. For a chosen candidate gain, area and cost follow.
 [[nodiscard]] VIEWGAIN_EXPORT PlanningResult active_view_planning(
     const Pose& x_0, DataAcquisition& acquisition, RepresentationUpdate& representation,
     ViewpointGeneration& generation, DecisionMaking& decision, const PlanningConfig& config = {},

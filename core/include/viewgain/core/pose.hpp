@@ -11,7 +11,7 @@
 namespace viewgain {
 
 /// Rigid transform. For a camera, T_world_camera maps points of the optical frame (x right, y down,
-/// z forward) to the world. Twelve doubles, the rows of [R | t] with t in metres. Unlike
+/// z forward) to the world. Twelve doubles, the rows of [R | t] with t in metres. Unlike those of
 /// Eigen::Isometry3d, its size and alignment do not depend on compiler flags, so it can cross
 /// library boundaries. A value type. Members check nothing and never throw.
 struct VIEWGAIN_EXPORT Pose {
@@ -82,12 +82,13 @@ static_assert(sizeof(Pose) == 96 && alignof(Pose) == 8);
 /// The rigid transform used for a given pose: the pose itself if orthonormality_error() is at most
 /// 1e-9, orthonormalized() if it is at most kMaxPoseError, otherwise none. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Pose> rigid_pose(const Pose& pose);
-inline constexpr double kMaxPoseError = 1e-3;  ///< [1]
+inline constexpr double kMaxPoseError = 1e-3;  ///< largest orthonormality_error() repaired [1]
 
 /// T_world_camera of a camera at `eye` [m] whose optical axis passes through `target` [m]. Image up
-/// (minus y) is as close as possible to `up`, a vector of any length; if the view direction is
-/// parallel to `up`, to +x of the world (then +y). Throws Error(invalid_argument) if eye equals
-/// target, up is zero, or a number is not finite. Orthonormal to 1e-15.
+/// (minus y) is as close as possible to `up`, a vector of any length. If the view direction is
+/// parallel to `up`, +x of the world replaces it, or +y if that is parallel too. Throws
+/// Error(invalid_argument) if eye equals target, up is zero, or a number is not finite. Orthonormal
+/// to 1e-15.
 [[nodiscard]] VIEWGAIN_EXPORT Pose look_at(const Eigen::Vector3d& eye,
                                            const Eigen::Vector3d& target,
                                            const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());

@@ -34,28 +34,27 @@ struct VIEWGAIN_EXPORT PoseList {
 /// file without poses.
 [[nodiscard]] VIEWGAIN_EXPORT PoseList read_tum(const std::filesystem::path& path);
 
-/// Reads the pose in the current line of the reader, for files that are incomplete. Sets
-/// *orthonormalized if the quaternion deviated by more than 1e-5. Throws Error(format) as
-/// read_tum() does.
+/// Reads the pose in the current line of the reader, for files that are still being written. Sets
+/// *orthonormalized if the norm of the quaternion deviated by more than 1e-5. Throws Error(format)
+/// like read_tum().
 [[nodiscard]] VIEWGAIN_EXPORT Pose tum_line_pose(const LineReader& line,
                                                  bool* orthonormalized = nullptr);
 
-/// Writes the TUM format, one pose per line with 17 significant digits; read back, rotations agree
-/// to 2e-15 and translations exactly. Timestamps are 0, 1, 2, ... Atomic: renames a temporary file.
-/// Throws Error(io), and Error(invalid_argument) if the name of a regular file does not end in .txt
-/// or .tum, or for a pose whose rotation deviates by more than 1e-2 or is not finite, with its
-/// index.
+/// Writes the TUM format, one pose per line with 17 significant digits. When read back, rotations
+/// agree to 2e-15 and translations exactly. Timestamps are 0, 1, 2, ... Atomic: renames a temporary
+/// file. Throws Error(io). Throws Error(invalid_argument) if the name of a regular file does not
+/// end in .txt or .tum, or if a rotation deviates by more than 1e-2 or is not finite.
 VIEWGAIN_EXPORT void write_tum(const std::filesystem::path& path, std::span<const Pose> poses);
-/// Writes one timestamp [s] per pose, kept exactly, such as those from read_tum(). Also throws
-/// Error(invalid_argument) for a wrong number of timestamps or one that is not finite.
+/// As above with one timestamp [s] per pose, written exactly. Also throws Error(invalid_argument)
+/// for a wrong number of timestamps or one that is not finite.
 VIEWGAIN_EXPORT void write_tum(const std::filesystem::path& path, std::span<const Pose> poses,
                                std::span<const double> timestamps);
 
 /// Reads one row-major 4x4 matrix of T_world_camera [m], 16 numbers, as in RGB-D data sets.
-/// Orthonormalises a rotation that deviates by 1e-9 to 1e-2; sets *orthonormalized above 1e-5.
+/// Orthonormalises a rotation that deviates by 1e-9 to 1e-2, and sets *orthonormalized above 1e-5.
 /// Skips a byte order mark. Throws Error(format) with the file for a larger deviation, a last row
-/// other than 0 0 0 1 (1e-6) and invalid numbers; Error(io) if it is not a readable regular file;
-/// Error(capacity) above 1 GiB.
+/// other than 0 0 0 1 (to 1e-6) and invalid numbers. Throws Error(io) unless it is a readable
+/// regular file, and Error(capacity) above 1 GiB.
 [[nodiscard]] VIEWGAIN_EXPORT Pose read_pose_matrix(const std::filesystem::path& path,
                                                     bool* orthonormalized = nullptr);
 

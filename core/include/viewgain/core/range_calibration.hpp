@@ -38,12 +38,13 @@ struct VIEWGAIN_EXPORT RangeCalibration {
   bool operator==(const RangeCalibration&) const = default;
 };
 
-/// RangeCalibration::correct() for many frames of one camera, with rays computed once and identical
-/// bits. Immutable; may be used from many threads at once.
+/// RangeCalibration::correct() for many frames of one camera: computes the rays once and gives
+/// bit-identical results. Immutable; may be used from many threads at once.
 class VIEWGAIN_EXPORT RangeCorrector {
  public:
-  /// Throws Error(invalid_argument) as PinholeCamera::validate() and RangeCalibration::validate().
-  /// Cost: 8 bytes and 10 ns per pixel, 0.4 µs with lens distortion; constant without a table.
+  /// Throws Error(invalid_argument) like PinholeCamera::validate() and
+  /// RangeCalibration::validate(). Cost: 8 bytes and 10 ns per pixel, 0.4 µs with lens distortion;
+  /// constant without a table.
   RangeCorrector(const PinholeCamera& camera, RangeCalibration calibration);
 
   /// The camera.

@@ -14,10 +14,10 @@
 
 namespace viewgain {
 
-/// Region of camera poses that a robot can reach, world frame. A pose is reachable if all
-/// conditions that are present hold: its centre lies in one of the boxes, in one of the shells and
-/// in all half-spaces (limits included); it is one of the poses; and the predicate returns true. An
-/// empty region contains all poses.
+/// Region of camera poses that a robot can reach, world frame. A pose is reachable if it meets
+/// every condition that is present. Its centre lies in one of the boxes, in one of the shells and
+/// in all half-spaces, each including its faces. The pose is among `poses`, within the tolerance.
+/// The predicate returns true. An empty region contains all poses.
 struct VIEWGAIN_EXPORT ReachRegion {
   /// Space between two spheres with a common centre [m], world frame.
   struct Shell {
@@ -29,7 +29,7 @@ struct VIEWGAIN_EXPORT ReachRegion {
   /// Points p of the world [m] with normal · p >= offset.
   struct HalfSpace {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< points inward, any length
-    double offset = 0;  ///< normal · p on the plane, in the unit of both [m]
+    double offset = 0;  ///< normal · p on the plane [m for a unit normal]
     bool operator==(const HalfSpace&) const = default;
   };
 

@@ -51,23 +51,23 @@ struct VIEWGAIN_EXPORT Sensor {
   RangeCalibration range_calibration{};
 
   PoseSigma pose_sigma{};  ///< zero: poses are exact
-  /// Relative standard deviation of one factor common to all ranges; 0: none. More readings do not
-  /// reduce it. It enters the covariances of points (FusedPointsConfig::scale_sigma), but not
-  /// sigmas().
+  /// Standard deviation of a scale error: a relative error that all ranges share, so that more
+  /// readings do not reduce it. 0: none. It enters the covariances of points
+  /// (FusedPointsConfig::scale_sigma), but not sigmas().
   double scale_sigma = 0;
   /// Meaning of 65535 in its depth images if the folder does not state it; empty: see
   /// FrameSequence.
   std::optional<OutOfRange> out_of_range{};
 
-  /// Standard deviations of a reading at range t [m] with cosine of incidence cos_incidence, camera
-  /// frame; see sigmas() in noise.hpp.
+  /// Standard deviations of a reading (one measured depth) at range t [m] with the cosine of
+  /// incidence cos_incidence, camera frame; see sigmas() in noise.hpp.
   [[nodiscard]] MeasurementSigmas noise_sigmas(double t, double cos_incidence = 1.0) const {
     return viewgain::sigmas(noise, t, camera.fx, cos_incidence);
   }
-  /// Covariance of a reading in the world, including the pose uncertainty: C + J Σ Jᵀ, which for a
-  /// reading along the direction d is C + σ_t² I + σ_r² t² (I - d dᵀ). Map and gains treat readings
-  /// as independent. The pose error is common to all readings of a frame, so many readings of one
-  /// voxel make it more certain than it should be.
+  /// Standard deviations of a reading in the world, including the pose uncertainty. The covariance
+  /// is C + σ_t² I + σ_r² t² (I - d dᵀ), where C is that of the sensor and d the direction of the
+  /// ray. Map and gains treat readings as independent. In fact all readings of a frame share the
+  /// pose error, so a voxel with many readings appears more certain than it is.
   [[nodiscard]] MeasurementSigmas sigmas(double t, double cos_incidence = 1.0) const {
     const MeasurementSigmas own = noise_sigmas(t, cos_incidence);
     if (pose_sigma == PoseSigma{}) return own;
@@ -78,18 +78,18 @@ struct VIEWGAIN_EXPORT Sensor {
 
   /// Throws Error(invalid_argument) naming the field unless: the camera passes
   /// PinholeCamera::validate(); 0 <= min_range < max_range; working_distance > 0 lies within; noise
-  /// parameters are positive and finite (terms of a sum of sigmas, modulation frequency and least
-  /// amplitude may be 0 while the sigma along the ray stays positive); T_flange_camera is rigid
-  /// (1e-3); body_size is positive; pose_sigma and scale_sigma are not negative; and
-  /// range_calibration passes its validate() with positive ranges, measured and corrected.
+  /// parameters are positive and finite, where modulation frequency, least amplitude and single
+  /// terms of a sum may be 0; T_flange_camera is rigid (1e-3); body_size is positive; pose_sigma
+  /// and scale_sigma are not negative; and range_calibration passes its validate(), with positive
+  /// measured and corrected ranges.
   void validate() const;
 
   bool operator==(const Sensor&) const = default;
 };
 
 /// Names of the presets: sr4000, azure_kinect_nfov, kinect_v1, d435, and laser_line, a scanner of
-/// one line per pose (640x1 px, sigmas 0.2 mm, 0.1-1.0 m). Presets of real cameras have the size of
-/// the housing (kinect_v1: approximate, without its foot).
+/// one line per pose (640x1 px, sigmas 0.2 mm, 0.1-1.0 m). Presets of real cameras include the size
+/// of the housing; that of kinect_v1 is approximate and excludes the foot.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& sensor_preset_names();
 
 /// Returns a preset. Throws Error(invalid_argument) listing the valid names.

@@ -10,8 +10,7 @@
 
 namespace viewgain {
 
-/// Triangle soup as plain arrays, in the frame of its user. Functions that take a mesh check its
-/// indices.
+/// Triangle soup as plain arrays, in any frame. Functions that take a mesh check its indices.
 struct VIEWGAIN_EXPORT TriangleMesh {
   std::vector<std::array<double, 3>> vertices;          ///< [m], or in a file's own unit
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three vertex indices each

@@ -10,10 +10,9 @@
 
 namespace viewgain {
 
-/// The largest file that file_bytes() reads unless told otherwise, and the most that it takes from
-/// a pipe, whose length nobody knows beforehand [bytes].
+/// Default of the largest file that file_bytes() reads [bytes].
 inline constexpr std::uint64_t kMostFileBytes = std::uint64_t{1} << 34U;
-/// Default of the most that is read from a pipe [bytes].
+/// Default of the maximum that is read from a pipe, whose length is not known beforehand [bytes].
 inline constexpr std::uint64_t kMostPipeBytes = std::uint64_t{1} << 30U;
 
 /// All bytes of a regular file or a pipe. Throws Error(io) that names the file if it cannot be
@@ -22,19 +21,19 @@ inline constexpr std::uint64_t kMostPipeBytes = std::uint64_t{1} << 30U;
 [[nodiscard]] VIEWGAIN_EXPORT std::string file_bytes(const std::filesystem::path& path,
                                                      std::uint64_t most = kMostFileBytes);
 
-/// The same of a file that was found in a folder: a regular one, since a pipe would wait for
-/// somebody to write, and nobody has named it. Throws Error(io) for all others, too. Thread safe.
+/// As above for a file that was found in a folder. It must be a regular file, because a pipe would
+/// wait for a writer; throws Error(io) for others. Thread safe.
 [[nodiscard]] VIEWGAIN_EXPORT std::string folder_file_bytes(const std::filesystem::path& path,
                                                             std::uint64_t most = kMostFileBytes);
 
-/// At most the first `count` bytes of a regular file. Throws Error(io) and costs as file_bytes().
-/// Thread safe.
+/// At most the first `count` bytes of a regular file. Throws Error(io) like file_bytes(). Thread
+/// safe.
 [[nodiscard]] VIEWGAIN_EXPORT std::string file_head(const std::filesystem::path& path,
                                                     std::size_t count);
 
-/// From now on file_bytes() keeps what it reads from a pipe, and whoever reads that pipe again gets
-/// the same bytes. For a program that reads each file of its command line from as many places as it
-/// likes, and then ends; it costs the pipes' bytes in memory.
+/// From now on file_bytes() keeps the bytes of a pipe, and returns them again for the same pipe.
+/// For a program that reads the files of its command line several times and then ends. Costs the
+/// memory of these bytes.
 VIEWGAIN_EXPORT void keep_bytes_of_pipes() noexcept;
 
 }  // namespace viewgain

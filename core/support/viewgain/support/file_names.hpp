@@ -10,26 +10,26 @@
 #include "viewgain/core/export.hpp"
 
 /// @file
-/// What names of files say. Cost: at most a look at the file system.
+/// Checks of file names. Cost: at most one query of the file system.
 
 namespace viewgain {
 
-/// The name's ending, as .vdb, with capital letters made small. Never throws.
+/// The name's ending, such as .vdb, in lower case. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string small_ending(const std::filesystem::path& path);
 
-/// Whether something is there that is neither a regular file nor a folder (/dev/null, a pipe), or
-/// the name stands for an open file of this process (/dev/stdout). Names of such files may end in
-/// anything. Never throws.
+/// Whether the name refers to something other than a regular file or a folder (/dev/null, a pipe),
+/// or to an open file of this process (/dev/stdout). Such names may have any ending. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_special_file(const std::filesystem::path& path);
 
-/// What is wrong with the ending of a file that is to be written: "the name of a surface must end
-/// in .ply". Empty if it is one of `endings`, capitals too, or is_special_file(). Never throws.
+/// What is wrong with the ending of an output file: "the name of a surface must end in .ply". Empty
+/// if the ending is one of `endings`, in lower or upper case, or for is_special_file(). Never
+/// throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string fault_of_ending(
     const std::filesystem::path& path, std::string_view what,
     std::initializer_list<std::string_view> endings);
 
 /// Throws Error(invalid_argument) that names the file and has fault_of_ending(), if there is one.
-/// All writers of one format call it, so that no file holds another format than its name says.
+/// All writers of a format call it, so that a file's name matches its format.
 VIEWGAIN_EXPORT void require_ending(const std::filesystem::path& path, std::string_view what,
                                     std::initializer_list<std::string_view> endings);
 

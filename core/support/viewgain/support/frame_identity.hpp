@@ -8,9 +8,9 @@
 
 namespace viewgain {
 
-/// Has the text the form of DepthFrame::identity?
+/// Whether the text has the form of DepthFrame::identity.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_identity(const std::string& text);
-/// Throws Error(invalid_argument) if it has not; an empty one is allowed.
+/// Throws Error(invalid_argument) if the text is neither empty nor an identity.
 VIEWGAIN_EXPORT void check_identity(const std::string& identity);
 
 }  // namespace viewgain

@@ -13,10 +13,10 @@
 
 namespace viewgain {
 
-/// Steps of this between the arguments of mix64 give SplitMix64's sequence.
+/// Arguments of mix64() in steps of this give SplitMix64's sequence.
 inline constexpr std::uint64_t kMixStep = 0x9E3779B97F4A7C15ULL;
 
-/// SplitMix64's finaliser: a bijection in which every input bit flips half of the output's.
+/// SplitMix64's finaliser: a bijection in which every input bit flips half of the output bits.
 [[nodiscard]] constexpr std::uint64_t finalize64(std::uint64_t x) {
   x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
   x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
@@ -32,8 +32,8 @@ inline constexpr std::uint64_t kMixStep = 0x9E3779B97F4A7C15ULL;
   return static_cast<double>(bits >> 11U) * 0x1.0p-53;
 }
 
-/// A 64-bit hash of a sequence of 64-bit words, the same on every machine, as a name for what they
-/// say. Not for secrets: nobody gains by two contents of one name.
+/// A 64-bit hash of a sequence of 64-bit words, the same on every machine, to identify contents.
+/// Not cryptographic.
 class Hash64 {
  public:
   void add(std::uint64_t word) {
@@ -41,7 +41,7 @@ class Hash64 {
     ++count_;
   }
   void add_number(double number) { add(std::bit_cast<std::uint64_t>(number)); }
-  /// By words, little-endian, and their number.
+  /// Adds bytes as little-endian words, and their number.
   void add_bytes(std::string_view bytes) {
     const auto word_at = [&](std::size_t at, std::size_t count) {
       std::uint64_t word = 0;

@@ -7,9 +7,8 @@
 #include "viewgain/support/isa.hpp"
 
 /// @file
-/// For sources that Highway compiles once for each instruction set, after HWY_ONCE:
-/// VIEWGAIN_OF_ISA(isa, function) is the function of that name that was compiled for `isa`, or for
-/// the least that the build has.
+/// For sources that Highway compiles once per instruction set, after HWY_ONCE. VIEWGAIN_OF_ISA(isa,
+/// function) is the version of the function for `isa`, or for the lowest set of the build.
 
 #if HWY_TARGETS & HWY_AVX3
 #define VIEWGAIN_IF_AVX512(isa, function) (isa) == ::viewgain::Isa::avx512 ? N_AVX3::function:

@@ -13,12 +13,12 @@ template <typename Model>
 struct NoiseField {
   const char* name;  ///< in files and in Python
   double Model::*member;
-  bool optional = false;     ///< in files: then the model's default holds
-  bool unsaid_at_0 = false;  ///< in files: 0 is no value of its own
-  bool may_be_0 = optional;  ///< else positive; Sensor::validate() looks at the sum
+  bool optional = false;     ///< in files: if missing, the model's default is used
+  bool unsaid_at_0 = false;  ///< in files: omitted if 0
+  bool may_be_0 = optional;  ///< otherwise positive; Sensor::validate() checks the sum
 };
 
-/// What a model is called in files, and its parameters in the order of C's vg_sensor::noise.
+/// Name of a model in files, and its parameters in the order of C's vg_sensor::noise.
 template <typename Model>
 struct NoiseLayout;
 template <>
@@ -67,11 +67,11 @@ struct NoiseLayout<ConstantNoise> {
        {"sigma_lateral", &ConstantNoise::sigma_lateral}}};
 };
 
-/// All models with their start values, in the order of their numbers.
+/// All models with their defaults, in the order of their numbers.
 inline const std::array<NoiseModel, 5> kNoiseModels{
     ShotNoise{}, StructuredLightNoise{}, StereoNoise{}, QuadraticNoise{}, ConstantNoise{}};
 
-/// Calls f(double&, field) of each parameter.
+/// Calls f(double&, field) for each parameter.
 template <typename F>
 void for_each_parameter(NoiseModel& noise, F&& f) {
   std::visit(

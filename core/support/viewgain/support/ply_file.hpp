@@ -23,9 +23,9 @@ namespace viewgain::detail {
 struct ScalarType {
   enum class Kind : std::uint8_t { floating, signed_integer, unsigned_integer };
   Kind kind = Kind::floating;
-  std::size_t size = 4;  ///< 1, 2, 4 or 8 [bytes]; 4 or 8 where floating
+  std::size_t size = 4;  ///< 1, 2, 4 or 8 [bytes]; 4 or 8 for floating point
 
-  /// Is it one of the types that decode() knows?
+  /// Whether decode() supports this type.
   [[nodiscard]] bool is_known() const {
     if (size == 4 || size == 8) return true;
     return kind != Kind::floating && (size == 1 || size == 2);
@@ -52,7 +52,7 @@ struct ScalarType {
 struct PlyProperty {
   std::string_view name;
   ScalarType type;
-  std::optional<ScalarType> count;  ///< of a list
+  std::optional<ScalarType> count;  ///< type of the count of a list
 };
 
 struct PlyElement {
@@ -60,7 +60,7 @@ struct PlyElement {
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
 
-  /// The place of a property; nothing if there is none of that name and kind.
+  /// Index of a property; empty if there is none of that name and kind.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view property, bool is_list) const {
     const auto found = std::find_if(properties.begin(), properties.end(), [&](const auto& p) {
       return p.name == property && p.count.has_value() == is_list;
@@ -70,7 +70,7 @@ struct PlyElement {
   }
 };
 
-/// The numbers of one line of an element.
+/// The numbers of one row of an element.
 class PlyRow {
  public:
   void clear() {
@@ -90,8 +90,8 @@ class PlyRow {
   std::vector<std::size_t> ends_;
 };
 
-/// The numbers of an ASCII file one by one. A row begins and ends with a line; some writers break
-/// it over several.
+/// The numbers of an ASCII file one by one. A row begins and ends with a line, but may have several
+/// lines.
 class PlyAsciiNumbers {
  public:
   explicit PlyAsciiNumbers(LineReader& line) : line_(line) {}
@@ -112,7 +112,7 @@ class PlyAsciiNumbers {
     return value;
   }
   void require(double count, ScalarType) const {
-    // The shortest number is a digit, and each but the last has something behind it.
+    // A number has at least one character, and all except the last are followed by another.
     const std::size_t most = line_.words().size() - word_ + line_.rest().size() / 2 + 1;
     if (count > static_cast<double>(most))
       line_.fail("a list's count exceeds the rest of the file");
@@ -178,9 +178,9 @@ class PlyBinaryNumbers {
 };
 
 /// A PLY file, ASCII or binary of either byte order: its header, then its elements row by row.
-/// Nothing is allocated for what a header or a list's count only promises. `bytes` must outlive it;
-/// `name` is the file's, for messages. Throws Error(format) that names the file and, in text, the
-/// line.
+/// Memory is allocated for actual data only, not for the counts that a file states. `bytes` must
+/// outlive this object; `name` is the file's name in messages. Throws Error(format) that names the
+/// file and, in text, the line.
 class PlyFile {
  public:
   PlyFile(std::string_view bytes, std::string name) : line_(std::move(name), bytes) {
@@ -189,13 +189,13 @@ class PlyFile {
 
   [[nodiscard]] const std::vector<PlyElement>& elements() const { return elements_; }
 
-  /// For what the caller finds wrong with the header.
+  /// For faults of the header that the caller finds.
   [[noreturn]] void fail(const std::string& what) const { line_.fail(what); }
-  /// Number of the line that was read last, 0 in binary files.
+  /// Number of the last line read, 0 in binary files.
   [[nodiscard]] std::size_t line() const { return format_ == Format::ascii ? line_.line() : 0; }
 
-  /// Calls take(number of the element, PlyRow) for each row of the first `count` elements, in the
-  /// file's order; once. If these are all, nothing may stand behind them.
+  /// Calls take(index of the element, PlyRow) for each row of the first `count` elements, in the
+  /// file's order; call it once. If these are all elements, nothing may follow them.
   template <typename Take>
   void read(std::size_t count, Take&& take) {
     if (format_ == Format::ascii) {
@@ -283,7 +283,7 @@ class PlyFile {
     PlyRow row;
     for (std::size_t e = 0; e < elements; ++e) {
       const PlyElement& element = elements_[e];
-      // Without properties the count would be all that is checked.
+      // Without properties there is nothing to read.
       if (element.properties.empty()) continue;
       for (std::uint64_t i = 0; i < element.count; ++i) {
         row.clear();

@@ -8,8 +8,8 @@
 
 namespace viewgain {
 
-/// Throws std::bad_alloc if the process cannot have so many more bytes now. Takes none. For what
-/// ends the process where memory ends amid it. Thread safe.
+/// Throws std::bad_alloc if this many more bytes cannot be allocated now. Allocates nothing. Call
+/// it before code that ends the process when memory runs out. Thread safe.
 VIEWGAIN_EXPORT void check_room(std::size_t bytes);
 
 }  // namespace viewgain

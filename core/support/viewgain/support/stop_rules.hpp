@@ -13,44 +13,45 @@
 
 namespace viewgain {
 
-/// What the stopping rules remember of a run. A value type, so that a run can be saved.
+/// State of the stopping rules during a run. A value type, so that a run can be saved.
 struct VIEWGAIN_EXPORT StopMemory {
-  std::size_t views = 0;             ///< taken
-  std::size_t idle_views = 0;        ///< the last ones in a row, which brought nothing
-  double entropy_removed = 0;        ///< after the last view [nat, or m² for trace]
+  std::size_t views = 0;             ///< number of views taken
+  std::size_t idle_views = 0;        ///< number of consecutive idle views up to now
+  double entropy_removed = 0;        ///< state after the last view [nat, or m² for trace]
   std::uint64_t unknown_voxels = 0;  ///< likewise
-  std::size_t decisions = 0;         ///< how many there were
-  /// Of the first decision that had one above 0 [nat, m² for trace]; NaN: none yet, or the limit is
-  /// no share.
+  std::size_t decisions = 0;         ///< number of decisions
+  /// Gain per voxel of the first decision with a gain above 0 [nat, m² for trace]. NaN: none yet,
+  /// or the limit is absolute.
   double first_gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
-  /// Decision::best_area as a share of the surface in the last three decisions, in the order i % 3
-  /// of decision i.
+  /// Decision::best_area divided by the surface, for the last three decisions; decision i is at i %
+  /// 3.
   std::array<double, 3> area_shares{};
-  double promised_area = std::numeric_limits<double>::quiet_NaN();  ///< of the view to come [m²]
+  /// Prediction for the next view [m²].
+  double promised_area = std::numeric_limits<double>::quiet_NaN();
   double promised_gain = std::numeric_limits<double>::quiet_NaN();  ///< likewise [nat, m²]
   std::size_t broken_promises = 0;                                  ///< the last ones in a row
 };
 
-/// The stopping rules of PlanningConfig, step by step: what active_view_planning() asks, for loops
-/// that are not its own. Thread safety: one call at a time. Members other than the constructor
-/// check nothing; calls cost constant time.
+/// The stopping rules of PlanningConfig, step by step, as in active_view_planning(), for other
+/// loops. Thread safety: one call at a time. Members other than the constructor check nothing;
+/// calls take constant time.
 class VIEWGAIN_EXPORT StopRules {
  public:
-  /// `memory`: of a run that goes on. Throws Error(invalid_argument) if max_views is 0 or a limit
-  /// is not finite.
+  /// `memory`: state of a run to continue. Throws Error(invalid_argument) if max_views is 0 or a
+  /// limit is not finite.
   explicit StopRules(const PlanningConfig& config, const StopMemory& memory = {});
 
-  /// After a view went into the model: coverage, max_views, idle or promises, the first that
-  /// holds.
+  /// After a view went into the model: the first of coverage, max_views, idle and promises that
+  /// applies.
   [[nodiscard]] std::optional<StopReason> after_view(const ModelProgress& progress);
 
-  /// After a choice among the candidates that are left: no_candidates or unreachable if none was
-  /// made, else gain, area or cost. `surface_area` [m²]: as ModelProgress has it.
+  /// After a choice among the remaining candidates: no_candidates or unreachable if none was
+  /// chosen, else gain, area or cost. `surface_area` [m²]: that of ModelProgress.
   [[nodiscard]] std::optional<StopReason> after_decision(
       const std::optional<DecisionMaking::Decision>& decision, const Proposal& proposal,
       double surface_area);
 
-  /// What the rules have to remember.
+  /// The state of the rules.
   [[nodiscard]] const StopMemory& memory() const noexcept { return memory_; }
 
  private:
@@ -63,8 +64,8 @@ class VIEWGAIN_EXPORT StopRules {
   StopMemory memory_;
 };
 
-/// no_candidates, or unreachable if candidates were dropped for that. Checks nothing; takes
-/// constant time.
+/// unreachable if candidates were dropped as unreachable, otherwise no_candidates. Checks nothing;
+/// takes constant time.
 [[nodiscard]] VIEWGAIN_EXPORT StopReason nowhere_to_go(const Proposal& proposal);
 
 }  // namespace viewgain

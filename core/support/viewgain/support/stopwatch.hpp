@@ -6,10 +6,10 @@
 
 namespace viewgain {
 
-/// Seconds since it was made. A value type.
+/// Measures seconds since its construction. A value type.
 class Stopwatch {
  public:
-  /// Since it was made [s].
+  /// Time since construction [s].
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }

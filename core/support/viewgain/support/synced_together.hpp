@@ -8,13 +8,13 @@
 
 namespace viewgain {
 
-/// A folder that is synced as a whole, before it gets its name, instead of file by file: while this
-/// object lives, an AtomicFile in the folder, or below, neither syncs nor looks for leftovers.
-/// Thread safety: distinct objects may be used from distinct threads. Cost: one system call for a
-/// sync, which waits for all that the file system has to write; if that fails, one per file.
+/// A folder that is synced as a whole, before it gets its name, instead of file by file. While this
+/// object exists, an AtomicFile in the folder, or below, neither syncs nor removes leftovers.
+/// Thread safety: distinct objects may be used from distinct threads. Cost of a sync: one system
+/// call, which waits for all pending writes of the file system; if that fails, one per file.
 class VIEWGAIN_EXPORT SyncedTogether {
  public:
-  /// The folder must be there, its path absolute and without links.
+  /// The folder must exist, and its path must be absolute and without links.
   explicit SyncedTogether(const std::filesystem::path& folder);
   ~SyncedTogether();
   SyncedTogether(const SyncedTogether&) = delete;
@@ -26,7 +26,7 @@ class VIEWGAIN_EXPORT SyncedTogether {
 
  private:
   std::filesystem::path folder_;
-  int file_ = -1;  // open from the start: a failure that comes before sync() counts, too
+  int file_ = -1;  // open from the start, so that sync() also reports earlier failures
 };
 
 /// Whether the file lies in the folder of a SyncedTogether.

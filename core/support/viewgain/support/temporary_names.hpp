@@ -12,10 +12,10 @@
 
 namespace viewgain {
 
-/// What stands in for a file or a folder while it is written, in the same folder:
-/// PREFIX PROCESS-COUNTER ENDING. PREFIX is ".NAME.tmp-". If that makes a name longer than the file
-/// system allows, a hash of the target's name takes the place of NAME, and a long ending is left
-/// out. A target always has the same prefix and ending. Thread safe.
+/// Name of a file or folder while it is written, in the same folder: PREFIX PROCESS-COUNTER ENDING.
+/// PREFIX is ".NAME.tmp-". If the name would be too long for the file system, a hash of the
+/// target's name replaces NAME, and a long ending is omitted. A target always has the same prefix
+/// and ending. Thread safe.
 class VIEWGAIN_EXPORT TemporaryNames {
  public:
   /// For a file: NAME is its name without the ending.
@@ -23,9 +23,10 @@ class VIEWGAIN_EXPORT TemporaryNames {
   /// For a folder: NAME is its whole name, and there is no ending.
   [[nodiscard]] static TemporaryNames of_folder(const std::filesystem::path& target);
 
-  /// A path beside the target that this process has not named before.
+  /// A new path in the target's folder that this process has not used before.
   [[nodiscard]] std::filesystem::path next() const;
-  /// The process that has made the file or folder of this name; 0 if the name is not of this form.
+  /// The process that created the file or folder of this name; 0 if the name does not have this
+  /// form.
   [[nodiscard]] pid_t writer_of(std::string_view name) const;
 
  private:

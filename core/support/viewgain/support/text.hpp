@@ -14,12 +14,13 @@
 #include "viewgain/core/export.hpp"
 
 /// @file
-/// Text of files and messages. Numbers do not depend on the process's locale. The functions for
+/// Text of files and messages. Numbers do not depend on the process's locale. Functions that make
 /// text take any value and never throw.
 
 namespace viewgain {
 
-/// The shortest text that reads back as the same number; "nan", "inf" and "-inf" for the others.
+/// The shortest text that reads back as the same number; "nan", "inf" or "-inf" if it is not
+/// finite.
 [[nodiscard]] VIEWGAIN_EXPORT std::string short_text(double value);
 /// As above.
 [[nodiscard]] VIEWGAIN_EXPORT std::string short_text(float value);
@@ -27,34 +28,34 @@ namespace viewgain {
 /// With up to 17 significant digits, so that it reads back as the same double.
 [[nodiscard]] VIEWGAIN_EXPORT std::string exact_text(double value);
 
-/// A word of a file for a message: at most 32 characters, printable, in quotes.
+/// A word from a file, for a message: in quotes, printable, at most 32 characters.
 [[nodiscard]] VIEWGAIN_EXPORT std::string quoted(std::string_view word);
 
 /// The lines of a text, or of a binary file's header, from the front, cut into words at blanks. A
 /// byte order mark before the first is skipped. Lines end at \n or \r\n, or all at \r if the first
-/// does. Failures name file and line. Thread safety: one call at a time. Cost: all of the text is
-/// gone through once.
+/// does. Failures name file and line. Thread safety: one call at a time. Cost: one pass over the
+/// text.
 class VIEWGAIN_EXPORT LineReader {
  public:
-  /// `name` is the file's, for messages; `bytes` must outlive the reader.
+  /// `name` is the file's name in messages; `bytes` must outlive the reader.
   LineReader(std::string name, std::string_view bytes);
 
   /// Moves to the next line; false at the end.
   bool next();
-  /// Words of the line that was read last, in their order; until the next call of next().
+  /// Words of the last line read, in order; valid until the next call of next().
   [[nodiscard]] const std::vector<std::string_view>& words() const { return words_; }
-  /// Behind the current line.
+  /// The text after the current line.
   [[nodiscard]] std::string_view rest() const { return rest_; }
   /// The file's name, for messages.
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Number of the line that was read last, from 1.
+  /// Number of the last line read, from 1.
   [[nodiscard]] std::size_t line() const { return line_; }
 
   /// Throws Error(format): "file:line: what".
   [[noreturn]] void fail(const std::string& what) const;
   /// The word as a number, NaN and infinities included; fails otherwise.
   [[nodiscard]] double number(std::size_t word) const;
-  /// As number(), of a word that need not stand in the current line.
+  /// Like number(), for a word that need not be in the current line.
   [[nodiscard]] double number_of(std::string_view word) const;
   /// The word as a finite number; fails otherwise.
   [[nodiscard]] double finite_number(std::size_t word) const;
@@ -71,8 +72,8 @@ class VIEWGAIN_EXPORT LineReader {
   char line_end_ = '\n';
 };
 
-/// How many letters must be added, taken away, changed or swapped with their neighbour to make one
-/// word of the other, no letter being touched again after a swap.
+/// Edit distance: number of letters to add, remove, change or swap with a neighbour. A letter is
+/// not changed again after a swap.
 [[nodiscard]] inline std::size_t edits_between(std::string_view a, std::string_view b) {
   std::vector<std::size_t> two_back(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -91,8 +92,8 @@ class VIEWGAIN_EXPORT LineReader {
   return row[b.size()];
 }
 
-/// The name that was probably meant: the one that fewest edits away, at most one for each three
-/// letters, or that begins with what was given; nothing where none is near. Ties to the first.
+/// The name that was probably meant: the one with the fewest edits, at most one per three letters,
+/// or one that begins with the given text. Empty if none is near. Ties go to the first.
 [[nodiscard]] inline std::optional<std::string> nearest_name(
     std::string_view given, const std::vector<std::string>& names) {
   std::optional<std::string> nearest;
@@ -119,8 +120,8 @@ class VIEWGAIN_EXPORT LineReader {
   return text;
 }
 
-/// The place of a name among `names`. Throws Error(invalid_argument), naming `what` it should be
-/// of, that lists them.
+/// Index of a name in `names`. Throws Error(invalid_argument) with `what` that lists the valid
+/// names.
 [[nodiscard]] inline std::size_t place_of_name(std::string_view name,
                                                const std::vector<std::string>& names,
                                                std::string_view what) {

@@ -8,11 +8,12 @@
 
 namespace viewgain {
 
-/// As TOML has them: a number that is read back as it was, a text in quotes, on one line.
+/// TOML text of a number that reads back exactly, and of a quoted string on one line.
 [[nodiscard]] VIEWGAIN_EXPORT std::string toml_float(double value);
 [[nodiscard]] VIEWGAIN_EXPORT std::string toml_string(const std::string& value);
 
-/// The key `format` of sensors and reach regions; grows when a reader of this one would err.
+/// The key `format` of sensors and reach regions. Increases when readers of this version would
+/// misread the file.
 inline constexpr int kTomlFormat = 1;
 
 }  // namespace viewgain

@@ -11,12 +11,12 @@
 #include "viewgain/grid/voxel.hpp"
 
 /// @file
-/// Accumulated readings per voxel. Functions and members check nothing: an offset must be below
-/// 512.
+/// What a voxel stores about its readings, the measured depths that ended in it. Functions and
+/// members check nothing: an offset must be below 512.
 
 namespace viewgain {
 
-/// Accumulated readings of a voxel, or of a cell of voxels, in single precision as in the map
+/// Sums over the readings of a voxel, or of a cell of voxels, in single precision as in the map
 /// files; grid frame.
 struct VIEWGAIN_EXPORT Belief {
   std::array<float, 6> information{};  ///< Λ_v: xx yy zz xy xz yz [m⁻²]
@@ -45,14 +45,14 @@ struct VIEWGAIN_EXPORT Belief {
 }
 
 /// Offset of the lowest voxel of the cell that contains the voxel at `offset`. A leaf of scale s, 0
-/// to 3, has one belief per cell of 2^s voxels per edge, stored at that voxel.
+/// to 3, has one belief per cell of 2^s voxels per edge, stored at the cell's lowest voxel.
 [[nodiscard]] inline unsigned cell_offset(unsigned offset, int scale) {
   const unsigned kept = 7U << static_cast<unsigned>(scale) & 7U;
   return offset & (kept << 6U | kept << 3U | kept);
 }
 
-/// Share of a cell's information per voxel: the cell is treated as a piece of surface of 4^scale
-/// voxels.
+/// Fraction of a cell's information that belongs to one voxel. The cell is treated as a piece of
+/// surface that covers 4^scale voxels.
 [[nodiscard]] inline double surface_share(int scale) { return 1.0 / (1 << 2 * scale); }
 
 /// One bit per voxel of an 8³ leaf: word x, bit y << 3 | z (OpenVDB's order).

@@ -43,15 +43,16 @@ struct VIEWGAIN_EXPORT GridConfig {
 /// The belief grid: the state of a workspace, voxel by voxel.
 ///
 /// Voxel (i,j,k) covers [i,i+1) x [j,j+1) x [k,k+1) times V in the grid frame. The workspace is
-/// extended to the voxel lattice, except for faces within 1e-6 voxel of it. All voxels start
-/// unknown, which costs a few tiles. A known voxel has a log-odds in steps of 0.05 within
-/// [-2, 3.5]: occupied above 0, otherwise free. A voxel that was hit has a Belief, and keeps it if
-/// it becomes free.
+/// extended to whole voxels; a face within 1e-6 voxel of the lattice lies on it. At first all
+/// voxels are unknown, which takes little memory. A known voxel has a log-odds in steps of 0.05
+/// within [-2, 3.5]. Above 0 it is occupied, otherwise free. A voxel is hit by the readings
+/// (measured depths) that end in it. It then has a Belief, and keeps it if it becomes free.
 ///
-/// Each 8³ leaf has a scale s, 0 (initially) to 3: its cells of 2^s voxels per edge have one state,
-/// log-odds and belief each. Access to a voxel is access to its cell (apps/docs/guide/scales.md).
+/// Each leaf of 8³ voxels has a scale s, initially 0 and at most 3. Its cells of 2^s voxels per
+/// edge have one state, log-odds and belief each, which all their voxels share
+/// (apps/docs/guide/scales.md).
 ///
-/// Thread safety: const members may run from many threads at once, but not next to a non-const one.
+/// Thread safety: const members may run from many threads at once, but not during a non-const one.
 /// Snapshots are independent of the grid. Members that look at one voxel take constant time.
 class VIEWGAIN_EXPORT BeliefGrid {
  public:
@@ -87,15 +88,15 @@ class VIEWGAIN_EXPORT BeliefGrid {
   BeliefGrid& operator=(BeliefGrid&&) noexcept;
 
   /// Makes a map from a dense array of states, [x][y][z] with z fastest, one per voxel of the
-  /// workspace: 0 unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief). Without
-  /// beliefs GainModel::paper rewards measuring known surface again; the other gains ignore it.
-  /// Throws Error(invalid_argument) for another size or state, and as the constructor. Cost: one
-  /// pass over the array.
+  /// workspace: 0 unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief). Because
+  /// beliefs are missing, GainModel::paper rewards measuring occupied voxels again; the other gains
+  /// do not. Throws Error(invalid_argument) for another size or state, and like the constructor.
+  /// Cost: one pass over the array.
   [[nodiscard]] static BeliefGrid from_states(const GridConfig& config,
                                               std::span<const std::uint8_t> states,
                                               const Sensor& sensor = {});
 
-  /// A deep copy; beliefs are shared until one copy changes. Cost: a copy of the tree.
+  /// A deep copy. Cost: a copy of the tree; beliefs are copied when they change.
   [[nodiscard]] BeliefGrid clone() const;
 
   [[nodiscard]] double voxel_size() const noexcept;  ///< [m]
@@ -124,51 +125,50 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Scale of the leaf that contains the voxel; 0 outside the workspace.
   [[nodiscard]] int scale(Index3 voxel) const;
 
-  /// Fills the dense array of states, [x][y][z] with z fastest. Throws Error(invalid_argument)
-  /// unless the size is voxel_count(). Cost: one pass over the array.
+  /// Writes the states of all voxels to a dense array, [x][y][z] with z fastest. Throws
+  /// Error(invalid_argument) unless the size is voxel_count(). Cost: one pass over the array.
   void copy_states(std::span<std::uint8_t> states) const;
 
-  /// Sets one voxel of the workspace, for importers and tests; without a belief any existing one is
-  /// removed. Throws Error(invalid_argument) and changes nothing outside the workspace, for a
-  /// log-odds of NaN, and for an impossible belief: numbers that are not finite, information that
-  /// is not positive semidefinite beyond rounding, or a position Λ⁻¹η more than 2^28 voxels away.
-  /// Rounding errors of the information are repaired by raising its diagonal.
+  /// Sets one voxel of the workspace, for importers and tests. Without a belief, an existing one is
+  /// removed. Throws Error(invalid_argument) without a change if the voxel lies outside the
+  /// workspace, the log-odds is NaN, or the belief is impossible: a number that is not finite,
+  /// information that is not positive semidefinite, or a position Λ⁻¹η more than 2^28 voxels away.
+  /// Rounding errors of the information are repaired.
   void set(Index3 voxel, float log_odds, const std::optional<Belief>& belief = {});
-  /// Sets many voxels as if one by one in order, but faster; all or none if one is invalid. Cost:
-  /// sorting by blocks, and a copy of each changed block.
+  /// Sets many voxels, with the same result as one by one in order, but faster. If one is invalid,
+  /// none is set. Cost: sorting by blocks, and a copy of each changed block.
   void set(std::span<const VoxelValue> voxels);
 
   /// Resets voxels whose centres lie in a region of the grid frame [m] to unknown, without log-odds
   /// and belief. Bounds may be infinite. The region is extended to whole cells of the map's largest
-  /// scale. Views and hazard counters remain. For moved objects, and for maps that follow a robot.
-  /// Returns the number of voxels that were known. Throws Error(invalid_argument) for a bound that
-  /// is NaN or a region inside out. Cost: one pass over the map's blocks.
+  /// scale. Views and hazard counters remain. Use it after objects have moved, and for maps that
+  /// follow a robot. Returns the number of voxels that were known. Throws Error(invalid_argument)
+  /// for a bound that is NaN or a region inside out. Cost: one pass over the map's blocks.
   std::uint64_t forget(const Box& region);
 
   /// Sets the voxels of a lattice box from a dense array of states, [x][y][z] with z fastest, as in
   /// from_states(); for planners with their own growing map. A voxel that already has the state
-  /// does not change; others get the log-odds of from_states() and no belief. Changed leaves go to
+  /// does not change; others get the log-odds of from_states() and no belief. Changed leaves get
   /// scale 0 (resample()). Returns the number of changed voxels; only these cost time in
-  /// VoxelScene::update(). Throws Error(invalid_argument) and changes nothing for a box that is not
-  /// inside the workspace, or another size or state. Cost: one pass over the array.
+  /// VoxelScene::update(). Throws Error(invalid_argument) without a change if the box is not inside
+  /// the workspace, and for another size or state. Cost: one pass over the array.
   std::uint64_t update_box(const VoxelBox& box, std::span<const std::uint8_t> states);
 
   /// Sets the scale of the leaves that a region of the grid frame [m] touches; bounds may be
-  /// infinite. Uniform leaves without beliefs have no scale; leaves cut off by the workspace take
-  /// the largest scale that fits. Coarser cells sum hits and Λ, and refer η to their centre; they
-  /// are occupied if a voxel is, else unknown if one is and none was hit. Finer cells: the one that
-  /// contains the mean Λ⁻¹η gets everything; the rest of an occupied cell becomes unknown. Returns
-  /// the number of changed leaves. Throws Error(invalid_argument) for a bound that is NaN or a
-  /// scale outside 0..3. Cost: one pass over the map's blocks.
+  /// infinite. A leaf that the workspace cuts off gets the largest scale that fits. When cells
+  /// merge, their beliefs add up; the new cell is occupied if one of them was. When a cell is
+  /// split, the new cell that contains the mean of its readings gets the belief; the rest of an
+  /// occupied cell becomes unknown. Returns the number of changed leaves. Throws
+  /// Error(invalid_argument) for a NaN or a scale outside 0..3. Cost: one pass over the map.
   std::uint64_t resample(const Box& region, int scale);
 
-  /// Visits occupied voxels, one per cell: by leaves in the order of snapshot().leaves, within a
-  /// leaf [x][y][z] with z fastest. Equal maps give the same order. The visit must not change the
-  /// grid. Cost: a snapshot.
+  /// Visits occupied voxels, one per cell. Leaves come in the order of snapshot().leaves, the
+  /// voxels of a leaf in the order [x][y][z] with z fastest. Equal maps give the same order. The
+  /// visit must not change the grid. Cost: a snapshot.
   void for_each_occupied(const std::function<void(const VoxelValue&)>& visit) const;
 
-  /// Visits all beliefs, including those of free voxels, by blocks in a fixed order, within a block
-  /// [x][y][z] with z fastest.
+  /// Visits all beliefs, including those of free voxels, block by block in a fixed order. Within a
+  /// block the order is [x][y][z] with z fastest.
   void for_each_belief(const std::function<void(Index3, const Belief&)>& visit) const;
 
   /// T_world_camera of every integrated frame, in order.
@@ -183,8 +183,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// 2^40.
   void set_hazard_counters(const HazardCounters& counters);
 
-  /// Origin of the map: FrameIntegrator and CloudIntegrator record sensor and frames; save_vdb()
-  /// and clone() keep them. Not part of content_hash().
+  /// Where the map comes from. FrameIntegrator and CloudIntegrator record sensor and frames;
+  /// save_vdb() and clone() keep them. Notes are not part of content_hash().
   [[nodiscard]] const MapNotes& notes() const noexcept;
   /// Replaces the notes. Throws Error(invalid_argument) for an invalid identity of a frame
   /// (DepthFrame::identity), and if MapNotes::others contains the name "sensor" or "frames".
@@ -193,14 +193,15 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Statistics of the map; the criterion applies to the removed entropy. Deterministic. Cost: one
   /// pass over the map's blocks.
   [[nodiscard]] Statistics statistics(Criterion criterion = Criterion::log_diagonal) const;
-  /// Statistics of the voxels whose centres lie in a half-open region of the grid frame [m]; for
-  /// larger cells the lowest voxel decides about the belief. Bounds may be infinite. Throws
+  /// Statistics of the voxels whose centres lie in a half-open region of the grid frame [m]. The
+  /// belief of a larger cell counts if the cell's lowest voxel does. Bounds may be infinite. Throws
   /// Error(invalid_argument) if one is NaN.
   [[nodiscard]] Statistics statistics(const Box& region,
                                       Criterion criterion = Criterion::log_diagonal) const;
-  /// Mean of √(tr(Λ_v⁻¹ + cell²/12 I) / 3) over the region's occupied voxels with a belief [m]; NaN
-  /// if there are none. A cell of scale s counts 4^s times, as its area. Throws as statistics().
-  /// Cost: one pass over the occupied voxels.
+  /// Mean position uncertainty [m] of the region's occupied voxels with a belief: √(tr(Λ_v⁻¹ +
+  /// e²/12 I) / 3), where e is the edge of the cell. A cell of scale s has the weight 4^s, like its
+  /// area. NaN if there are none. Throws like statistics(). Cost: one pass over the occupied
+  /// voxels.
   [[nodiscard]] double mean_sigma(const Box& region) const;
 
   /// Hash of states, log-odds, beliefs, layout, prior, views and, if present, hazard counters and
@@ -208,8 +209,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// save and load, and tree topology.
   [[nodiscard]] std::string content_hash() const;
 
-  /// The data of a scene, immutable and independent of later changes to the grid; beliefs are
-  /// shared and copied on write. Cost: one pass over the leaves that are not free.
+  /// The data that a VoxelScene needs. Immutable and independent of later changes to the grid;
+  /// beliefs are shared and copied on write. Cost: one pass over the leaves that are not free.
   [[nodiscard]] GridSnapshot snapshot() const;
   /// The same result, but leaves in regions of 32³ voxels that did not change since `before` are
   /// copied from it. `before` must come from this grid or the grid it was cloned from; any other

@@ -25,8 +25,8 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   /// A leaf with at least one voxel that is not free, clipped to the workspace.
   struct Leaf {
     Index3 origin;                               ///< lowest voxel, a multiple of 8
-    LeafMask non_free{};                         ///< unknown or occupied
-    LeafMask occupied{};                         ///< those of them that are occupied
+    LeafMask non_free{};                         ///< voxels that are unknown or occupied
+    LeafMask occupied{};                         ///< voxels that are occupied
     std::shared_ptr<const BeliefBlock> beliefs;  ///< null without occupied voxels; otherwise may be
                                                  ///< null, and may contain beliefs of free voxels
   };
@@ -46,12 +46,12 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   Index3 dims;               ///< voxels along x, y, z
   HazardCounters hazard;     ///< counters of frames for unknown space
   std::vector<Leaf> leaves;  ///< leaves with a voxel that is not free, in the order of the regions
-  /// Tiles of unknown voxels, clipped to the workspace. Those larger than a region come first, by
-  /// the nodes of 2048³ and then 128³ voxels that they fill, each sorted by x, y, z; the others
-  /// follow in the order of the regions.
+  /// Tiles of unknown voxels, clipped to the workspace. Tiles larger than a region come first:
+  /// those of 2048³ voxels, then those of 128³, each sorted by x, y, z. The others follow in the
+  /// order of the regions.
   std::vector<VoxelBox> tiles;
   std::vector<Region> regions;  ///< cubes of 32³ voxels with leaves or tiles, by increasing number
-  /// Identifies the grid and its time, for BeliefGrid::snapshot(before); 0: none.
+  /// Identifies the grid, for BeliefGrid::snapshot(before); 0: none.
   std::uint64_t grid_number = 0;
   std::uint64_t time = 0;  ///< time of the grid's last change
   /// For a snapshot made from an earlier one, the time of that one; otherwise 0.
@@ -75,13 +75,13 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   /// log tiles).
   [[nodiscard]] bool is_free(Index3 voxel) const;
 
-  /// The [first, last) leaves and tiles of a region, by its index in the list.
+  /// First and one past the last leaf of a region, by the region's index in the list.
   [[nodiscard]] std::array<std::uint32_t, 2> leaves_of(std::size_t region) const {
     return {regions[region].first_leaf, region + 1 < regions.size()
                                             ? regions[region + 1].first_leaf
                                             : static_cast<std::uint32_t>(leaves.size())};
   }
-  /// First and one past the last tile of a region.
+  /// First and one past the last tile of a region, by the region's index in the list.
   [[nodiscard]] std::array<std::uint32_t, 2> tiles_of(std::size_t region) const {
     return {regions[region].first_tile, region + 1 < regions.size()
                                             ? regions[region + 1].first_tile

@@ -24,17 +24,18 @@ class NearestCells;
 class OpenDirections;
 }  // namespace detail
 
-/// Rate at which rays meet the surface in unknown voxels. A rate of 0 means no surface: no ray ends
-/// there. In front of a wall seen from behind, surface is expected in the voxels with positive
-/// rates, or nowhere if all are 0. Rates down to 1e-30 /m count; smaller ones are 0 in single
-/// precision.
+/// Settings of the hazard: the rate [1/m] at which a ray through unknown voxels meets the surface.
+/// A rate of 0 means that there is no surface, so no ray ends there. If a ray reaches known surface
+/// from behind, surface is expected in the unknown voxels before it that have positive rates. Rates
+/// below 1e-30 /m are 0 in single precision.
 struct VIEWGAIN_EXPORT HazardConfig {
-  /// Model of the hazard of unknown space: the rate at which a ray meets the surface, as a function
-  /// of the location relative to known surface (apps/docs/guide/surface_gain.md). h(d, s, o) =
-  /// far_rate + near_rate c(s) g(o) exp(-d / decay_length), and far_rate beyond 5 decay lengths.
+  /// Model of the hazard as a function of the location relative to known surface
+  /// (apps/docs/guide/surface_gain.md). h(d, s, o) = far_rate + near_rate c(s) g(o) exp(-d /
+  /// decay_length), and far_rate beyond 5 decay lengths.
   /// - d: distance to known surface
-  /// - s: sine of the elevation over its tangent plane at the nearest point, 1 towards free space
-  /// - o: share of the 26 directions along which free space comes within 2.2 decay lengths, before
+  /// - s: sine of the elevation above the tangent plane at the nearest point of known surface; 1 is
+  /// straight towards free space
+  /// - o: fraction of the 26 directions in which free space comes within 2.2 decay lengths, before
   /// anything occupied
   ///
   /// Members check nothing; validate() does.
@@ -61,8 +62,8 @@ struct VIEWGAIN_EXPORT HazardConfig {
     [[nodiscard]] static VIEWGAIN_EXPORT double continuation(double sine_of_elevation);
 
     /// g(o): surface lies between free space and hidden space. Voxels with free space in nearly all
-    /// directions were missed by chance; voxels with none lie inside. Fitted; piecewise linear in
-    /// steps of 1/13 of o.
+    /// directions are gaps in free space; voxels with none lie deep inside. Fitted; piecewise
+    /// linear in steps of 1/13 of o.
     [[nodiscard]] static VIEWGAIN_EXPORT double openness(double share_of_directions);
 
     /// Hazard [1/m] at this distance from known surface [m]; `shape` is c g.
@@ -80,15 +81,15 @@ struct VIEWGAIN_EXPORT HazardConfig {
     float outside = 0;         ///< [1/m]
   };
 
-  /// Longest side of the object [m]; defaults to that of the box of voxels with evidence, or of the
-  /// workspace while there are none.
+  /// Longest side of the object [m]. Defaults to that of the box around the surface seen so far, or
+  /// of the workspace if none was seen.
   std::optional<double> object_size{};
   std::optional<Model> model{};  ///< defaults to Model::for_size
   /// Rates per voxel that replace the model; null: none.
   std::shared_ptr<const Volume> volume{};
-  /// Multiplies the start values with the statistics of frames (GridSnapshot::hazard). Has no
-  /// effect on a given model or volume. Counters refer to distance classes in decay lengths, so a
-  /// given size should be the same for all scenes of a map.
+  /// Corrects the start values by the statistics of the frames so far (GridSnapshot::hazard). Has
+  /// no effect on a given model or volume. The statistics refer to distances in decay lengths, so
+  /// object_size should be the same for all scenes of a map.
   bool calibrated = true;
 
   /// Throws Error(invalid_argument) naming the value for a size or decay length that is not
@@ -106,45 +107,45 @@ struct VIEWGAIN_EXPORT HazardConfig {
 /// Hazard of a map in its current state. Immutable; all members may be called from many threads.
 ///
 /// Rates are constant in hazard cells: cubes of 1, 2, 4 or 8 voxels per edge, about 0.28 decay
-/// lengths wide. Distances are between cell centres, to the nearest cell with evidence: an occupied
-/// voxel of at least 3 hits, or a cube of pooling_of() if voxels are finer than the footprint. They
-/// are cut at 5 decay lengths or 127 cells. The surface normal at a cell points to where more of
-/// the surrounding 7³ cells are free. HazardCounters::factor() scales the model's start values per
-/// distance class, pooled where rates would increase with distance. Rates of a volume are per
-/// voxel. Members accept any voxel, never throw, and take constant time.
+/// lengths wide. Distances are between cell centres, to the nearest cell with evidence: with an
+/// occupied voxel of at least 3 hits or, for voxels finer than the footprint, such a cube of
+/// pooling_of(). Distances above 5 decay lengths or 127 cells count as infinite; this limit is
+/// called the cut. The surface normal points to where more of the surrounding 7³ cells are free.
+/// HazardCounters::factor() scales the start values per class of distance. Rates of a volume are
+/// per voxel. Members accept any voxel, never throw, and take constant time.
 class VIEWGAIN_EXPORT HazardField {
  public:
-  /// Computes exact distances in 3 passes over the box of cells with evidence, extended by the cut:
-  /// about 7 ms for an object of 112³ voxels, for any workspace. Uses 16 bytes per cell, of which 4
-  /// remain. Throws as HazardConfig::validate(), and Error(capacity) above 2³¹ cells.
+  /// Computes exact distances in the box of cells with evidence, extended by the cut. Cost: about 7
+  /// ms for an object of 112³ voxels in any workspace; 16 bytes per cell, of which 4 remain. Throws
+  /// like HazardConfig::validate(), and Error(capacity) above 2³¹ cells.
   explicit HazardField(const GridSnapshot& snapshot, const HazardConfig& config = {});
 
-  /// Start values, or the given model; rates can differ through the map's counters.
+  /// The start values, or the given model. Rates can differ from it because of the map's counters.
   [[nodiscard]] const HazardConfig::Model& model() const { return model_; }
   /// Rate beyond the cut [1/m]; with a volume, outside its box.
   [[nodiscard]] float far_rate() const { return far_rate_; }
-  /// Whether it follows the map's counters: not with a given model or volume, or if `calibrated` is
-  /// off.
+  /// Whether rates follow the map's counters. They do not with a given model or volume, or if
+  /// `calibrated` is off.
   [[nodiscard]] bool follows_counters() const { return follows_counters_; }
   /// Binary logarithm of the edge of the hazard cells [voxels]; 0 with a volume.
   [[nodiscard]] int cell_shift() const { return volume_ ? 0 : shift_; }
   [[nodiscard]] double voxel_size() const { return voxel_size_; }  ///< [m]
 
-  /// Distance from a voxel's cell to the nearest one with evidence [m]; infinity beyond the cut.
+  /// Distance from a voxel's cell to the nearest cell with evidence [m]; infinity beyond the cut.
   [[nodiscard]] double distance(Index3 voxel) const {
     const std::size_t cell = cell_of(voxel);
     return cell == kBeyond || squared_[cell] == kNoDistance
                ? std::numeric_limits<double>::infinity()
                : std::sqrt(static_cast<double>(squared_[cell])) * voxel_size_ * (1 << shift_);
   }
-  /// c g of a voxel that is not free: HazardConfig::Model::continuation() at its cell times
-  /// openness(), in steps of 1/16384; 1 beyond the cut. If several cells with evidence are nearest,
-  /// it uses one of them.
+  /// Factor c g of a voxel that is not free: HazardConfig::Model::continuation() times openness(),
+  /// in steps of 1/16384; 1 beyond the cut. If several cells with evidence are equally near, one of
+  /// them is used.
   [[nodiscard]] double shape(Index3 voxel) const {
     const std::size_t cell = cell_of(voxel);
     return cell == kBeyond ? 1.0 : shapes_[cell] / kShapeUnit;
   }
-  /// Rate in a voxel that is not free [1/m], as rays see it: single precision.
+  /// Rate in a voxel that is not free [1/m], in the single precision that rays use.
   [[nodiscard]] float rate(Index3 voxel) const {
     if (volume_) return volume_rate(voxel);
     const std::size_t cell = cell_of(voxel);
@@ -157,13 +158,13 @@ class VIEWGAIN_EXPORT HazardField {
     return model_.rate(distance(voxel), shape(voxel));
   }
   [[nodiscard]] const Pooling& pooling() const { return pooling_; }  ///< pooling of the map
-  /// Whether surface found in this voxel counts as new: d > 1.2 pooling lengths.
+  /// Whether surface in this voxel counts as new: more than 1.2 pooling lengths from known surface.
   [[nodiscard]] bool is_new(Index3 voxel) const {
     const std::size_t cell = cell_of(voxel);
     return cell == kBeyond || squared_[cell] > most_known_;
   }
 
-  /// The voxels within the cut of any evidence; empty if there is none.
+  /// Box of the voxels within the cut of any evidence; empty if there is none.
   [[nodiscard]] const VoxelBox& near_box() const { return near_box_; }
   /// Rates given instead of the model's, or null.
   [[nodiscard]] const HazardConfig::Volume* volume() const { return volume_.get(); }

@@ -15,7 +15,8 @@
 
 namespace viewgain {
 
-/// Learns from frames which share of unknown space is surface (apps/docs/guide/surface_gain.md).
+/// Learns from frames how often rays through unknown space meet the surface
+/// (apps/docs/guide/surface_gain.md).
 ///
 /// Thread safety: one call at a time on one grid.
 class VIEWGAIN_EXPORT HazardCalibration {
@@ -24,16 +25,16 @@ class VIEWGAIN_EXPORT HazardCalibration {
   /// the sensor is invalid.
   explicit HazardCalibration(const Sensor& sensor, std::optional<double> support_plane = {});
 
-  /// Adds a frame to the grid's counters before its integration; `hazard` is the field of the
-  /// current map. Follows about 800 pixels through unknown voxels, without the last 3 σ_ax before a
-  /// reading: expected meetings are the model's rate times the length; a reading in an unknown
-  /// voxel is a meeting. Pixels out of range, and readings of the support plane or known depths,
-  /// meet nothing.
+  /// Adds a frame to the grid's counters. Call it before the frame is integrated; `hazard` must be
+  /// the field of the current map. Follows about 800 rays through unknown voxels, up to 3 σ_ax
+  /// before the reading (the measured depth). The model predicts its rate times the length; a ray
+  /// has met the surface if its reading lies in an unknown voxel. Rays that are out of range, or
+  /// end on the support plane or a known object, have not.
   ///
-  /// Has no effect while no surface is known, if the field does not follow the counters
-  /// (HazardField::follows_counters), and for a frame that sees almost no unknown space. Throws
-  /// Error(invalid_argument) as check_frame_size(), if the pose is not rigid (rigid_pose()), or if
-  /// voxel sizes differ. Cost: about 5 ms.
+  /// Has no effect while no surface is known, if HazardField::follows_counters() is false, and for
+  /// a frame that sees almost no unknown space. Throws Error(invalid_argument) for a frame of
+  /// another size, a pose that is not rigid (rigid_pose()), or different voxel sizes. Cost: about 5
+  /// ms.
   void count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
              const Pose& T_world_camera) const;
 

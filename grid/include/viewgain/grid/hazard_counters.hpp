@@ -20,15 +20,16 @@ struct VIEWGAIN_EXPORT HazardCounters {
   static constexpr std::array<double, kClasses - 1> kEnds{0.5, 1, 1.5, 2, 3, 4, 5};
   /// Total weight of a frame, whatever its number of rays, because they are strongly correlated.
   static constexpr std::int64_t kFrame = 1'000'000;
-  /// Factor for earlier frames when one is added, because hazards decrease as the map grows.
+  /// When a frame is added, the counts of earlier frames are multiplied by kKeptOf10 / 10, because
+  /// hazards decrease as the map grows.
   static constexpr std::int64_t kKeptOf10 = 7;
   /// Weight of the prior per class [1 / kFrame].
   static constexpr double kPrior = 2.0 * kFrame / kClasses;
 
   /// Counts of one distance class.
   struct Class {
-    std::int64_t expected = 0;  ///< meetings predicted by the model [1 / kFrame]
-    std::int64_t met = 0;       ///< observed meetings
+    std::int64_t expected = 0;  ///< number of meetings that the model predicted [1 / kFrame]
+    std::int64_t met = 0;       ///< number of observed meetings [1 / kFrame]
     bool operator==(const Class&) const = default;
   };
   std::array<Class, kClasses> classes{};  ///< nearest class first
@@ -40,12 +41,12 @@ struct VIEWGAIN_EXPORT HazardCounters {
     return k;
   }
 
-  /// Factor for the model's rates in a class: the mean of the Gamma posterior, with a prior at 1
-  /// worth two frames over all classes.
+  /// Factor for the model's rates in a class: the mean of the Gamma posterior. The prior has mean 1
+  /// and, over all classes, the weight of two frames.
   [[nodiscard]] double factor(std::size_t k) const {
     return (kPrior + static_cast<double>(classes[k].met)) / weight(k);
   }
-  /// Weight of the factor: expected meetings including the prior.
+  /// Weight of the factor: predicted meetings plus the prior's weight.
   [[nodiscard]] double weight(std::size_t k) const {
     return kPrior + static_cast<double>(classes[k].expected);
   }

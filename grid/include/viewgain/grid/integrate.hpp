@@ -22,9 +22,9 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT IntegrationConfig {
   /// Which voxels a pixel crosses.
   enum class Carve : std::uint8_t {
-    cones,  ///< those whose centre lies in the pixel's pyramid, nearer than the reading
-    /// Those that the ray of the pixel's centre intersects, as in the paper. The weight is that of
-    /// the ray's entry into the voxel; the strongest of several rays counts.
+    cones,  ///< those whose centre lies in the pixel's pyramid, before the reading
+    /// Those that the ray of the pixel's centre intersects, as in the paper. If several rays cross
+    /// a voxel, the strongest evidence counts.
     lines,
   };
 
@@ -36,13 +36,14 @@ struct VIEWGAIN_EXPORT IntegrationConfig {
 
   Carve carve = Carve::cones;                      ///< how pixels mark free space
   Occupancy occupancy = Occupancy::probabilistic;  ///< how states change
-  /// Height z [m] of the table under the object, world frame. Readings below it, or less than 3 σ
-  /// above it (is_of_plane()), are of the table: they mark free space but do not hit.
+  /// Height z [m] of the table under the object, world frame. Readings (measured depths) below it,
+  /// or less than 3 σ above it (is_of_plane()), show the table: they mark free space but hit no
+  /// voxel.
   std::optional<double> support_plane{};
-  /// Largest scale of a leaf, 0 to 3. Above 0, leaves get the scale whose cells are about as large
-  /// as a pixel's footprint and sigma_ax at their range; nearer views refine them (thresholds
-  /// of 1.5, 3 and 6 voxels: Funk et al. 2021, supereight2). Free space is then stored in blocks of
-  /// 8³ voxels with the log-odds of their least certain voxel.
+  /// Largest scale of a leaf, 0 to 3. Above 0, a leaf gets the scale whose cells are about as large
+  /// as a pixel's footprint and sigma_ax at its range, and nearer views refine it (after Funk et
+  /// al. 2021, supereight2). Free space is then stored in blocks of 8³ voxels, with the log-odds of
+  /// their least certain voxel.
   int coarsest = 0;
   std::vector<Box> fine{};  ///< leaves that touch one of these keep scale 0; grid frame [m]
   int finest = 0;           ///< smallest scale of all other leaves, at most `coarsest`
@@ -76,13 +77,15 @@ struct VIEWGAIN_EXPORT IntegrationReport {
 /// number of threads and each instruction set.
 ///
 /// A pixel is a reading if its range lies in [min_range, max_range]; nearer ones are invalid,
-/// farther ones out of range. cosθ is amplitude · range² (at most 1) if the frame has unsaturated
-/// amplitudes; otherwise it comes from the normal of the 3×3 neighbourhood (1 if there is none).
-/// Readings of known objects (DepthFrame::known_depth) mark free space but do not hit.
+/// farther ones out of range. The cosine of incidence is amplitude · range², at most 1. If the
+/// amplitude is missing or saturated, the cosine comes from the normal of the 3×3 neighbourhood (1
+/// without a normal). Readings of known objects (DepthFrame::known_depth) mark free space but hit
+/// no voxel.
 ///
-/// A reading hits the voxel that contains it. If sigma_ax is at least half a voxel, it hits the
-/// best supported voxel on its ray instead, so that noise does not thicken walls (grid/README.md,
-/// "Frames and clouds"). IntegrationConfig::Occupancy::literal disables this (eq. 4 of the paper).
+/// A reading hits the voxel that contains it. If sigma_ax is at least half a voxel, it instead hits
+/// the voxel on its ray with the most support, so that noise does not thicken walls
+/// (grid/README.md, "Frames and clouds"). IntegrationConfig::Occupancy::literal disables this (eq.
+/// 4 of the paper).
 ///
 /// Thread safety: one call at a time on one integrator and on one grid.
 class VIEWGAIN_EXPORT FrameIntegrator {
@@ -98,12 +101,10 @@ class VIEWGAIN_EXPORT FrameIntegrator {
 
   /// Updates states, log-odds and beliefs; appends the pose to the grid's views; and records sensor
   /// and frame (BeliefGrid::notes()). `pose_sigma` [m], [rad] is the uncertainty of this pose in
-  /// addition to the sensor's, such as the rest after a registration. Throws
-  /// Error(invalid_argument) and changes nothing as check_frame_size(), for an invalid identity, a
-  /// pose that is not rigid (1e-3; smaller deviations are orthonormalised), or a sigma that is
-  /// negative or not finite. If memory runs out (std::bad_alloc), the grid stays valid but can
-  /// contain part of the frame, without its pose. Cost: grows with the crossed voxels
-  /// (perf/results/loop.md).
+  /// addition to the sensor's, such as what a registration leaves. Throws Error(invalid_argument)
+  /// without a change for a wrong size, an invalid identity, a pose that is not rigid (1e-3;
+  /// smaller deviations are orthonormalised), or an invalid sigma. After std::bad_alloc the grid is
+  /// valid but can contain part of the frame. Cost: grows with the crossed voxels.
   IntegrationReport integrate(BeliefGrid& grid, const DepthFrame& frame, const Pose& T_world_camera,
                               const PoseSigma& pose_sigma = {});
 
@@ -114,8 +115,8 @@ class VIEWGAIN_EXPORT FrameIntegrator {
 
 /// The box in the frame of T_world_grid [m] that contains all readings of the frame, except those
 /// of the support plane and of known depths; empty if there are none. support_plane [m] as in
-/// IntegrationConfig. For choosing a workspace. Throws Error(invalid_argument) as FrameIntegrator.
-/// Cost: removes the lens distortion, and one pass over the pixels.
+/// IntegrationConfig. For choosing a workspace. Throws Error(invalid_argument) like
+/// FrameIntegrator. Cost: removes the lens distortion, and one pass over the pixels.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(
     const Sensor& sensor, const DepthFrame& frame, const Pose& T_world_camera,
     const Pose& T_world_grid = {}, std::optional<double> support_plane = {});
@@ -143,8 +144,8 @@ class VIEWGAIN_EXPORT CloudIntegrator {
   CloudIntegrator(CloudIntegrator&&) noexcept;
   CloudIntegrator& operator=(CloudIntegrator&&) noexcept;
 
-  /// Integrates points in the world [m]. The origin is the pose's translation; its rotation only
-  /// matters for the grid's views, to which the pose is appended. Throws, and changes nothing:
+  /// Integrates points in the world [m]. The origin is the pose's translation. Its rotation is only
+  /// recorded, because the pose is appended to the grid's views. Throws without a change:
   /// Error(invalid_argument) if the pose is not rigid (1e-3; smaller deviations are
   /// orthonormalised), Error(capacity) for 2^32 points or more.
   IntegrationReport integrate(BeliefGrid& grid, std::span<const std::array<double, 3>> points,
@@ -158,7 +159,7 @@ class VIEWGAIN_EXPORT CloudIntegrator {
 /// The box in the frame of T_world_grid [m] that contains all readings of the cloud, except those
 /// of the support plane; empty if there are none. `points` [m] are in the world, in any order;
 /// support_plane [m] as in IntegrationConfig. For choosing a workspace. Throws
-/// Error(invalid_argument) as CloudIntegrator. Cost: O(points).
+/// Error(invalid_argument) like CloudIntegrator. Cost: O(points).
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(
     const Sensor& sensor, std::span<const std::array<double, 3>> points, const Pose& T_world_sensor,
     const Pose& T_world_grid = {}, std::optional<double> support_plane = {});

@@ -10,7 +10,7 @@
 
 namespace viewgain {
 
-/// Origin of a map. A value type.
+/// Where a map comes from. A value type.
 struct VIEWGAIN_EXPORT MapNotes {
   /// The sensor of all readings, as written by sensor_toml(); map_sensor() of viewgain::formats
   /// reads it. Empty: several sensors, or an unknown one.

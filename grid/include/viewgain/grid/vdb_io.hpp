@@ -23,32 +23,31 @@ struct VIEWGAIN_EXPORT VdbWriteConfig {
 /// Writes the map as an OpenVDB file (active = known; layout: apps/docs/reference/formats.md) with
 /// types that OpenVDB's Python module reads. Notes go into the metadata as note_<name>. Atomic:
 /// renames a temporary file; if memory runs out (std::bad_alloc), an existing file remains. Throws
-/// Error(io), and Error(invalid_argument) if the name of a regular file does not end in .vdb and as
-/// BeliefGrid::set_notes(). Cost: grows with leaves and beliefs.
+/// Error(io). Throws Error(invalid_argument) if the name of a regular file does not end in .vdb,
+/// and like BeliefGrid::set_notes(). Cost: grows with leaves and beliefs.
 VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
                               const VdbWriteConfig& config = {});
 
-/// Reads a file that save_vdb() or another program wrote in this layout. Exact: the map has the
-/// saved one's content_hash() and notes. Throws Error(io) if it cannot be opened; Error(format)
-/// with the file and the fault if it is truncated, has another layout version or is not a viewgain
-/// map; Error(capacity) above 2^27 occupied voxels in tiles, 16 GiB or the available memory. Cost:
-/// grows with leaves and beliefs, shared by the threads.
+/// Reads a file that save_vdb() or another program wrote in this layout. The map is exactly the
+/// saved one, with the same content_hash() and notes. Throws Error(io) if it cannot be opened;
+/// Error(format) with the file and the fault if it is truncated, has another layout version or is
+/// not a viewgain map; Error(capacity) above 2^27 occupied voxels in tiles, 16 GiB or the available
+/// memory. Cost: grows with leaves and beliefs; the threads share the work.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_vdb(const std::filesystem::path& path,
                                                   const ExecConfig& exec = {});
 
 /// Reads hazard rates for HazardConfig::volume from a .vdb of any program: the float grid [1/m]
 /// named "hazard", or the only one, with any linear transform to the world [m]. Each voxel of the
 /// map gets the nearest voxel's value, and the background where the file has no active voxels.
-/// Throws as load_vdb(); Error(format) for a rate that is negative or not finite, several float
-/// grids of other names, or a transform that is not linear; Error(invalid_argument) if active
-/// voxels differ in size from the map's by a factor of 50 or all lie outside it. Cost: 4 bytes and
-/// about 50 ns per voxel of the map in the box of active ones.
+/// Throws like load_vdb(); Error(format) for a rate that is negative or not finite, several float
+/// grids of other names, or a transform that is not linear; Error(invalid_argument) if voxel sizes
+/// differ by a factor of 50 or no active voxel lies in the map. Cost: 4 bytes and 50 ns per voxel.
 [[nodiscard]] VIEWGAIN_EXPORT HazardConfig::Volume load_hazard_vdb(
     const std::filesystem::path& path, const BeliefGrid& grid);
 
-/// Writes rates of the map's voxels; load_hazard_vdb() reads them back exactly. Atomic; names as in
-/// save_vdb(). Throws Error(io), and Error(invalid_argument) as HazardConfig::validate() and for
-/// another name. Cost: one pass over the rates.
+/// Writes rates of the map's voxels; load_hazard_vdb() reads them back exactly. Atomic. Throws
+/// Error(io). Throws Error(invalid_argument) like HazardConfig::validate(), and if the name of a
+/// regular file does not end in .vdb. Cost: one pass over the rates.
 VIEWGAIN_EXPORT void save_hazard_vdb(const HazardConfig::Volume& volume, const BeliefGrid& grid,
                                      const std::filesystem::path& path);
 

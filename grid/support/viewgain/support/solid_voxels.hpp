@@ -11,12 +11,12 @@
 
 namespace viewgain::detail {
 
-/// Counts occupied voxels that a file states as whole cubes. In memory each costs more than a byte,
-/// in the file a cube of any size costs a few: without a limit a forged file of a hundred bytes
-/// would fill the memory.
+/// Counts occupied voxels that a file stores as whole cubes. A cube of any size takes a few bytes
+/// in the file, but each voxel takes over a byte of memory. Without a limit, a forged file of a
+/// hundred bytes could fill the memory.
 class SolidVoxels {
  public:
-  /// For the message: the file, and the cure for its reader.
+  /// For the message: the file's name, and advice for the user.
   explicit SolidVoxels(std::string name, std::string advice = {})
       : name_(std::move(name)), advice_(std::move(advice)) {}
 

@@ -26,7 +26,7 @@ struct VIEWGAIN_EXPORT BoundaryLoop {
 
 /// A part of a loop whose edges have one class.
 struct VIEWGAIN_EXPORT BoundaryRun {
-  /// Image side towards which the surface ends.
+  /// Image side at which the surface ends.
   BoundaryClass boundary_class = BoundaryClass::left;
   std::uint32_t loop = 0;  ///< index of its loop
   std::vector<std::uint32_t>
@@ -34,15 +34,16 @@ struct VIEWGAIN_EXPORT BoundaryRun {
   std::vector<std::uint32_t> triangles;  ///< the face of each edge
   bool closed = false;                   ///< the run is the whole loop
   double length = 0;                     ///< [m]
-  std::uint32_t view = 0;                ///< the view whose axes classify it (the most common)
+  std::uint32_t view = 0;                ///< the view whose image axes classify most of its edges
 };
 
 /// Settings for cutting boundaries into runs.
 struct VIEWGAIN_EXPORT BoundaryConfig {
   /// Largest angle between face normal and line of sight [rad].
   double max_view_angle = 80.0 * std::numbers::pi / 180;
-  double min_run_length = 0;   ///< shorter runs join the longer neighbour in their loop [m]; use
-                               ///< several spacings, or each tooth of a jagged border is a run
+  /// Shorter runs join the longer neighbour in their loop [m]; use several point spacings,
+  /// otherwise each tooth of a jagged border is a run.
+  double min_run_length = 0;
   double min_loop_length = 0;  ///< shorter loops are omitted: small holes [m]
 };
 
@@ -54,13 +55,13 @@ struct VIEWGAIN_EXPORT BoundaryConfig {
 /// O(n log n).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<BoundaryLoop> boundary_loops(const SurfaceMesh& surface);
 
-/// Cuts loops into runs of edges with one class. The class is that of the outward conormal t × n (t
-/// along the face's halfedge, n the face's normal) in the image axes of a view: the largest of its
-/// components to -x left, +x right, -y top and +y bottom. The view is the last one that has the
-/// edge's midpoint in its image and range limits at less than max_view_angle, and unoccluded if
-/// `sees`(view, point) is given; otherwise the last view in front of the face, or the last view.
-/// Conormals are first averaged over min_run_length of the loop (at most a quarter of it), so that
-/// the course of a jagged border counts.
+/// Cuts loops into runs of edges with one class. The class is the direction of the outward conormal
+/// t × n in the image of a view: left, right, top or bottom, whichever is nearest. Here t is the
+/// direction of the edge and n the normal of its face. The view is the last one that shows the
+/// edge's midpoint within range, at less than max_view_angle and, if `sees`(view, point) is given,
+/// unoccluded. If there is none, it is the last view in front of the face, or the last view.
+/// Conormals are first averaged over min_run_length of the loop, at most a quarter of it, to smooth
+/// jagged borders.
 ///
 /// Runs shorter than min_run_length join the longer neighbour, shortest first. Runs follow the
 /// order of the loops. Throws Error(invalid_argument) if there are no views, or a view, the sensor,

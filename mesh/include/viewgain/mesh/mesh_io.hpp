@@ -21,9 +21,9 @@ struct VIEWGAIN_EXPORT MeshRepairs {
 /// Reads OFF, OBJ, STL or PLY, chosen by the file name's ending, in the file's unit and axes.
 /// Triangulates polygons, also concave and self-crossing ones; omits faces without area and unused
 /// vertices; ignores colours, normals and lines. Throws Error(io) if the file cannot be read,
-/// Error(format) with file and line if it is malformed or its polygons exceed a limit of work,
-/// Error(capacity) as file_bytes(). Thread safe. Cost: O(file); O(n log n) for a polygon of n
-/// corners that is not a fan.
+/// Error(format) with file and line if it is malformed or its polygons take too long to
+/// triangulate, Error(capacity) if it is too large. Thread safe. Cost: O(file); O(n log n) for a
+/// polygon of n corners that is not a fan.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path,
                                                      MeshRepairs* repairs = nullptr);
 
@@ -47,7 +47,7 @@ struct VIEWGAIN_EXPORT MeshPlacement {
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh placed(TriangleMesh mesh,
                                                   const MeshPlacement& placement);
 
-/// Reads and places a mesh; throws and costs as both functions. Errors name the file.
+/// read_mesh(), then placed(). Errors and cost are those of the two calls; errors name the file.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path,
                                                      const MeshPlacement& placement,
                                                      MeshRepairs* repairs = nullptr);

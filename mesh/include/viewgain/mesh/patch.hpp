@@ -20,9 +20,10 @@ struct VIEWGAIN_EXPORT QuadraticPatch {
   /// Columns u, v, w in the world; right-handed. Stored column-major.
   Eigen::Matrix<double, 3, 3, Eigen::ColMajor> axes = Eigen::Matrix3d::Identity();
   std::array<double, 6> coefficients{};  ///< a b c d e f
-  bool planar = false;                   ///< the points did not determine a quadric: a = b = c = 0
-  double rms = 0;                        ///< root mean square of the residuals along w [m]
-  double depth = 0;                      ///< inward extent of the fitted points: -min u [m]
+  /// Whether a plane was fitted, because the points did not determine a quadric.
+  bool planar = false;
+  double rms = 0;    ///< root mean square of the residuals along w [m]
+  double depth = 0;  ///< inward extent of the fitted points: -min u [m]
 
   /// World point [m] at (u, v) [m].
   [[nodiscard]] Eigen::Vector3d point(double u, double v) const;
@@ -32,21 +33,20 @@ struct VIEWGAIN_EXPORT QuadraticPatch {
 
 /// Least-squares fit to the points [m], world frame. The local frame has this origin [m], w along
 /// `normal`, u along the part of `outward` perpendicular to it, and v = w × u; both directions have
-/// any length. A quadric needs 7 points, a condition number below 1e3 (design matrix in units of
-/// the points' spread), and residuals that leave the slope dw/du at u = depth, v = 0 a standard
-/// deviation of at most 0.2. Otherwise the result is a plane; with fewer than 3 points, or
-/// collinear ones, the plane w = 0. Throws Error(invalid_argument) if outward is parallel to normal
-/// or a number is not finite. Cost: O(points).
+/// any length. A quadric is fitted to 7 or more points that determine it well (mesh/README.md).
+/// Otherwise the result is a plane, or w = 0 for fewer than 3 points or collinear ones. Throws
+/// Error(invalid_argument) if outward is parallel to normal or a number is not finite. Cost:
+/// O(points).
 [[nodiscard]] VIEWGAIN_EXPORT QuadraticPatch fit_patch(std::span<const Eigen::Vector3d> points,
                                                        const Eigen::Vector3d& origin,
                                                        const Eigen::Vector3d& outward,
                                                        const Eigen::Vector3d& normal);
 
 /// Vertices within `depth` [m] of the seeds along edges (Dijkstra) whose normals differ by less
-/// than `max_turn` [rad] from the seeds' mean normal: the region of step 4. In increasing order;
-/// empty if the seeds' normals cancel. Throws Error(invalid_argument) for an index out of range, a
-/// number that is not finite or a wrong number of normals. Cost: one pass over the surface, and O(n
-/// log n) of the reached vertices.
+/// than `max_turn` [rad] from the seeds' mean normal. In increasing order; empty if the seeds'
+/// normals cancel. Throws Error(invalid_argument) for an index out of range, a number that is not
+/// finite or a wrong number of normals. Cost: one pass over the surface, and O(n log n) of the
+/// reached vertices.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::uint32_t> grow_region(
     const SurfaceMesh& surface, std::span<const std::uint32_t> seeds, double depth,
     double max_turn);

@@ -26,16 +26,16 @@ struct VIEWGAIN_EXPORT SurfaceSample {
 struct VIEWGAIN_EXPORT ErrorStatistics {
   double rms = 0;          ///< root mean square [m]
   double p95 = 0;          ///< 95th percentile of the distance [m]
-  std::size_t points = 0;  ///< 0: the others are NaN
+  std::size_t points = 0;  ///< 0: the other members are NaN
 };
 
 /// Accuracy of points relative to their covariances Σ: z² = e² / (nᵀ Σ n), where e is the distance
 /// to the surface and n the direction to its nearest point (the surface normal if e is 0).
 struct VIEWGAIN_EXPORT Consistency {
-  double mean_clipped = 0;   ///< mean of min(z², 25) [1]; ideal 1
-  double median = 0;         ///< of z² [1]; ideal 0.455
-  double above_9 = 0;        ///< share of z² > 9; ideal 0.003
-  std::size_t points = 0;    ///< points within 10 mm, which are counted; 0: the others are NaN
+  double mean_clipped = 0;  ///< mean of min(z², 25) [1]; ideal 1
+  double median = 0;        ///< of z² [1]; ideal 0.455
+  double above_9 = 0;       ///< share of z² > 9; ideal 0.003
+  std::size_t points = 0;  ///< points within 10 mm, which are counted; 0: the other members are NaN
   std::size_t outliers = 0;  ///< points more than 10 mm away
 };
 
@@ -43,8 +43,8 @@ struct VIEWGAIN_EXPORT Consistency {
 /// threads.
 ///
 /// Members that take points [m], in the mesh frame, throw Error(invalid_argument) for one that is
-/// not finite. They cost O(log n) of the triangles, or of the points, per point or sample, and give
-/// identical bits for any number of threads.
+/// not finite. They cost O(log n) of the triangles, or of the points, per point or sample. Results
+/// are bit-identical for any number of threads.
 class VIEWGAIN_EXPORT GroundTruth {
  public:
   /// Draws area-weighted samples, the same for the same seed. `exec` sets the number of threads of
@@ -64,7 +64,7 @@ class VIEWGAIN_EXPORT GroundTruth {
       std::span<const std::array<double, 3>> points) const;
 
   /// Distance of each sample to the triangles of a mesh [m]; infinity without any. Ignores
-  /// triangles without area. Also throws as the constructor for an invalid mesh.
+  /// triangles without area. Also throws like the constructor for an invalid mesh.
   [[nodiscard]] std::vector<double> distances_to(const TriangleMesh& mesh) const;
 
   /// Distance of each point to the surface [m].
@@ -84,9 +84,9 @@ class VIEWGAIN_EXPORT GroundTruth {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Share of the distances that are at most `radius` [m], among those with a nonzero `mask` (an
-/// empty mask: all). NaN if there are none. Throws Error(invalid_argument) if the mask has another
-/// size. Cost: O(distances).
+/// Fraction of the distances that are at most `radius` [m], among those with a nonzero `mask`; an
+/// empty mask selects all. NaN if none is selected. Throws Error(invalid_argument) if the mask has
+/// another size. Cost: O(distances).
 [[nodiscard]] VIEWGAIN_EXPORT double coverage(std::span<const double> distances, double radius,
                                               std::span<const std::uint8_t> mask = {});
 

@@ -49,10 +49,10 @@ struct VIEWGAIN_EXPORT SurfaceConfig {
 /// A vertex is at most 1.25 spacings from its point; points that smoothing would move further are
 /// dropped as outliers. Holes larger than max_edge stay open.
 ///
-/// Empty input, or outliers only, give an empty mesh. Identical bits for any number of threads.
-/// Throws Error(invalid_argument) for a position that is not finite, a point's spacing that is not
-/// finite or finer than the configuration's, a length of the configuration that is not positive,
-/// and 2^32 points or more. Cost: O(n log n) of the points.
+/// Empty input, or outliers only, give an empty mesh. Results are bit-identical for any number of
+/// threads. Throws Error(invalid_argument) for a position that is not finite, a point's spacing
+/// that is not finite or smaller than the configuration's, a length of the configuration that is
+/// not positive, and 2^32 points or more. Cost: O(n log n) of the points.
 [[nodiscard]] VIEWGAIN_EXPORT SurfaceMesh reconstruct_surface(std::span<const OrientedPoint> points,
                                                               const SurfaceConfig& config,
                                                               const ExecConfig& exec = {});

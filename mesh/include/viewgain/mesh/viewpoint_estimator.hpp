@@ -20,13 +20,14 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT EstimatorConfig {
   BoundaryConfig boundary{};   ///< cutting of boundaries
   double patch_length = 0.06;  ///< longer runs are cut into parts of about this length [m]
-  double region_depth = 0.05;  ///< inward extent of the region [m]
-  double overlap = 0.5;        ///< share of known surface in the next view, in (0, 1)
+  /// Inward extent of the surface region to which a patch is fitted [m].
+  double region_depth = 0.05;
+  double overlap = 0.5;  ///< fraction of known surface in the next view, in (0, 1)
   double max_turn = 60.0 * std::numbers::pi / 180;  ///< largest turn of the extrapolation [rad]
-  /// Variants in all combinations, distances outermost and rolls innermost: distances as multiples
-  /// of the working distance, tilts in (-pi/2, pi/2) [rad], rolls about the optical axis [rad]. A
-  /// tilt of 0 is one variant; any other is two: about the boundary's direction v (positive: the
-  /// camera moves outward) and about the direction u across it.
+  /// Candidates are made for all combinations of distances, tilts and rolls, with rolls varying
+  /// fastest. Distances are multiples of the working distance. Tilts are in (-pi/2, pi/2). A tilt
+  /// other than 0 gives two candidates: tilted about the boundary's direction v (positive: the
+  /// camera moves outward), and about the direction u across the boundary.
   std::vector<double> distances{1.0};
   std::vector<double> tilts{0.0};                 ///< [rad]
   std::vector<double> rolls{0.0};                 ///< about the optical axis [rad]
@@ -43,7 +44,7 @@ struct VIEWGAIN_EXPORT BoundaryCandidate {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();    ///< point it looks at, world [m]
   double distance = 0;                                 ///< distance from the target [m]
   double tilt = 0, roll = 0;                           ///< tilt and roll of the variant [rad]
-  bool nominal = false;  ///< untilted and unrolled at the first distance
+  bool nominal = false;  ///< whether it is untilted, unrolled and at the first distance
 };
 
 /// Candidates with the runs and patches that they come from.
@@ -55,21 +56,20 @@ struct VIEWGAIN_EXPORT EstimatedViews {
   std::vector<BoundaryCandidate> candidates;        ///< ordered by run, patch and variant
 };
 
-/// The paper's viewpoint estimator, after Kriegel et al., ICRA 2011; its details are unpublished,
-/// so this definition is ours (mesh/README.md). Boundary runs give regions, regions give patches,
-/// patches give views.
+/// The paper's viewpoint estimator, after Kriegel et al., ICRA 2011. Its details are unpublished,
+/// so this definition is ours (mesh/README.md). It fits a patch to a surface region at each
+/// boundary run, extrapolates the patch, and places views in front of it.
 ///
 /// Runs longer than patch_length are cut into equal parts, closed ones into at least three. A patch
-/// has its origin at the mean of its edges, u along the mean conormal, w along the mean normal, and
-/// is fitted to the vertices of grow_region within a turn of 45°. It is extrapolated past the
-/// boundary along u until known surface fills the share `overlap` of the nominal view at the
-/// working distance, at most by the depth of its region and a turn of max_turn. The candidate
-/// stands at distance · working_distance along the outward normal at that point and looks back.
+/// is fitted to the vertices of grow_region() within a turn of 45°, with its origin at the mean of
+/// its edges. It is extrapolated outward until known surface fills the fraction `overlap` of the
+/// nominal view, at most by the depth of its region and a turn of max_turn. The camera stands at
+/// distance · working_distance along the normal at that point and looks back at it.
 ///
 /// `views` are T_world_camera in the order taken, working_distance [m]; `sees` as in boundary_runs.
 /// Throws Error(invalid_argument) for an overlap outside (0, 1), an empty list of variants, lengths
-/// that are not positive, no views, and as boundary_loops and boundary_runs. An empty or closed
-/// surface gives no candidates. Deterministic. Cost: 30 ms for 17,000 vertices, 77 runs and 108
+/// that are not positive, no views, and like boundary_loops() and boundary_runs(). An empty or
+/// closed surface gives no candidates. Deterministic. Cost: 30 ms for 17,000 vertices and 108
 /// patches on one core.
 [[nodiscard]] VIEWGAIN_EXPORT EstimatedViews estimate_views(
     const SurfaceMesh& surface, std::span<const Pose> views, const Sensor& sensor,

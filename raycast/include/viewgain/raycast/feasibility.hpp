@@ -39,8 +39,8 @@ enum class Infeasibility : std::uint8_t {
 /// Settings of the feasibility check: body, reach and sight.
 struct VIEWGAIN_EXPORT FeasibilityConfig {
   /// The sensor's housing, a box. In the flange frame it is centred on the z axis and extends from
-  /// z = 0 to its depth; T_flange_camera places the camera on the flange. Without it the camera
-  /// looks out of the middle of the box's front face.
+  /// z = 0 to its depth; T_flange_camera places the camera on the flange. Without a T_flange_camera
+  /// the camera looks out of the middle of the box's front face.
   struct Body {
     /// Width, height, depth [m]; the SR4000's by default. Sensor::body_size has those of other
     /// sensors.
@@ -52,20 +52,19 @@ struct VIEWGAIN_EXPORT FeasibilityConfig {
   double clearance = 0;                      ///< margin around the body on each side [m]
   ReachRegion reach{};                       ///< reachable camera poses
   ReachRegion::Tolerance taken_tolerance{};  ///< tolerance for two poses to be the same
-  /// If given: a view is too near if more than max_near_share of its rays that end in the map end
-  /// within the sensor's min_range.
+  /// If given, rays are traced: a view is too near if, of its rays that end in the map, more than
+  /// max_near_share end within the sensor's min_range.
   std::optional<Sensor> sensor{};
   double max_near_share = 0.2;  ///< share of the rays that end in the map
 };
 
-/// Checks which camera poses are possible in a scene: the body against voxels that are not free and
-/// the surroundings; reach; views taken. Space outside the workspace counts as free. Obstacle boxes
-/// and closed meshes are solid; an open mesh is a sheet. Overlaps below a nanometre count as
-/// touching.
+/// Checks which camera poses are possible in a scene. The body must not overlap voxels that are not
+/// free, or the surroundings. The pose must be within reach, and differ from the views taken. Space
+/// outside the workspace counts as free. Boxes and closed meshes are solid; an open mesh is a
+/// sheet. Overlaps below a nanometre count as touching.
 ///
-/// Cost: 0.5-1 µs per pose and thread, also with two obstacles. With a sensor, below 1 µs where no
-/// voxel is within min_range; otherwise rays are traced until the answer is clear, which takes
-/// 10-50 µs for the 400 rays of an SR4000 and proportionally more for more pixels.
+/// Cost: 0.5-1 µs per pose and thread. With a sensor, rays are traced if a voxel is within
+/// min_range, until the answer is clear: 10-50 µs for an SR4000, and more for larger images.
 ///
 /// Thread safety: all const members may run from many threads at once on one checker.
 /// @code
@@ -85,19 +84,20 @@ class VIEWGAIN_EXPORT FeasibilityChecker {
   FeasibilityChecker(FeasibilityChecker&&) noexcept;
   FeasibilityChecker& operator=(FeasibilityChecker&&) noexcept;
 
-  /// A checker for another scene, for a map that grows. Shares lens, threads and, if
-  /// VoxelScene::update made the scene from this one's, the obstacles; this checker does not
-  /// change. Cost: a pass over the scene's lists of regions (cubes of 32³ voxels) and larger tiles,
-  /// 1 µs for 6,000 leaves. Throws Error(invalid_argument) for a null scene.
+  /// A checker with the same settings for another scene, for a map that grows. This checker does
+  /// not change. Shares rays and threads with it, and the obstacles if VoxelScene::update() made
+  /// the scene from this one's. Cost: microseconds. Throws Error(invalid_argument) for a null
+  /// scene.
   [[nodiscard]] FeasibilityChecker with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
-  /// Checks a pose. `taken`: T_world_camera of the views so far. Touching faces do not overlap. An
-  /// invalid pose is one of the results. Passes on exceptions of the reach region's predicate.
+  /// Checks a pose. `taken`: T_world_camera of the views so far. Touching faces do not overlap. For
+  /// an invalid pose the result is bad_pose. Passes on exceptions of the reach region's predicate.
   [[nodiscard]] Infeasibility check(const Pose& T_world_camera,
                                     std::span<const Pose> taken = {}) const;
 
-  /// Checks a batch of T_world_camera, result i for pose i, on all threads of the checker. They
-  /// call the reach region's predicate concurrently; an exception ends the batch and is rethrown.
+  /// Checks a batch of T_world_camera, result i for pose i, on all threads of the checker. The
+  /// threads call the reach region's predicate concurrently; an exception ends the batch and is
+  /// rethrown.
   [[nodiscard]] std::vector<Infeasibility> check(std::span<const Pose> T_world_camera,
                                                  std::span<const Pose> taken = {}) const;
 
@@ -110,8 +110,8 @@ class VIEWGAIN_EXPORT FeasibilityChecker {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Settings for a sensor: its body (the SR4000's without Sensor::body_size), its mounting and its
-/// min_range (FeasibilityConfig::sensor). The reach is unlimited.
+/// Settings for a sensor: its body, its mounting and its min_range (FeasibilityConfig::sensor). If
+/// Sensor::body_size is empty, the body is the SR4000's. The reach is unlimited.
 [[nodiscard]] VIEWGAIN_EXPORT FeasibilityConfig feasibility_of(const Sensor& sensor);
 
 /// The feasible poses of a list.
@@ -121,7 +121,7 @@ struct VIEWGAIN_EXPORT FeasiblePoses {
   std::map<std::string, std::size_t> dropped;  ///< number of dropped poses by infeasibility_name()
 };
 
-/// Checks a list of T_world_camera. `taken`: views so far. Throws and costs as
+/// Checks a list of T_world_camera. `taken`: views so far. Errors and cost: see
 /// FeasibilityChecker::check().
 [[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses feasible_poses(const FeasibilityChecker& checker,
                                                            std::span<const Pose> poses,

@@ -17,10 +17,11 @@
 
 namespace viewgain {
 
-/// Agreement of the frames of a map.
+/// How well the frames of a map agree.
 struct VIEWGAIN_EXPORT FrameConsistency {
   std::vector<FrameContradiction> frames{};  ///< one per frame in the map, in order
-  std::size_t in_free = 0;     ///< number of readings in space that other frames saw as free
+  /// Number of readings (measured depths) in space that other frames saw as free.
+  std::size_t in_free = 0;
   std::size_t seen_past = 0;   ///< number of readings of earlier frames that later frames see past
   double share_in_free = 0;    ///< in_free as a share of all readings
   double share_seen_past = 0;  ///< seen_past as a share of the readings of earlier frames
@@ -41,13 +42,14 @@ class VIEWGAIN_EXPORT FrameCheck {
   /// invalid.
   explicit FrameCheck(const Sensor& sensor, std::optional<double> support_plane = {});
 
-  /// Records a frame and its pose, usable or not. Ignores frames of another size.
+  /// Records a frame and its pose, even if it cannot be used. Ignores frames of another size.
   void see(const DepthFrame& frame, const Pose& T_world_camera);
-  /// Records a frame that is about to go into the map, as FrameAgreement::look().
+  /// Records a frame that is about to go into the map, like FrameAgreement::look().
   void look(const BeliefGrid& before, const DepthFrame& frame, const Pose& T_world_camera,
             const PoseSigma& pose_sigma = {});
 
-  /// Result for all frames so far, given the map with them. Cost: suspect_frames().
+  /// Result for all frames so far; `after` must be the map with these frames. Cost:
+  /// suspect_frames().
   [[nodiscard]] FrameConsistency result(const BeliefGrid& after) const;
 
  private:

@@ -32,12 +32,12 @@ struct EvaluatorAccess;
 
 /// What a view's gain measures (apps/docs/guide/equations.md).
 enum class GainModel : std::uint8_t {
-  paper,     ///< the paper's: entropy removed where rays first meet voxels that are not free [nat]
+  paper,     ///< the paper's: entropy removed in the first voxel on each ray that is not free [nat]
   surface,   ///< expected new surface, where rays continue through unknown voxels [m²]
   combined,  ///< expected new surface in nats, and refinement of known surface [nat]
 };
-/// Default model everywhere: here, in the planner, and in every program and binding. Of the models
-/// it finds the surface with the fewest views.
+/// Default model of the library, the planner, the program and all bindings. Of the models it needs
+/// the fewest views to find the surface.
 inline constexpr GainModel kDefaultGain = GainModel::combined;
 /// Names of the models, in enumeration order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& gain_model_names();
@@ -64,18 +64,20 @@ struct VIEWGAIN_EXPORT GainConfig {
   Criterion criterion = Criterion::log_diagonal;
   int pixel_stride = 1;  ///< traces every s-th pixel of every s-th row, from pixel (0,0)
   std::optional<double> prior_sigma{};  ///< sigma_0 [m]; defaults to the map's
-  /// Along the ray [m]; defaults to the sensor's. Nothing nearer gains. Known surface that a ray
-  /// enters before it blocks the ray; obstacles block at any range.
+  /// Along the ray [m]; defaults to the sensor's. Voxels nearer than that have no gain. Known
+  /// surface and obstacles nearer than that block the ray.
   std::optional<double> min_range{};
-  std::optional<double> max_range{};    ///< along the ray [m]; defaults to the sensor's
-  std::vector<WeightRegion> weights{};  ///< task weights; later ones override earlier ones
-  double refinement_weight = 1.0;  ///< combined: weight w of refinement relative to new surface
-  /// Paper: also compute ViewGain::posterior_entropy; about 4 % slower.
+  std::optional<double> max_range{};  ///< along the ray [m]; defaults to the sensor's
+  /// Task weights; where regions overlap, the last one counts.
+  std::vector<WeightRegion> weights{};
+  double refinement_weight = 1.0;  ///< combined gain: weight w of refinement
+  /// Paper's gain: also computes ViewGain::posterior_entropy; about 4 % slower.
   bool posterior_entropy = false;
 };
 
-/// Expected gain of a view, in nats, or in m² for the criterion trace and the surface gain. Each
-/// member names its models; for other models it is NaN, a count 0, and null in JSON.
+/// Expected gain of a view, in nats, or in m² for the criterion trace and the surface gain. Some
+/// members exist only for the gain models that their comments name. For other models they are NaN
+/// (null in JSON), and counts are 0.
 struct VIEWGAIN_EXPORT ViewGain {
   /// Whether the view could be scored.
   enum class Status : std::uint8_t {
@@ -84,27 +86,26 @@ struct VIEWGAIN_EXPORT ViewGain {
     camera_in_occupied,  ///< the camera centre lies in an occupied voxel: gain 0
   };
 
-  /// Depends on GainConfig::model: exploration + refinement; area; or area · ΔH_new / voxel² + w ·
+  /// paper: exploration + refinement. surface: area. combined: area · ΔH_new / voxel² + w ·
   /// refinement_saturated. NaN for an invalid pose, or for sensor sigmas outside the range of
   /// double precision.
   double gain = std::numeric_limits<double>::quiet_NaN();
-  /// Paper: share of unknown voxels.
+  /// paper: the part of the gain from unknown voxels.
   double exploration = std::numeric_limits<double>::quiet_NaN();
-  /// Paper: share of occupied voxels.
+  /// paper: the part of the gain from occupied voxels.
   double refinement = std::numeric_limits<double>::quiet_NaN();
   /// surface, combined: expected new surface, measured perpendicular to the rays [m²].
   double area = std::numeric_limits<double>::quiet_NaN();
-  /// combined: entropy removed from points at occupied voxels with readings, each pooled with the
-  /// surrounding voxels, with a floor (apps/docs/guide/surface_gain.md) [nat]. Labelled voxels have
-  /// none.
+  /// combined: entropy removed from known surface [nat] (apps/docs/guide/surface_gain.md). Voxels
+  /// without measured depths, such as labelled ones, add nothing.
   double refinement_saturated = std::numeric_limits<double>::quiet_NaN();
-  /// If enabled in GainConfig: eq. (6) of the paper over the touched voxels, Σ_v Σ_k ln[(Λ_v +
-  /// ΣΛ_r)⁻¹]_kk, lengths in metres.
+  /// paper, if enabled in GainConfig: eq. (6), Σ_v Σ_k ln[(Λ_v + ΣΛ_r)⁻¹]_kk over the voxels that
+  /// the rays hit, lengths in metres.
   double posterior_entropy = std::numeric_limits<double>::quiet_NaN();
   std::uint32_t rays = 0;             ///< rays of the view
   std::uint32_t hits = 0;             ///< rays that end in a voxel
-  std::uint32_t unknown_voxels = 0;   ///< distinct voxels; paper
-  std::uint32_t occupied_voxels = 0;  ///< distinct voxels; paper, combined
+  std::uint32_t unknown_voxels = 0;   ///< number of distinct voxels hit; paper
+  std::uint32_t occupied_voxels = 0;  ///< number of distinct voxels hit; paper, combined
   Status status = Status::bad_pose;   ///< whether it could be scored
 };
 
@@ -113,7 +114,7 @@ struct VIEWGAIN_EXPORT ViewGain {
 
 /// The end of one ray of a view.
 struct VIEWGAIN_EXPORT RayHit {
-  /// What the ray ends in. A ray that enters known surface before min_range ends there as at an
+  /// What the ray ends in. Known surface that the ray enters before min_range counts as an
   /// obstacle.
   enum class Kind : std::uint8_t { none, unknown, occupied, obstacle };
   Kind kind = Kind::none;  ///< kind of end
@@ -126,9 +127,9 @@ struct VIEWGAIN_EXPORT RayHit {
 struct VIEWGAIN_EXPORT VoxelContribution {
   Index3 voxel{};                          ///< index in the map
   VoxelState state = VoxelState::unknown;  ///< unknown or occupied
-  std::uint32_t rays = 0;  ///< rays that end in it; surface, combined: rays that reach it
-  /// Expected number of rays that end in it: `rays` for the paper's gain, otherwise the sum of
-  /// their probabilities.
+  std::uint32_t rays = 0;  ///< rays that end in the voxel; surface, combined: rays that reach it
+  /// Expected number of rays that end in the voxel: `rays` for the paper's gain, otherwise the sum
+  /// of the rays' probabilities.
   double expected_rays = 0;
   double gain = 0;  ///< including its task weight, in the gain's unit
 };
@@ -136,14 +137,13 @@ struct VIEWGAIN_EXPORT VoxelContribution {
 /// Scores camera poses against a scene by expected information gain (apps/docs/guide/equations.md).
 /// A camera more than 1e6 voxels away from the workspace has gain 0.
 ///
-/// Thread safety: all const members may run from many threads at once on one evaluator. Each
-/// thread's buffers grow to the largest view and are kept; then no pose allocates. Identical bits
-/// for any number of threads.
+/// Thread safety: all const members may run from many threads at once on one evaluator. Results are
+/// bit-identical for any number of threads. Each thread keeps its buffers, which grow to the
+/// largest view; later poses then allocate no memory.
 ///
-/// Cost of evaluate(): grows with the rays; surface and combined gains cost about 4 times the
-/// paper's (perf/README.md). The constructor calls PinholeCamera::ray() per pixel and, for surface
-/// and combined gains, computes the hazard (combined: also the known surface) of a scene without
-/// it.
+/// Cost of evaluate(): grows with the number of rays; surface and combined gains cost about 4 times
+/// the paper's (perf/README.md). The constructor calls PinholeCamera::ray() per pixel. For surface
+/// and combined gains it also computes the scene's hazard, unless the scene already has it.
 /// @code
 /// const GainEvaluator evaluator(VoxelScene::build(grid), sensor);
 /// const std::vector<ViewGain> gains = evaluator.evaluate(poses);
@@ -151,8 +151,8 @@ struct VIEWGAIN_EXPORT VoxelContribution {
 /// @endcode
 class VIEWGAIN_EXPORT GainEvaluator {
  public:
-  /// Where a view's rays end, to explain its gain. Each ray counts once: the counts after `rays`
-  /// add up to it.
+  /// Where a view's rays end, to explain its gain. Each ray counts once, so the counts after `rays`
+  /// add up to `rays`.
   struct RayOutcomes {
     std::uint32_t rays = 0;           ///< rays of the view
     std::uint32_t too_near = 0;       ///< hit known surface or an obstacle before min_range
@@ -165,10 +165,10 @@ class VIEWGAIN_EXPORT GainEvaluator {
   };
 
   /// Removes the lens distortion once. With ExecConfig::tracer `embree`, the first evaluator of a
-  /// scene builds its BVH, 0.5 ms per 1,000 primitives; throws Error(backend) on failure. Throws
-  /// Error(invalid_argument) naming the value for a null scene, an invalid sensor, sigmas below
-  /// 1e-8 m or a factor above 1e3 apart, a stride below 1, a prior outside 1e-6..1e3 m, a weight or
-  /// range that is negative or not finite, min_range >= max_range, or a weight box inside out.
+  /// scene builds its BVH (0.5 ms per 1,000 primitives) and throws Error(backend) on failure.
+  /// Throws Error(invalid_argument) naming the value for a null scene or an invalid sensor or
+  /// setting. Sensor sigmas must be at least 1e-8 m and within a factor of 1e3 of each other, and a
+  /// prior within 1e-6..1e3 m.
   GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
                 const GainConfig& config = {}, const ExecConfig& exec = {});
   ~GainEvaluator();
@@ -176,110 +176,102 @@ class VIEWGAIN_EXPORT GainEvaluator {
   GainEvaluator& operator=(GainEvaluator&&) noexcept;
 
   /// An evaluator with the same sensor and configuration for another scene, to follow a growing
-  /// map. Shares ray table, threads and buffers; takes microseconds. For surface and combined gains
-  /// of a new scene it first computes hazard and pooled information, some milliseconds. Results are
-  /// bit-identical to a new evaluator; sigma_0 is the new map's unless configured. Both evaluators
-  /// may be used, moved and destroyed concurrently; while one uses the threads, a call of the other
-  /// runs on its calling thread. Throws Error(invalid_argument) for a null scene or a prior sigma
-  /// outside 1e-6..1e3 m; Error(backend) and Error(capacity) as VoxelScene::build().
+  /// map. Shares rays, threads and buffers, and takes microseconds, or some milliseconds if the
+  /// scene's hazard is computed first. Results are bit-identical to those of a new evaluator. Both
+  /// evaluators may be used, moved and destroyed concurrently; while one uses the threads, a call
+  /// of the other runs on its calling thread. Throws like the constructor and VoxelScene::build().
   [[nodiscard]] GainEvaluator with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
-  /// Expected gain of one pose. The paper's gain uses all threads of the evaluator, the others the
+  /// Expected gain of one pose. The paper's gain uses all threads of the evaluator, other gains the
   /// calling thread. ViewGain::status reports an invalid pose; nothing is thrown.
   [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera) const;
 
   /// Expected gains of a batch, result i for pose i, on all threads of the evaluator. An invalid
-  /// pose affects only its own result. Returns the number of scored poses: fewer than all if
-  /// `control` ended the call; the other results have status bad_pose and NaN. Throws
+  /// pose affects only its own result. Returns the number of scored poses, which is less than all
+  /// if `control` ended the call. The remaining results have status bad_pose and NaN. Throws
   /// Error(invalid_argument) if the sizes differ.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<ViewGain> results,
                        const BatchControl& control = {}) const;
   /// As above, into a new array.
   [[nodiscard]] std::vector<ViewGain> evaluate(std::span<const Pose> T_world_camera) const;
 
-  /// A custom gain of a batch, result i for pose i in the unit of `measure`, which all threads of
-  /// the evaluator call concurrently. Invalid poses get NaN and cameras in an occupied voxel 0
-  /// without a call. Returns the number of measured poses, as above; the others are NaN. An
-  /// exception of `measure` ends the batch and is rethrown; results are then unspecified. Throws
-  /// Error(invalid_argument) if the sizes differ. Cost: 1.4 times evaluate(), plus `measure`.
+  /// A custom gain of a batch, result i for pose i, in the unit of `measure`. All threads of the
+  /// evaluator call `measure` concurrently, except for invalid poses (NaN) and cameras in an
+  /// occupied voxel (0). Returns the number of measured poses, as above; the remaining results are
+  /// NaN. An exception of `measure` ends the batch and is rethrown; results are then unspecified.
+  /// Throws Error(invalid_argument) if the sizes differ. Cost: 1.4 times evaluate(), plus
+  /// `measure`.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                        const ViewMeasure& measure, const BatchControl& control = {}) const;
 
-  /// As above for a measure that sees what rays pass in unknown voxels, with any model of the
-  /// evaluator. Lists take 80 bytes per thread and voxel that a ray passes, up to 200 MB at full
-  /// resolution; a pixel stride reduces them. Also throws Error(capacity) and Error(backend). Cost:
+  /// As above for a measure that sees all unknown voxels that rays pass, whatever the evaluator's
+  /// model. Each thread needs 80 bytes per voxel that a ray passes, up to 200 MB at full
+  /// resolution; a pixel stride reduces this. Also throws Error(capacity) and Error(backend). Cost:
   /// several times evaluate() with the surface gain.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                        const RunMeasure& measure, const BatchControl& control = {}) const;
 
   /// Explains a gain: one entry per voxel in which rays of the pose end, largest gain first, ties
-  /// by the voxel's x, y, z. For surface and combined, one entry per unknown voxel that rays reach.
-  /// Gains add up to evaluate()'s to 1e-9 relative (surface, combined: 1e-5), rays to its hits.
-  /// Empty for an invalid pose and for a camera in an occupied voxel; does not throw for them. Runs
-  /// on the calling thread; takes three times as long as evaluate().
+  /// by the voxel's x, y, z. For surface and combined: one entry per unknown voxel that rays reach.
+  /// The gains add up to that of evaluate() to 1e-9 relative (surface, combined: 1e-5). Empty,
+  /// without an exception, for an invalid pose and for a camera in an occupied voxel. Runs on the
+  /// calling thread; takes three times as long as evaluate().
   [[nodiscard]] std::vector<VoxelContribution> contributions(const Pose& T_world_camera) const;
 
   /// Ends of the rays that evaluate() uses, in pixel order (row-major, strided). Empty for an
   /// invalid pose; does not throw for it. Cost: one trace of the pose.
   [[nodiscard]] std::vector<RayHit> trace(const Pose& T_world_camera) const;
 
-  /// Counts where the rays that evaluate() uses end. A camera in an occupied voxel sees out of it.
-  /// All counts are 0 for an invalid pose; does not throw for it. Cost: one trace of the pose and
-  /// one PinholeCamera::ray() per ray.
+  /// Counts where the rays that evaluate() uses end. If the camera is in an occupied voxel, that
+  /// voxel does not block its rays. All counts are 0 for an invalid pose; does not throw for it.
+  /// Cost: one trace of the pose and one PinholeCamera::ray() per ray.
   [[nodiscard]] RayOutcomes outcomes(const Pose& T_world_camera) const;
 
-  /// The k best poses with their results of evaluate(), ties to the lower index. Never chooses
-  /// invalid poses or a measure of NaN, and may return fewer. `config` can subtract costs and
-  /// replace the gain by a measure. Scores all poses, so it costs as evaluate(). After a stop or
-  /// the deadline it returns the best so far, not `complete`. Throws as evaluate() with the
-  /// measure, and Error(invalid_argument) for a wrong number of costs, one that is not finite, a
-  /// deadline that is not >= 0, or two measures.
+  /// The k best poses with their results of evaluate(), ties to the lower index. Returns fewer if
+  /// not enough poses are valid. `config` can subtract costs and replace the gain by a measure.
+  /// Scores all poses, so it costs the same as evaluate(). After a stop or the deadline it returns
+  /// the best so far, and `complete` is false. Throws like evaluate(), and Error(invalid_argument)
+  /// for an invalid `config`.
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BestConfig& config = {},
                                const BatchControl& control = {}) const;
 
-  /// The k best poses with high probability, in two stages: scores all poses with about 400 rays
-  /// each, as approximate() does, then the best max(24, 4 k, 5 %) of them (other gains and
-  /// measures: 1.6 %) in full. Reported gains are exact, ties go to the lower index.
-  /// perf/results/choosing.md has the probability of a miss: with the paper's gain the best of
-  /// 2,000 poses on 3 to 6 of 200 maps. raycast/README.md has the details.
+  /// The k best poses with high probability, in two stages. The first scores all poses with about
+  /// 400 rays each, like approximate(). The second scores the best of them in full: max(24, 4 k, 5
+  /// %), or 1.6 % except with the paper's gain. Reported gains are exact; ties go to the lower
+  /// index. perf/results/choosing.md has the probability that the best pose is missed.
   ///
-  /// Images of fewer than 900 rays are scored in full. A measure is scaled to full rays if there
-  /// are costs. Deterministic for a seed and any number of threads, unless there is a deadline:
-  /// then half of the time goes to estimates of poses from all over the list, and `estimated` and
-  /// `scored_indices` report the rest. control.progress counts poses that are eliminated or scored
-  /// in full. A stop returns nothing in the first stage and the best so far in the second, not
-  /// `complete`. Cost for 2,000 poses with the paper's gain: 0.22 times scoring all. Throws as
-  /// best().
+  /// Images of fewer than 900 rays are scored in full. Without a deadline, results are
+  /// deterministic for a seed and any number of threads. With a deadline, `estimated` and
+  /// `scored_indices` report how far each stage came. control.progress counts poses that are
+  /// eliminated or scored in full. After a stop `complete` is false; the result is empty in the
+  /// first stage, and the best so far in the second. Throws like best().
   [[nodiscard]] BestViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BestConfig& config = {},
                                const BatchControl& control = {}) const;
 
-  /// Up to k different poses of T_world_camera that are good together on the current map, chosen
-  /// greedily: each adds most to those before it. raycast/README.md ("Choosing views") defines the
-  /// gain of a set. Ties go to the lower index; invalid poses are never chosen; k is clamped. A
-  /// stop returns those chosen so far; control.progress counts the chosen poses.
+  /// Up to k different poses of T_world_camera with a large gain together, chosen greedily: each
+  /// pose has the largest marginal gain given the earlier ones. raycast/README.md ("Choosing
+  /// views") defines the gain of a set. Ties go to the lower index; invalid poses are never chosen;
+  /// k is clamped. A stop returns the poses chosen so far; control.progress counts them.
   ///
-  /// For surface, combined and log_determinant, poses whose earlier gain cannot win are not scored
-  /// again. That is exact for surface and log_determinant, which are submodular; with combined a
-  /// refinement can, rarely, grow after another view and be missed. log_diagonal and trace score
-  /// all poses in every round. Cost: with the paper's gain up to k batches of about twice
-  /// evaluate(); otherwise one batch, and about ten times evaluate() per pose that is scored again
-  /// for the first time; up to 256 MB.
+  /// In later rounds poses that cannot win by their earlier gain are skipped, except for
+  /// log_diagonal and trace. This is exact for surface and log_determinant, which are submodular.
+  /// With combined the best pose can, rarely, be missed. Cost: with the paper's gain up to k
+  /// batches of about twice evaluate(); otherwise one batch, and about ten times evaluate() per
+  /// pose that is scored again for the first time; up to 256 MB.
   [[nodiscard]] ViewSet best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                  const BatchControl& control = {}) const;
 
-  /// Estimates gains and standard errors from a lattice of each view's rays, the same for all
-  /// poses, result i for pose i. Traces every s-th ray of every s-th row, with the smallest s² that
-  /// keeps to the share, but at least 100 rays if there are as many. At a share of 1 the result is
-  /// the exact gain with standard error 0. raycast/README.md ("Choosing views") describes the
-  /// estimator.
+  /// Estimates gains and standard errors from some of each view's rays, result i for pose i. Traces
+  /// a regular lattice of pixels: at most `share` of the rays, but at least 100 if there are as
+  /// many. At a share of 1 the result is the exact gain with standard error 0. raycast/README.md
+  /// ("Choosing views") describes the estimator, perf/results/choosing.md its accuracy.
   ///
-  /// Over maps of objects and of a room, 90 to 97 % of the gains lie within two standard errors; on
-  /// one map or lattice 86 % was seen (perf/results/choosing.md). Estimates of poses are
-  /// independent of each other and of the number of threads. Invalid poses: NaN. Returns the number
-  /// of estimated poses, fewer than all after a stop. Throws Error(invalid_argument) for a share
-  /// out of range or if the sizes differ; Error(backend) and Error(capacity) as race().
+  /// The estimate of a pose does not depend on other poses or on the number of threads. Invalid
+  /// poses: NaN. Returns the number of estimated poses, which is less than all after a stop. Throws
+  /// Error(invalid_argument) for a share out of range or if the sizes differ; Error(backend) and
+  /// Error(capacity) like race().
   std::size_t approximate(std::span<const Pose> T_world_camera, std::span<ApproximateGain> results,
                           const ApproximateConfig& config = {},
                           const BatchControl& control = {}) const;
@@ -309,12 +301,11 @@ class VIEWGAIN_EXPORT GainEvaluator {
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::size_t> best_indices(
     std::span<const ViewGain> results, std::size_t k);
 
-/// Depths along the optical axis [m] at which the rays of evaluate() end, row-major, to look at the
-/// origin of a gain: every s-th pixel of every s-th row for a pixel stride s;
+/// Depths along the optical axis [m] at which the rays of evaluate() end, row-major, to show where
+/// a gain comes from. For a pixel stride s it has every s-th pixel of every s-th row.
 /// DepthFrame::kOutOfRange where a ray hits nothing. `labels`, if given, receives what each ray
-/// hits. A camera in an occupied voxel sees out of it. Thread safe. Throws Error(invalid_argument)
-/// for a pose that is not finite or not rigid within 1e-3. Cost: one trace of the pose and, with
-/// distortion, its removal per pixel.
+/// hits. Thread safe. Throws Error(invalid_argument) for a pose that is not finite or not rigid
+/// within 1e-3. Cost: one trace of the pose and, with distortion, its removal per pixel.
 [[nodiscard]] VIEWGAIN_EXPORT DepthFrame depth_image(const GainEvaluator& evaluator,
                                                      const Pose& T_world_camera,
                                                      std::vector<RayHit::Kind>* labels = nullptr);

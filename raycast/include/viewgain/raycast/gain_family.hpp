@@ -47,8 +47,8 @@ class VIEWGAIN_EXPORT GainFamily {
   [[nodiscard]] virtual const std::vector<std::string>& names() const = 0;
   /// Unit of the named gain, such as "nat" or "voxels".
   [[nodiscard]] virtual std::string_view unit(std::string_view name) const = 0;
-  /// Evaluator for views of `sensor` on the current map, whose readings must also come from
-  /// `sensor`. Throws Error(invalid_argument) for an unknown name, and as the gains' own evaluator.
+  /// Evaluator for views of `sensor` on the current map, which `sensor` must have measured. Throws
+  /// Error(invalid_argument) for an unknown name, and like the evaluator of these gains.
   [[nodiscard]] virtual std::unique_ptr<FamilyEvaluator> evaluator(
       std::shared_ptr<const VoxelScene> scene, const BeliefGrid& grid, const Sensor& sensor,
       std::span<const std::string> names, const ExecConfig& exec) const = 0;
@@ -57,7 +57,7 @@ class VIEWGAIN_EXPORT GainFamily {
 /// Registers the family for this process and replaces the previous one; null registers none. Call
 /// before other threads look up gains.
 VIEWGAIN_EXPORT void register_gains(std::shared_ptr<const GainFamily> family);
-/// The registered family; one without names if there is none.
+/// The registered family, or a family without names if none is registered.
 [[nodiscard]] VIEWGAIN_EXPORT const GainFamily& registered_gains() noexcept;
 /// Whether it is the name of a registered gain.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_registered_gain(std::string_view name);

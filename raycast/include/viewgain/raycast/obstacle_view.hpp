@@ -16,11 +16,11 @@
 namespace viewgain {
 
 /// All obstacles as one mesh, boxes first with twelve triangles each. Throws
-/// Error(invalid_argument) as VoxelScene::build(). Cost: a copy of the meshes.
+/// Error(invalid_argument) like VoxelScene::build(). Cost: a copy of the meshes.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh mesh_of(const Obstacles& obstacles);
 
-/// Finds where a camera's pixels hit known obstacles. Keeps, for example, a bin's walls inside the
-/// workspace out of the map.
+/// Finds where a camera's pixels hit known obstacles, so that these, such as the walls of a bin,
+/// stay out of the map.
 ///
 /// Thread safety: one call at a time.
 class VIEWGAIN_EXPORT ObstacleView {
@@ -32,10 +32,10 @@ class VIEWGAIN_EXPORT ObstacleView {
   ObstacleView(ObstacleView&&) noexcept;
   ObstacleView& operator=(ObstacleView&&) noexcept;
 
-  /// Sets DepthFrame::known_depth: on each pixel's ray from T_world_camera, kKnownSigmas along its
-  /// normal before the first obstacle; empty if there are no obstacles. Throws
-  /// Error(invalid_argument) as check_frame_size(), and for a pose that is not rigid (1e-3). Cost:
-  /// about 0.2 µs per pixel and thread.
+  /// Sets DepthFrame::known_depth for a frame from T_world_camera: the depth of the first obstacle
+  /// on each pixel's ray, minus a margin of kKnownSigmas along the obstacle's normal. Empty if
+  /// there are no obstacles. Throws Error(invalid_argument) like check_frame_size(), and for a pose
+  /// that is not rigid (1e-3). Cost: about 0.2 µs per pixel and thread.
   void mark(DepthFrame& frame, const Pose& T_world_camera) const;
 
  private:

@@ -20,23 +20,23 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT SimulationConfig {
   /// Diffuse sphere around the world's origin that stands for the room [m]; 0: none.
   double background_radius = 0;
-  /// Gaussian noise along the ray from the sensor's model, and of the amplitude.
+  /// Adds Gaussian noise along the ray, from the sensor's model, and noise of the amplitude.
   bool noise = false;
   /// Seed of the noise; together with the frame index it determines every pixel.
   std::uint64_t seed = 1;
-  /// Rays per pixel: sub_rays x sub_rays, 1..16. For sensors with a modulation frequency their
-  /// returns mix as complex phasors, which creates flying pixels at depth edges. Other sensors use
-  /// the centre ray only.
+  /// Rays per pixel: sub_rays x sub_rays, 1..16. For sensors with a modulation frequency, the
+  /// returns of a pixel mix as complex phasors, which creates flying pixels at depth edges. Other
+  /// sensors use the centre ray only.
   int sub_rays = 1;
-  /// Displaces the rays of a pixel together by a Gaussian with the model's lateral sigma in both
-  /// directions across the ray (at the range of the centre's return, or at max_range). The reading
-  /// is reported on the undisplaced ray. Independent of `noise`.
+  /// Shifts the rays of a pixel together, in both directions across the ray, by a Gaussian with the
+  /// model's lateral sigma. The reading (measured depth) is reported on the unshifted ray.
+  /// Independent of `noise`.
   bool lateral_noise = false;
-  /// Relative error of ranges: they read 1 + scale_error times the true value in all frames, like
-  /// an error of the camera's calibration. In (-1, 1).
+  /// Relative error of all ranges in all frames, like an error of the camera's calibration:
+  /// measured ranges are 1 + scale_error times the true ones. In (-1, 1).
   double scale_error = 0;
-  /// Wraps ranges to [0, c / (2 modulation_frequency)) for single rays too. Mixed returns always
-  /// wrap, because their sum only has a phase.
+  /// Wraps ranges to [0, c / (2 modulation_frequency)) if a pixel has a single ray. Mixed returns
+  /// always wrap, because their sum only has a phase.
   bool ambiguity = false;
   std::optional<double> support_plane{};  ///< height z of an infinite diffuse table [m], world
   /// Other diffuse objects, such as known obstacles; null: none.

@@ -43,8 +43,8 @@ class VIEWGAIN_EXPORT SurfaceScene {
   SurfaceScene& operator=(SurfaceScene&&) noexcept;
 
   /// First hits in (0, max_range], hit i for ray i. A ray with NaN, or from more than 1e18 m away,
-  /// hits nothing; otherwise unchecked. Traces 4 to 16 rays together, so it is fastest if
-  /// consecutive rays are similar; O(log n) of the triangles per ray.
+  /// hits nothing; rays are otherwise unchecked. Traces 4 to 16 rays together, so it is fastest if
+  /// consecutive rays are similar. Cost: O(log n) of the triangles per ray.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
   /// First hit of one ray.
   [[nodiscard]] Hit intersect(const Ray& ray) const;

@@ -22,22 +22,22 @@ struct VIEWGAIN_EXPORT Suspicion {
   /// focal_length, same_image, support_plane, contradiction (another cause), displacement (frames
   /// are displaced, see FrameCheck), a kind of suspect_set_up.hpp or, for poses alone, no_voxel.
   std::string kind{};
-  std::string what{};  ///< a sentence with the figure that raised the suspicion
+  std::string what{};  ///< a sentence with the number that raised the suspicion
 };
 
-/// Whether frames of one scene agree better if their poses, images or depths follow another
-/// convention. Searches for the readings of each frame in the others, as given and under common
-/// mistakes; suspects the mistake under which most readings are close, or several that fit equally.
-/// Ignores frames without overlap. `T_world_camera`: one per frame. Throws Error(invalid_argument)
-/// as check_frame_size(), and for a wrong number of poses. Thread safe. Cost: one pass over the
-/// pixels and 50 ms for a dozen frames, 0.5 s if they disagree.
+/// Checks whether frames of one scene agree better under another convention for poses, images or
+/// depths. Compares the surfaces of the frames, as given and as they would be under common
+/// mistakes. Suspects the mistake under which they agree best, or several that fit equally. Ignores
+/// frames without overlap. `T_world_camera`: one per frame. Throws Error(invalid_argument) like
+/// check_frame_size(), and for a wrong number of poses. Thread safe. Cost: one pass over the pixels
+/// and 50 ms for a dozen frames, 0.5 s if they disagree.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_frames(const Sensor& sensor,
                                                        std::span<const DepthFrame> frames,
                                                        std::span<const Pose> T_world_camera);
 
-/// Whether candidate poses look at the map. If most of a hundred of them see none of its voxels,
-/// names the mistake in poses under which they would; no_voxel if there is none. Thread safe. Cost:
-/// some milliseconds. Throws as GainEvaluator().
+/// Checks whether candidate poses look at the map. If most of a hundred of them see no voxel of the
+/// map, names the mistake in the poses that explains it, or no_voxel if none does. Thread safe.
+/// Cost: some milliseconds. Throws like GainEvaluator().
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion
 suspect_poses(const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor,
               std::span<const Pose> T_world_camera);

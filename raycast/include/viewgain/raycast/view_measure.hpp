@@ -12,18 +12,18 @@
 
 namespace viewgain {
 
-/// A custom gain: computes a number from the rays of a view. GainEvaluator::evaluate() traces the
-/// views and passes their hits (example: apps/examples/own_gain.cpp).
+/// A custom gain: computes a number from the voxels that a view's rays hit.
+/// GainEvaluator::evaluate() traces the rays and passes the hits (example:
+/// apps/examples/own_gain.cpp).
 ///
-/// Thread safety: measure() is called from many threads at once. It is called once per pose or,
-/// with two stages, twice.
+/// Thread safety: measure() is called from many threads at once, and once or twice per pose.
 class VIEWGAIN_EXPORT ViewMeasure {
  public:
   /// A ray of a view that ends in a voxel.
   struct Hit {
     Index3 voxel{};                          ///< voxel of the end
     VoxelState state = VoxelState::unknown;  ///< unknown or occupied
-    /// Accumulated readings of the voxel; null: none; valid as long as the scene.
+    /// What the voxel stores about its readings; null: none. Valid as long as the scene.
     const Belief* belief = nullptr;
     std::size_t ray = 0;                ///< pixel index, row-major, strided; as in trace()
     double range = 0;                   ///< max(range of the entry point, min_range) [m]
@@ -33,26 +33,25 @@ class VIEWGAIN_EXPORT ViewMeasure {
   virtual ~ViewMeasure();
 
   /// `hits`: the rays that end in an unknown or occupied voxel, by tiles of 4x4 pixels, in the same
-  /// order for any number of threads; valid during the call. Rays that hit nothing or an obstacle
-  /// are missing. Returns the view's gain in any unit. An exception ends the batch and reaches the
+  /// order for any number of threads; valid during the call. Rays that hit nothing, or an obstacle,
+  /// are omitted. Returns the view's gain in any unit. An exception ends the batch and reaches the
   /// caller.
   [[nodiscard]] virtual double measure(const Pose& T_world_camera,
                                        std::span<const Hit> hits) const = 0;
 };
 
-/// A custom gain that sees everything a view's rays can pass, in order. As for the surface gain,
-/// rays continue through unknown voxels to the first occupied one, an obstacle, the support plane,
-/// the range limit or the workspace's edge.
+/// A custom gain that sees all unknown voxels that a view's rays pass, in order. As for the surface
+/// gain, rays continue through unknown voxels to the first occupied one, an obstacle, the support
+/// plane, the range limit or the workspace's edge.
 ///
-/// Thread safety: measure() is called from many threads at once. It is called once per pose or,
-/// with two stages, twice.
+/// Thread safety: measure() is called from many threads at once, and once or twice per pose.
 class VIEWGAIN_EXPORT RunMeasure {
  public:
-  /// The part of a ray in one voxel on its way through unknown space.
+  /// The part of a ray inside one voxel.
   struct Run {
     Index3 voxel{};                          ///< voxel that contains the part
     VoxelState state = VoxelState::unknown;  ///< unknown, or occupied: the ray ends there
-    /// Accumulated readings of the voxel; null: none; valid as long as the scene.
+    /// What the voxel stores about its readings; null: none. Valid as long as the scene.
     const Belief* belief = nullptr;
     std::size_t ray = 0;                ///< pixel index, row-major, strided; as in trace()
     double begin = 0, end = 0;          ///< ranges along the ray [m]; occupied: both at the entry
@@ -62,9 +61,9 @@ class VIEWGAIN_EXPORT RunMeasure {
 
   virtual ~RunMeasure();
 
-  /// `runs`: parts of the rays by tiles of 4x4 pixels, contiguous per ray and sorted by range: its
-  /// unknown voxels and the occupied one that ends it, if any. The order is the same for any number
-  /// of threads; valid during the call. Returns the view's gain in any unit. An exception ends the
+  /// `runs`: for each ray the unknown voxels that it passes, by range, and the occupied voxel that
+  /// ends it, if any. Rays are ordered by tiles of 4x4 pixels, in the same order for any number of
+  /// threads. Valid during the call. Returns the view's gain in any unit. An exception ends the
   /// batch and reaches the caller.
   [[nodiscard]] virtual double measure(const Pose& T_world_camera,
                                        std::span<const Run> runs) const = 0;

@@ -33,31 +33,32 @@ namespace viewgain {
 /// Settings of a ViewScorer. Defaults suit an object at the origin.
 struct VIEWGAIN_EXPORT ScorerConfig {
   double voxel_size = GridConfig{}.voxel_size;  ///< [m]
-  /// The mapped part of the world, in the grid frame [m]; extended to whole voxels. If it starts at
-  /// the table, the paper's gain ignores the space below the table.
+  /// The mapped part of the world, in the grid frame [m]; extended to whole voxels. Let it start at
+  /// the table; otherwise the paper's gain counts unknown space below the table.
   Box workspace = GridConfig{}.workspace;
   Pose T_world_grid{};  ///< pose of the grid frame
   /// Standard deviation of the surface in an unknown voxel [m]. Unset: default_prior_sigma().
   std::optional<double> prior_sigma{};
   std::optional<double> support_plane{};  ///< height z of an infinite table plane [m], world
-  /// Known obstacles, world frame. They block rays and bodies. Readings of them carve free space,
-  /// but never make a voxel occupied.
+  /// Known obstacles, world frame. They block rays and bodies. Measured depths of obstacles mark
+  /// free space, but never make a voxel occupied.
   Obstacles obstacles{};
   /// Removes flying pixels from frames; unset: no filter.
   std::optional<JumpEdgeFilter::Config> jump_edges = JumpEdgeFilter::Config{};
-  // The next five are passed to IntegrationConfig, which explains them.
+  // The next five settings are those of IntegrationConfig.
   IntegrationConfig::Carve carve = IntegrationConfig{}.carve;  ///< which voxels a pixel crosses
   IntegrationConfig::Occupancy occupancy = IntegrationConfig{}.occupancy;  ///< how states change
   int coarsest = IntegrationConfig{}.coarsest;  ///< largest scale of a leaf, 0 to 3
   int finest = IntegrationConfig{}.finest;      ///< smallest scale of a leaf outside `fine`
   std::vector<Box> fine{};  ///< leaves that touch one of these boxes keep scale 0; grid's frame [m]
-  bool refine = true;       ///< false: ignores readings in a voxel that already has one
+  bool refine = true;       ///< false: ignores readings in voxels that already have one
   HazardConfig hazard{};    ///< rate at which rays meet the surface in unknown space
-  /// Whether each frame updates the hazard and MapUpdate::new_area is measured. Costs some
-  /// milliseconds per frame. Unset: true, but false for the paper's gain, which needs neither.
+  /// Whether each frame updates the hazard, and MapUpdate::new_area is measured. Costs some
+  /// milliseconds per frame. Unset: false for the paper's gain, which needs neither, otherwise
+  /// true.
   std::optional<bool> learn_hazard{};
-  GainConfig gain{};     ///< how views are scored
-  double clearance = 0;  ///< free space that best() requires around the sensor's body [m]
+  GainConfig gain{};     ///< settings of the gain
+  double clearance = 0;  ///< margin around the sensor's body that best() requires [m]
 
   /// The layout of the map.
   [[nodiscard]] GridConfig grid() const {
@@ -73,27 +74,26 @@ struct VIEWGAIN_EXPORT ScorerConfig {
 
 /// Effect of the frames from one pose.
 struct VIEWGAIN_EXPORT MapUpdate {
-  FrameVerdict verdict = FrameVerdict::used;  ///< unless is_in_map(), the map is unchanged
+  FrameVerdict verdict = FrameVerdict::used;  ///< the map is unchanged unless is_in_map()
   IntegrationReport counts{};                 ///< of all frames together
   std::size_t flying_pixels = 0;              ///< removed by the jump-edge filter
-  /// Area of new surface in the first frame, perpendicular to the rays [m²]. Comparable with
-  /// ViewGain::area. It is Σ ω t² ρ(t) over readings in unknown voxels that are more than 1.2
-  /// pooling lengths from known surface. NaN without ScorerConfig::learn_hazard.
+  /// Area of new surface in the first frame, perpendicular to the rays [m²], to compare with
+  /// ViewGain::area (apps/docs/guide/surface_gain.md). Counts measured depths in unknown voxels
+  /// away from known surface. NaN without ScorerConfig::learn_hazard.
   double new_area = std::numeric_limits<double>::quiet_NaN();
   StageSeconds seconds{};  ///< "integrate": filters and map; "snapshot": data for scenes
 };
 
 /// Takes depth frames or labelled voxels and returns gains of camera poses. Keeps a map, its scene
-/// and its evaluator in step.
+/// and its evaluator up to date.
 ///
 /// Thread safety: evaluate(), best(), scene(), evaluator(), voxels(), sensor(), config() and exec()
-/// may run in any thread at any time. They do not wait for add(), set() or forget(): they use the
-/// map before or after that change. Of concurrent scoring calls one uses all threads, the others
-/// only their caller's. Changes wait for one another. During a change do not call progress(),
-/// consistency(), grid_after() or save(), and do not read grid().
+/// may run in any thread at any time. They do not wait for add(), set() or forget(), and use the
+/// map before or after that change. One of several concurrent scoring calls uses all threads; the
+/// others run on their callers' threads. Changes wait for one another. During a change, do not call
+/// progress(), consistency(), grid_after() or save(), and do not read grid().
 ///
-/// Cost: the first call after a change that needs the scene runs VoxelScene::update() and, except
-/// for the paper's gain, computes hazard and known surface: some milliseconds.
+/// Cost: after a change, the first call that needs the scene updates it: some milliseconds.
 /// @code
 /// ViewScorer scorer(sensor, {.voxel_size = 0.005, .workspace = box, .support_plane = 0.0});
 /// scorer.add(frame, T_world_camera);
@@ -102,12 +102,12 @@ struct VIEWGAIN_EXPORT MapUpdate {
 class VIEWGAIN_EXPORT ViewScorer {
  public:
   /// Starts with an empty map. Throws Error(invalid_argument) naming the value for an invalid
-  /// sensor or setting, for gain.prior_sigma, and for voxels as large as the workspace or larger
-  /// than the sensor's range; Error(backend) if Embree fails. Cost: PinholeCamera::ray_table() five
-  /// times.
+  /// sensor or setting, if gain.prior_sigma is set, and for voxels as large as the workspace or
+  /// larger than the sensor's range. Throws Error(backend) if Embree fails. Cost:
+  /// PinholeCamera::ray_table() five times.
   explicit ViewScorer(const Sensor& sensor, const ScorerConfig& config = {},
                       const ExecConfig& exec = {});
-  /// Starts from a map, whose layout and prior replace those of the config. Throws as above.
+  /// Starts from a map, whose layout and prior replace those of the config. Errors as above.
   ViewScorer(BeliefGrid grid, const Sensor& sensor, const ScorerConfig& config = {},
              const ExecConfig& exec = {});
   ~ViewScorer();
@@ -117,21 +117,21 @@ class VIEWGAIN_EXPORT ViewScorer {
 
   /// Filters a frame, marks obstacles in it, updates the hazard and integrates the frame. A frame
   /// that cannot be used does not throw; the verdict gives the reason. `pose_sigma` [m], [rad] is
-  /// the pose's uncertainty in addition to Sensor::pose_sigma. Throws Error(invalid_argument) and
-  /// changes nothing for an invalid sigma or frame identity, and as scene() if the hazard learns.
-  /// Cost: FrameIntegrator::integrate(), and a snapshot.
+  /// the pose's uncertainty in addition to Sensor::pose_sigma. Throws Error(invalid_argument)
+  /// without a change for an invalid sigma or frame identity, and like scene() if learn_hazard is
+  /// on. Cost: FrameIntegrator::integrate(), and a snapshot.
   MapUpdate add(const DepthFrame& frame, const Pose& T_world_camera,
                 const PoseSigma& pose_sigma = {});
   /// As above, for several frames from one pose.
   MapUpdate add(const Measurements& measurements);
 
   /// Labels the voxels of a box, [x][y][z] with z fastest: 0 unknown, 1 free, 2 occupied. Returns
-  /// how many voxels changed. Voxels without readings add no refinement to the combined gain.
-  /// Throws as BeliefGrid::update_box(). Cost: a pass over the labels, and a snapshot.
+  /// how many voxels changed. Labelled voxels add no refinement to the combined gain. Throws like
+  /// BeliefGrid::update_box(). Cost: a pass over the labels, and a snapshot.
   std::uint64_t set(const VoxelBox& box, std::span<const std::uint8_t> labels);
 
   /// Resets a region of the grid frame [m] to unknown, for example after an object has moved.
-  /// Returns how many voxels were known. Throws as BeliefGrid::forget(). Cost: one pass over the
+  /// Returns how many voxels were known. Throws like BeliefGrid::forget(). Cost: one pass over the
   /// map's blocks.
   std::uint64_t forget(const Box& region);
 
@@ -140,20 +140,20 @@ class VIEWGAIN_EXPORT ViewScorer {
   /// As above with a custom gain, in its unit.
   [[nodiscard]] std::vector<double> evaluate(std::span<const Pose> T_world_camera,
                                              const ViewMeasure& measure) const;
-  /// As above with a custom gain that sees what rays pass.
+  /// As above with a custom gain that sees all voxels that rays pass.
   [[nodiscard]] std::vector<double> evaluate(std::span<const Pose> T_world_camera,
                                              const RunMeasure& measure) const;
 
   /// The k best poses with high probability: GainEvaluator::race(). Indices refer to
   /// T_world_camera, best first. If Sensor::body_size is set, omits poses where the body has no
   /// room, or where over 20 % of the rays that end in the map end within min_range. The deadline
-  /// includes that check. A gain of 0 means that nothing new would be seen. Throws as race(), and
-  /// as scene(). Cost: race(), and FeasibilityChecker::check().
+  /// includes that check. A gain of 0 means that nothing new would be seen. Throws like race() and
+  /// scene(). Cost: race(), and FeasibilityChecker::check().
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BestConfig& config = {},
                                const BatchControl& control = {}) const;
 
-  /// The current scene, a snapshot that later changes of the map do not affect. Throws as
+  /// The current scene, a snapshot that later changes of the map do not affect. Throws like
   /// VoxelScene::build().
   [[nodiscard]] std::shared_ptr<const VoxelScene> scene() const;
   /// The evaluator of the current scene, which later changes of the map do not affect.
@@ -169,18 +169,18 @@ class VIEWGAIN_EXPORT ViewScorer {
   /// Entropy removed and number of unknown voxels; no coverage, no surface. Cost:
   /// BeliefGrid::statistics().
   [[nodiscard]] ModelProgress progress() const;
-  /// Agreement of the frames added so far. Cost: FrameCheck::result().
+  /// How well the frames added so far agree. Cost: FrameCheck::result().
   [[nodiscard]] FrameConsistency consistency() const;
   /// A copy of the map with these measurements integrated; the scorer does not change. Throws
-  /// Error(invalid_argument) for a wrong image size, a pose that is not rigid, and as add(). Cost:
-  /// a copy of the map, and FrameIntegrator::integrate() per frame.
+  /// Error(invalid_argument) for a wrong image size or a pose that is not rigid, and like add().
+  /// Cost: a copy of the map, and FrameIntegrator::integrate() per frame.
   [[nodiscard]] BeliefGrid grid_after(const Measurements& measurements) const;
 
-  /// Writes the map with save_vdb(). A scorer loaded from it gives the same gains, but its
-  /// consistency() starts without frames. Throws as save_vdb().
+  /// Writes the map with save_vdb(). A scorer loaded from the file gives the same gains, but its
+  /// consistency() starts without frames. Throws like save_vdb().
   void save(const std::filesystem::path& path) const;
-  /// Continues from a file written by save(), or from any other .vdb map. Throws as load_vdb() and
-  /// the constructor.
+  /// Continues from a file written by save(), or from any other .vdb map. Throws like load_vdb()
+  /// and the constructor.
   [[nodiscard]] static ViewScorer load(const std::filesystem::path& path, const Sensor& sensor,
                                        const ScorerConfig& config = {},
                                        const ExecConfig& exec = {});

@@ -22,36 +22,38 @@ struct VIEWGAIN_EXPORT BestConfig {
   /// there. Empty: none.
   std::span<const double> costs{};
   const ViewMeasure* measure = nullptr;  ///< custom gain that replaces the evaluator's, or null
-  /// Custom gain with all that rays pass, or null; only one of both.
+  /// Custom gain that sees all voxels that rays pass, or null. Only one of both measures may be
+  /// set.
   const RunMeasure* run_measure = nullptr;
-  /// Time limit [s] from the start of the call, which then returns its best result so far, as soon
-  /// as the current views are done. At most half of it goes to the first stage. Infinity: none.
+  /// Time limit [s] from the start of the call. The call then finishes its current views and
+  /// returns the best result so far. At most half of the time goes to the first stage. Infinity:
+  /// none.
   double deadline = std::numeric_limits<double>::infinity();
   std::uint64_t seed = 1;  ///< selects the rays of race()'s first stage, with the paper's gain
 };
 
 /// Views chosen from a batch of poses, with statistics; see GainEvaluator::best() and race().
 struct VIEWGAIN_EXPORT BestViews {
-  std::vector<std::size_t> indices;  ///< into the poses, best first; only those scored in full
-  std::vector<ViewGain> gains;       ///< their results of evaluate(); empty with a measure
-  /// Gain, or measure, minus cost of each of them, in the gain's unit.
+  std::vector<std::size_t> indices;  ///< into the poses, best first; only poses scored in full
+  std::vector<ViewGain> gains;  ///< results of evaluate() for these poses; empty with a measure
+  /// Gain or measure of each of these poses minus its cost, in the gain's unit.
   std::vector<double> worth;
   /// False: a stop or the deadline ended the call early.
   bool complete = true;
-  std::size_t estimated = 0;                ///< number of poses scored with some of their rays
+  std::size_t estimated = 0;                ///< number of poses scored with only some of their rays
   std::vector<std::size_t> scored_indices;  ///< poses that were scored in full, ascending
   std::vector<ViewGain> scored_gains;       ///< results of these poses; empty with a measure
   /// Number of rays of both stages, including those of invalid poses.
   std::uint64_t rays_traced = 0;
 };
 
-/// Views that are good together, in the order chosen; see GainEvaluator::best_set().
+/// A set of views with a large gain together, in the order chosen; see GainEvaluator::best_set().
 struct VIEWGAIN_EXPORT ViewSet {
   std::vector<std::size_t> indices;  ///< into the poses, in the order chosen
-  std::vector<ViewGain> marginal;    ///< marginal gains: the increase over the views before
+  std::vector<ViewGain> marginal;    ///< marginal gains: the increase over the earlier views
   double gain = 0;                   ///< gain of the set, in the gain's unit
-  /// Lower bound of `gain` that counts only the best view per hazard cell, because views can be
-  /// hindered by the same objects. Equal to `gain` for the paper's gain.
+  /// Lower bound of `gain`: each hazard cell (HazardField) counts for its best view only, because
+  /// the same unknown object can hide it from several views. Equal to `gain` for the paper's gain.
   double gain_by_best_alone = 0;
   std::size_t evaluations = 0;  ///< number of evaluations of single poses
   bool complete = true;         ///< false: a stop was requested before the last choice

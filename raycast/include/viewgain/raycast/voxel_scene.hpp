@@ -23,7 +23,7 @@ struct SceneAccess;
 struct SceneData;
 }  // namespace detail
 
-/// Known objects that are not part of the map: they block rays at any range and have no gain. World
+/// Known objects that are not part of the map. They block rays at any range and have no gain. World
 /// frame.
 struct VIEWGAIN_EXPORT Obstacles {
   std::vector<Box> boxes;            ///< solid
@@ -33,14 +33,14 @@ struct VIEWGAIN_EXPORT Obstacles {
 /// Surroundings of the map, world frame.
 struct VIEWGAIN_EXPORT Surroundings {
   Obstacles obstacles{};  ///< known obstacles
-  /// Height z of an infinite table [m]. Bodies stay above it. It ends descending rays of the
-  /// surface and combined gains and the gains of the literature.
+  /// Height z of an infinite table [m]. Bodies stay above it. It ends descending rays, except with
+  /// the paper's gain.
   std::optional<double> support_plane{};
 };
 
-/// An immutable scene for ray tracing: the voxels of a grid that are not free, sorted by cells for
-/// the sweep, and obstacles in Embree's BVH. Owns its data; the grid may change or go. Share it by
-/// copying the shared_ptr. Thread safety: all members are const and may run from many threads.
+/// An immutable scene for ray tracing: the voxels of a grid that are not free, and the obstacles.
+/// Owns its data, so the grid may change or be destroyed. Share it by copying the shared_ptr.
+/// Thread safety: all members are const and may run from many threads.
 /// @code
 /// auto scene = VoxelScene::build(grid);
 /// integrator.integrate(grid, frame, T_world_camera);
@@ -48,28 +48,28 @@ struct VIEWGAIN_EXPORT Surroundings {
 /// @endcode
 class VIEWGAIN_EXPORT VoxelScene {
  public:
-  /// Takes a snapshot of the grid and sorts it (about 0.2 ms per 1,000 leaves), and builds a BVH of
-  /// the obstacles, which update() keeps. The hazard and the known surface are computed when an
-  /// evaluator first needs them (some milliseconds). Runs on the calling thread, with obstacles on
-  /// those of the process's TBB, which exec does not limit. Throws Error(backend) if Embree fails;
-  /// Error(capacity) above 2^23 leaves and tiles; Error(invalid_argument) for invalid obstacles, a
-  /// support plane that is not finite or an invalid number of threads; and as
-  /// HazardConfig::validate().
+  /// Takes a snapshot of the grid (about 0.2 ms per 1,000 leaves) and builds a BVH of the
+  /// obstacles, which update() keeps. The hazard and the known surface are computed when first
+  /// needed (some milliseconds). Runs on the calling thread; the BVH also uses the threads of TBB,
+  /// which exec does not limit. Throws Error(backend) if Embree fails; Error(capacity) above 2^23
+  /// leaves and tiles; Error(invalid_argument) for invalid obstacles, a support plane that is not
+  /// finite or an invalid number of threads, and like HazardConfig::validate().
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(
       const BeliefGrid& grid, const Surroundings& surroundings = {}, const ExecConfig& exec = {},
       const HazardConfig& hazard = {});
-  /// As above, from a snapshot of BeliefGrid::snapshot(), whose lists are unchecked.
+  /// As above, from a result of BeliefGrid::snapshot(), whose lists are unchecked.
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(
       GridSnapshot snapshot, const Surroundings& surroundings = {}, const ExecConfig& exec = {},
       const HazardConfig& hazard = {});
   /// The scene of the current `grid` with the surroundings and hazard settings of `before`, which
-  /// does not change. As build(), but copies regions that are unchanged since a scene of the same
-  /// grid. Throws Error(invalid_argument) for a null scene, and as build(). Cost: 0.2 times build()
-  /// if a frame changed an eighth of a map of 512³ voxels (perf/README.md).
+  /// does not change. Faster than build(): copies the parts of the map that have not changed, if
+  /// `before` is a scene of the same grid (perf/README.md). Throws Error(invalid_argument) for a
+  /// null scene, and like build().
   [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
       const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
       const ExecConfig& exec = {});
-  /// As above, from a snapshot that BeliefGrid::snapshot() made from that of `before`. Unchecked.
+  /// As above, from a snapshot that BeliefGrid::snapshot() made from the snapshot of `before`.
+  /// Unchecked.
   [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
       const std::shared_ptr<const VoxelScene>& before, GridSnapshot snapshot,
       const ExecConfig& exec = {});

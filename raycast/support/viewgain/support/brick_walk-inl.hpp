@@ -1,22 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Leads a packet of rays through the voxels of a table in order, a ray a lane; compiled once for
-// each instruction set.
+// Walks a packet of rays through the voxels of a table in order, one ray per lane. Compiled once
+// for each instruction set.
 //
-// A step leads from where a ray enters a cube, of 1 to 128 voxels, to where it leaves it. Plane
-// distances are those of leaf_walk-inl.hpp, (plane - origin) * inverse, in table coordinates, the
-// plane an exact integer, so that neighbouring cubes of any size agree on where their common face
-// is met. A voxel's number along the axes that are not stepped over comes from the point itself,
-// kept within the cube that is left: rounding can then choose between neighbours, but never go
-// back.
+// Each step crosses a cube of 1 to 128 voxels. Distances to planes are (plane - origin) * inverse
+// as in leaf_walk-inl.hpp, in table coordinates with integer planes, so neighbouring cubes of any
+// size agree on the distance of their common face. Along the axis of that face the next voxel is
+// known exactly; along the others it is computed from the point and clamped to the cube. Rounding
+// can therefore choose between neighbours, but never move a ray back.
 //
-// What lies in the table a Finder knows, what becomes of it a Sink:
-//   Finder: Place, with `edge`, the cube's that is the same throughout; void begin(Voxels);
+// A Finder reads the table, a Sink handles the steps:
+//   Finder: Place, with `edge`, the size of the uniform cube at the voxel; void begin(Voxels);
 //     Place find(Voxels, VI moved, MF active);
-//   Sink: static MF ends(Place, MF counts), lanes whose ray ends in the cube;
-//     void step(Finder, Step<Place>), for each cube that a packet's rays go through; static
-//     constexpr bool kCountsVoxels, are Step::voxels asked for?
+//   Sink: static MF ends(Place, MF counts), the lanes whose ray ends in the cube;
+//     void step(Finder, Step<Place>), called for each cube that the packet crosses;
+//     static constexpr bool kCountsVoxels, whether it needs Step::voxels.
 
 // Included once for each instruction set; Highway flips the toggle.
 #if defined(VIEWGAIN_BRICK_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
@@ -44,8 +43,8 @@ HWY_INLINE MI to_i(MF m) { return hn::RebindMask(di, m); }
 HWY_INLINE MF to_f(MI m) { return hn::RebindMask(df, m); }
 HWY_INLINE MF no_lane() { return hn::MaskFromVec(hn::Zero(df)); }
 
-// Rounded towards zero; anything for what no integer holds. ConvertTo() takes four instructions
-// more to make that the nearest integer.
+// Rounds towards zero; undefined outside the range of integers. ConvertTo() takes four more
+// instructions to clamp such values.
 HWY_INLINE VI truncated(VF v) {
 #if HWY_TARGET == HWY_AVX3
   return VI{_mm512_cvttps_epi32(v.raw)};
@@ -60,15 +59,15 @@ HWY_INLINE VI truncated(VF v) {
 struct Axis {
   float origin;
   VF direction, inverse;
-  VI backward;  // -1 where the ray runs towards smaller voxels, else 0
+  VI backward;  // -1 if the direction is negative, else 0
 };
 
-// Where a point at t is, rounded towards zero: callers keep it within a cube.
+// Voxel of the point at t, rounded towards zero; callers clamp it to a cube.
 HWY_INLINE VI voxel_at(const Axis& axis, VF t) {
   return truncated(hn::Add(hn::Set(df, axis.origin), hn::Mul(axis.direction, t)));
 }
 
-// Entry and exit of a box from `low` to `low + size` along an axis.
+// Clips [enter, exit] to the slab from `low` to `low + size` along an axis.
 HWY_INLINE void clip(const Axis& axis, std::int32_t low, float size, VF& enter, VF& exit) {
   const auto at = [&](float plane)
                       HWY_ATTR { return hn::Mul(hn::Set(df, plane - axis.origin), axis.inverse); };
@@ -77,12 +76,12 @@ HWY_INLINE void clip(const Axis& axis, std::int32_t low, float size, VF& enter, 
   exit = hn::Min(exit, hn::Max(first, last));
 }
 
-// The voxels that rays are in.
+// Current voxels of the rays.
 struct Voxels {
   VI x, y, z;
 };
 
-// The node of each voxel, and its brick's number among the node's.
+// Index of each voxel's node, and of its brick within the node.
 HWY_INLINE VI node_of(const BrickIndex& index, const Voxels& at) {
   return hn::Add(hn::Mul(hn::Add(hn::Mul(hn::ShiftRight<7>(at.x), set_i(index.nodes[1])),
                                  hn::ShiftRight<7>(at.y)),
@@ -95,31 +94,31 @@ HWY_INLINE VI brick_of(const Voxels& at) {
       hn::Or(hn::ShiftLeft<5>(hn::And(at.x, mask)), hn::ShiftLeft<1>(hn::And(at.y, mask))),
       hn::ShiftRight<3>(hn::And(at.z, mask)));
 }
-// Are all still in the nodes that they were in? `moved` has the bits in which the voxels' numbers
-// are not those of a step before, by any axis.
+// Whether all rays remain in their nodes. `moved` has the bits of the voxel coordinates that the
+// last step changed, for all axes together.
 HWY_INLINE bool stay_in_nodes(VI moved) {
   return hn::AllTrue(di, hn::Lt(moved, set_i(BrickIndex::kNode)));
 }
 
-// What a step leads through.
+// One step of a packet.
 template <typename Place>
 struct Step {
   const Place& place;
   const Voxels& at;
   VI moved;    // see stay_in_nodes
-  VI voxels;   // how many, where the sink counts them
-  MF counts;   // lanes for which it has a length
-  MF ends;     // those that end in it
-  VF t, next;  // from where to where
+  VI voxels;   // number of voxels, if the sink counts them
+  MF counts;   // lanes in which the step has a length
+  MF ends;     // lanes whose ray ends in the cube
+  VF t, next;  // distances of entry and exit
 };
 
-// A packet on its way.
+// Walk of one packet.
 template <typename Finder, typename Sink>
 class PacketWalk {
  public:
   explicit HWY_INLINE PacketWalk(const Finder& finder) : finder_(finder) {}
 
-  // False if no ray goes anywhere.
+  // False if there is no ray to walk.
   HWY_INLINE bool begin(const BrickIndex& index, const WalkLimits& limits, const WalkTask& task,
                         int lane0) {
     x_ = axis_of(index, limits, task.dx + lane0, task.ix + lane0, 0);
@@ -144,7 +143,7 @@ class PacketWalk {
     return true;
   }
 
-  // False if no ray goes on.
+  // False if no ray continues.
   HWY_INLINE bool step(Sink& sink) {
     const typename Finder::Place place = place_;
     const VI top = hn::Sub(place.edge, set_i(1));
@@ -175,7 +174,7 @@ class PacketWalk {
              hn::IfThenElse(to_i(active_), beyond.y, at.y),
              hn::IfThenElse(to_i(active_), beyond.z, at.z)};
       moved_ = hn::Or(hn::Or(hn::Xor(at_.x, at.x), hn::Xor(at_.y, at.y)), hn::Xor(at_.z, at.z));
-      // What is gathered here is waited for while the sink is busy.
+      // Gathers the next entries early, so that they load while the sink works.
       place_ = finder_.find(at_, moved_, active_);
     }
     sink.step(finder_,
@@ -183,11 +182,12 @@ class PacketWalk {
     return any;
   }
 
-  // How far rays may go.
+  // Distances at which the rays end at the latest.
   [[nodiscard]] HWY_INLINE VF end() const { return end_; }
 
  private:
-  // How a cube is left along an axis: its lowest voxel, the voxel behind it, and where on the ray.
+  // Exit from a cube along an axis: the cube's lowest voxel, the next voxel behind it, and the
+  // distance.
   struct Along {
     VI low, over;
     VF leaves;
@@ -206,7 +206,7 @@ class PacketWalk {
             hn::IfThenElseZero(to_i(hn::Lt(i, hn::Zero(df))), set_i(-1))};
   }
 
-  // Rays that go down from above the plane end there.
+  // Descending rays from above the plane end there.
   HWY_INLINE void end_at_plane(const WalkLimits& limits) {
     const std::array<float, 3>& n = limits.normal;
     const VF down = hn::Add(

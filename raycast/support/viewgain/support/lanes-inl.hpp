@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Vectors of a ray a lane. Included once for each instruction set; Highway flips the toggle.
+// Vectors with one ray per lane. Included once for each instruction set; Highway flips the toggle.
 #if defined(VIEWGAIN_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef VIEWGAIN_LANES_INL_HPP
 #undef VIEWGAIN_LANES_INL_HPP
@@ -18,7 +18,7 @@ namespace viewgain::detail::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most 16 lanes: a tile. On x86 this is 16, 8 or 4, a constant.
+// At most 16 lanes, one tile. On x86 a constant: 16, 8 or 4.
 using DF = hn::CappedTag<float, kTileRays>;
 using DU = hn::RebindToUnsigned<DF>;
 using DI = hn::RebindToSigned<DF>;

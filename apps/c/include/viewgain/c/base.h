@@ -49,8 +49,8 @@ VG_API const char* vg_last_error(void);
    soon with VG_STOPPED. It must not throw or jump out. */
 typedef struct vg_watch {
   size_t struct_size; /* set by _init() */
-  /* done of total poses: scored (vg_evaluate and similar calls), eliminated or scored in full
-     (vg_best, vg_race), chosen (vg_best_set). */
+  /* `done` of `total` poses have been scored (vg_evaluate and similar calls), eliminated or scored
+     in full (vg_best, vg_race), or chosen (vg_best_set). */
   int32_t (*poll)(size_t done, size_t total, void* user);
   void* user; /* may be null */
 } vg_watch;

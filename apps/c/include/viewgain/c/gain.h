@@ -47,15 +47,16 @@ VG_API void vg_scene_config_init(vg_scene_config* config, size_t struct_size); /
 VG_API vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config,
                                 vg_scene** scene);
 
-/* The scene of the current `grid` with the surroundings of `before`; copies unchanged parts. */
+/* The scene of the current `grid` with the surroundings of `before`. Faster than vg_scene_build(),
+   because unchanged parts are copied. */
 VG_API vg_status vg_scene_update(const vg_scene* before, const vg_grid* grid, int32_t num_threads,
                                  vg_scene** scene);
 VG_API void vg_scene_release(vg_scene* scene); /* null: no effect */
 
-/* Counts how often a frame meets the surface in unknown space, before its integration; later scenes
-   of the grid use the counts in the surface and combined gains. `scene` is that of the current
-   grid; depth and pose as in vg_integrate(). No effect while no surface is known, or if the scene's
-   hazard was given (a rate, an array, a file). */
+/* Counts how often the rays of a frame meet the surface in unknown space; later scenes of the grid
+   use the counts in the surface and combined gains. Call it before the frame is integrated, with
+   the scene of the current grid; depth and pose as in vg_integrate(). No effect while no surface is
+   known, or if the scene's config gives the hazard (a rate, an array, a file). */
 VG_API vg_status vg_calibrate_hazard(const vg_integrator* integrator, vg_grid* grid,
                                      const vg_scene* scene, const float* depth,
                                      const double T_world_camera[16]);
@@ -69,8 +70,8 @@ typedef struct vg_evaluator vg_evaluator;
    of its determinant, or its trace [m^2]. */
 enum { VG_LOG_DIAGONAL = 0, VG_LOG_DETERMINANT = 1, VG_TRACE = 2 };
 
-/* What a view's gain measures: entropy removed [nat], expected new surface [m^2], or both with
-   refinement of known surface [nat]. */
+/* What a view's gain measures: entropy removed [nat], expected new surface [m^2], or expected new
+   surface and refinement of known surface [nat]. */
 enum { VG_GAIN_PAPER = 0, VG_GAIN_SURFACE = 1, VG_GAIN_COMBINED = 2 };
 
 /* A task weight for a part of the workspace. */
@@ -106,9 +107,9 @@ VG_API void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_
 VG_API vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
                                      const vg_evaluator_config* config, vg_evaluator** evaluator);
 
-/* An evaluator for another scene, such as from vg_scene_update, to follow a growing map: with the
-   sensor, settings and threads of `evaluator`, which does not change. Takes microseconds; gains are
-   those of a new evaluator. */
+/* An evaluator for another scene, such as from vg_scene_update, to follow a growing map. It has the
+   sensor, settings and threads of `evaluator`, which does not change. Takes microseconds. Gains are
+   the same as with a new evaluator. */
 VG_API vg_status vg_evaluator_with_scene(const vg_evaluator* evaluator, const vg_scene* scene,
                                          vg_evaluator** following);
 VG_API void vg_evaluator_release(vg_evaluator* evaluator); /* null: no effect */
@@ -130,52 +131,51 @@ VG_API vg_status vg_evaluator_get_info(const vg_evaluator* evaluator, vg_evaluat
    voxel, gain 0. */
 enum { VG_VIEW_OK = 0, VG_VIEW_BAD_POSE = 1, VG_VIEW_CAMERA_IN_OCCUPIED = 2 };
 
-/* Expected gain of a view; in nats, or in m^2 for VG_TRACE and VG_GAIN_SURFACE. Each member names
-   its gains; for other gains it is NaN, a count 0. */
+/* Expected gain of a view; in nats, or in m^2 for VG_TRACE and VG_GAIN_SURFACE. Some members exist
+   only for the gains that their comments name; otherwise they are NaN, and counts are 0. */
 typedef struct vg_view_gain {
-  double gain; /* paper: exploration + refinement; surface: area; combined: of area and
+  double gain; /* paper: exploration + refinement; surface: area; combined: from area and
                   refinement_saturated; NaN: invalid pose */
-  double exploration, refinement;           /* paper: shares of unknown and of occupied voxels */
+  double exploration, refinement;           /* paper: parts from unknown and from occupied voxels */
   double posterior_entropy;                 /* paper, if enabled: eq. (6), lengths in metres */
   uint32_t rays, hits;                      /* rays of the view; rays that end in a voxel */
-  uint32_t unknown_voxels, occupied_voxels; /* distinct; paper; the latter also combined */
+  uint32_t unknown_voxels, occupied_voxels; /* distinct voxels; paper; the latter also combined */
   int32_t status;                           /* VG_VIEW_ */
   double area;                              /* surface, combined: expected new surface [m^2] */
   double refinement_saturated;              /* combined: refinement of known surface [nat] */
 } vg_view_gain;
 
-/* Expected gain of every pose, count times 16 doubles, on all threads of the evaluator. A single
-   pose without a watch uses all threads with the paper's gain, and one with the others. An invalid
-   pose has gain NaN and affects no other; a camera in an occupied voxel has 0. watch or null.
-   VG_STOPPED: the other gains are NaN. */
+/* Expected gain of every pose, count times 16 doubles, on all threads of the evaluator. (For a
+   single pose without a watch, only the paper's gain uses more than one thread.) An invalid pose
+   has gain NaN and affects no other; a camera in an occupied voxel has gain 0. watch or null.
+   VG_STOPPED: the remaining gains are NaN. */
 VG_API vg_status vg_evaluate(const vg_evaluator* evaluator, const double* poses, size_t count,
                              double* gains, const vg_watch* watch);
 
-/* As above with all figures of each view; view_size is sizeof(vg_view_gain). */
+/* As above with all results of each view; view_size is sizeof(vg_view_gain). */
 VG_API vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* poses, size_t count,
                                    vg_view_gain* views, size_t view_size, const vg_watch* watch);
 
 /* ---- Choosing views ---- */
 
 /* The k best poses, exact: scores all poses; best first, ties to the lower index. `indices` and
-   `gains` (or null) have room for k; *found is their number, which is less than k if fewer poses
-   have a gain, because invalid poses are never chosen. VG_STOPPED: the best so far, *found of them.
- */
+   `gains` (or null) have room for k. *found is the number of chosen poses, which is less than k if
+   fewer poses are valid. VG_STOPPED: the best so far, *found of them. */
 VG_API vg_status vg_best(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          size_t* indices, double* gains, size_t* found, const vg_watch* watch);
 
 /* The k best poses with high probability, faster: compares poses with about 400 of their rays, and
-   scores the best in full. `seed` selects the rays with VG_GAIN_PAPER; with the other gains they
-   lie in the middle of the image's cells. `indices`, `gains` and *found as in vg_best().
-   Deterministic for a seed and any number of threads.
-   deadline: time limit of the call [s], >= 0, or INFINITY. At most half of it goes to comparing
-   poses from all over the list; the result is then the best of those scored in full, with VG_OK. */
+   scores the best in full. `seed` selects the rays with VG_GAIN_PAPER; the other gains ignore it.
+   `indices`, `gains` and *found as in vg_best(). Deterministic for a seed and any number of
+   threads. deadline: time limit of the call [s], >= 0, or INFINITY. At most half of it goes to
+   comparing poses. After the deadline the result is the best of the poses scored in full, with
+   VG_OK. */
 VG_API vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          double deadline, uint64_t seed, size_t* indices, double* gains,
                          size_t* found, const vg_watch* watch);
 
-/* Up to k poses that are good together, in the order chosen; gains are marginal, the increase over
-   the poses before. VG_STOPPED: those chosen so far. */
+/* Up to k poses with a large gain together, in the order chosen. `gains` are marginal gains: the
+   increase over the earlier poses. VG_STOPPED: the poses chosen so far. */
 VG_API vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses, size_t count,
                              size_t k, size_t* indices, double* gains, size_t* found,
                              const vg_watch* watch);
@@ -195,10 +195,10 @@ VG_API vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_wo
 typedef struct vg_contribution {
   int32_t voxel[3];     /* lattice of the grid */
   int32_t state;        /* 0 unknown, 2 occupied */
-  uint32_t rays;        /* rays that end in it; surface, combined: that reach it */
+  uint32_t rays;        /* rays that end in the voxel; surface, combined: that reach it */
   double gain;          /* [nat, or m^2] */
-  double expected_rays; /* expected number of rays that end in it; less than all if rays can
-                           continue */
+  double expected_rays; /* expected number of rays that end in the voxel; less than `rays` if rays
+                           can continue */
 } vg_contribution;
 
 /* Explains a gain: one entry per voxel in which rays end or can end, largest gain first; the gains
@@ -209,7 +209,7 @@ VG_API vg_status vg_contributions(const vg_evaluator* evaluator, const double T_
                                   vg_contribution* contributions, size_t contribution_size,
                                   size_t capacity, size_t* found);
 
-/* Where a view's rays end, to explain its gain; the counts after `rays` add up to it. */
+/* Where a view's rays end, to explain its gain. The counts after `rays` add up to `rays`. */
 typedef struct vg_ray_outcomes {
   size_t struct_size;     /* set by _init() */
   uint32_t rays;          /* rays of the view */
@@ -249,7 +249,7 @@ typedef struct vg_feasibility_config {
   size_t struct_size;         /* set by _init() */
   double body_size[3];        /* width, height, depth of the housing, in this order [m]; 0.065
                                  0.065 0.076 */
-  int32_t has_flange;         /* nonzero: uses T_flange_camera; otherwise the camera is in the */
+  int32_t has_flange;         /* nonzero: uses T_flange_camera; 0: the camera is in the */
   double T_flange_camera[16]; /* middle of the body's front face */
   double clearance;           /* margin around the body on each side [m]; 0 */
   double taken_distance;      /* views closer than this [m]; 0.010 */

@@ -13,8 +13,9 @@ extern "C" {
 
 /* ---- Sensors ---- */
 
-/* Noise models: standard deviations of a reading at range t, along and across the ray; see core's
-   noise.hpp. The parameters are those of vg_sensor.noise, in this order. */
+/* Noise models: standard deviations of a reading (one measured depth), along and across the ray;
+   see core's noise.hpp for the equations. The comments list the parameters in vg_sensor.noise, in
+   order. */
 enum {
   VG_NOISE_SHOT = 0,             /* time of flight: reference_sigma, reference_range,
                                     reference_integration_time, integration_time,
@@ -26,12 +27,12 @@ enum {
   VG_NOISE_CONSTANT = 4          /* sigma_axial, sigma_lateral */
 };
 
-/* Meaning of the value 65535 of a depth image: from the layout of its folder, free up to max_range,
-   or no reading. */
+/* Meaning of the value 65535 in a depth image: as usual for the layout of its folder, free up to
+   max_range, or no reading. */
 enum { VG_OUT_OF_RANGE_BY_LAYOUT = 0, VG_OUT_OF_RANGE_CARVE = 1, VG_OUT_OF_RANGE_INVALID = 2 };
 
-/* A depth camera. Pixel (0,0) has its centre at (0,0), as in OpenCV. It has no table of range
-   errors; correct the frames of such a camera first with vg_range_calibration. */
+/* A depth camera. Pixel (0,0) has its centre at (0,0), as in OpenCV. If the camera has a table of
+   range errors, correct its frames first with vg_range_calibration. */
 typedef struct vg_sensor {
   size_t struct_size;          /* set by _init() */
   int32_t width, height;       /* [px] */
@@ -48,8 +49,8 @@ typedef struct vg_sensor {
 /* Sets everything to 0, which is not yet a valid sensor. */
 VG_API void vg_sensor_init(vg_sensor* sensor, size_t struct_size);
 
-/* Fills a sensor after vg_sensor_init with a preset, such as "sr4000"; the message for an invalid
-   name lists them. */
+/* Fills a sensor after vg_sensor_init with a preset, such as "sr4000". The message for an invalid
+   name lists all names. */
 VG_API vg_status vg_sensor_preset(const char* name, vg_sensor* sensor);
 
 /* *sigma: the default prior sigma [m] for a voxel size and a sensor: max(voxel / 2, 2 sigma_ax at
@@ -60,12 +61,12 @@ VG_API vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sens
    threads at once. */
 typedef struct vg_range_calibration vg_range_calibration;
 
-/* For the sensor's camera, from a table of `rows` x 2 numbers, row-major: a measured range, and
-   measured minus true range [m], by increasing measured range. The error is interpolated linearly
-   and constant beyond the ends. VG_INVALID_ARGUMENT naming the value: no row, a number that is not
-   finite, measured ranges that do not increase, a range that is not positive, measured or
-   corrected, or an invalid sensor. Costs 8 bytes and 10 ns per pixel, 0.4 us with lens distortion.
- */
+/* Makes a calibration for the sensor's camera from a table of `rows` x 2 numbers, row-major: a
+   measured range, and measured minus true range [m], by increasing measured range. The error is
+   interpolated linearly and constant beyond the ends. VG_INVALID_ARGUMENT naming the value: no row,
+   a number that is not finite, measured ranges that do not increase, a measured or corrected range
+   that is not positive, or an invalid sensor. Costs 8 bytes and 10 ns per pixel, 0.4 us with lens
+   distortion. */
 VG_API vg_status vg_range_calibration_create(const vg_sensor* sensor, const double* table,
                                              size_t rows, vg_range_calibration** calibration);
 
@@ -96,8 +97,8 @@ VG_API void vg_grid_config_init(vg_grid_config* config, size_t struct_size); /* 
 /* An empty map: all voxels of the workspace are unknown. */
 VG_API vg_status vg_grid_create(const vg_grid_config* config, vg_grid** grid);
 
-/* A map from a dense array of states of dims voxels along x, y, z. The corner of voxel (0,0,0) is
-   at `origin`, world frame, and the grid's axes are those of the world. */
+/* A map from a dense array of states, with dims voxels along x, y, z. The lowest corner of voxel
+   (0,0,0) is at `origin`, world frame, and the grid's axes are those of the world. */
 VG_API vg_status vg_grid_from_labels(const uint8_t* labels, const int32_t dims[3],
                                      const double origin[3], double voxel_size, double prior_sigma,
                                      vg_grid** grid);
@@ -121,9 +122,10 @@ typedef struct vg_grid_info {
   uint64_t unknown, free, occupied; /* number of voxels */
   uint64_t views;                   /* number of integrated frames */
   uint64_t bytes;                   /* memory */
-  double entropy_removed;           /* progress of the map, with log_diagonal [nat] */
-  /* Factors of the hazard of unknown space from the statistics of frames (vg_calibrate_hazard()),
-     one per distance class, nearest first, before rates are made to decrease with distance. */
+  double entropy_removed; /* progress: entropy removed, with criterion log_diagonal [nat] */
+  /* Correction factors of the hazard, the rate at which rays meet the surface in unknown space,
+     from the statistics of frames (vg_calibrate_hazard()). One per class of distance, nearest
+     first. */
   double hazard_factors[8];
 } vg_grid_info;
 /* Prepares `info` for the call below. */
@@ -134,7 +136,7 @@ VG_API vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info);
 /* The dense array of states; count must be dims[0] * dims[1] * dims[2]. */
 VG_API vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count);
 
-/* The value of all three parts of an index where there is no voxel. */
+/* The value of all three parts of an index if there is no voxel. */
 enum { VG_NO_VOXEL = INT32_MIN };
 
 /* The voxels that contain points of the world, 3 numbers each [m]: 3 indices each, on the lattice
@@ -156,8 +158,8 @@ VG_API vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* 
                              size_t count);
 
 /* Resets voxels whose centres lie in a box of the grid frame [m] to unknown; bounds may be
-   infinite. Views remain. *forgotten, or null: the number that were known. VG_INVALID_ARGUMENT: a
-   bound that is NaN. */
+   infinite. Views remain. *forgotten, or null: the number of voxels that were known.
+   VG_INVALID_ARGUMENT: a bound that is NaN. */
 VG_API vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double max[3],
                                 uint64_t* forgotten);
 
@@ -169,16 +171,16 @@ VG_API vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double
 VG_API vg_status vg_grid_update_box(vg_grid* grid, const int32_t first[3], const int32_t dims[3],
                                     const uint8_t* labels, uint64_t* changed);
 
-/* Scales of the cells that contain voxels (3 indices each, on the lattice): s, 0 to 3, for cells of
-   2^s voxels per edge; 0 outside the workspace. */
+/* Scale of the cell that contains each voxel (3 indices each, on the lattice): s, 0 to 3, for a
+   cell of 2^s voxels per edge; 0 outside the workspace. */
 VG_API vg_status vg_grid_scale(const vg_grid* grid, const int32_t* voxels, size_t count,
                                uint8_t* scales);
 
 /* Sets the scale of the leaves of 8^3 voxels that a box of the grid frame [m] touches; bounds may
-   be infinite. Larger cells sum hits and information. Of smaller cells, the one that contains the
-   mean of the readings gets everything; the rest of an occupied cell becomes unknown. *changed, or
-   null: the number of changed leaves. VG_INVALID_ARGUMENT: a bound that is NaN, a scale outside
-   0..3. */
+   be infinite. When cells merge, their hits and information add up. When a cell is split, the new
+   cell that contains the mean of its readings gets them all; the rest of an occupied cell becomes
+   unknown. *changed, or null: the number of changed leaves. VG_INVALID_ARGUMENT: a bound that is
+   NaN, a scale outside 0..3. */
 VG_API vg_status vg_grid_resample(vg_grid* grid, const double min[3], const double max[3],
                                   int32_t scale, uint64_t* changed);
 
@@ -196,9 +198,10 @@ VG_API vg_status vg_grid_hash(const vg_grid* grid, char hash[17]);
 /* Integrates depth frames of one sensor into maps. One call at a time. */
 typedef struct vg_integrator vg_integrator;
 
-/* Shape of a pixel: a cone, which crosses the voxels whose centres lie in it, or a line. */
+/* Which voxels a pixel crosses: those whose centres lie in its cone, or those on its centre line.
+ */
 enum { VG_CARVE_CONES = 0, VG_CARVE_LINES = 1 };
-/* How states change: by log-odds, or crossed is free and hit is occupied. */
+/* How states change: by log-odds, or literally: crossed voxels are free and hit voxels occupied. */
 enum { VG_OCCUPANCY_PROBABILISTIC = 0, VG_OCCUPANCY_LITERAL = 1 };
 
 /* Settings of the integration. */
@@ -207,7 +210,7 @@ typedef struct vg_integrator_config {
   int32_t carve;        /* VG_CARVE_CONES */
   int32_t occupancy;    /* VG_OCCUPANCY_PROBABILISTIC */
   int32_t num_threads;  /* 0: all; 1: the calling thread; does not affect the map */
-  int32_t coarsest;     /* largest scale of a leaf, 0 to 3, where a pixel covers as much */
+  int32_t coarsest;     /* largest scale of a leaf, 0 to 3, for surface seen from afar */
   double support_plane; /* height of the table, world z [m]; NaN (the default): none */
   const double* fine;   /* boxes that keep scale 0: lowest and highest corners, grid frame [m]; null
                            (the default): none */

@@ -11,9 +11,9 @@
 extern "C" {
 #endif
 
-/* A map, its scene and its evaluator, kept in step. vg_scorer_evaluate(), vg_scorer_best(),
-   vg_scorer_scene() and vg_scorer_evaluator() may run in any thread at any time, even while the map
-   changes: they use the map before or after that change. Changes (add, set, forget) wait for one
+/* A map, its scene and its evaluator, kept up to date. vg_scorer_evaluate(), vg_scorer_best(),
+   vg_scorer_scene() and vg_scorer_evaluator() may run in any thread at any time. During a change of
+   the map they use the map before or after that change. Changes (add, set, forget) wait for one
    another. vg_scorer_save(), vg_scorer_grid() and vg_scorer_consistency() must not run during a
    change. */
 typedef struct vg_scorer vg_scorer;
@@ -28,15 +28,16 @@ typedef struct vg_scorer_config {
   double voxel_size;             /* 0.005 [m] */
   double box_min[3], box_max[3]; /* the workspace, grid frame: -0.25 to 0.25 [m] */
   double T_world_grid[16];       /* identity */
-  double prior_sigma;     /* of unknown voxels [m]; NaN (the default): vg_default_prior_sigma() */
-  double support_plane;   /* height z of an infinite table, world [m]; NaN: none */
-  const double* boxes;    /* obstacles; readings of them only mark free space */
-  size_t box_count;       /* number of boxes */
-  const double* vertices; /* obstacles as triangles */
-  size_t vertex_count;    /* number of vertices */
-  const uint32_t* triangles; /* 3 vertex indices each */
-  size_t triangle_count;     /* number of triangles */
-  double jump_edge_angle;    /* angle of the filter for flying pixels: 5 degrees [rad]; 0: off */
+  double prior_sigma;            /* standard deviation of an unknown voxel [m]; NaN (the default):
+                                    vg_default_prior_sigma() */
+  double support_plane;          /* height z of an infinite table, world [m]; NaN: none */
+  const double* boxes;           /* obstacles; measured depths of obstacles only mark free space */
+  size_t box_count;              /* number of boxes */
+  const double* vertices;        /* obstacles as triangles */
+  size_t vertex_count;           /* number of vertices */
+  const uint32_t* triangles;     /* 3 vertex indices each */
+  size_t triangle_count;         /* number of triangles */
+  double jump_edge_angle; /* angle of the filter for flying pixels: 5 degrees [rad]; 0: off */
   double object_size; /* longest side of the object [m]; NaN (the default): that of its seen part */
   double body_size[3]; /* width, height, depth of the sensor's housing [m]; all 0 (the default):
                           vg_scorer_best() does not check feasibility */
@@ -61,7 +62,8 @@ VG_API vg_status vg_scorer_load(const char* path, const vg_sensor* sensor,
 VG_API vg_status vg_scorer_save(const vg_scorer* scorer, const char* path);
 VG_API void vg_scorer_release(vg_scorer* scorer); /* null: no effect */
 
-/* Verdict of a frame: in the map with readings, or with free space only; or why it is not. */
+/* Verdict of a frame: in the map with readings, in the map with free space only, or why it is not
+   in the map. */
 enum {
   VG_FRAME_USED = 0,
   VG_FRAME_CARVED = 1,
@@ -74,7 +76,7 @@ enum {
 /* Effect of a frame. */
 typedef struct vg_map_update {
   size_t struct_size;                  /* set by _init() */
-  int32_t verdict;                     /* VG_FRAME_; from 2 on the map did not change */
+  int32_t verdict;                     /* VG_FRAME_; for 2 and more the map did not change */
   uint64_t readings, readings_inside;  /* readings; those in the workspace */
   uint64_t voxels_hit, voxels_crossed; /* as in vg_integration_report */
   uint64_t flying_pixels;              /* pixels removed by the filter */
@@ -84,12 +86,13 @@ typedef struct vg_map_update {
 VG_API void vg_map_update_init(vg_map_update* update, size_t struct_size);
 
 /* Adds a frame: `depth` and the other arguments as in vg_integrate(). Filters it, marks obstacles,
-   updates the hazard and the scene. `update` or null. A frame that cannot be used is VG_OK; its
-   verdict gives the reason. */
+   and updates the hazard and the scene. `update` or null. If the frame cannot be used, the result
+   is VG_OK, and the verdict gives the reason. */
 VG_API vg_status vg_scorer_add(vg_scorer* scorer, const float* depth, const float* amplitude,
                                const double T_world_camera[16], const double pose_sigma[2],
                                vg_map_update* update);
-/* Labels a box of voxels, as vg_grid_update_box(). Labelled voxels have no refinement. */
+/* Labels a box of voxels, as vg_grid_update_box(). Labelled voxels add no refinement to the gain.
+ */
 VG_API vg_status vg_scorer_set(vg_scorer* scorer, const int32_t first[3], const int32_t dims[3],
                                const uint8_t* labels, uint64_t* changed);
 /* Resets a box of the grid frame [m] to unknown, as vg_grid_forget(), for moved objects. */
@@ -113,13 +116,13 @@ VG_API vg_status vg_scorer_scene(const vg_scorer* scorer, vg_scene** scene);
 /* An evaluator of the current scene, for the functions that take one. */
 VG_API vg_status vg_scorer_evaluator(const vg_scorer* scorer, vg_evaluator** evaluator);
 
-/* Agreement of the frames in the map, as C++'s FrameConsistency. */
+/* How well the frames in the map agree, as C++'s FrameConsistency. */
 typedef struct vg_consistency {
   size_t struct_size;     /* set by _init() */
   size_t frames;          /* number of added frames */
   size_t contradicting;   /* number of frames that contradict the others */
-  double share_in_free;   /* share of all readings in space that other frames saw as free */
-  double share_seen_past; /* share of earlier frames' readings that later frames see past */
+  double share_in_free;   /* fraction of all readings in space that other frames saw as free */
+  double share_seen_past; /* fraction of earlier frames' readings that later frames see past */
   double displacement;    /* displacement relative to earlier frames, median [m]; NaN: none */
   double expected;        /* displacement explained by the declared errors [m] */
   char kind[32];          /* likely cause; empty: the frames agree */

@@ -14,8 +14,8 @@ namespace viewgain {
 
 /// Contents of a point cloud file.
 struct VIEWGAIN_EXPORT PointCloud {
-  /// Points in file order, in the file's frame and unit; pixels of an organised cloud without a
-  /// reading are NaN.
+  /// Points in file order, in the file's frame and unit. In an organised cloud, pixels without a
+  /// measured depth are NaN.
   std::vector<std::array<double, 3>> points;
   /// A PCD's VIEWPOINT: the sensor's pose in the points' frame, without rotation if its quaternion
   /// is 0.

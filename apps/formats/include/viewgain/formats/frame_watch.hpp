@@ -25,11 +25,12 @@ struct VIEWGAIN_EXPORT FrameWatchConfig {
   std::string sensor{};                              ///< as in open_frames()
   std::optional<double> depth_scale{};               ///< as in open_frames() [m per unit]
   std::optional<Sensor::OutOfRange> out_of_range{};  ///< empty: the folder's own
-  /// Folders of masks; each frame needs a mask in all of them. They may be written to as well.
+  /// Folders of masks; each frame needs a mask in all of them. Masks may also arrive late.
   std::vector<MaskFolder> masks{};
   /// Identities (frame_identity()) of frames that are not returned again.
   std::set<std::string> taken{};
-  /// Faults of files younger than this do not count, because they may still be written.
+  /// Faults of files that changed more recently than this are ignored, because the files may still
+  /// be written.
   std::chrono::milliseconds settle{2000};
 };
 
@@ -55,21 +56,23 @@ struct VIEWGAIN_EXPORT BadFrame {
 
 /// Result of a look at the folder.
 struct VIEWGAIN_EXPORT FolderLook {
-  std::optional<WatchedFrame> frame{};  ///< the next complete frame in the list, if any
-  /// New faults since the previous look, by number; those with a number of another frame first.
+  std::optional<WatchedFrame> frame{};  ///< the next complete frame, if any
+  /// New faults since the previous look, by number. Frames that share their number with another
+  /// frame come first.
   std::vector<BadFrame> bad{};
 };
 
 /// Watches a folder of frames of either layout (open_frames()) that another program writes to, file
 /// by file, in any order. Files may be renamed into place or written slowly. A frame is complete
-/// when its images end as PNG files do and can be read, its masks too, and its pose is there: a
-/// line in poses.txt with its line end, or a pose file that has a line end or is unchanged for
+/// when its images and masks are complete PNG files, and its pose is a complete line of poses.txt
+/// or a complete pose file. A pose file without a line end is complete if it has not changed for
 /// FrameWatchConfig::settle. If any frame of the folder has an amplitude image, the others need one
 /// too. sensor.toml, frames.toml and camera-intrinsics.txt must exist before the first frame. Masks
 /// are not part of a frame's identity.
 ///
-/// Detects changes from the file system's data and reads no file twice without need. Remembers
-/// nothing beyond the object except FrameWatchConfig::taken. Thread safety: one call at a time.
+/// Detects changes by the files' times and sizes, and does not read unchanged files again. To
+/// continue with a new object, pass taken() as FrameWatchConfig::taken. Thread safety: one call at
+/// a time.
 class VIEWGAIN_EXPORT FrameWatch {
  public:
   /// Time of a look.
@@ -82,24 +85,24 @@ class VIEWGAIN_EXPORT FrameWatch {
   FrameWatch& operator=(FrameWatch&&) noexcept;
 
   /// Looks at the folder; `now` must not decrease. A returned frame counts as taken; the next look
-  /// returns the next one. Lists the folder when the last list is used up, or after 256 looks.
-  /// Throws Error(io) if the folder cannot be read; Error(format) if the first numbers of images
-  /// and poses.txt disagree for `settle`; and with the first complete frame as open_frames() for
-  /// faults of the whole folder. Checks 256 taken or bad frames again per look, in turn. Cost: a
-  /// few µs per file of these and of new frames.
+  /// returns the next frame. Each look also checks 256 of the taken or bad frames for changes, in
+  /// turn. Throws Error(io) if the folder cannot be read; Error(format) if the first numbers of
+  /// images and poses.txt disagree for longer than `settle`; and with the first complete frame like
+  /// open_frames(), for faults of the whole folder. Cost: a few µs per file of new and checked
+  /// frames.
   [[nodiscard]] FolderLook look(Time now);
 
-  /// Ends the wait: frames without a pose, a mask or an image that poses.txt lists become bad
-  /// (no_pose, no_mask, unreadable) while their files do not change. Returns them by number.
-  /// O(frames); does not look at files.
+  /// Ends the wait for incomplete frames. Frames that lack a pose, a mask or an image that
+  /// poses.txt lists become bad (no_pose, no_mask, unreadable) until their files change. Returns
+  /// these frames by number. Cost: O(frames); does not look at files.
   [[nodiscard]] std::vector<BadFrame> give_up();
 
-  /// Rejects the frame of the last look: it is bad for this reason while its files do not change.
+  /// Rejects the frame of the last look: it is bad for this reason until its files change.
   void refuse(const WatchedFrame& frame, FrameVerdict verdict);
 
   /// Sensor, scale and layout, without images and poses; empty before the first complete frame.
   [[nodiscard]] const std::optional<FrameSequence>& folder() const noexcept;
-  /// Identities of the taken frames, here and before.
+  /// Identities of the taken frames, including FrameWatchConfig::taken.
   [[nodiscard]] std::set<std::string> taken() const;
   /// Number of taken frames.
   [[nodiscard]] std::size_t taken_count() const;
@@ -107,8 +110,8 @@ class VIEWGAIN_EXPORT FrameWatch {
   [[nodiscard]] std::size_t waiting() const;
   /// Number of bad frames in the folder by name of the verdict.
   [[nodiscard]] std::map<std::string, std::size_t> bad() const;
-  /// Whether nothing has changed: for FrameWatchConfig::settle among waiting frames, and since the
-  /// last check of each of the others.
+  /// Whether nothing changes any more: waiting frames have not changed for
+  /// FrameWatchConfig::settle, and the other frames have not changed since their last check.
   [[nodiscard]] bool is_settled() const;
 
  private:

@@ -13,21 +13,22 @@
 #include "viewgain/grid/vdb_io.hpp"
 
 /// @file
-/// Map files. Reading and writing costs grow with the leaves and beliefs of the map; functions on
-/// names take constant time.
+/// Map files. The cost of reading and writing grows with the leaves and beliefs of the map;
+/// functions on names take constant time.
 
 namespace viewgain {
 
 /// Whether the name ends in .ot or .bt, in lower or upper case. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_octomap(const std::filesystem::path& path);
 
-/// The map in the folder of a run: map.vdb, else state.vdb, whether it exists or not. Returns any
-/// other path unchanged.
+/// Path of the map in the folder of a run: map.vdb, else state.vdb, which need not exist. Returns
+/// any other path unchanged.
 [[nodiscard]] VIEWGAIN_EXPORT std::filesystem::path map_in(const std::filesystem::path& path);
 
-/// Reads a .vdb map, the map of a run's folder (map_in()), or an OctoMap tree with `config`, whose
-/// prior defaults to that of the sensor, if given. Throws as load_vdb and load_octomap, and
-/// Error(format) with file and key if the map's note of its sensor is invalid.
+/// Reads a .vdb map, the map of a run's folder (map_in()), or an OctoMap tree with `config`. If a
+/// sensor is given, the default of config.prior_sigma is that of the sensor. Throws like load_vdb()
+/// and load_octomap(), and Error(format) with file and key if the map's note of its sensor is
+/// invalid.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_map(const std::filesystem::path& file_or_run,
                                                   const Sensor* sensor = nullptr,
                                                   OctomapConfig config = {},
@@ -37,11 +38,11 @@ namespace viewgain {
 /// key for an invalid note. Cost: parses the note.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Sensor> map_sensor(const BeliefGrid& grid);
 
-/// Throws Error(invalid_argument) for names that save_map does not write: those of regular files
+/// Throws Error(invalid_argument) for names that save_map() does not write: names of regular files
 /// that end neither in .vdb nor in .ot.
 VIEWGAIN_EXPORT void check_map_name(const std::filesystem::path& path);
 
-/// Contents of a map that its tree does not have.
+/// Contents of a map that a .ot file loses.
 struct VIEWGAIN_EXPORT LostInTree {
   std::size_t beliefs = 0;       ///< number of voxels with beliefs
   std::size_t views = 0;         ///< number of views
@@ -49,8 +50,8 @@ struct VIEWGAIN_EXPORT LostInTree {
   bool T_world_grid = false;     ///< see octomap_keeps_frame
 };
 
-/// Writes a .ot if the name ends so, otherwise a .vdb, which loses nothing. Atomic. Throws as
-/// save_vdb, save_octomap and check_map_name().
+/// Writes a .ot if the name ends in .ot, otherwise a .vdb, which loses nothing. Atomic. Throws like
+/// save_vdb(), save_octomap() and check_map_name().
 VIEWGAIN_EXPORT LostInTree save_map(const BeliefGrid& grid, const std::filesystem::path& path,
                                     const VdbWriteConfig& config = {});
 

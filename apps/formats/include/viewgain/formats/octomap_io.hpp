@@ -27,15 +27,15 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 /// the file's first line. Does not need the OctoMap library. The lattices are the same: OctoMap's
 /// key k is the voxel [k - 32768, k - 32767) times the resolution.
 ///
-/// Keeps occupied, free and unknown. Log-odds of a `.ot` are rounded to steps of 0.05 and clamped
-/// to [-2, 3.5] without changing their state; a `.bt` gives 3.5 and -2. Voxels have no beliefs (as
-/// in BeliefGrid::from_states), the map no views. A pruned leaf costs a tile if free, a block per
-/// 8³ voxels if occupied; more than 2^27 occupied voxels in pruned leaves are refused.
+/// Keeps the states occupied, free and unknown. Log-odds of a `.ot` are rounded to steps of 0.05
+/// and clamped to [-2, 3.5] without changing the state; a `.bt` gives 3.5 and -2. The map has no
+/// beliefs (see BeliefGrid::from_states()) and no views. A pruned leaf that is free needs little
+/// memory, an occupied one a block per 8³ voxels.
 ///
 /// Throws Error(io) if the file cannot be read; Error(format) with the file and the line or byte if
 /// it is truncated, has a wrong number of nodes, an invalid value, or no known voxel and no
-/// workspace; Error(capacity) with the file if it is too large; Error(invalid_argument) as
-/// BeliefGrid.
+/// workspace; Error(capacity) with the file if it is too large or pruned leaves have more than 2^27
+/// occupied voxels; Error(invalid_argument) like the constructor of BeliefGrid.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_octomap(const std::filesystem::path& path,
                                                       const OctomapConfig& config = {});
 /// As above for a file's contents; `name` is the file name in messages.
@@ -43,23 +43,23 @@ struct VIEWGAIN_EXPORT OctomapConfig {
     std::string_view bytes, const OctomapConfig& config = {}, const std::string& name = "octree");
 
 /// Resolution [m] from the header of a file's contents, which may be incomplete; `name` is the file
-/// name in messages. Throws Error(format) as load_octomap.
+/// name in messages. Throws Error(format) like load_octomap().
 [[nodiscard]] VIEWGAIN_EXPORT double octomap_resolution_of_bytes(
     std::string_view bytes, const std::string& name = "octree");
 
-/// Writes a pruned `.ot` that OctoMap and load_octomap read: states and log-odds, in the world
+/// Writes a pruned `.ot` that OctoMap and load_octomap() read: states and log-odds, in the world
 /// frame if octomap_keeps_frame(grid), otherwise in the grid frame. Beliefs, prior, T_world_grid
-/// and views are lost. A free voxel's log-odds of 0 is written as -0.001, because 0 is occupied in
-/// OctoMap; it is read back as 0. Atomic. Throws Error(io), Error(invalid_argument) for a name that
-/// does not end in .ot, Error(capacity) for a known voxel with an index outside [-32768, 32768).
-/// Cost: O(nodes of the tree).
+/// and views are lost. If a free voxel has the log-odds 0, which means occupied in OctoMap, writes
+/// -0.001, which is read back as 0. Atomic. Throws Error(io), Error(invalid_argument) for a name
+/// that does not end in .ot, Error(capacity) for a known voxel with an index outside [-32768,
+/// 32768). Cost: O(nodes of the tree).
 VIEWGAIN_EXPORT void save_octomap(const BeliefGrid& grid, const std::filesystem::path& path);
 /// As above, returning the contents of the file.
 [[nodiscard]] VIEWGAIN_EXPORT std::string octomap_bytes(const BeliefGrid& grid);
 
-/// Whether the tree's voxels have the same place in the world as the grid's: T_world_grid is the
-/// identity, or (to 1e-6 voxel) a shift by whole voxels within a tree's space. Otherwise the frame
-/// is lost, and the tree must be moved by T_world_grid. Never throws; constant time.
+/// Whether save_octomap() writes the tree in the world frame. This requires that T_world_grid is
+/// the identity or, to 1e-6 voxel, a shift by whole voxels within a tree's space. Otherwise the
+/// tree must be moved by T_world_grid. Never throws; constant time.
 [[nodiscard]] VIEWGAIN_EXPORT bool octomap_keeps_frame(const BeliefGrid& grid);
 
 }  // namespace viewgain

@@ -23,9 +23,9 @@
 
 namespace viewgain {
 
-/// A belief grid from the tree, as load_octomap; the tree's own occupancy threshold replaces
-/// config.occupied_from. Uses the tree's file form in memory, 5 bytes per node. Thread safety: only
-/// reads the tree. Throws as load_octomap. Cost: O(nodes).
+/// A belief grid from the tree, like load_octomap(). The tree's own occupancy threshold replaces
+/// config.occupied_from. Needs 5 bytes per node for a temporary copy. Thread safety: only reads the
+/// tree. Throws like load_octomap(). Cost: O(nodes).
 [[nodiscard]] inline BeliefGrid grid_from_octree(const octomap::OcTree& tree,
                                                  OctomapConfig config = {}) {
   config.occupied_from = tree.getOccupancyThresLog();
@@ -42,10 +42,10 @@ struct OctreeLabels {
   std::vector<std::uint8_t> labels;  ///< one per voxel of the box
 };
 
-/// Labels of a map's voxels, of `voxel_size` [m], from the tree. `region` is in the tree's frame
-/// [m], for example around the changes of insertPointCloud(); its part outside the workspace is
-/// ignored. Throws Error(invalid_argument) unless the voxel sizes are equal. Cost: O(nodes and
-/// voxels in the box).
+/// Labels from the tree for a map with this `voxel_size` [m] and `workspace`. `region` is in the
+/// tree's frame [m], for example around the changes of insertPointCloud(). Its part outside the
+/// workspace is ignored. Throws Error(invalid_argument) unless the voxel sizes are equal. Cost:
+/// O(nodes and voxels in the box).
 [[nodiscard]] inline OctreeLabels labels_of_octree(double voxel_size, const VoxelBox& workspace,
                                                    const octomap::OcTree& tree, const Box& region) {
   const double V = tree.getResolution();
@@ -92,8 +92,8 @@ struct OctreeLabels {
   return {box, std::move(states)};
 }
 
-/// Updates a scorer's map from a growing tree, as ViewScorer::set(). Returns the number of changed
-/// voxels. Throws and costs as labels_of_octree() and ViewScorer::set().
+/// Updates a scorer's map from a growing tree. Returns the number of changed voxels. Errors and
+/// cost: see labels_of_octree() and ViewScorer::set().
 inline std::uint64_t update_from_octree(ViewScorer& scorer, const octomap::OcTree& tree,
                                         const Box& region) {
   const OctreeLabels now =
@@ -108,8 +108,8 @@ inline std::uint64_t update_from_octree(BeliefGrid& grid, const octomap::OcTree&
   return now.labels.empty() ? 0 : grid.update_box(now.box, now.labels);
 }
 
-/// The tree that save_octomap would write, with OctoMap's default settings except the resolution.
-/// Throws as save_octomap. Cost: O(nodes).
+/// The tree that save_octomap() would write, with OctoMap's default settings except the resolution.
+/// Throws like save_octomap(). Cost: O(nodes).
 [[nodiscard]] inline std::unique_ptr<octomap::OcTree> octree_from_grid(const BeliefGrid& grid) {
   std::istringstream file(octomap_bytes(grid));
   file.imbue(std::locale::classic());

@@ -11,8 +11,8 @@
 
 namespace viewgain {
 
-/// A surface, or points without triangles, as arrays of the caller in any frame; the file does not
-/// state the frame.
+/// The caller's arrays of a surface, or of points without triangles, in any frame. The file does
+/// not state the frame.
 struct VIEWGAIN_EXPORT PlyArrays {
   std::span<const std::array<double, 3>> positions;  ///< [m]
   std::span<const std::array<double, 3>> normals{};  ///< unit vectors; empty, or one per position

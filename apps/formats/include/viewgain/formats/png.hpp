@@ -10,7 +10,7 @@
 #include "viewgain/core/export.hpp"
 
 /// @file
-/// PNG images. Reading and writing take O(pixels), png_size() constant time.
+/// PNG images. Cost: O(pixels) to read or write, constant time for png_size().
 
 namespace viewgain {
 
@@ -35,14 +35,14 @@ struct VIEWGAIN_EXPORT Gray8Image {
   std::vector<std::uint8_t> pixels;  ///< row-major
 };
 
-/// Reads a 16-bit grayscale PNG of exactly this size; raw values, no gamma. Throws Error(io) if the
-/// file cannot be read and Error(format) with the file if it is damaged or has another kind or
-/// size.
+/// Reads a 16-bit grayscale PNG of exactly this size. Values are raw, without gamma. Throws
+/// Error(io) if the file cannot be read and Error(format) with the file if it is damaged or has
+/// another kind or size.
 [[nodiscard]] VIEWGAIN_EXPORT GrayImage read_gray_png(const std::filesystem::path& path, int width,
                                                       int height);
 
-/// Reads a grayscale PNG of 1 to 8 bits of exactly this size; raw values, extended to 8 bits.
-/// Throws as read_gray_png().
+/// Reads a grayscale PNG of 1 to 8 bits of exactly this size. Values are raw, extended to 8 bits.
+/// Throws like read_gray_png().
 [[nodiscard]] VIEWGAIN_EXPORT Gray8Image read_gray8_png(const std::filesystem::path& path,
                                                         int width, int height);
 

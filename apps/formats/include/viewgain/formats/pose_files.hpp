@@ -10,25 +10,25 @@
 #include "viewgain/core/pose_io.hpp"
 
 /// @file
-/// Pose files, T_world_camera; the name's ending determines the format: .npy for numpy, otherwise
+/// Pose files of T_world_camera. The name's ending determines the format: .npy for numpy, otherwise
 /// TUM text. Each call reads or writes the file once, with O(poses) time and memory.
 
 namespace viewgain {
 
 /// Reads TUM text (read_tum()) or a .npy array: rows with the columns tx, ty, tz, qx, qy, qz, qw
 /// and optionally timestamp, or (n, 4, 4) matrices; float64 or float32, C or Fortran order. Default
-/// timestamps are 0, 1, 2, ... Throws as read_tum(); errors of a .npy name the row.
+/// timestamps are 0, 1, 2, ... Throws like read_tum(); messages about a .npy file name the row.
 [[nodiscard]] VIEWGAIN_EXPORT PoseList load_poses(const std::filesystem::path& path);
 
 /// Writes a file for load_poses(): TUM text for .txt and .tum; for .npy rows with timestamp, tx,
-/// ty, tz, qx, qy, qz, qw. Throws as write_tum(), and Error(invalid_argument) with the valid
+/// ty, tz, qx, qy, qz, qw. Throws like write_tum(), and Error(invalid_argument) with the valid
 /// endings for other names of regular files.
 VIEWGAIN_EXPORT void save_poses(const std::filesystem::path& path, std::span<const Pose> poses);
 /// As above with timestamps [s], one per pose.
 VIEWGAIN_EXPORT void save_poses(const std::filesystem::path& path, std::span<const Pose> poses,
                                 std::span<const double> timestamps);
 
-/// Fault of the name's ending for save_poses(); empty if it is valid. Never throws.
+/// What is wrong with the name's ending for save_poses(); empty if it is valid. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string fault_of_poses_name(const std::filesystem::path& path);
 
 }  // namespace viewgain

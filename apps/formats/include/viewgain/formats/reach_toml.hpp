@@ -13,20 +13,20 @@
 
 namespace viewgain {
 
-/// Reads a region; apps/docs/reference/formats.md documents the layout, all of whose parts are
-/// optional. Throws Error(io) if a file cannot be read and Error(format) with file and key for a
-/// key that is missing, unknown, of the wrong type or out of bounds.
+/// Reads a region. apps/docs/reference/formats.md documents the layout; all parts are optional.
+/// Throws Error(io) if a file cannot be read and Error(format) with file and key for a key that is
+/// missing, unknown, of the wrong type or out of bounds.
 [[nodiscard]] VIEWGAIN_EXPORT ReachRegion read_reach_toml(const std::filesystem::path& path);
 
-/// Writes a region; read back, it differs only by rounding of angles and rotations (1e-14). Poses
-/// go to a TUM file next to it, NAME.poses.txt for NAME.toml, which replaces an existing one. Each
-/// file is written atomically. Throws Error(io), and Error(invalid_argument) for a region that is
-/// invalid or has a predicate, for a name that does not end in .toml and, if there are poses, for a
-/// name that is not UTF-8.
+/// Writes a region. When read back, angles and rotations differ only by rounding (1e-14). Poses go
+/// to a TUM file next to the region's file, NAME.poses.txt for NAME.toml, which is replaced if it
+/// exists. Each file is written atomically. Throws Error(io). Throws Error(invalid_argument) for a
+/// region that is invalid or has a predicate, for a name that does not end in .toml and, if there
+/// are poses, for a name that is not UTF-8.
 VIEWGAIN_EXPORT void write_reach_toml(const std::filesystem::path& path, const ReachRegion& region);
 
-/// The pose file that a reach file refers to, if any. Throws as read_reach_toml for a file that is
-/// not TOML.
+/// The pose file that a reach file refers to, if any. Throws like read_reach_toml() for a file that
+/// is not TOML.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<std::filesystem::path> reach_poses_file(
     const std::filesystem::path& path);
 

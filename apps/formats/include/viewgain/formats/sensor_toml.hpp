@@ -10,7 +10,8 @@
 #include "viewgain/core/sensor.hpp"
 
 /// @file
-/// Sensor files. Each call reads or writes them once, with O(entries) for a table of range errors.
+/// Sensor files. Each call reads or writes the file once. Cost: O(entries) of the table of range
+/// errors.
 
 namespace viewgain {
 
@@ -27,11 +28,11 @@ namespace viewgain {
 /// invalid.
 VIEWGAIN_EXPORT void write_sensor_toml(const std::filesystem::path& path, const Sensor& sensor);
 
-/// Whether load_sensor takes this as a file name rather than a preset. Never throws.
+/// Whether load_sensor() treats the argument as a file name rather than a preset. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_sensor_file(const std::string& preset_or_file);
 
-/// A preset by name, or a file that ends in .toml. Throws Error(invalid_argument) for an unknown
-/// name, and as read_sensor_toml().
+/// A preset by name, or the sensor in a file whose name ends in .toml. Throws
+/// Error(invalid_argument) for an unknown name, and like read_sensor_toml().
 [[nodiscard]] VIEWGAIN_EXPORT Sensor load_sensor(const std::string& preset_or_file);
 
 }  // namespace viewgain

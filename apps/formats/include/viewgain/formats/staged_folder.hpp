@@ -16,17 +16,18 @@ namespace viewgain {
 class SyncedTogether;
 class TemporaryNames;
 
-/// A folder of results that appears, or begins to change, only when all results are written. They
-/// go into a hidden folder, next to the target or inside it if it exists, and commit() moves them.
-/// Other contents of the target remain. The hidden folder is named .NAME.tmp-PROCESS-COUNTER (with
-/// a hash for a long NAME); the next writer of the same target removes or resumes one that a killed
-/// process left. Thread safety: distinct objects may be used from distinct threads. Cost of
-/// commit(): one disk sync, then one rename, or one per file if the target exists.
+/// A folder of results that appears, or begins to change, only when all results are written.
+/// Results are written to a hidden folder, next to the target or inside it if it exists, and
+/// commit() moves them. Other contents of the target remain. The hidden folder is named
+/// .NAME.tmp-PROCESS-COUNTER (with a hash for a long NAME). If a killed process leaves a hidden
+/// folder, the next writer of the same target removes or resumes it. Thread safety: distinct
+/// objects may be used from distinct threads. Cost of commit(): one disk sync, then one rename, or
+/// one per file if the target exists.
 class VIEWGAIN_EXPORT StagedFolder {
  public:
-  /// Creates the hidden folder, and missing parents of the target. Throws Error(io). With a name
-  /// `taken_up` it resumes the hidden folder of an ended process that contains a file of this name,
-  /// and removes unfinished files there.
+  /// Creates the hidden folder, and missing parents of the target. If `taken_up` is given, resumes
+  /// instead the hidden folder of an ended process that contains a file of this name, and removes
+  /// unfinished files there. Throws Error(io).
   explicit StagedFolder(const std::filesystem::path& target, const char* taken_up = nullptr);
   /// Removes everything that commit() has not moved, and the created parents if they are empty.
   ~StagedFolder();
@@ -36,15 +37,15 @@ class VIEWGAIN_EXPORT StagedFolder {
   /// The folder to write to.
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return staging_; }
 
-  /// Syncs the files, then moves the whole folder if there is no target. Otherwise moves each file
-  /// over the one of the same name, keeping that one's mode and group, so each name has its old or
-  /// new contents at any time; run.json, poses.txt, simulated.txt and imported.txt last. Then
-  /// removes the files of `earlier` (relative to the target) that were not rewritten, and folders
-  /// that become empty. Throws Error(io).
+  /// Syncs the files, then moves the whole folder if there is no target. Otherwise renames each
+  /// file over the existing file of the same name, whose mode and group are kept; run.json,
+  /// poses.txt, simulated.txt and imported.txt come last. At any time each name has its old or new
+  /// contents. Then removes the files of `earlier` (relative to the target) that were not
+  /// rewritten, and folders that become empty. Throws Error(io).
   void commit(const std::vector<std::filesystem::path>& earlier);
 
-  /// Keeps the hidden folder, to be resumed, if commit() is not called. A resumed folder is kept
-  /// too.
+  /// Keeps the hidden folder for a later resume if commit() is not called. This is the default for
+  /// a resumed folder.
   void keep() noexcept { is_kept_ = true; }
 
  private:
@@ -61,9 +62,9 @@ class VIEWGAIN_EXPORT StagedFolder {
   std::atomic<bool> is_kept_ = false;
 };
 
-/// Removes the hidden folders that are not kept, and the parents created for them, of all
-/// StagedFolder objects of this process, for a program that a signal ends. Not for use in a signal
-/// handler, because it takes a lock. Writers fail afterwards.
+/// For a program that a signal ends: removes the hidden folders of all StagedFolder objects of this
+/// process that are not kept, and the parents created for them. Writers fail afterwards. Not for
+/// use in a signal handler, because it takes a lock.
 VIEWGAIN_EXPORT void remove_staged_folders() noexcept;
 
 /// Files of `dir` with names that `reconstruct` and `model` write, relative to it; empty if the
@@ -71,7 +72,8 @@ VIEWGAIN_EXPORT void remove_staged_folders() noexcept;
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::filesystem::path> run_files(
     const std::filesystem::path& dir);
 
-/// Decisions of an unfinished run, for resuming it: the first of its files to exist.
+/// File with the decisions of an unfinished run, for resuming it. It is written before all other
+/// files.
 inline constexpr const char* kCheckpoint = "checkpoint.json";
 
 /// The folder of `reconstruct` and `model`: run.json, config.toml, views.txt, next.txt, next.json,
@@ -81,17 +83,17 @@ inline constexpr const char* kCheckpoint = "checkpoint.json";
 /// take constant time.
 class VIEWGAIN_EXPORT RunFolder {
  public:
-  /// Throws Error(io), and Error(invalid_argument) if the folder holds files of these names without
-  /// an earlier run's run.json or checkpoint.json. With `resume` it continues the files of an ended
-  /// process that had a checkpoint.
+  /// Throws Error(io), and Error(invalid_argument) if the folder holds files of these names but
+  /// neither run.json nor checkpoint.json of an earlier run. With `resume` it continues the files
+  /// of an ended process that wrote a checkpoint.
   explicit RunFolder(const std::filesystem::path& dir, bool resume = false);
 
   /// The folder to write to.
   [[nodiscard]] std::filesystem::path file(const char* name) const { return staged_.path() / name; }
-  /// Path of a file of view `index` with this ending; creates the folder views/.
+  /// Path of the file of view `index` with this ending; creates the folder views/.
   [[nodiscard]] std::filesystem::path view(std::size_t index, const char* ending) const;
-  /// Path of the map after view `index`, or with the ending .txt of the candidates for the next
-  /// one; creates the folder maps/.
+  /// Path of the map after view `index` or, with the ending .txt, of the candidates for the next
+  /// view. Creates the folder maps/.
   [[nodiscard]] std::filesystem::path map(std::size_t index, const char* ending = ".vdb") const;
 
   /// The checkpoint that existed before this run wrote one, from the resumed folder or the folder
@@ -102,7 +104,7 @@ class VIEWGAIN_EXPORT RunFolder {
   /// Keeps the files for a resumed run if commit() is not called.
   void keep() noexcept { staged_.keep(); }
 
-  /// Replaces an earlier run with this one; keeps its checkpoint only if it `goes_on`. Throws
+  /// Replaces an earlier run with this run. Keeps the checkpoint only if the run `goes_on`. Throws
   /// Error(io).
   void commit(bool goes_on = false);
 

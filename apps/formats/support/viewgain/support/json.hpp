@@ -14,7 +14,7 @@
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 
-/// Null where there is none.
+/// The value, or null if it is empty.
 template <typename Value>
 struct nlohmann::adl_serializer<std::optional<Value>> {
   template <typename Json>
@@ -25,7 +25,7 @@ struct nlohmann::adl_serializer<std::optional<Value>> {
 
 namespace viewgain::app {
 
-/// What --json, run.json and results.json hold. Objects keep the order in which their keys came.
+/// JSON of --json, run.json and results.json. Objects keep the order of their keys.
 using Json = nlohmann::ordered_json;
 
 /// A text, or null for an empty one.
@@ -33,13 +33,13 @@ using Json = nlohmann::ordered_json;
   return text.empty() ? Json() : Json(text);
 }
 
-/// As text, its levels indented by so many blanks, or in one line. Bytes that are no UTF-8 are
-/// replaced, as a file name may be any bytes.
+/// As text, indented by this many blanks per level, or in one line. Bytes that are not UTF-8 are
+/// replaced, because a file name may contain any bytes.
 [[nodiscard]] inline std::string dumped(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Levels of lists and objects in each other that parse_or_null() takes.
+/// Largest depth of nested lists and objects that parse_or_null() accepts.
 inline constexpr std::size_t kMostJsonLevels = 1000;
 
 /// Whether brackets outside of strings are nested deeper than kMostJsonLevels.
@@ -60,7 +60,7 @@ inline constexpr std::size_t kMostJsonLevels = 1000;
   return false;
 }
 
-/// Null for a text that is no JSON or that is_too_deep(), since copies of values are recursive.
+/// Null for a text that is not JSON or that is_too_deep(), because copies of values are recursive.
 [[nodiscard]] inline Json parse_or_null(const std::string& text) {
   if (is_too_deep(text)) return {};
   Json parsed = Json::parse(text, nullptr, false);
@@ -80,13 +80,13 @@ inline constexpr std::size_t kMostJsonLevels = 1000;
           {0.0, 0.0, 0.0, 1.0}};
 }
 
-/// The sigmas [m, deg]; null where both are 0.
+/// The sigmas [m, deg]; null if both are 0.
 [[nodiscard]] inline Json pose_sigma_json(const PoseSigma& sigma) {
   if (sigma == PoseSigma{}) return {};
   return {sigma.translation, sigma.rotation * 180 / std::numbers::pi};
 }
 
-/// The key `seconds`: each stage's, and their sum.
+/// The key `seconds`: the duration of each stage, and their sum.
 [[nodiscard]] inline Json seconds_json(const std::map<std::string, double>& seconds) {
   Json json = seconds;
   double total = 0;
@@ -95,7 +95,7 @@ inline constexpr std::size_t kMostJsonLevels = 1000;
   return json;
 }
 
-/// What run.json and --json hold.
+/// The text of run.json and --json.
 [[nodiscard]] inline std::string json_text(const Json& json) { return dumped(json, 2) + "\n"; }
 
 inline void print_json(const Json& json) { std::fputs(json_text(json).c_str(), stdout); }

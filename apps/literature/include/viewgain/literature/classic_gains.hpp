@@ -34,13 +34,15 @@ enum class ClassicGain : std::uint8_t {
   occlusion_aware,    ///< Σ P H [nat]
   unobserved_voxel,   ///< Σ P H over unknown voxels [nat]
   average_entropy,    ///< mean of H over the crossed voxels [nat]
-  rear_side_voxel,    ///< rays that reach a surface through an unknown voxel [rays]
+  rear_side_voxel,    ///< rays whose last voxel before a surface is unknown [rays]
   rear_side_entropy,  ///< Σ P H over the unknown voxels before such a surface [nat]
-  proximity_count,    ///< Σ (most - steps behind a measured surface) over unknown voxels [voxels]
-  area_factor,        ///< from the shares of rays that hit surface and space hidden by it [1]
-  unknown_volume,     ///< Σ of the volume of the rays' cones in unknown voxels [m³]
-  unknown_count,      ///< distinct unknown voxels [voxels]
-  surface_frontier_count,  ///< those with a free and an occupied neighbour [voxels]
+  proximity_count,  ///< Σ over unknown voxels, larger the nearer they are behind a measured surface
+                    ///< [voxels]
+  area_factor,     ///< from the fractions of rays that hit a surface, and space hidden by one [1]
+  unknown_volume,  ///< Σ of the volume of the rays' cones in unknown voxels [m³]
+  unknown_count,   ///< distinct unknown voxels [voxels]
+  surface_frontier_count,  ///< distinct unknown voxels with a free and an occupied neighbour
+                           ///< [voxels]
 };
 /// Names of the gains, in enumeration order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& classic_gain_names();
@@ -51,7 +53,7 @@ enum class ClassicGain : std::uint8_t {
 [[nodiscard]] VIEWGAIN_EXPORT ClassicGain parse_classic_gain(std::string_view name);
 /// Unit: "nat", "rays", "voxels", "m^3" or "1". Throws std::out_of_range for an invalid value.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view classic_gain_unit(ClassicGain gain);
-/// Whether it needs the distance of unknown voxels behind earlier measured surfaces. Never throws.
+/// Whether the gain needs the distance of unknown voxels behind measured surfaces. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool needs_occlusion(ClassicGain gain);
 
 /// These gains as a family for register_gains(), computed by ClassicGainEvaluator.
@@ -66,20 +68,20 @@ struct VIEWGAIN_EXPORT ClassicConfig {
   double unknown_prior = 0.5;         ///< occupancy probability p of an unobserved voxel
 };
 
-/// The sensor of a map's readings, and the depth of occlusion behind surfaces.
+/// The sensor that measured a map, and the depth of occlusion behind surfaces.
 struct VIEWGAIN_EXPORT Acquisition {
-  Sensor sensor;                 ///< sensor of the map's readings
-  double occlusion_depth = 0.3;  ///< depth along its rays behind their hits [m]
+  Sensor sensor;                 ///< sensor that measured the map
+  double occlusion_depth = 0.3;  ///< how far occlusion extends behind the hit of a ray [m]
 };
 
 /// Data of a map for the classic gains: its scene, the log-odds of all voxels and, if requested,
 /// the occlusion distances of unknown ones. Immutable; members may be called from many threads,
 /// accept any voxel, never throw and take constant time.
 ///
-/// Occlusion distances: each ray of each view of the map (BeliefGrid::views(), all pixels of
-/// `sensor`, from its min_range on) runs to the first occupied voxel within its max_range, unless
-/// an obstacle is before it. The k-th voxel behind that voxel, within occlusion_depth, is k steps
-/// behind a measured surface if it is unknown. The minimum over all rays counts.
+/// Occlusion distances: each ray of each view of the map (BeliefGrid::views()) runs from min_range
+/// to the first occupied voxel within max_range, unless an obstacle stops it. The k-th voxel behind
+/// that voxel, within occlusion_depth, is k steps behind a measured surface if it is unknown. The
+/// minimum over all rays counts.
 class VIEWGAIN_EXPORT ClassicMap {
  public:
   /// Uses the scene's obstacles and the voxels of the current `grid`. Throws
@@ -117,34 +119,32 @@ class VIEWGAIN_EXPORT ClassicMap {
 /// edge. A ray that enters an occupied voxel before min_range visits none. Each ray counts a voxel
 /// once; several rays count it several times, unless the gain counts distinct voxels.
 ///
-/// Rays are in single precision, so a few in a hundred thousand pass a voxel's edge on the other
-/// side. Otherwise gains agree with sums in double precision to 1e-5, counts of rays to 5e-4 and
-/// unknown_volume to 1e-3 (README.md). Thread safety: const members may run from many threads at
-/// once. Bit-identical for any number of threads.
+/// Rays are in single precision; apps/literature/README.md states the accuracy. Thread safety:
+/// const members may run from many threads at once. Bit-identical for any number of threads.
 ///
 /// Cost of evaluate(): all ten gains together take about 20 times the paper's gain
 /// (perf/README.md). Cost of the constructor: one PinholeCamera::ray() per pixel; with_map() takes
 /// constant time.
 class VIEWGAIN_EXPORT ClassicGainEvaluator {
  public:
-  /// Throws Error(invalid_argument) naming the value: no gain, a duplicate gain, a null map, an
-  /// invalid sensor, a stride below 1, ranges as in GainConfig, an unknown_prior outside 0..1, or a
-  /// gain that needs occlusion distances with a map without them.
+  /// Throws Error(invalid_argument) naming the value for no gain, a duplicate gain, a null map, an
+  /// invalid sensor, a stride below 1, invalid ranges, an unknown_prior outside 0..1, or a gain
+  /// that needs occlusion distances if the map has none.
   ClassicGainEvaluator(std::shared_ptr<const ClassicMap> map, const Sensor& sensor,
                        const ClassicConfig& config, const ExecConfig& exec = {});
   ~ClassicGainEvaluator();
   ClassicGainEvaluator(ClassicGainEvaluator&&) noexcept;
   ClassicGainEvaluator& operator=(ClassicGainEvaluator&&) noexcept;
 
-  /// An evaluator for another map, to follow a growing map; shares rays and threads. Throws as the
-  /// constructor for a map.
+  /// An evaluator for another map, to follow a growing map; shares rays and threads. Throws like
+  /// the constructor if the map is invalid.
   [[nodiscard]] ClassicGainEvaluator with_map(std::shared_ptr<const ClassicMap> map) const;
 
-  /// Gains of a batch: results[i * gains + g] for pose i and gain g, in the unit of each gain. An
-  /// invalid pose (see ViewGain::Status) has NaN, a camera in an occupied voxel 0. `statuses` is
-  /// empty or has one entry per pose. Returns the number of scored poses: fewer than all if
-  /// `control` ended the call; the others keep NaN and bad_pose. Throws Error(invalid_argument) if
-  /// the sizes do not match.
+  /// Gains of a batch: results[i * gains + g] for pose i and gain g, in the unit of each gain. The
+  /// result is NaN for an invalid pose, and 0 for a camera in an occupied voxel. `statuses` is
+  /// empty or has one entry per pose. Returns the number of scored poses, which is less than all if
+  /// `control` ended the call; the remaining results are NaN and bad_pose. Throws
+  /// Error(invalid_argument) if the sizes do not match.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                        std::span<ViewGain::Status> statuses = {},
                        const BatchControl& control = {}) const;

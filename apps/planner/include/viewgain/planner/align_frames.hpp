@@ -17,16 +17,17 @@
 namespace viewgain {
 
 /// Aligns frames of one scene whose reported poses are slightly wrong. Each new frame is aligned
-/// with those so far, then all move together, so later frames correct earlier ones and doubtful
-/// frames are tried again. The first frame's pose is fixed. Alternatively, aligns one frame with a
-/// map. apps/planner/src/registration/align_frames.cpp describes the method.
+/// with the earlier frames, then all frames are aligned together. Later frames therefore correct
+/// earlier ones, and doubtful frames are tried again. The first frame's pose is fixed.
+/// Alternatively, aligns one frame with a map. apps/planner/src/registration/align_frames.cpp
+/// describes the method.
 ///
-/// Frames are used as in a map: in the workspace, without flying pixels, known obstacles and the
-/// support plane. A frame is refused if it contradicts the others: it shows surface in their free
-/// space, or sees past their surface, under its best fit and all likely poses.
+/// Only the workspace counts; flying pixels, known obstacles and the support plane are ignored. A
+/// frame is refused if it contradicts the others at its best fit and at all likely poses: it shows
+/// surface in their free space, or sees past their surface.
 ///
-/// Thread safety: nothing may run next to add(); const members may run from many threads at once.
-/// Bit-identical for any number of threads.
+/// Thread safety: no other member may run during add(); const members may run from many threads at
+/// once. Bit-identical for any number of threads.
 class VIEWGAIN_EXPORT FrameAlignment {
  public:
   /// `map`: settings of the map that frames go into, or are compared with. Removes the lens
@@ -37,12 +38,12 @@ class VIEWGAIN_EXPORT FrameAlignment {
   FrameAlignment(FrameAlignment&&) noexcept;
   FrameAlignment& operator=(FrameAlignment&&) noexcept;
 
-  /// Adds a frame; the result is valid until the next call. A refused frame moves nothing; one with
-  /// too little overlap stays as reported until other frames show the same. Covariances are
-  /// relative to the first frame, whose own is zero. `sigma`: uncertainty of the pose. Throws
-  /// Error(invalid_argument) and changes nothing as check_frame_size(), if the pose is not rigid
-  /// (1e-3), a sigma is not positive and finite or map.grid is invalid. Cost: about 100 bytes per
-  /// reading, and time that grows with the square of the number of frames.
+  /// Adds a frame; the result is valid until the next call. A refused frame moves no other frame; a
+  /// frame with too little overlap stays as reported until other frames show the same surface.
+  /// Covariances are relative to the first frame, whose covariance is zero. `sigma`: uncertainty of
+  /// the reported pose. Throws Error(invalid_argument) without a change for a wrong size, a pose
+  /// that is not rigid (1e-3), a sigma that is not positive and finite, or an invalid map.grid.
+  /// Cost: 100 bytes per measured depth; time grows with the square of the number of frames.
   const FrameRegistration& add(DepthFrame frame, const Pose& T_reported,
                                const PoseSigma& sigma = kUsualPoseSigma);
 
@@ -50,8 +51,8 @@ class VIEWGAIN_EXPORT FrameAlignment {
   /// registered. Valid until the next add().
   [[nodiscard]] const std::vector<FrameRegistration>& registrations() const;
 
-  /// Aligns a frame that is not one of those with a map. The first frame of an empty map stays as
-  /// reported with zero covariance. Throws as add(). Cost: fused_points() of the part that the
+  /// Aligns a frame with a map, independently of add(). The first frame of an empty map stays as
+  /// reported, with zero covariance. Throws like add(). Cost: fused_points() of the part that the
   /// frame can show, and 10 to 60 ms on two cores.
   [[nodiscard]] FrameRegistration register_frame(const BeliefGrid& grid, DepthFrame frame,
                                                  const Pose& T_reported,

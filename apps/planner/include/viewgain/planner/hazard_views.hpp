@@ -16,16 +16,17 @@ namespace viewgain {
 /// Generator name of candidates from hazard_views().
 inline constexpr std::string_view kHazardViews = "hazard";
 
-/// Views (T_world_camera) of the places with the most expected new surface behind known free space,
-/// at most `most` of them: five per place, best place first.
+/// Views (T_world_camera) of the places where most new surface is expected behind known free space.
+/// Returns at most `most` views: five per place, best place first.
 ///
-/// For each face between free and unknown hazard cells, the expected area is the face times 1 -
-/// exp(-∫ h ds), integrated straight into the unknown as far as surface there counts as new. A
-/// place is the mean of the faces in a cube of `spacing` [m], weighted by expected area. One view
-/// stands at `distance` [m] in front of it, four at 30° to the side; image up is near +z.
+/// For each face between a free and an unknown hazard cell (HazardField), the expected area is the
+/// face times 1 - exp(-∫ h ds). The integral runs straight into unknown space as far as surface
+/// there counts as new. A place is the mean of the faces in a cube of `spacing` [m], weighted by
+/// expected area. One view is at `distance` [m] in front of the place, four are 30° to the side;
+/// image up is near +z.
 ///
-/// A map without evidence of surface has no places. Throws Error(invalid_argument) unless both
-/// lengths are positive and finite. Deterministic, thread safe. Cost: 10 ms for 112³ hazard cells.
+/// A map without known surface has no places. Throws Error(invalid_argument) unless both lengths
+/// are positive and finite. Deterministic, thread safe. Cost: 10 ms for 112³ hazard cells.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> hazard_views(const VoxelScene& scene,
                                                              double distance, double spacing,
                                                              std::size_t most);
@@ -33,12 +34,11 @@ inline constexpr std::string_view kHazardViews = "hazard";
 /// Generator name of candidates from reachable_hazard_views().
 inline constexpr std::string_view kReachViews = "reach_hazard";
 
-/// At most `count` views (T_world_camera) of the same places from poses within `reach`: places in
-/// turn by area, from 1, 1.6 or 2.5 times `distance` [m] and up to 75° off their faces' direction.
-/// A third of the views looks at its place, a third at the mean of all places, a third in between.
-/// Omits a view if 16 attempts find no reachable pose. Deterministic; thread safe if the reach's
-/// predicate is. Throws and costs as hazard_views(), and up to 16 `count` calls of
-/// ReachRegion::contains().
+/// At most `count` views (T_world_camera) of the same places from poses within `reach`, at 1, 1.6
+/// or 2.5 times `distance` [m] and up to 75° to the side. A third of the views looks at its place,
+/// a third at the mean of all places, a third in between. Omits a view if 16 attempts find no
+/// reachable pose. Deterministic; thread safe if the reach's predicate is. Errors and cost: see
+/// hazard_views(), plus up to 16 `count` calls of ReachRegion::contains().
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> reachable_hazard_views(const VoxelScene& scene,
                                                                        const ReachRegion& reach,
                                                                        double distance,

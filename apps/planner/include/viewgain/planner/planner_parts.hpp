@@ -13,10 +13,9 @@
 
 namespace viewgain {
 
-/// A planner as the parts of Algorithm 1: its map is the representation, its proposals are the
-/// candidates, its ranking is the decision. active_view_planning(start, camera, parts, parts,
+/// A ViewPlanner as the parts of Algorithm 1. active_view_planning(start, camera, parts, parts,
 /// parts, planner.planning()) takes the same views as add(), propose() and rank() in turn. Thread
-/// safety and cost as these.
+/// safety and cost are those of these calls.
 /// @code
 /// ViewPlanner planner(ViewScorer(sensor, {.voxel_size = 0.01, .workspace = box}));
 /// planner.add_poses({"sphere", poses});
@@ -31,7 +30,7 @@ class VIEWGAIN_EXPORT PlannerParts final : public RepresentationUpdate,
                                            public DecisionMaking {
  public:
   /// Keeps a reference to the planner. `config`: as in ViewPlanner::rank(); paths start at the
-  /// loop's camera pose.
+  /// camera pose that the loop passes.
   explicit PlannerParts(ViewPlanner& planner, const RankConfig& config = {})
       : planner_(planner), config_(config) {}
 

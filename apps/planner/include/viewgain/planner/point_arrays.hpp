@@ -12,7 +12,7 @@
 
 namespace viewgain {
 
-/// Fused points as arrays, for quality figures and files.
+/// Surface points of a map as arrays, for quality figures and files.
 struct VIEWGAIN_EXPORT PointArrays {
   std::vector<std::array<double, 3>> positions;  ///< position of point i, world [m]
   std::vector<std::array<double, 3>> normals;    ///< unit vector towards free space of point i

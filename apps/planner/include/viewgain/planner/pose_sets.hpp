@@ -20,7 +20,7 @@ namespace viewgain {
 
 /// A named set of fixed poses: sphere, dome, rings, sequence, file.
 struct VIEWGAIN_EXPORT PoseSet {
-  std::string generator;    ///< its name
+  std::string generator;    ///< name of the generator
   std::vector<Pose> poses;  ///< T_world_camera, in the generator's order
 };
 
@@ -29,14 +29,15 @@ struct VIEWGAIN_EXPORT PoseSet {
 
 /// Parameters of the pose sets.
 struct VIEWGAIN_EXPORT PoseSetRequest {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< point they look at, world [m]
-  double distance = 0;                               ///< distance from it [m]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< point that the poses look at, world [m]
+  double distance = 0;                               ///< distance of the poses from the centre [m]
   /// Number of poses: 500 by default; rings: 48 (default), 80, 288 or 864.
   std::optional<std::size_t> count{};
   std::uint64_t seed = 1;       ///< seed of the shell
   std::optional<Pose> start{};  ///< T_world_camera of the previous view (sequence, spread_out)
-  /// Orders the poses so that any number of the first ones is spread evenly: each is as far as
-  /// possible from the start's direction and all earlier ones; ties go to the lower index.
+  /// Orders the poses so that the first ones are spread evenly, whatever their number: each is as
+  /// far as possible from the start and from all earlier poses, by direction. Ties go to the lower
+  /// index.
   bool spread_out = false;
   ReachRegion reach{};  ///< reach of the robot (shell); lists of poses in it have no effect here
 };
@@ -46,12 +47,11 @@ struct VIEWGAIN_EXPORT PoseSetRequest {
 [[nodiscard]] VIEWGAIN_EXPORT PoseSetRequest around_workspace(const BeliefGrid& grid,
                                                               const Sensor& sensor);
 
-/// The set of a generator other than boundary. Shell: random poses that look at the centre, within
-/// the reach's shells or boxes if it has any (fewer than requested if few of a million samples are
-/// within all limits), otherwise between 0.8 and 1.25 times the distance. Sequence: eight views on
-/// the start's circle of latitude in steps of 45°, then one from above. Throws
-/// Error(invalid_argument) for an unknown name, an unsupported count, and more than 20,000 poses to
-/// spread out.
+/// The set of a generator other than boundary. Shell: random poses that look at the centre, between
+/// 0.8 and 1.25 times the distance, or within the reach's shells or boxes if it has any. It has
+/// fewer poses than requested if few random poses are within reach. Sequence: eight views on the
+/// start's circle of latitude in steps of 45°, then one from above. Throws Error(invalid_argument)
+/// for an unknown name, an unsupported count, and more than 20,000 poses to spread out.
 [[nodiscard]] VIEWGAIN_EXPORT PoseSet make_pose_set(std::string_view generator,
                                                     const PoseSetRequest& request);
 

@@ -15,8 +15,8 @@
 #include "viewgain/raycast/gain_evaluator.hpp"
 
 /// @file
-/// Ranking of views by one rule, used by the planner, `next`, `model`, `reconstruct` and studies
-/// with a gain; `score` ranks given poses. Poses are T_world_camera.
+/// Ranking of views by gain minus costs, for the planner, studies and the commands `next`, `model`
+/// and `reconstruct`. Poses are T_world_camera.
 
 namespace viewgain {
 
@@ -24,32 +24,33 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT RankConfig {
   /// Cost of each pose, subtracted from its gain, in the gain's unit. Empty: none.
   std::span<const double> costs{};
-  /// Cost per metre of straight path from `current_pose`, likewise. The combined gain per square
-  /// metre of new surface is proportional to 1 / voxel², so choose the cost per metre accordingly.
+  /// Cost per metre of straight path from `current_pose`, subtracted likewise. The combined gain
+  /// for a square metre of new surface is proportional to 1 / voxel², so the cost should be as
+  /// well.
   double cost_per_metre = 0;
-  /// Current camera pose, T_world_camera; only its centre is used. If it is missing,
-  /// ViewPlanner::rank() uses the last pose that it was given, and the functions ignore paths.
+  /// Current camera pose, T_world_camera; only its centre is used. If it is empty,
+  /// ViewPlanner::rank() uses the planner's last pose, and the functions of this file ignore paths.
   std::optional<Pose> current_pose{};
   const ViewMeasure* measure = nullptr;     ///< custom gain, as in BestConfig
   const RunMeasure* run_measure = nullptr;  ///< custom gain, as in BestConfig
-  /// Ranks each view by its marginal gain given those before it, so that no two show the same
-  /// (plan_tour() without paths). Cannot be used with measures.
+  /// Ranks each view by its marginal gain given the views before it, so that views do not show the
+  /// same surface twice. Cannot be used with measures.
   bool together = false;
-  /// Scores all poses in full. False: uses two stages, see GainEvaluator::race(), except with the
-  /// paper's gain. With `together` this holds for the first view. The others are chosen from at
-  /// least 32 poses with a quarter of the rays, and their marginal gains are estimates.
+  /// True: scores all poses in full. False: uses two stages (GainEvaluator::race()), except with
+  /// the paper's gain. With `together` and false, views after the first are chosen from at least 32
+  /// poses with a quarter of the rays, and their marginal gains are estimates.
   bool exact = false;
 };
 
-/// Planning ahead: K views are planned together in a short order, and M of them are taken before
-/// replanning. K = M = 1: one view at a time; M = 1: receding horizon; M = K: the whole plan. After
-/// each frame, views that became impossible or no longer promise enough are dropped; if none is
-/// left, the planner replans.
+/// Planning ahead: K views are planned together, with a short path through them, and M of them are
+/// taken before replanning. K = M = 1 plans one view at a time, M = 1 is a receding horizon, and M
+/// = K takes the whole plan. After each frame, planned views that became impossible or no longer
+/// have enough expected new surface are dropped. If none is left, the planner replans.
 struct VIEWGAIN_EXPORT PlanAhead {
   std::size_t plan = 1;  ///< K
   std::size_t take = 1;  ///< M
-  /// Minimum expected new surface of a view, as a share of the surface so far, to be planned and
-  /// taken; with the paper's gain any positive gain suffices.
+  /// Minimum expected new surface of a planned view, as a fraction of the surface so far. With the
+  /// paper's gain any positive gain suffices.
   double least_share = kStopArea;
 
   /// Whether more than one view is planned.
@@ -65,7 +66,7 @@ inline constexpr std::string_view kPlanned = "plan";
 struct VIEWGAIN_EXPORT RankedView {
   std::size_t index = 0;  ///< index of the candidate in the proposal, or of the given pose
   Pose T_world_camera;    ///< camera pose
-  ViewGain gain;          ///< all NaN with a measure; marginal if views are ranked together
+  ViewGain gain;          ///< all NaN with a measure; marginal gain if views are ranked together
   double worth = 0;       ///< gain or measure, minus the cost, in the gain's unit
 };
 
@@ -73,12 +74,13 @@ struct VIEWGAIN_EXPORT RankedView {
 struct VIEWGAIN_EXPORT Ranking {
   std::vector<RankedView> views;  ///< best first
   bool complete = true;           ///< false: stopped early
-  /// Indices of the views scored in full: all, or those of the second stage. Empty with a measure.
+  /// Indices of the views scored in full: all views, or those of the second stage. Empty with a
+  /// measure.
   std::vector<std::size_t> scored_indices{};
   std::vector<ViewGain> scored_gains{};  ///< their gains, in the same order
   double way = 0;                        ///< straight-line path through the views of a plan [m]
   /// Gain minus costs of the first view or of a whole new plan, in the gain's unit. NaN without
-  /// costs, and for the rest of a plan, which continues whatever its path costs.
+  /// costs, and for the rest of a plan.
   double worth = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -89,36 +91,37 @@ struct VIEWGAIN_EXPORT Ranking {
                                                              const RankConfig& config);
 
 /// The k best of the poses, k >= 1; ignores feasibility. Ties go to the earlier pose; omits invalid
-/// poses and, with `together`, those without marginal gain. Throws Error(invalid_argument) as
+/// poses and, with `together`, poses without marginal gain. Throws Error(invalid_argument) like
 /// view_costs() and GainEvaluator::best().
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  std::size_t k, const RankConfig& config,
                                                  const BatchControl& control = {});
 
-/// At most `ahead.plan` poses that are good together, ordered for a short straight-line path from
-/// config.current_pose (empty: any start) at config.cost_per_metre; see plan_tour(). `surface_area`
-/// [m²] is the reference of least_share. Poses must be finite. Throws Error(invalid_argument) as
-/// PlanAhead::check(), with a measure, and as view_costs() and plan_tour().
+/// At most `ahead.plan` poses with a large gain together, in the order of a short straight-line
+/// path from config.current_pose (empty: any start). Paths cost config.cost_per_metre; see
+/// plan_tour(). `surface_area` [m²] is the surface so far, for PlanAhead::least_share. Poses must
+/// be finite. Throws Error(invalid_argument) like PlanAhead::check(), view_costs() and plan_tour(),
+/// and if a measure is set.
 [[nodiscard]] VIEWGAIN_EXPORT Ranking plan_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  const PlanAhead& ahead, double surface_area,
                                                  const RankConfig& config,
                                                  const BatchControl& control = {});
 
-/// Removes the views of a plan that promise too little on the current map. `surface_area` as in
-/// plan_views().
+/// Removes the views of a plan whose expected new surface on the current map is too small.
+/// `surface_area` as in plan_views().
 VIEWGAIN_EXPORT void keep_worth(const GainEvaluator& evaluator, const PlanAhead& ahead,
                                 double surface_area, Proposal& planned);
 
-/// The rest of a plan, in order, with the individual gain of each view. Throws as plan_views().
+/// The rest of a plan, in order, with the individual gain of each view. Throws like plan_views().
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_in_turn(const GainEvaluator& evaluator,
                                                    std::span<const Pose> T_world_camera,
                                                    RankConfig config,
                                                    const BatchControl& control = {});
 
-/// The figures of a ranking for the stopping rules: individual gain and area of its first view,
-/// even in a plan; empty if no view has a gain.
+/// The values of a ranking for the stopping rules: gain and area of its first view alone. Empty if
+/// no view has a gain.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<DecisionMaking::Decision> decision_of(
     const Ranking& ranking, GainModel model);
 

@@ -15,10 +15,9 @@
 
 namespace viewgain {
 
-/// DATAACQUISITION of Algorithm 1 with a simulated camera: `frames_per_view` frames from each pose,
-/// numbered consecutively, so that view and frame determine the noise. A stop ends a view after the
-/// current frame. Thread safety: one call at a time. Throws and costs as SimulatedSensor::acquire()
-/// per frame.
+/// DATAACQUISITION of Algorithm 1 with a simulated camera: takes `frames_per_view` frames from each
+/// pose. Frames are numbered consecutively, and the number determines the noise. Thread safety: one
+/// call at a time. Errors and cost per frame: see SimulatedSensor::acquire().
 class VIEWGAIN_EXPORT SimulatedAcquisition : public DataAcquisition {
  public:
   /// `stop` ends a view after the current frame. `frames_per_view` must be at least 1 (unchecked).
@@ -37,14 +36,15 @@ class VIEWGAIN_EXPORT SimulatedAcquisition : public DataAcquisition {
   DepthFrame last_frame_;
 };
 
-/// The reported pose of a camera at T_world_camera, with independent Gaussian errors `sigma`,
-/// determined by seed and view. View 0 is exact, because it defines the world frame. Thread safe.
-/// Throws Error(invalid_argument) naming the value if a sigma is negative or not finite.
+/// The pose that an inexact robot reports for a camera at T_world_camera: with independent Gaussian
+/// errors `sigma`, which seed and view determine. View 0 is exact, because it defines the world
+/// frame. Thread safe. Throws Error(invalid_argument) naming the value if a sigma is negative or
+/// not finite.
 [[nodiscard]] VIEWGAIN_EXPORT Pose reported_pose(const Pose& T_world_camera, std::size_t view,
                                                  const PoseSigma& sigma, std::uint64_t seed);
 
-/// DATAACQUISITION that reports slightly wrong poses. Thread safety: one call at a time. Throws as
-/// its camera and reported_pose(); costs as its camera.
+/// DATAACQUISITION that reports slightly wrong poses. Thread safety: one call at a time. Throws
+/// like its camera and reported_pose(); costs the same as its camera.
 class VIEWGAIN_EXPORT MisreportedAcquisition : public DataAcquisition {
  public:
   /// Keeps a reference to the camera. acquire() checks the sigmas.

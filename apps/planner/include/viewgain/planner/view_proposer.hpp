@@ -21,13 +21,12 @@
 #include "viewgain/raycast/voxel_scene.hpp"
 
 /// @file
-/// Rules for which views are possible, shared by next, model, reconstruct, score --feasible,
-/// studies, ViewPlanner, C and Python. Poses are T_world_camera. Functions keep the order of the
-/// poses.
+/// Rules for which views are possible. All commands, studies, ViewPlanner and Python share them.
+/// Poses are T_world_camera. Functions keep the order of the poses.
 
 namespace viewgain {
 
-/// Reason for dropping a candidate that was commanded and not reached.
+/// Reason for dropping a candidate that was tried and not reached.
 inline constexpr std::string_view kMissed = "missed";
 
 /// A dropped candidate.
@@ -36,7 +35,7 @@ struct VIEWGAIN_EXPORT DroppedCandidate {
   std::string reason;   ///< infeasibility_name() or kMissed
 };
 
-/// Their poses, in order.
+/// The poses of the candidates, in order.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> poses_of(std::span<const Candidate> candidates);
 
 /// Settings of a ViewProposer.
@@ -44,17 +43,18 @@ struct VIEWGAIN_EXPORT ProposerConfig {
   FeasibilityConfig feasibility{};  ///< feasibility, and tolerance for taken poses
   /// False: accepts all candidates except those taken or tried.
   bool check_feasibility = true;
-  /// If the reach is limited, adds 1,200 reachable_hazard_views() from this distance [m] to the
-  /// candidates of generations; 0: none.
+  /// If the reach is limited and there are generations, adds 1,200 candidates of
+  /// reachable_hazard_views() at about this distance [m]; 0: none.
   double distance_in_reach = 0;
 };
 
-/// Collects candidates of sets and generations and checks which are possible. If all views of the
-/// map lie inside its workspace, as in a room, and the reach is unlimited, candidates of
-/// generations stay inside too, because obstacles outside are not mapped. Not thread safe.
+/// Collects candidates of sets and generations and checks which are possible. In a room, where all
+/// views of the map lie inside its workspace, candidates of generations must lie inside too,
+/// because obstacles outside are not mapped. This rule does not apply if the reach is limited. Not
+/// thread safe.
 class VIEWGAIN_EXPORT ViewProposer {
  public:
-  /// The reach region's list of poses, if any, becomes the set "reach". Throws as
+  /// The reach region's list of poses, if any, becomes the set "reach". Throws like
   /// FeasibilityChecker.
   ViewProposer(std::shared_ptr<const VoxelScene> scene, ProposerConfig config,
                const ExecConfig& exec = {});
@@ -64,10 +64,10 @@ class VIEWGAIN_EXPORT ViewProposer {
   /// Adds candidates that are recomputed for each proposal.
   void add_generation(std::shared_ptr<ViewpointGeneration> generation);
 
-  /// Candidates of the sets, then of the generations, in order, that are possible in `scene` of the
-  /// current map, given that `reached` and `missed` were tried; and the number of dropped ones by
-  /// reason. Generations receive the current camera pose `T_world_camera`. Cost: the generations,
-  /// and FeasibilityChecker::check().
+  /// The possible candidates of the sets, then of the generations, in order, and the number of
+  /// dropped ones by reason. `scene` must show the current map. Poses in `reached` and `missed`
+  /// were tried and are dropped. Generations receive the current camera pose `T_world_camera`.
+  /// Cost: the generations, and FeasibilityChecker::check().
   [[nodiscard]] Proposal propose(const BeliefGrid& grid, std::shared_ptr<const VoxelScene> scene,
                                  const Pose& T_world_camera, std::span<const Pose> reached = {},
                                  std::span<const Pose> missed = {});

@@ -16,18 +16,19 @@
 
 namespace viewgain {
 
-/// Tells which points of a map's surface its views see unoccluded: the `sees` of estimate_views.
-/// Traces a view on its first query. Thread safety: one call at a time. Cost: one trace per view,
-/// then constant time per point.
+/// Determines which points of a map's surface its views see unoccluded, for the argument `sees` of
+/// estimate_views(). Traces a view on its first query. Thread safety: one call at a time. Cost: one
+/// trace per view, then constant time per point.
 class VIEWGAIN_EXPORT ViewSight {
  public:
-  /// Throws as GainEvaluator's constructor. `views`: T_world_camera; queries use their indices.
+  /// Throws like the constructor of GainEvaluator. `views`: T_world_camera; queries use their
+  /// indices.
   ViewSight(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
             std::span<const Pose> views, const ExecConfig& exec);
 
-  /// Whether the point [m, world] is unoccluded in at least one of the pixel that shows it and its
-  /// eight neighbours. Occluders must be closer than the point by more than two voxels and three
-  /// sigmas of a reading, so that the point's own noise does not hide it. False outside the image.
+  /// Whether the view sees the point [m, world] unoccluded, in the pixel that shows it or one of
+  /// its eight neighbours. Only what is nearer than the point by more than two voxels and three
+  /// sigmas occludes it, so that the point's noise does not hide it. False outside the image.
   /// `view` is unchecked.
   [[nodiscard]] bool sees(std::size_t view, const Eigen::Vector3d& point);
 

@@ -24,50 +24,49 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT BoundaryViewsConfig {
   EstimatorConfig estimator{};  ///< estimation of the views at a boundary
   double working_distance = 0;  ///< distance from the surface [m]
-  /// Classifies a boundary by the last view that sees it unoccluded, not only in its image, which
-  /// requires a trace per view. Moves the ends of runs, and so the candidates.
+  /// Classifies a boundary by the last view that sees it unoccluded, instead of the last one that
+  /// has it in its image. Changes the runs, and so the candidates. Costs a trace per view.
   bool classes_by_sight = false;
 };
 
-/// Settings for a large batch of variants: two distances, tilts of 15° to four sides, two rolls; an
-/// overlap of a quarter of a view; regions of 80 mm. `spacing` of the surface's points [m]; throws
-/// Error(invalid_argument) unless it is positive.
+/// Settings for many candidates per boundary: two distances, tilts of 15° to four sides, two rolls,
+/// an overlap of a quarter of a view, and regions of 80 mm. `spacing`: that of the surface's points
+/// [m]. Throws Error(invalid_argument) unless it is positive.
 [[nodiscard]] VIEWGAIN_EXPORT EstimatorConfig default_estimator(double spacing);
 
 /// default_estimator() for the surface of a map with this voxel_size [m], at the sensor's working
-/// distance. Throws as that.
+/// distance. Throws like it.
 [[nodiscard]] VIEWGAIN_EXPORT BoundaryViewsConfig default_boundary(const Sensor& sensor,
                                                                    double voxel_size);
 
 /// Views at the open boundaries of a map's surface, feasible or not; `views`: T_world_camera so
-/// far, in order. Throws and costs as estimate_views(), and with classes_by_sight as ViewSight.
+/// far, in order. Errors and cost: see estimate_views(), and with classes_by_sight also ViewSight.
 [[nodiscard]] VIEWGAIN_EXPORT EstimatedViews
 boundary_views(const SurfaceMesh& surface, const std::shared_ptr<const VoxelScene>& scene,
                std::span<const Pose> views, const Sensor& sensor, const BoundaryViewsConfig& config,
                const ExecConfig& exec);
 
-/// The same as candidates of the generator "boundary", in order and numbered by it. Never throws.
-/// Cost: O(candidates).
+/// Converts to candidates of the generator "boundary", in order. Candidate::number is the index in
+/// estimated.candidates. Never throws. Cost: O(candidates).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Candidate> candidates_of(const EstimatedViews& estimated);
 
 /// VIEWPOINTSGENERATION at the surface boundaries of a map, recomputed for each proposal, for
-/// ViewPlanner::add_generation(). Fills up to 200 candidates with hazard_views(), which cover holes
-/// without a boundary and surface expected where nothing is open. Does not check feasibility. A map
-/// without surface or views (such as an OctoMap) gets a sphere around the workspace. Thread safety:
-/// one call at a time. Cost: fused_points(), reconstruct_surface(), estimate_views() and
-/// hazard_views().
+/// ViewPlanner::add_generation(). If there are fewer than 200 candidates, adds hazard_views(),
+/// because new surface can also be expected away from any boundary. Does not check feasibility. For
+/// a map without surface or views, such as an OctoMap, the candidates are a sphere around the
+/// workspace. Thread safety: one call at a time. Cost: fused_points(), reconstruct_surface(),
+/// estimate_views() and hazard_views().
 class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
  public:
-  /// Uses the surface in a map, such as that of ViewPlanner::scorer(), which must outlive it;
-  /// recomputes the surface for each proposal.
+  /// Recomputes the surface of a map, such as that of ViewPlanner::scorer(), for each proposal. The
+  /// scorer must outlive this object.
   BoundaryGeneration(const ViewScorer& scorer, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
-  /// Uses a model's current surface; the model must outlive it.
+  /// Uses a model's current surface. The model must outlive this object.
   BoundaryGeneration(const SurfaceModel& model, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
 
-  /// The views at the open boundaries of the current surface, and those of the hazard. Throws as
-  /// boundary_views().
+  /// Proposes these candidates. Throws like boundary_views().
   Proposal generate(const Pose& T_world_camera) override;
 
   /// Details of the last proposal.
@@ -86,12 +85,12 @@ struct VIEWGAIN_EXPORT GenerationConfig {
   bool at_boundaries = true;        ///< use candidates of BoundaryGeneration
   BoundaryViewsConfig boundary{};   ///< settings of views at open surface boundaries
   std::vector<PoseSet> sets{};      ///< fixed poses, in order
-  std::vector<Pose> tried{};        ///< views that brought nothing, in addition to the model's
+  std::vector<Pose> tried{};        ///< poses of failed views, in addition to the model's
   FeasibilityConfig feasibility{};  ///< settings of the feasibility check
 };
 
 /// Default settings of all loops: boundary candidates from default_boundary(), no sets, feasibility
-/// of the sensor's body, unlimited reach. voxel_size [m] is the map's. Throws as
+/// of the sensor's body, unlimited reach. voxel_size [m] is the map's. Throws like
 /// default_boundary().
 [[nodiscard]] VIEWGAIN_EXPORT GenerationConfig default_generation(const Sensor& sensor,
                                                                   double voxel_size);
@@ -101,12 +100,12 @@ struct VIEWGAIN_EXPORT GenerationConfig {
 /// and FeasibilityChecker::check() of all candidates.
 class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
  public:
-  /// The model must outlive it. Throws as FeasibilityChecker.
+  /// The model must outlive this object. Throws like FeasibilityChecker.
   CandidateGeneration(const SurfaceModel& model, const GenerationConfig& config,
                       const ExecConfig& exec);
 
   /// Poses of the sets and boundary views that are possible under the rules of ViewProposer. Throws
-  /// as boundary_views().
+  /// like boundary_views().
   Proposal generate(const Pose& T_world_camera) override;
 
   /// The possible poses of one set.
@@ -115,9 +114,9 @@ class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
   /// The settings.
   [[nodiscard]] const GenerationConfig& config() const noexcept { return config_; }
 
-  /// Details of the last proposal: why its boundary candidates exist. The `number` of a candidate
-  /// with a class is its index in estimated().candidates; that of a set's candidate is its index in
-  /// the set.
+  /// Runs and patches behind the boundary candidates of the last proposal. The `number` of a
+  /// candidate with a class is its index in estimated().candidates; the `number` of a set's
+  /// candidate is its index in the set.
   [[nodiscard]] const EstimatedViews& estimated() const noexcept {
     return boundaries_->estimated();
   }

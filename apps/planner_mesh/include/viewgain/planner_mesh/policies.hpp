@@ -27,20 +27,19 @@
 namespace viewgain {
 
 /// Decision rule of Kriegel et al. (section 5 of the paper): left boundaries first, then right, top
-/// and bottom ones. Our addition: within a class, the longest run first.
+/// and bottom ones. Within a class, our rule takes the longest run first.
 ///
-/// A run offers one pose, the nominal one of the feasible patch nearest to its middle, and is tried
-/// once. A later run of the same class counts as the same if one of its patches has its origin
-/// within `same_place` of the tried patch's. Thread safety: one call at a time. Cost: O(candidates
-/// + patches · runs tried).
+/// Each run (BoundaryRun) is tried once, with one pose: the nominal pose of the feasible patch
+/// nearest to the run's middle. After the surface has changed, a run counts as tried if it has the
+/// same class and one of its patches lies within `same_place` of the tried patch. Thread safety:
+/// one call at a time. Cost: O(candidates + patches · runs tried).
 class VIEWGAIN_EXPORT BoundaryOrder {
  public:
-  /// `same_place` [m]: half the length of a patch recognises a run that was cut differently;
-  /// unchecked.
+  /// `same_place` [m], unchecked. Half the length of a patch is a good value.
   explicit BoundaryOrder(double same_place) : same_place_(same_place) {}
 
-  /// Index of the chosen candidate, which is then tried; empty if no untried run has a feasible
-  /// nominal pose. Boundary candidates are those with a class; their numbers must index
+  /// Index of the chosen candidate, which then counts as tried; empty if no untried run has a
+  /// feasible nominal pose. Boundary candidates are those with a class; their numbers must index
   /// estimated.candidates.
   [[nodiscard]] std::optional<std::size_t> next(std::span<const Candidate> candidates,
                                                 const EstimatedViews& estimated);
@@ -65,12 +64,12 @@ class VIEWGAIN_EXPORT RegisteredChoice {
   /// Number of candidates scored with all rays.
   static constexpr std::size_t kInFull = 32;
 
-  /// The model must outlive it.
+  /// The model must outlive this object.
   RegisteredChoice(const SurfaceModel& model, const Sensor& sensor, std::string gain,
                    const ExecConfig& exec);
 
-  /// Gain of each pose, in the gain's unit. Unless `all` are requested, poses outside the first 32
-  /// in a ranking with about 400 rays each (ties to the lower index) have NaN. Throws as
+  /// Gain of each pose, in the gain's unit. Unless `all` is set, only the 32 best poses by about
+  /// 400 rays each are scored with all rays; the others are NaN. Throws like
   /// GainFamily::evaluator().
   [[nodiscard]] std::vector<double> gains(std::span<const Pose> T_world_camera, bool all) const;
 
@@ -89,8 +88,8 @@ struct VIEWGAIN_EXPORT KnownObject {
       simulation{};  ///< settings of the simulation, including surroundings; noise is ignored
 };
 
-/// Decision with knowledge of the object: an upper reference for planners. Looks one view ahead, so
-/// longer sequences can still be better.
+/// Decision with knowledge of the object, as an upper reference for planners. It looks only one
+/// view ahead, so another sequence of views can still be better.
 ///
 /// Thread safety: one call at a time. Deterministic for any number of threads.
 class VIEWGAIN_EXPORT OracleChoice {
@@ -98,21 +97,21 @@ class VIEWGAIN_EXPORT OracleChoice {
   /// Number of simulated candidates.
   static constexpr std::size_t kSimulated = 8;
 
-  /// The model must outlive it. Throws Error(invalid_argument) without a mesh or samples.
+  /// The model must outlive this object. Throws Error(invalid_argument) without a mesh or samples.
   OracleChoice(const SurfaceModel& model, const Sensor& sensor, const KnownObject& object,
                const ExecConfig& exec);
 
   /// Index of the candidate after which the map's points cover the most samples. Simulates one
   /// noise-free frame into a copy of the map for each of the 8 candidates that see the most
   /// uncovered samples of the mesh, unoccluded and at under 72°. Ties go to the lower index.
-  /// Requires at least one candidate (unchecked). Throws as covered_after(). Cost: some seconds for
-  /// a thousand candidates.
+  /// Requires at least one candidate (unchecked). Throws like covered_after(). Cost: some seconds
+  /// for a thousand candidates.
   [[nodiscard]] std::size_t next(std::span<const Candidate> candidates) const;
 
-  /// Number of uncovered samples that each candidate sees; a sample at range t counts 1 / (1 +
-  /// σ_ax(t) / V). Cost: up to two rays per sample and candidate.
+  /// Number of uncovered samples that each candidate sees, weighted by 1 / (1 + σ_ax(t) / V) for a
+  /// sample at range t, where V is the voxel size. Cost: up to two rays per sample and candidate.
   [[nodiscard]] std::vector<double> uncovered_in_view(std::span<const Candidate> candidates) const;
-  /// Number of samples that the map's points cover after a frame from there. Throws as
+  /// Number of samples that the map's points cover after a frame from the pose. Throws like
   /// SimulatedSensor::acquire(). Cost: a simulated frame and a copy of the map.
   [[nodiscard]] std::size_t covered_after(const Pose& T_world_camera) const;
 
@@ -128,10 +127,10 @@ class VIEWGAIN_EXPORT OracleChoice {
 enum class Policy : std::uint8_t {
   gain,       ///< largest expected gain
   kriegel,    ///< boundaries in the order left, right, top, bottom, each once; see BoundaryOrder
-  sequence,   ///< a fixed set in order: turntable of eight, then from above
+  sequence,   ///< a fixed set in order: eight around the object, then one from above
   random,     ///< uniformly random among the feasible poses
   frontier,   ///< most unknown voxels in view
-  fibonacci,  ///< a fixed set in order: evenly around the object
+  fibonacci,  ///< a fixed set in order: evenly spread around the object
   oracle,     ///< knows the object: an upper reference, see OracleChoice
 };
 /// Names of the policies, in enumeration order.
@@ -146,42 +145,41 @@ struct VIEWGAIN_EXPORT PolicyConfig {
   std::string registered{};        ///< registered gain of Policy::gain that replaces `model`
   Criterion criterion = Criterion::log_diagonal;  ///< criterion of the paper's gain
   double cost_per_metre = 0;  ///< subtracted per metre of path [the gain's unit per m]
-  PlanAhead ahead{};          ///< planning ahead, of Policy::gain with `model`
-  KnownObject object{};       ///< of Policy::oracle
+  PlanAhead ahead{};          ///< planning ahead, only for Policy::gain with `model`
+  KnownObject object{};       ///< the object that Policy::oracle knows
   std::uint64_t seed = 1;     ///< seed of random choices
 };
 
-/// set_stop_rules() for a policy: that of its gain. Policies without a gain, or with a registered
-/// one, do not stop on gain or area. `stop_gain` [nat, m² for trace]; `stop_area` is a share of the
-/// surface. Also throws Error(invalid_argument) for a gain or area above 0 with such a policy.
+/// set_stop_rules() for the gain of a policy. Policies without a gain, or with a registered gain,
+/// do not stop on gain or area; for these, Error(invalid_argument) is thrown for a value above 0.
+/// `stop_gain` [nat, m² for trace]; `stop_area` is a fraction of the surface.
 VIEWGAIN_EXPORT void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                                     std::optional<double> stop_gain,
                                     std::optional<double> stop_area);
 
-/// DECISIONMAKER of Algorithm 1 for all policies, and its VIEWPOINTSGENERATION, which proposes the
-/// rest of a plan, otherwise the candidates of the generation. Thread safety: one call at a time.
-/// Cost: with a gain or counts as GainEvaluator, with a registered gain as RegisteredChoice, with
-/// the oracle as OracleChoice; otherwise O(candidates).
+/// DECISIONMAKER of Algorithm 1 for all policies. It is also the VIEWPOINTSGENERATION, because it
+/// proposes the rest of a plan before the candidates of the generation. Thread safety: one call at
+/// a time. Cost: that of GainEvaluator, RegisteredChoice or OracleChoice, depending on the policy;
+/// otherwise O(candidates).
 class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGeneration {
  public:
-  /// Model and generation must outlive it. Throws Error(invalid_argument) for an oracle without an
-  /// object, planning ahead with another policy, and as PlanAhead::check().
+  /// Model and generation must outlive this object. Throws Error(invalid_argument) for an oracle
+  /// without an object, planning ahead with another policy than gain, and like PlanAhead::check().
   PolicyDecision(const SurfaceModel& model, CandidateGeneration& generation, const Sensor& sensor,
                  const PolicyConfig& config, const ExecConfig& exec);
 
-  /// The remaining views of a plan that are possible and promise enough (generator kPlanned); if
-  /// there are none, the candidates of the generation.
+  /// The remaining views of a plan that are still good (generator kPlanned). If there are none, the
+  /// candidates of the generation.
   Proposal generate(const Pose& T_world_camera) override;
 
-  /// Index of the chosen candidate. Empty if there are no candidates, and for kriegel if all were
-  /// tried.
+  /// The chosen candidate. Empty if there are no candidates, and for kriegel if all were tried.
   std::optional<Decision> decide(const Pose& T_world_camera,
                                  std::span<const Candidate> candidates) override;
 
  private:
   /// Evaluator of the policy's gain on the model's scene.
   const GainEvaluator& evaluator();
-  /// Decision with a gain of viewgain's own; only these can stop a run.
+  /// Decision by a GainModel; only such decisions can stop a run.
   [[nodiscard]] std::optional<Decision> decide_by_gain(const Pose& T_world_camera,
                                                        std::span<const Candidate> candidates);
   [[nodiscard]] bool is_by_gain() const noexcept {
@@ -203,13 +201,14 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
   Sensor sensor_;
   PolicyConfig config_;
   ExecConfig exec_;
-  std::optional<GainEvaluator> evaluator_;       ///< for the scene of the last decision
-  std::optional<GainEvaluator> area_evaluator_;  ///< evaluator of the surface gain on it
+  std::optional<GainEvaluator> evaluator_;  ///< for the scene of the last decision
+  /// Evaluator of the surface gain on the same scene.
+  std::optional<GainEvaluator> area_evaluator_;
   BoundaryOrder order_;
   std::optional<OracleChoice> oracle_;
   std::optional<RegisteredChoice> registered_;
   std::vector<Pose> planned_;  ///< remaining views, in the order of the plan
-  bool is_of_plan_ = false;    ///< the last proposal
+  bool is_of_plan_ = false;    ///< whether the last proposal consists of planned views
 };
 
 }  // namespace viewgain

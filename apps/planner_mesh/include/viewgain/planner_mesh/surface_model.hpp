@@ -24,50 +24,50 @@ namespace viewgain {
 
 /// Settings of the model.
 struct VIEWGAIN_EXPORT SurfaceModelConfig {
-  /// Settings of the map. Its gain scores no views; policies have their own.
+  /// Settings of the map. Its gain is not used; policies have their own.
   ScorerConfig map{.learn_hazard = true, .gain = {.model = GainModel::paper}};
-  FusedPointsConfig points{};  ///< computation of points from beliefs; scale_sigma is the sensor's
+  FusedPointsConfig points{};  ///< settings of the surface points; scale_sigma is the sensor's
 };
 
-/// Surface through the points of a map; vertex i comes from point source[i]. Throws and costs as
+/// Surface through the points of a map; vertex i comes from point source[i]. Errors and cost: see
 /// reconstruct_surface().
 [[nodiscard]] VIEWGAIN_EXPORT SurfaceMesh surface_of(const std::vector<FusedPoint>& points,
                                                      const ExecConfig& exec);
 
-/// Standard deviation along the surface normal [m] per vertex, from the point that it comes from;
-/// `source` must index the points (unchecked). Cost: O(vertices).
+/// Standard deviation along the surface normal [m] of each vertex, from the covariance of its
+/// point. SurfaceMesh::source must index the points (unchecked). Cost: O(vertices).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<double> surface_sigmas(
     const SurfaceMesh& surface, const std::vector<FusedPoint>& points);
 
-/// The two representations of Algorithm 1 (UPDATEREPRESENTATIONS), the belief grid and the surface
-/// seen so far, and data derived from them after each view.
+/// The two representations of Algorithm 1 (UPDATEREPRESENTATIONS): the belief grid and the surface
+/// seen so far.
 ///
-/// Thread safety: const members may run from many threads at once; nothing may run next to the
-/// others. Cost of update(): ViewScorer::add(), fused_points() and reconstruct_surface()
+/// Thread safety: const members may run from many threads at once, but not during a non-const one.
+/// Cost of update(): ViewScorer::add(), fused_points() and reconstruct_surface()
 /// (perf/results/loop.md).
 class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
  public:
-  /// `truth` may be null: then there are no quality figures. Throws as ViewScorer.
+  /// If `truth` is null, there are no quality figures. Throws like ViewScorer.
   SurfaceModel(const Sensor& sensor, const SurfaceModelConfig& config,
                std::shared_ptr<const Truth> truth, const ExecConfig& exec);
 
-  /// Starts from an existing map with its surface and scene. Throws as ViewScorer and
+  /// Starts from an existing map, and computes its surface and scene. Throws like ViewScorer and
   /// fused_points().
   SurfaceModel(BeliefGrid grid, const Sensor& sensor, const SurfaceModelConfig& config,
                const ExecConfig& exec);
 
-  /// Adds measurements. Stages of its seconds: integrate, snapshot, surface and, with a reference
-  /// mesh, quality. Throws Error(invalid_argument) if the first view has no reading in the
-  /// workspace.
+  /// Adds measurements. ModelProgress::seconds has the stages integrate, snapshot, surface and,
+  /// with a reference mesh, quality. Throws Error(invalid_argument) if the first view has no
+  /// reading in the workspace.
   ModelProgress update(const Measurements& measurements) override;
 
-  /// Rebuilds the model from these measurements in order, for poses that became better known. Cost:
-  /// one update of the map per view; quality is computed once. Throws as update(); the previous
+  /// Rebuilds the model from these measurements in order, after their poses were corrected. Cost:
+  /// one update of the map per view; quality is computed once. Throws like update(); the previous
   /// model is then lost.
   ModelProgress rebuild(std::span<const Measurements> measurements);
 
-  /// The points that the model would have after these measurements, without changing it. Throws as
-  /// ViewScorer::add(). Cost: a copy of the map, and update() without the surface.
+  /// The points that the model would have after these measurements. Does not change the model.
+  /// Throws like ViewScorer::add(). Cost: a copy of the map, and update() without the surface.
   [[nodiscard]] std::vector<FusedPoint> points_after(const Measurements& measurements) const;
 
   /// The map behind the surface.
@@ -80,7 +80,7 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   [[nodiscard]] const std::vector<FusedPoint>& points() const noexcept { return points_; }
   /// The surface through the points of the last update.
   [[nodiscard]] const SurfaceMesh& surface() const noexcept { return surface_; }
-  /// Poses of views that brought nothing and are not among the map's.
+  /// Poses of failed views, which are not among the map's views.
   [[nodiscard]] const std::vector<Pose>& tried() const noexcept { return tried_; }
   /// Quality after each view, if there is a reference mesh.
   [[nodiscard]] const std::vector<QualityFigures>& quality() const noexcept { return quality_; }
@@ -99,20 +99,20 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   std::vector<Pose> tried_;
 };
 
-/// UPDATEREPRESENTATIONS for slightly wrong poses: aligns each view's first frame with those of all
-/// views so far, which also moves these, and rebuilds the model from the resulting poses. A refused
-/// view stays out of the model while it is refused. The first view's pose is fixed.
+/// UPDATEREPRESENTATIONS for slightly wrong poses. Aligns the first frames of all views so far with
+/// each other (FrameAlignment) and rebuilds the model from the corrected poses. A refused view is
+/// left out of the model while it is refused. The first view's pose is fixed.
 ///
 /// Keeps all frames. Thread safety: one call at a time. Cost of a view: the alignment, and an
 /// update for every view so far.
 class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
  public:
   /// `model` must be empty; a reference is kept. `sigma`: uncertainty of each reported pose. Throws
-  /// Error(invalid_argument) as FrameAlignment.
+  /// Error(invalid_argument) like FrameAlignment.
   RegisteredModel(SurfaceModel& model, const PoseSigma& sigma, const ExecConfig& exec = {});
 
-  /// Stages: those of SurfaceModel::update(), and register. Throws as FrameAlignment::add() and
-  /// SurfaceModel::rebuild().
+  /// The stages are those of SurfaceModel::update(), and register. Throws like
+  /// FrameAlignment::add() and SurfaceModel::rebuild().
   ModelProgress update(const Measurements& measurements) override;
 
   /// Current registration of each view.

@@ -49,9 +49,9 @@ struct VIEWGAIN_EXPORT Stage {
 [[nodiscard]] VIEWGAIN_EXPORT Stage set_stage(const StageConfig& config, const ExecConfig& exec);
 
 /// A pose (T_world_camera) that looks at the object's centre from `distance` [m] and 27° above, at
-/// an azimuth that depends on the seed. If that is out of reach or not above support_plane (world z
-/// [m]), the nearest possible one of 2,562 poses on the sphere and the region's list. Throws
-/// Error(invalid_argument) if there is none.
+/// an azimuth that depends on the seed. If that pose is out of reach or not above support_plane
+/// (world z [m]), returns the nearest possible pose among 2,562 on the sphere and the region's
+/// list. Throws Error(invalid_argument) if there is none.
 [[nodiscard]] VIEWGAIN_EXPORT Pose default_start(const Stage& stage, double distance,
                                                  std::uint64_t seed, const ReachRegion& reach,
                                                  const std::optional<double>& support_plane);
@@ -59,28 +59,31 @@ struct VIEWGAIN_EXPORT Stage {
 /// Default distance within which a point covers a sample [m].
 inline constexpr double kCovered = 5e-3;
 
-/// Default for a map with this voxel size [m]: at least a voxel.
+/// Default covering distance for a map with this voxel size [m]: at least a voxel.
 [[nodiscard]] constexpr double covered_within(double voxel_size) {
   return voxel_size > kCovered ? voxel_size : kCovered;
 }
 
 /// Quality of a model relative to a reference mesh. Lengths in metres.
 struct VIEWGAIN_EXPORT QualityFigures {
-  double coverage = 0;          ///< share of all samples covered by the surface
-  double coverage_visible = 0;  ///< share of the visible samples; NaN if there are none
-  double coverage_points = 0;   ///< share of the visible samples covered by the points
-  /// Share of the visible samples covered by the triangles, not only their vertices.
+  double coverage = 0;          ///< fraction of all samples covered by the surface's vertices
+  double coverage_visible = 0;  ///< the same for the visible samples; NaN if there are none
+  double coverage_points = 0;   ///< fraction of the visible samples covered by the points
+  /// Fraction of the visible samples covered by the triangles of the surface, not only its
+  /// vertices.
   double coverage_triangles = 0;
-  double coverage_2_5mm = 0;        ///< share of all samples covered by the surface within 2.5 mm
+  /// Fraction of all samples with a vertex of the surface within 2.5 mm.
+  double coverage_2_5mm = 0;
   double covered_area = 0;          ///< area of the mesh with covered visible samples [m²]
   ErrorStatistics surface_error{};  ///< error of surface.ply
   ErrorStatistics points_error{};   ///< error of points.ply
   Consistency consistency{};        ///< consistency of the points
 };
 
-/// All figures of a surface and its points except covered_area, which stays 0. `visible` holds one
-/// mark per sample of the reference mesh. A sample is covered if a point is within `tolerance` [m].
-/// Throws for a wrong number of marks, and as GroundTruth's members, which determine the cost.
+/// All figures of a surface and its points except covered_area, which stays 0. `visible` has one
+/// entry per sample of the reference mesh, nonzero for a visible one. A sample is covered if a
+/// point is within `tolerance` [m]. Throws for a wrong number of entries, and like the members of
+/// GroundTruth, which determine the cost.
 [[nodiscard]] VIEWGAIN_EXPORT QualityFigures quality_figures(const GroundTruth& truth,
                                                              const SurfaceMesh& surface,
                                                              std::span<const FusedPoint> points,
@@ -98,25 +101,25 @@ struct VIEWGAIN_EXPORT VisibilityConfig {
   double tolerance = kCovered;  ///< a point within this distance covers a sample [m]
 };
 
-/// Sets the mark of the mesh's samples that a pose sees to 1: in the image and the range limits,
-/// not occluded by mesh and surroundings (may be null), with a cosine of incidence of at least
-/// `least_cosine`. Samples with a mark keep it at no cost; others cost at most two rays. One mark
-/// per sample; checks nothing.
+/// Sets seen[i] to 1 for each sample i that the pose sees: in the image, within range, with a
+/// cosine of incidence of at least `least_cosine`, and not occluded by the mesh or the surroundings
+/// (may be null). Entries that are already set stay so. Checks nothing. Cost: at most two rays per
+/// sample that is not set.
 VIEWGAIN_EXPORT void mark_seen(const SurfaceScene& scene, const SurfaceScene* surroundings,
                                const Sensor& sensor, const Pose& T_world_camera,
                                double least_cosine, std::span<const SurfaceSample> samples,
                                std::span<std::uint8_t> seen);
 
-/// A reference mesh and which of its samples a camera can see: unoccluded, inside the image and the
-/// range limits, at under 80°, from the start or one of 2,562 Fibonacci poses, or from the
-/// reachable region's list if there is one. An unreachable pose moves along its line of sight to
-/// the nearest reachable distance, in steps of 2.5 mm up to 50 m and outside the sphere around the
-/// mesh; otherwise it is omitted. Thread safety: const members may run from many threads at once.
-/// Cost of the constructor: at most 10,000 samples times 2,563 poses, two rays each.
+/// A reference mesh, and which of its samples a camera can see. A sample is visible if the start or
+/// one of 2,562 poses around the mesh sees it unoccluded, within range and at under 80°. If the
+/// reachable region has a list of poses, that list replaces the 2,562 poses. An unreachable pose
+/// moves along its line of sight to the nearest reachable distance, or is omitted if there is none.
+/// Thread safety: const members may run from many threads at once. Cost of the constructor: at most
+/// 10,000 samples times 2,563 poses, two rays each.
 class VIEWGAIN_EXPORT Truth {
  public:
-  /// Determines the visible samples without noise. The scene must not be null. Throws as
-  /// GroundTruth, and passes on exceptions of the region's predicate.
+  /// Determines the visible samples. The scene must not be null. Throws like GroundTruth, and
+  /// passes on exceptions of the region's predicate.
   Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
         const VisibilityConfig& config, const ExecConfig& exec);
 

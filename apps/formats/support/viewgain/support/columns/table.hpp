@@ -19,7 +19,7 @@ namespace viewgain {
 static_assert(std::endian::native == std::endian::little,
               "columns are written in native byte order");
 
-/// What a column holds, little endian in .npy files.
+/// Types of columns, little endian in .npy files.
 enum class ColumnType : std::uint8_t {
   row,     ///< a row's number: int64, "<i8"
   real,    ///< double, "<f8"
@@ -44,7 +44,7 @@ struct Column {
   return bytes;
 }
 
-/// Rows one after the other, each column's value after the other, nothing between: as in a .npy.
+/// Rows one after the other, and values of a row without gaps, as in a .npy file.
 struct Table {
   std::vector<Column> columns;
   std::string bytes{};
@@ -59,12 +59,12 @@ struct Table {
   [[nodiscard]] std::size_t size() const { return bytes.size() / row_bytes(columns); }
 };
 
-/// Writes a file with a line of the columns' names and one a row, or one that np.load() reads, by
-/// the ending .npy; it appears whole or not at all. Throws Error(io) that names it, and
-/// Error(invalid_argument) for a name that ends neither in .csv nor in .npy.
+/// Writes CSV with a line of column names and one line per row, or for the ending .npy a file for
+/// np.load(). Atomic. Throws Error(io) that names the file, and Error(invalid_argument) for a name
+/// that ends neither in .csv nor in .npy.
 VIEWGAIN_EXPORT void write_table(const std::filesystem::path& path, const Table& table);
 
-/// Whether a file is one of columns (.npy, capitals too) rather than text.
+/// Whether the name ends in .npy, in lower or upper case.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_npy(const std::filesystem::path& path);
 
 /// A value of a row.
@@ -75,10 +75,10 @@ template <typename Value>
   return value;
 }
 
-/// Poses of a .npy file: rows with kPoseColumns and perhaps kTimeColumn ("<f8" or "<f4", others are
-/// passed over), or matrices (n, 4, 4) of either, in C's or Fortran's order. Mended as read_tum()
-/// and read_pose_matrix() do; without times the timestamps are 0, 1, 2, ... Throws
-/// Error(io), or Error(format) that names the file and, of a pose, the row.
+/// Poses of a .npy file: rows with kPoseColumns and optionally kTimeColumn ("<f8" or "<f4"; other
+/// columns are ignored), or matrices (n, 4, 4) of either type, in C or Fortran order. Repairs
+/// rotations like read_tum() and read_pose_matrix(). Without times the timestamps are 0, 1, 2, ...
+/// Throws Error(io), or Error(format) that names the file and, for a pose, the row.
 [[nodiscard]] VIEWGAIN_EXPORT PoseList read_npy_poses(const std::filesystem::path& path);
 
 }  // namespace viewgain
