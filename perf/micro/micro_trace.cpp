@@ -65,7 +65,7 @@ void ordered_walk(benchmark::State& state, Isa isa) {
   const detail::WalkKernels& kernels = detail::walk_kernels(isa);
   const detail::SceneData& scene = detail::SceneAccess::data(*micro.scene);
   const detail::BrickTable& bricks = scene.tracing->bricks();
-  constexpr float kCap = 1.0F;
+  constexpr detail::PixelWorth kWorth{.cap = 1, .scale = 1, .s0 = 0, .s1 = 0, .s2 = 0, .at = 0};
   detail::WalkTask task;
   detail::WalkedTile out;
   std::size_t rays = 0, next = 0;
@@ -74,7 +74,7 @@ void ordered_walk(benchmark::State& state, Isa isa) {
     const detail::WalkLimits limits = detail::walk_limits(scene, view.frame);
     for (std::size_t i = 0; i < view.tiles.size(); ++i) {
       detail::set_up(micro.tracer.table(), view.numbers[i], view.frame, view.tiles[i], task);
-      kernels.area(bricks, limits, task, kCap, nullptr, out);
+      kernels.area(bricks, limits, {&task, 1}, kWorth, nullptr, &out);
       benchmark::DoNotOptimize(out.occupied);
     }
     rays += view.tiles.size() * detail::kTileRays;

@@ -52,8 +52,10 @@ class WordFinder {
 
   HWY_INLINE void begin(const Voxels& at) { find_nodes(at); }
 
-  // One lane at a time, because two dependent gathers take longer.
-  HWY_INLINE Place find(const Voxels& at, VI moved, MF) {
+  using Found = Place;
+  static HWY_INLINE const Place& place(const Found& found, const Voxels&) { return found; }
+  // Lane by lane: two gathers, one waiting for the other, take longer.
+  HWY_INLINE Found find(const Voxels& at, VI moved) {
     if (!stay_in_nodes(moved)) find_nodes(at);
     HWY_ALIGN std::uint32_t bricks[kWidth], in_bricks[kWidth], words[kWidth];
     hn::Store(as_u(hn::Add(first_, brick_of(at))), du, bricks);

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface_view.hpp"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "from_behind.hpp"
@@ -107,61 +109,95 @@ double SurfaceView::area_of(const RayTile& rays, WalkedTile& tile) const {
   return sum;
 }
 
+// Tiles that wait for others, to be walked together.
+struct SurfaceView::WaitingTiles {
+  static constexpr std::size_t kMost = 2;
+  std::array<RayTile, kMost> rays;
+  std::array<std::size_t, kMost> numbers{};
+  std::array<WalkTask, kMost> tasks;
+  std::array<WalkedTile, kMost> walked;
+  std::size_t count = 0;
+};
+
 template <typename Met>
 double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, const float* missed,
                           std::uint32_t& hits, double* by_lane, Met&& met) const {
-  const bool refines = core_.config.model == GainModel::combined;
   const double V = scene_.snapshot.voxel_size;
   tracer_.prepare(frame, workspace.sweep);
-  OccupiedSums& occupied = workspace.occupied;
-  occupied.begin();
-  RefiningHits& refining = workspace.refining;
-  refining.batch.count = 0;
+  workspace.occupied.begin();
+  workspace.refining.batch.count = 0;
   if (!core_.config.weights.empty()) {
-    double area = 0;
-    for_each_share(
-        frame, workspace, [&](std::size_t number, const RayTile& rays, const SurfaceShare& share) {
-          area += share.area;
-          if (by_lane != nullptr) by_lane[share.lane] += share.area;
-          if (!share.is_occupied) return;
-          ++hits;
-          if (!refines) return;
-          met(number, rays, share.lane, share.range, occupied.add(share.voxel, share.information));
-        });
-    return area;
+    return trace_shares(frame, workspace, hits, by_lane, met);
   }
   double sum = 0;  // [voxels²]
   const WalkLimits limits = walk_limits(scene_, frame);
-  WalkTask task;
-  WalkedTile walked;
+  WaitingTiles waiting;
+  const auto walk = [&] {
+    walk_.area(bricks_, limits, std::span(waiting.tasks).first(waiting.count), worth_, missed,
+               waiting.walked.data());
+    for (std::size_t i = 0; i < waiting.count; ++i) {
+      const RayTile& rays = waiting.rays[i];
+      WalkedTile& walked = waiting.walked[i];
+      sum += area_of(rays, walked);
+      if (by_lane != nullptr) {
+        for_each_lane(rays.hit, [&](int lane) {
+          by_lane[lane] += static_cast<double>(walked.area[lane]) * V * V;
+        });
+      }
+      hits += static_cast<std::uint32_t>(std::popcount(walked.occupied));
+      if (core_.config.model != GainModel::combined) continue;
+      for_each_lane(walked.occupied, [&](int lane) {
+        const std::uint32_t place = add_refining(rays, walked, lane, workspace);
+        met(waiting.numbers[i], rays, lane, walked.range[lane], place);
+      });
+      if (workspace.refining.batch.count >= kBatchSize) sum_refining(workspace);
+    }
+    waiting.count = 0;
+  };
   trace_rays(frame, workspace, [&](std::size_t number, const RayTile& rays) {
     if (rays.hit == 0) return;
-    set_up(tracer_.table(), number, frame, rays, task);
-    walk_.area(bricks_, limits, task, worth_, missed, walked);
-    sum += area_of(rays, walked);
-    if (by_lane != nullptr) {
-      for_each_lane(rays.hit, [&](int lane) {
-        by_lane[lane] += static_cast<double>(walked.area[lane]) * V * V;
-      });
-    }
-    hits += static_cast<std::uint32_t>(std::popcount(walked.occupied));
-    if (!refines) return;
-    HitBatch& batch = refining.batch;
-    for_each_lane(walked.occupied, [&](int lane) {
-      const std::size_t i = batch.count++;
-      batch.dx[i] = rays.dx[lane], batch.dy[i] = rays.dy[lane], batch.dz[i] = rays.dz[lane];
-      batch.range[i] = walked.range[lane];
-      refining.passed[i] = walked.passed[lane];
-      bool is_new = false;
-      refining.places[i] =
-          occupied.place_of(voxel_at(walked.x[lane], walked.y[lane], walked.z[lane]), is_new);
-      refining.keep[i] = is_new ? 0 : ~std::uint64_t{0};
-      met(number, rays, lane, walked.range[lane], refining.places[i]);
-    });
-    if (batch.count >= kBatchSize) sum_refining(workspace);
+    set_up(tracer_.table(), number, frame, rays, waiting.tasks[waiting.count]);
+    waiting.rays[waiting.count] = rays;
+    waiting.numbers[waiting.count] = number;
+    if (++waiting.count == WaitingTiles::kMost) walk();
   });
+  walk();
   sum_refining(workspace);
   return sum * V * V;
+}
+
+// The same with task weights, share by share.
+template <typename Met>
+double SurfaceView::trace_shares(const PoseFrame& frame, Workspace& workspace, std::uint32_t& hits,
+                                 double* by_lane, Met&& met) const {
+  double area = 0;
+  for_each_share(frame, workspace,
+                 [&](std::size_t number, const RayTile& rays, const SurfaceShare& share) {
+                   area += share.area;
+                   if (by_lane != nullptr) by_lane[share.lane] += share.area;
+                   if (!share.is_occupied) return;
+                   ++hits;
+                   if (core_.config.model != GainModel::combined) return;
+                   met(number, rays, share.lane, share.range,
+                       workspace.occupied.add(share.voxel, share.information));
+                 });
+  return area;
+}
+
+// Has a hit wait for sum_refining(). Returns the place of its voxel.
+std::uint32_t SurfaceView::add_refining(const RayTile& rays, const WalkedTile& walked, int lane,
+                                        Workspace& workspace) const {
+  RefiningHits& refining = workspace.refining;
+  HitBatch& batch = refining.batch;
+  const std::size_t i = batch.count++;
+  batch.dx[i] = rays.dx[lane], batch.dy[i] = rays.dy[lane], batch.dz[i] = rays.dz[lane];
+  batch.range[i] = walked.range[lane];
+  refining.passed[i] = walked.passed[lane];
+  bool is_new = false;
+  refining.places[i] =
+      workspace.occupied.place_of(voxel_at(walked.x[lane], walked.y[lane], walked.z[lane]), is_new);
+  refining.keep[i] = is_new ? 0 : ~std::uint64_t{0};
+  return refining.places[i];
 }
 
 // Λ_r of the hits that wait, each times its ray's T, into the sums.
@@ -288,112 +324,6 @@ double SurfaceView::saturated_gain(Index3 voxel, const SymmetricMatrix3& informa
   return weight_of(voxel) * PooledSurface::chance(belief->hits) *
          (entropy_with_floor(before, floor_variance_) -
           entropy_with_floor(before + information, floor_variance_));
-}
-
-void SurfaceView::find_visits(const PoseFrame& frame, std::size_t number, const RayTile& rays,
-                              Workspace& workspace) const {
-  WalkTask task;
-  set_up(tracer_.table(), number, frame, rays, task);
-  std::vector<VoxelVisit>& mixed = workspace.mixed_visits;
-  mixed.clear();
-  walk_.visits(bricks_, walk_limits(scene_, frame), task, mixed);
-  // A packet's rays take turns; each ray's visits are in order, and stay so.
-  std::array<std::size_t, kTileRays> place{};
-  for (const VoxelVisit& visit : mixed) ++place[visit.lane];
-  std::size_t sum = 0;
-  for (std::size_t& p : place) sum += std::exchange(p, sum);
-  workspace.visits.resize(mixed.size());
-  for (const VoxelVisit& visit : mixed) workspace.visits[place[visit.lane]++] = visit;
-}
-
-void SurfaceView::find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,
-                              Workspace& workspace, SharesOf of) const {
-  find_visits(frame, number, rays, workspace);
-  const double V = scene_.snapshot.voxel_size;
-  const int shift = bricks_.rate_shift;
-  const std::vector<GainConfig::WeightRegion>& weights = core_.config.weights;
-  double passed = 1.0;
-  // The stretch of unknown voxels that the ray is in: its first share, where it begins, T there,
-  // what of T ends in it.
-  std::size_t stretch = 0;
-  float stretch_begin = 0;
-  double stretch_passed = 1.0, stretch_share = 0;
-  const auto same_run = [&](const VoxelVisit& a, const VoxelVisit& b) {
-    return a.lane == b.lane && a.state == b.state && a.end == b.begin &&
-           a.x >> shift == b.x >> shift && a.y >> shift == b.y >> shift &&
-           a.z >> shift == b.z >> shift;
-  };
-  const auto& visits = workspace.visits;
-  std::vector<double>& areas = workspace.share_areas;
-  areas.clear();
-  for (auto first = visits.begin(), last = first; first != visits.end(); first = last) {
-    const bool is_new_ray = first == visits.begin() || first->lane != (first - 1)->lane;
-    const bool follows_on = !is_new_ray && first->begin == (first - 1)->end;
-    if (is_new_ray) passed = 1.0;
-    last = first + 1;
-    const int lane = static_cast<int>(first->lane);
-    if (first->state == BrickTable::kOccupiedVoxel) {
-      const bool is_hidden =
-          follows_on && first->begin - stretch_begin >= FromBehind::kLeastStretch;
-      const float cosine = is_hidden ? cosine_at(rays, lane, {first->x, first->y, first->z}) : 0.0F;
-      if (cosine > FromBehind::kLeastCosine) {
-        const double chance = stretch_passed > 0 ? stretch_share / stretch_passed : 0;
-        const double factor = FromBehind::area_over_across(static_cast<double>(cosine)) / chance;
-        for (std::size_t i = stretch; chance > 0 && i < workspace.shares.size(); ++i) {
-          workspace.shares[i].probability /= chance;
-          workspace.shares[i].area = areas[i] * factor;
-        }
-        passed = 0;
-      }
-      SurfaceShare share{lane, first->begin, voxel_at(first->x, first->y, first->z),
-                         true, passed,       0.0};
-      if (core_.config.model == GainModel::combined) {
-        share.information = information(rays, lane, first->begin) * passed;
-      }
-      workspace.shares.push_back(share);
-      areas.push_back(0);
-      continue;
-    }
-    if (!follows_on) {
-      stretch = workspace.shares.size();
-      stretch_begin = first->begin;
-      stretch_passed = passed;
-      stretch_share = 0;
-    }
-    while (last != visits.end() && same_run(*(last - 1), *last)) ++last;
-    const double begin = static_cast<double>(first->begin),
-                 end = static_cast<double>((last - 1)->end);
-    const double rate = std::abs(static_cast<double>(first->rate));
-    const double depth = rate * (end - begin);
-    const double P = passed * -std::expm1(-depth);
-    const double t = 0.5 * (begin + end);
-    const auto angle =
-        static_cast<double>(tracer_.table().solid_angle[number * kTileRays + first->lane]);
-    const double across =
-        std::min(angle * t * t, static_cast<double>(worth_.cap)) * reading_worth_(t * V);
-    const auto put = [&](Index3 voxel, float from, double part, double weight, bool is_new) {
-      const double area = part * across * weight * V * V;
-      areas.push_back(area);
-      workspace.shares.push_back({lane, from, voxel, false, part, is_new ? area : 0.0, {}, rate});
-    };
-    double weight_of_run = weights.empty() ? 1.0 : 0.0;
-    for (auto visit = first; visit != last; ++visit) {
-      const double of_run =
-          (static_cast<double>(visit->end) - static_cast<double>(visit->begin)) / (end - begin);
-      const Index3 voxel = voxel_at(visit->x, visit->y, visit->z);
-      if (of == SharesOf::voxels) {
-        put(voxel, visit->begin, P * of_run, weight_of(voxel), !std::signbit(visit->rate));
-      } else if (!weights.empty()) {
-        weight_of_run += of_run * weight_of(voxel);
-      }
-    }
-    if (of == SharesOf::runs) {
-      put(voxel_at(first->x, first->y, first->z), first->begin, P, weight_of_run,
-          !std::signbit(first->rate));
-    }
-    passed *= std::exp(-depth);
-    stretch_share += P;
-  }
 }
 
 }  // namespace viewgain::detail

@@ -78,7 +78,7 @@ class SurfaceView {
   void sample(const PoseFrame& frame, Workspace& workspace, double rays_each,
               SampleTally& tally) const;
 
-  /// A run is a ray's way through the unknown voxels of one hazard cell.
+  /// A run is the part of a ray in the unknown voxels of one hazard cell.
   enum class SharesOf : std::uint8_t { voxels, runs };
   /// Calls visit(tile number, rays, SurfaceShare) for all rays: run by run, each at its first
   /// voxel, or voxel by voxel, a run's share split by length. `workspace`'s sweep is prepared for
@@ -105,13 +105,8 @@ class SurfaceView {
   /// The voxel at table coordinates.
   [[nodiscard]] Index3 voxel_at(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
-  /// Where BrickTable::rates has the voxel's hazard cell, and how many places there are.
-  [[nodiscard]] std::optional<std::size_t> rate_place(Index3 voxel) const {
-    return bricks_.rate_place(voxel);
-  }
-  [[nodiscard]] std::size_t rate_places() const { return bricks_.rates.size(); }
-  /// Logarithm to base 2 of the hazard cells' edge [voxels].
-  [[nodiscard]] int cell_shift() const { return bricks_.rate_shift; }
+  /// What BrickTable has: hazard cells, and their places in `missed`.
+  [[nodiscard]] const BrickTable& bricks() const { return bricks_; }
   /// Nats for one m² of new surface: ΔH_new / V².
   [[nodiscard]] double nats_per_area() const { return nats_per_area_; }
   /// w_v c_v [H_nF(Λ̄_v) - H_nF(Λ̄_v + information)] of an occupied voxel; by the
@@ -119,6 +114,9 @@ class SurfaceView {
   [[nodiscard]] double saturated_gain(Index3 voxel, const SymmetricMatrix3& information) const;
 
  private:
+  struct WaitingTiles;
+  class ShareFinder;
+
   template <typename Visit>
   void trace_rays(const PoseFrame& frame, Workspace& workspace, Visit&& visit) const {
     tracer_.trace<ViewTracer::Asked::along_rays>(frame, workspace.sweep, visit);
@@ -130,6 +128,11 @@ class SurfaceView {
   template <typename Met>
   double trace(const PoseFrame& frame, Workspace& workspace, const float* missed,
                std::uint32_t& hits, double* by_lane, Met&& met) const;
+  template <typename Met>
+  double trace_shares(const PoseFrame& frame, Workspace& workspace, std::uint32_t& hits,
+                      double* by_lane, Met&& met) const;
+  std::uint32_t add_refining(const RayTile& rays, const WalkedTile& walked, int lane,
+                             Workspace& workspace) const;
   /// How many of the tracer's rays would end in an occupied voxel if nothing stood before it.
   [[nodiscard]] double expected_hits(std::size_t number, const RayTile& rays, int lane, float range,
                                      Index3 voxel) const;

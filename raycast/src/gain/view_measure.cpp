@@ -50,6 +50,7 @@ void list_runs(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
   const Eigen::Matrix3d R_world_grid = snapshot.T_world_grid.rotation();
   const double V = snapshot.voxel_size;
   const detail::SurfaceView& walk = driver.ordered();
+  const HazardField& hazard = driver.scene().hazard_field();
   driver.tracer().prepare(frame, workspace.sweep);
   std::vector<RunMeasure::Run>& runs = workspace.view_runs;
   runs.clear();
@@ -72,8 +73,7 @@ void list_runs(const detail::ViewDriver& driver, const detail::PoseFrame& frame,
           run.state = occupied ? VoxelState::occupied : VoxelState::unknown;
           run.begin = static_cast<double>(visit->begin) * V;
           run.end = occupied ? run.begin : static_cast<double>(visit->end) * V;
-          // The sign says that surface there would not be new.
-          run.rate = occupied ? 0.0 : std::abs(static_cast<double>(visit->rate)) / V;
+          run.rate = occupied ? 0.0 : static_cast<double>(hazard.rate(run.voxel));
           run.belief = nullptr;
           if (const GridSnapshot::Leaf* leaf = occupied ? snapshot.find_leaf(run.voxel) : nullptr) {
             if (leaf->beliefs) run.belief = leaf->beliefs->find(block_offset(run.voxel));

@@ -3,18 +3,21 @@
 #include "brick_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <optional>
 
+#include "viewgain/support/block_lattice.hpp"
+
 namespace viewgain::detail {
 namespace {
 
-constexpr std::size_t kStatesPerLeaf = 64;  // words for 2³ voxels each
-// A brick is initially free.
+constexpr std::size_t kCubes = 64;  // of 2³ voxels in a brick
+// A brick is free at first, or has the far rate throughout.
 constexpr std::uint32_t kFreeBrick = BrickTable::kFree << 30U | BrickIndex::kBrick;
 constexpr std::uint32_t kFreeNode = BrickTable::kFree << 30U | BrickIndex::kNode;
-constexpr std::uint32_t kFarBrick = BrickTable::kUnknown << 30U | BrickTable::kFarSlot;
+constexpr std::uint32_t kFarBrick = BrickTable::kUnknown << 30U;
 
 // Number of a voxel's cube of 2³ voxels in its brick.
 std::size_t cube_in_brick(std::int32_t x, std::int32_t y, std::int32_t z) {
@@ -36,6 +39,105 @@ Eigen::Vector3f unpack_normal(std::uint32_t bits) {
   return {part(20), part(10), part(0)};
 }
 
+using Cubes = std::array<std::uint32_t, kCubes>;  // the states of a brick's voxels
+
+// What BrickTable::records has of a brick. Voxels by x << 6 | y << 3 | z: an octal digit each.
+class BrickRecords {
+ public:
+  static constexpr unsigned kVoxels = 512;
+
+  BrickRecords(const HazardField& hazard, Index3 origin, const Cubes& cubes)
+      : shift_(static_cast<unsigned>(hazard.cell_shift())) {
+    for (unsigned i = 0; i < kVoxels; ++i) {
+      const unsigned bit = ((i >> 6U & 1U) << 2U | (i >> 3U & 1U) << 1U | (i & 1U)) * 2U;
+      voxels_[i].state = cubes[cube_of(i)] >> bit & 3U;
+    }
+    find_rates(hazard, origin);
+    widen_cubes(
+        8, 8,
+        [&](unsigned x, unsigned y, unsigned z) -> Voxel& {
+          return voxels_[x << 6U | y << 3U | z];
+        },
+        [](Voxel voxel, unsigned edge) {
+          const bool may_grow = 2 * voxel.edge == edge && voxel.state != BrickTable::kOccupiedVoxel;
+          voxel.edge = edge;
+          return may_grow ? std::optional(voxel) : std::nullopt;
+        });
+  }
+
+  void append_to(const Cubes& cubes, bool by_cell, std::vector<std::uint32_t>& records) const {
+    const unsigned shift = by_cell ? shift_ : std::min(shift_, 1U);
+    const unsigned within = ((1U << shift) - 1U) * 0111U;
+    for (unsigned i = 0; i < kVoxels; ++i) {
+      if ((i & within) != 0) continue;
+      const Voxel& voxel = voxels_[i];
+      if (shift_ == 0) {
+        append_voxel(voxel.state, voxel.edge, voxel.rate, records);
+      } else {
+        append_cube(cubes[cube_of(i)], voxel.edge, rate_of_cube(i), records);
+      }
+    }
+  }
+  static void append_voxel(std::uint32_t state, std::uint32_t edge, float rate,
+                           std::vector<std::uint32_t>& records) {
+    records.push_back(rounded(rate) | (edge - 1) << 2U | state);
+  }
+  static void append_cube(std::uint32_t states, std::uint32_t edge, float rate,
+                          std::vector<std::uint32_t>& records) {
+    records.push_back(states | edge << BrickTable::kEdgeShift);
+    records.push_back(std::bit_cast<std::uint32_t>(rate));
+  }
+
+ private:
+  struct Voxel {
+    std::uint32_t state = 0, edge = 1;
+    float rate = 0;  // of unknown voxels
+    bool operator==(const Voxel& other) const {
+      return state == other.state && edge == other.edge &&
+             std::bit_cast<std::uint32_t>(rate) == std::bit_cast<std::uint32_t>(other.rate);
+    }
+  };
+
+  static unsigned cube_of(unsigned voxel) {
+    return (voxel >> 7U & 3U) << 4U | (voxel >> 4U & 3U) << 2U | (voxel >> 1U & 3U);
+  }
+
+  // To what is left beside edge and state.
+  static std::uint32_t rounded(float rate) {
+    constexpr std::uint32_t kRest = BrickTable::kStateBits | BrickTable::kTopBits;
+    constexpr std::uint32_t kHalf = (kRest + 1) / 2, kLargest = 0x7F7FFFFF;
+    const auto bits = std::bit_cast<std::uint32_t>(rate);
+    return ((bits & kLargest) < kLargest - kHalf ? bits + kHalf : bits) & ~kRest;
+  }
+
+  void find_rates(const HazardField& hazard, Index3 origin) {
+    const auto V = static_cast<float>(hazard.voxel_size());
+    const unsigned within = ((1U << shift_) - 1U) * 0111U;  // of a cell
+    std::array<float, kVoxels> rates{};
+    for (unsigned i = 0; i < kVoxels; ++i) {
+      if ((i & within) == 0) {
+        const Index3 at{origin.x + static_cast<int>(i >> 6U),
+                        origin.y + static_cast<int>(i >> 3U & 7U),
+                        origin.z + static_cast<int>(i & 7U)};
+        const float rate = hazard.rate(at) * V;
+        rates[i] = hazard.is_new(at) ? rate : std::copysign(rate, -1.0F);
+      }
+      if (voxels_[i].state == BrickTable::kUnknownVoxel) voxels_[i].rate = rates[i & ~within];
+    }
+  }
+  // The unknown voxels of a cube of 2³ share a rate.
+  [[nodiscard]] float rate_of_cube(unsigned first) const {
+    for (const unsigned other : {0U, 1U, 010U, 011U, 0100U, 0101U, 0110U, 0111U}) {
+      const Voxel& voxel = voxels_[first | other];
+      if (voxel.state == BrickTable::kUnknownVoxel) return voxel.rate;
+    }
+    return 0;
+  }
+
+  unsigned shift_;
+  std::array<Voxel, kVoxels> voxels_{};
+};
+
 }  // namespace
 
 class BrickTableMaker {
@@ -45,9 +147,9 @@ class BrickTableMaker {
 
   void run() {
     table_.rate_shift = hazard_.cell_shift();
-    cells_ = BrickIndex::kBrick >> table_.rate_shift;
-    (void)add_far_slot();
+    add_far();
     for (const GridSnapshot::Leaf& leaf : snapshot_.leaves) add_leaf(leaf);
+    table_.normals.assign(cubes_.size(), 0);
     for (const VoxelBox& tile : snapshot_.tiles) add_unknown(tile);
     table_.for_each_own_node(widen_free);
     find_normals();
@@ -58,35 +160,7 @@ class BrickTableMaker {
     return {at.x + table_.base.x, at.y + table_.base.y, at.z + table_.base.z};
   }
 
-  // Makes a slot for a brick's rates.
-  std::uint32_t add_slot(Index3 origin) {
-    const float V = static_cast<float>(hazard_.voxel_size());
-    const std::uint32_t slot = slots_++;
-    const auto cells = static_cast<std::size_t>(cells_ * cells_ * cells_);
-    BrickIndex::check_capacity(std::size_t{slots_} * std::max<std::size_t>(cells, kStatesPerLeaf));
-    const int shift = table_.rate_shift;
-    for (int x = 0; x < cells_; ++x) {
-      for (int y = 0; y < cells_; ++y) {
-        for (int z = 0; z < cells_; ++z) {
-          const Index3 voxel{origin.x + (x << shift), origin.y + (y << shift),
-                             origin.z + (z << shift)};
-          const float rate = hazard_.rate(voxel) * V;
-          table_.rates.push_back(hazard_.is_new(voxel) ? rate : std::copysign(rate, -1.0F));
-        }
-      }
-    }
-    return slot;
-  }
-
-  std::uint32_t add_far_slot() {
-    const float V = static_cast<float>(hazard_.voxel_size());
-    const float rate = hazard_.far_rate();
-    table_.rates.assign(static_cast<std::size_t>(cells_ * cells_ * cells_), rate * V);
-    table_.states.assign(kStatesPerLeaf, 0);
-    return slots_++;
-  }
-
-  // Whether a cube has the far rate everywhere, and surface in it counts as new.
+  // Has a cube the far rate everywhere, and is what is found in it new?
   [[nodiscard]] bool is_far(Index3 origin, int edge) const {
     const VoxelBox box{origin, {origin.x + edge, origin.y + edge, origin.z + edge}};
     const HazardConfig::Volume* volume = hazard_.volume();
@@ -95,38 +169,51 @@ class BrickTableMaker {
   }
 
   void add_leaf(const GridSnapshot::Leaf& leaf) {
-    const std::uint32_t slot = add_slot(leaf.origin);
-    const Index3 at = table_.in_table(leaf.origin);
-    table_.own_entry(at.x, at.y, at.z) = BrickTable::kMixed << 30U | slot;
-    std::array<std::uint32_t, kStatesPerLeaf> cubes{};
+    Cubes cubes{};
     const auto put = [&](const LeafMask& mask, std::uint32_t state) {
       for_each_bit(mask, [&](unsigned offset) {
         const unsigned x = offset >> 6U, y = offset >> 3U & 7U, z = offset & 7U;
-        const unsigned cube = (x >> 1U) << 4U | (y >> 1U) << 2U | z >> 1U;
         const unsigned bit = ((x & 1U) << 2U | (y & 1U) << 1U | (z & 1U)) * 2U;
-        cubes[cube] |= state << bit;
+        cubes[(x >> 1U) << 4U | (y >> 1U) << 2U | z >> 1U] |= state << bit;
       });
     };
     LeafMask unknown = leaf.non_free;
     for (std::size_t i = 0; i < 8; ++i) unknown[i] &= ~leaf.occupied[i];
     put(unknown, BrickTable::kUnknownVoxel);
     put(leaf.occupied, BrickTable::kOccupiedVoxel);
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      const unsigned first = (octant >> 2U) << 5U | (octant >> 1U & 1U) << 3U | (octant & 1U) << 1U;
-      const std::array<unsigned, 8> parts{first,      first + 1,  first + 4,  first + 5,
-                                          first + 16, first + 17, first + 20, first + 21};
-      std::uint32_t any = 0, all = 0xFFFF;
-      for (const unsigned part : parts) any |= cubes[part], all &= cubes[part];
-      const bool is_same = any == all && (any == 0 || any == BrickTable::kAllUnknown);
-      for (const unsigned part : parts) {
-        const std::uint32_t cube = cubes[part];
-        const std::uint32_t edge = is_same                                        ? 4
-                                   : cube == 0 || cube == BrickTable::kAllUnknown ? 2
-                                                                                  : 1;
-        cubes[part] |= edge << 16U;
+    cubes_.insert(cubes_.end(), cubes.begin(), cubes.end());
+    // Outside the workspace, where no ray goes, counts as unknown, as in bricks without a leaf.
+    const LeafMask inside = block_mask(workspace_, leaf.origin);
+    LeafMask outside{};
+    for (std::size_t i = 0; i < 8; ++i) outside[i] = ~inside[i];
+    put(outside, BrickTable::kUnknownVoxel);
+    const Index3 at = table_.in_table(leaf.origin);
+    table_.own_entry(at.x, at.y, at.z) =
+        add_brick(BrickTable::kMixed, BrickRecords(hazard_, leaf.origin, cubes), cubes);
+  }
+
+  // The records of bricks with the far rate: as many as those of a mixed brick.
+  void add_far() {
+    cubes_.assign(kCubes, 0);
+    const float rate = hazard_.far_rate() * static_cast<float>(hazard_.voxel_size());
+    constexpr auto kEdge = static_cast<std::uint32_t>(BrickIndex::kBrick);
+    if (table_.rate_shift == 0) {
+      for (unsigned i = 0; i < BrickRecords::kVoxels; ++i) {
+        BrickRecords::append_voxel(BrickTable::kUnknownVoxel, kEdge, rate, table_.records);
+      }
+    } else {
+      for (unsigned i = 0; i < kCubes; ++i) {
+        BrickRecords::append_cube(BrickTable::kAllUnknown, kEdge, rate, table_.records);
       }
     }
-    table_.states.insert(table_.states.end(), cubes.begin(), cubes.end());
+  }
+
+  // The entry of a brick with records of its own.
+  std::uint32_t add_brick(std::uint32_t kind, const BrickRecords& brick, const Cubes& cubes) {
+    const std::size_t first = table_.places();
+    BrickIndex::check_capacity(2 * (first + BrickRecords::kVoxels));  // two bits are the kind's
+    brick.append_to(cubes, kind == BrickTable::kUnknown, table_.records);
+    return kind << 30U | static_cast<std::uint32_t>(first);
   }
 
   // Adds a box of unknown voxels. Bricks cut by the workspace count as whole, because no ray goes
@@ -139,9 +226,9 @@ class BrickTableMaker {
           return is_far_at(node, BrickIndex::kNode) ? std::optional(kFarBrick) : std::nullopt;
         },
         [&](Index3 brick) {
-          return BrickTable::kUnknown << 30U |
-                 (is_far_at(brick, BrickIndex::kBrick) ? BrickTable::kFarSlot
-                                                       : add_slot(on_lattice(brick)));
+          if (is_far_at(brick, BrickIndex::kBrick)) return kFarBrick;
+          return add_brick(BrickTable::kUnknown,
+                           BrickRecords(hazard_, on_lattice(brick), all_unknown_), all_unknown_);
         });
   }
 
@@ -155,28 +242,26 @@ class BrickTableMaker {
     const auto all = static_cast<int>(box.volume());
     if (entry >> 30U == BrickTable::kFree) return all;
     if (entry >> 30U == BrickTable::kUnknown) return -all;
-    const std::uint32_t states =
-        table_.states[(entry & BrickTable::kPayload) * 64 + cube_in_brick(x, y, z)] & 0xFFFFU;
+    const std::uint32_t states = cubes_[table_.slot_of(entry) * kCubes + cube_in_brick(x, y, z)];
     const int unknown = std::popcount(states & BrickTable::kAllUnknown);
     return all - std::popcount(states & 0xAAAAU) - 2 * unknown;
   }
 
   // The normal at a cube points from the unknown to the free voxels around it.
   void find_normals() {
-    table_.normals.assign(table_.states.size(), 0);
     for (const GridSnapshot::Leaf& leaf : snapshot_.leaves) {
       if (leaf.occupied == LeafMask{}) continue;
       const auto [x, y, z] = table_.in_table(leaf.origin);
       const std::size_t first =
-          std::size_t{table_.entries[table_.entry_index(x, y, z)] & BrickTable::kPayload} * 64;
-      // balance() of the leaf's cubes and of those around the leaf.
+          table_.slot_of(table_.entries[table_.entry_index(x, y, z)]) * kCubes;
+      // The balances of the leaf's cubes and of those around it.
       std::array<int, 216> around{};
       for (int i = 0; i < 216; ++i) {
         around[static_cast<std::size_t>(i)] =
             balance({x + 2 * (i / 36 - 1), y + 2 * (i / 6 % 6 - 1), z + 2 * (i % 6 - 1)});
       }
-      for (std::size_t cube = 0; cube < 64; ++cube) {
-        if ((table_.states[first + cube] & 0xAAAAU) == 0) continue;
+      for (std::size_t cube = 0; cube < kCubes; ++cube) {
+        if ((cubes_[first + cube] & 0xAAAAU) == 0) continue;
         const std::size_t middle =
             ((cube >> 4U) + 1) * 36 + ((cube >> 2U & 3U) + 1) * 6 + (cube & 3U) + 1;
         Eigen::Vector3f sum = Eigen::Vector3f::Zero();
@@ -208,13 +293,18 @@ class BrickTableMaker {
   const GridSnapshot& snapshot_;
   const HazardField& hazard_;
   BrickTable& table_;
-  int cells_ = 0;  // hazard cells along a brick's edge
-  std::uint32_t slots_ = 0;
+  const VoxelBox workspace_ = VoxelBox::from_dims(snapshot_.min_index, snapshot_.dims);
+  std::vector<std::uint32_t> cubes_;  // eight states each, kCubes a slot
+  const Cubes all_unknown_ = [] {
+    Cubes cubes{};
+    cubes.fill(BrickTable::kAllUnknown);
+    return cubes;
+  }();
 };
 
 Eigen::Vector3f BrickTable::normal_at(std::int32_t x, std::int32_t y, std::int32_t z) const {
-  const std::uint32_t entry = entries[entry_index(x, y, z)];
-  return unpack_normal(normals[std::size_t{entry & kPayload} * 64 + cube_in_brick(x, y, z)]);
+  const std::size_t slot = slot_of(entries[entry_index(x, y, z)]);
+  return unpack_normal(normals[slot * kCubes + cube_in_brick(x, y, z)]);
 }
 
 BrickTable::BrickTable(const GridSnapshot& snapshot, const HazardField& hazard)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ray_tile.hpp"
@@ -42,17 +43,18 @@ struct VoxelVisit {
   std::uint32_t state;   ///< as in BrickTable: unknown or occupied; free ones are left out
   std::int32_t x, y, z;  ///< table coordinates
   float begin, end;      ///< along the ray [voxels]
-  float rate;            ///< [1/voxel], as in BrickTable::rates; unknown voxels only
+  float rate;            ///< [1/voxel], signed as in BrickTable::records; unknown voxels only
+  std::int32_t cell;     ///< edge of its hazard cell [voxels]
 };
 
 /// Walks rays through the bricks in order, through unknown voxels to the first occupied one or the
 /// end of what is to be seen.
 struct WalkKernels {
-  /// `worth`: what P is multiplied by. `missed`: what of a hazard cell's area counts, at the
-  /// places of BrickTable::rates; null: all.
-  void (*area)(const BrickTable& table, const WalkLimits& limits, const WalkTask& task,
-               const PixelWorth& worth, const float* missed, WalkedTile& out);
-  /// The same voxel by voxel: appends what the rays of a tile visit, each ray's in order.
+  /// For tiles, two at a time at best: `out` has as many. `worth`: what P is multiplied by.
+  /// `missed`: what of a hazard cell's area counts, by BrickTable::place_of(); null: all.
+  void (*area)(const BrickTable& table, const WalkLimits& limits, std::span<const WalkTask> tasks,
+               const PixelWorth& worth, const float* missed, WalkedTile* out);
+  /// Voxel by voxel: appends what the rays of a tile visit, each ray's in order.
   void (*visits)(const BrickTable& table, const WalkLimits& limits, const WalkTask& task,
                  std::vector<VoxelVisit>& out);
 };

@@ -69,14 +69,19 @@ ViewGain gain_of(const BeliefGrid& grid, const Sensor& sensor, const HazardConfi
   return GainEvaluator(scene, sensor, config).evaluate(pose);
 }
 
-/// Σ T (1 - e^(-h c)) min(ω t², cap) over the cells of a slab.
+/// Σ T (1 - e^(-h c)) min(ω mean(t²), cap) over the cells of a slab: cubes of `edge` voxels, or
+/// aligned ones of up to 8 that lie in the slab.
 double slab_area(int begin, int end, int edge, double angle, double eye, double rate = kRate) {
   double area = 0, passed = 1;
-  for (int cell = begin / edge * edge; cell < end; cell += edge) {
-    const double from = std::max(cell, begin), to = std::min(cell + edge, end);
+  int cell = begin / edge * edge, wide = edge;
+  for (; cell < end; cell += wide) {
+    for (wide = 8; wide > edge; wide /= 2) {
+      if (cell % wide == 0 && cell >= begin && cell + wide <= end) break;
+    }
+    const double from = std::max(cell, begin), to = std::min(cell + wide, end);
     const double P = passed * -std::expm1(-rate * (to - from) * kExactVoxel);
-    const double t = (0.5 * (from + to) - eye) * kExactVoxel;
-    area += P * std::min(angle * t * t, kCap);
+    const double squared = (std::pow(to - eye, 3) - std::pow(from - eye, 3)) / (3 * (to - from));
+    area += P * std::min(angle * squared * kExactVoxel * kExactVoxel, kCap);
     passed -= P;
   }
   return area;

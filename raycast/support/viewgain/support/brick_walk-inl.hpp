@@ -1,21 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Walks a packet of rays through the voxels of a table in order, one ray per lane. Compiled once
-// for each instruction set.
+// Leads a packet of rays through the voxels of a table in order. Compiled once for each instruction
+// set.
 //
-// Each step crosses a cube of 1 to 128 voxels. Distances to planes are (plane - origin) * inverse
-// as in leaf_walk-inl.hpp, in table coordinates with integer planes, so neighbouring cubes of any
-// size agree on the distance of their common face. Along the axis of that face the next voxel is
-// known exactly; along the others it is computed from the point and clamped to the cube. Rounding
-// can therefore choose between neighbours, but never move a ray back.
+// Each lane of the vectors is a ray. The table divides space into cubes of 1 to 128 voxels that are
+// the same throughout. A step takes every lane through one cube, whatever its size:
 //
-// A Finder reads the table, a Sink handles the steps:
-//   Finder: Place, with `edge`, the size of the uniform cube at the voxel; void begin(Voxels);
-//     Place find(Voxels, VI moved, MF active);
-//   Sink: static MF ends(Place, MF counts), the lanes whose ray ends in the cube;
-//     void step(Finder, Step<Place>), called for each cube that the packet crosses;
-//     static constexpr bool kCountsVoxels, whether it needs Step::voxels.
+//            step 1              2         3         4            along the rays ->
+//   lane 0   |----- free 8 -----|-unk. 1-|-unk. 1-|occupied      ends at its fourth cube
+//   lane 1   |- unk. 2 -|- unk. 2 -|occupied                     ends at its third, then idles
+//   lane 2   |-unk. 1-|----- free 8 -----|----- free 16 -----|- unk. 2 -| ...
+//            t        next
+//
+// In a step, the place of each lane's cube (state, edge, rate) is read (Finder), the planes are
+// found at which the rays leave it, and the lanes move to the voxels behind those planes. Then the
+// Sink gets the pieces: here the first column, then the second. Lanes are soon far apart, so each
+// reads its own part of the table; that and the idle lanes are what a step costs.
+//
+// Plane distances are those of leaf_walk-inl.hpp, (plane - origin) * inverse, in table coordinates,
+// the plane an exact integer. So neighbouring cubes of any size agree on where their common face is
+// met. Along the axes that are not stepped over, a voxel's number comes from the point itself, kept
+// within the cube that is left: rounding can then choose between neighbours, but never go back.
+//
+// A Finder knows the table, a Sink what becomes of the cubes:
+//   Finder: void begin(Voxels), before the first find();
+//     Found find(Voxels, VI moved), which asks for the data of voxels; and, after the sink has been
+//     busy with the cubes before, Place place(Found, Voxels) with their `edge`;
+//   Sink: static MF ends(Place, MF counts), lanes whose ray ends in the cube;
+//     void step(Finder, Step<Place>), for each cube that a packet's rays go through;
+//     static constexpr bool kCountsVoxels, whether Step::voxels is asked for.
 
 // Included once for each instruction set; Highway flips the toggle.
 #if defined(VIEWGAIN_BRICK_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
@@ -139,13 +153,13 @@ class PacketWalk {
     at_ = {first_voxel(x_, 0), first_voxel(y_, 1), first_voxel(z_, 2)};
     moved_ = hn::Zero(di);
     finder_.begin(at_);
-    place_ = finder_.find(at_, moved_, active_);
+    found_ = finder_.find(at_, moved_);
     return true;
   }
 
   // False if no ray continues.
   HWY_INLINE bool step(Sink& sink) {
-    const typename Finder::Place place = place_;
+    const typename Finder::Place place = finder_.place(found_, at_);
     const VI top = hn::Sub(place.edge, set_i(1));
     const Along x = along(x_, at_.x, place.edge, top), y = along(y_, at_.y, place.edge, top),
                 z = along(z_, at_.z, place.edge, top);
@@ -174,8 +188,8 @@ class PacketWalk {
              hn::IfThenElse(to_i(active_), beyond.y, at.y),
              hn::IfThenElse(to_i(active_), beyond.z, at.z)};
       moved_ = hn::Or(hn::Or(hn::Xor(at_.x, at.x), hn::Xor(at_.y, at.y)), hn::Xor(at_.z, at.z));
-      // Gathers the next entries early, so that they load while the sink works.
-      place_ = finder_.find(at_, moved_, active_);
+      // What is asked for here is read in the next step, when the sink has been busy.
+      found_ = finder_.find(at_, moved_);
     }
     sink.step(finder_,
               Step<typename Finder::Place>{place, at, moved, voxels, counts, ends, t, next});
@@ -225,7 +239,7 @@ class PacketWalk {
   MF active_;
   Voxels at_;
   VI moved_;
-  typename Finder::Place place_;
+  typename Finder::Found found_;
 };
 
 }  // namespace
