@@ -125,8 +125,8 @@ std::string fault_of_folder(const App& called) {
 std::unique_ptr<App> make_program(CommonOptions& common) {
   auto program = std::make_unique<App>(
       "viewgain scores camera poses by expected information gain. It simulates or reads depth "
-      "frames, integrates them into a voxel map and scores candidate views against it. Units are "
-      "m, rad, s and nat unless stated otherwise.",
+      "frames, integrates the frames into a voxel map and scores candidate views in this map. "
+      "Units are m, rad, s and nat unless stated otherwise.",
       "viewgain");
   program->formatter(std::make_shared<HelpFormatter>());
   program->set_help_flag("-h", "print the most common options");
@@ -139,8 +139,8 @@ std::unique_ptr<App> make_program(CommonOptions& common) {
                             "print the version");
   program
       ->set_config("--config", "",
-                   "TOML file of flags: keys are flag names without -- and positionals (mesh, "
-                   "map); the command line takes precedence")
+                   "TOML file of flags; keys are flag names without --, or names of positionals "
+                   "(mesh, map); flags on the command line take precedence")
       ->type_name("FILE");
   program->config_formatter(std::make_shared<FlagFile>(*program));
   return program;

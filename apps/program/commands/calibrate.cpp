@@ -178,23 +178,25 @@ void calibrate(const Options& options) {
 
 Command add_calibrate(App& program) {
   auto options = std::make_shared<Options>();
-  App* app = program.add_subcommand(
-      "calibrate",
-      "Measure a depth camera and write a sensor file. --noise measures the scatter of readings, "
-      "from at least 30 frames of a static scene from one pose. --range measures the error of "
-      "ranges, from frames with poses of one flat wall at 8 distances or more.");
+  App* app =
+      program.add_subcommand("calibrate",
+                             "Measure a depth camera and write a sensor file. --noise measures how "
+                             "much depths scatter. It needs at least 30 frames of a static scene "
+                             "from one pose. --range measures the systematic range error. It needs "
+                             "frames of one flat wall from at least 8 distances, with poses.");
   app->add_option("FRAMES_DIR", options->frames, "folder of frames")->required();
   app->add_flag("--noise", options->noise,
-                "measure sigma_ax and sigma_lat in the sensor's noise model; requires edges in "
-                "front of a wall, but no poses");
+                "measure the standard deviations along and across the ray; the scene needs an "
+                "object in front of a wall, but the frames need no poses");
   app->add_flag("--range", options->range,
-                "measure range_calibration; turn the camera by 10 to 30 deg in some views");
+                "measure the range error, range_calibration in the sensor file; turn the camera by "
+                "10 to 30 deg for some frames");
   app->add_option(
       "--sensor", options->sensor,
-      kSensorHelp + "; the measured part is replaced (default: FRAMES_DIR/sensor.toml)");
+      kSensorHelp + ", whose measured part is replaced (default: FRAMES_DIR/sensor.toml)");
   app->add_option("--depth-scale", options->depth_scale,
-                  "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
-                  "poses.txt, 1e-3 with pose files)");
+                  "metres per unit of the depth images (default: from frames.toml; else 1e-4 for "
+                  "folders with poses.txt, 1e-3 for others)");
   app->add_option("--out", options->out, "sensor file to write (.toml)")->required();
   add_help(*app, kMapGroup,
            "calibrate --noise static --sensor sr4000 --depth-scale 1e-4 --out calibrated.toml");

@@ -86,8 +86,8 @@ void sensors(const Options& options) {
 Command add_sensors(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand("sensors",
-                                    "List the presets of --sensor. With NAME, print that preset as "
-                                    "a sensor file, as a starting point for your own.");
+                                    "List the presets for --sensor. With NAME, print the preset as "
+                                    "a sensor file, which you can edit for your own camera.");
   app->add_option("NAME", options->name, "preset or .toml file to print");
   add_help(*app, kLookGroup, "sensors d435");
   return command_of(app, options, sensors);

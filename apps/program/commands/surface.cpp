@@ -174,22 +174,24 @@ void surface(const Options& options, const App& app) {
 
 Command add_surface(App& program) {
   auto options = std::make_shared<Options>();
-  App* app = program.add_subcommand(
-      "surface",
-      "Write the surface in a map and its points as PLY; each vertex has a normal and the sigma "
-      "along it [m]. With --truth, measure their distance from a reference mesh.");
+  App* app =
+      program.add_subcommand("surface",
+                             "Write the surface and the points of a map as PLY files. Each vertex "
+                             "has a normal and a standard deviation along the normal [m]. With "
+                             "--truth, compare surface and points with a reference mesh.");
   app->add_option("MAP", options->map, kMapHelp)->required();
   app->add_option("--out", options->out, "surface to write (.ply)");
   app->add_option("--points", options->points, "points to write (.ply)");
   app->add_option("--truth", options->truth,
                   "reference mesh (OFF, OBJ, STL, PLY) in the world frame");
-  app->add_option("--size", options->size,
-                  "scale the reference mesh to this longest side [m] (default: as it is)");
+  app->add_option(
+      "--size", options->size,
+      "scale the reference mesh so that its longest side is this long [m] (default: do not scale)");
   app->add_option("--place", options->place,
                   "center: move the centre of the reference mesh's bounding box to the origin "
-                  "(default: as it is)")
+                  "(default: do not move)")
       ->check(one_of({"center"}, "value"));
-  app->add_option("--up", options->up, "axis of the reference mesh to turn to +z")
+  app->add_option("--up", options->up, "axis of the reference mesh's file that points up")
       ->check(one_of({"x", "y", "z"}, "axis"));
   add_help(*app, kLookGroup, "surface map.vdb --out surface.ply --points points.ply");
   return command_of(app, options, [app](const auto& given) { surface(given, *app); });

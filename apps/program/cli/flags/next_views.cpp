@@ -71,12 +71,13 @@ void add_plan_option(App& app, std::string& text) {
   const std::string reference = explain_values_in(
       "next", app,
       "Planning ahead with --plan K[,M]:\n"
-      "  The views of a plan come in an order with a short straight-line path. The\n"
-      "  planner replans after M views, or earlier if no remaining view is possible and\n"
-      "  promises enough. next, and model without --watch, list the first M.\n");
+      "  The views of a plan are ordered along a short path of straight lines. The\n"
+      "  planner replans after M views. It replans earlier if no remaining view is both\n"
+      "  possible and worth taking. next prints the first M views of the plan. model\n"
+      "  does the same without --watch.\n");
   app.add_option("--plan", text,
-                 "K[,M]: plan up to K views as a set and replan after M of them (default M: K; " +
-                     reference + "); 1: one view at a time");
+                 "K[,M]: plan up to K views together and replan after M of them (default: M = K; " +
+                     reference + "); 1: plan one view at a time");
 }
 
 PlanAhead parse_plan(const std::string& text) {

@@ -70,13 +70,13 @@ void add_hazard_option(App& app, std::string& text) {
       "score", app,
       "Values of --hazard; size=L can precede one of the others, as in size=0.3,5:\n"
       "  RATE      one rate for all unknown voxels [1/m]\n"
-      "  FILE.vdb  a rate per voxel\n"
+      "  FILE.vdb  one rate per voxel\n"
       "  size=L    longest side of the object [m] (default: that of its seen part)\n"
-      "  By default, rates follow from the distance to the seen surface and from the\n"
-      "  elevation above it.\n");
+      "  By default, the rate is high near known surface and falls with the distance\n"
+      "  from it. It is lower in front of the surface and behind it.\n");
   app.add_option("--hazard", text,
-                 "rate at which rays meet surface in unknown voxels, for --gain surface and "
-                 "combined: RATE [1/m], FILE.vdb or size=L (" +
+                 "rate at which rays meet surface in unknown voxels: RATE [1/m], FILE.vdb or "
+                 "size=L (requires --gain surface or combined; " +
                      reference + ")");
 }
 

@@ -21,14 +21,14 @@ constexpr std::size_t kMaxCount = 1'000'000;
 void add_output_options(App& app, RunOutputs& outputs) {
   begin_group(app, "Output");
   add_switch(app, "--save-maps", outputs.save_maps,
-             "write maps/NN.vdb after each view; reconstruct: also the candidates for the next "
-             "view, maps/NN.txt");
-  add_switch(app, "--pictures", outputs.pictures, "draw views/NN.png");
+             "write the map after each view, maps/NN.vdb; reconstruct also writes the next "
+             "candidates, maps/NN.txt");
+  add_switch(app, "--pictures", outputs.pictures, "draw each view, views/NN.png");
   app.add_option("--report", outputs.report,
-                 "on: write report.html, one file for a browser; or the folder of another run "
-                 "whose curves to overlay; off");
+                 "on: write report.html for a browser; RUN: also show the curves of the run in "
+                 "this folder; off: no report");
   app.add_flag("--resume", outputs.resume,
-               "resume this call after an interruption (kill, signal, full disk)");
+               "continue this call after it was interrupted (kill, signal, full disk)");
   app.add_option("--out", outputs.out, "folder to write")->required();
 }
 
@@ -38,11 +38,12 @@ void add_options(App& app, ReconstructOptions& o) {
       ->required();
   app.add_option("--sensor", o.sensor, kSensorHelp.c_str())->required();
   app.add_option("--voxel", o.voxel, "voxel size [m]")->required();
-  app.add_option("--size", o.size,
-                 "scale the object to this longest side [m] (default: the file's size, in metres)");
+  app.add_option(
+      "--size", o.size,
+      "scale the mesh so that its longest side is this long [m] (default: do not scale)");
   app.add_option("--workspace", o.workspace,
-                 "x0,y0,z0,x1,y1,z1 [m] (default: a cube of 0.4/0.35 times the longest side around "
-                 "the object)");
+                 "x0,y0,z0,x1,y1,z1: box to map [m] (default: a cube around the object, 8/7 of its "
+                 "longest side)");
   app.add_option("--up", o.up, "axis of the mesh file that points up")
       ->check(one_of({"x", "y", "z"}, "axis"));
   begin_group(app, "Views");
@@ -50,35 +51,36 @@ void add_options(App& app, ReconstructOptions& o) {
                  "tx,ty,tz,qx,qy,qz,qw: start pose of the camera in the world [m] (default: 27 deg "
                  "above the object, at an azimuth that depends on the seed)");
   app.add_option("--distance", o.distance,
-                 "distance from the object's centre for the start and the sets of poses [m] "
+                 "distance from the object's centre to the start and to sets of poses [m] "
                  "(default: see below)");
   app.add_option("--policy", o.policy, "how to choose views (see below)")
       ->check(one_of(policy_names(), "policy"));
   app.add_option("--generator", o.generator,
-                 "sources of candidates, comma-separated (see below) (default: boundary; random "
-                 "and fibonacci: sphere; sequence: sequence)")
+                 "comma-separated sources of candidates, see below (default: boundary; for "
+                 "--policy random and fibonacci: sphere; sequence: sequence)")
       ->check(several_of(generator_names(), "generator"));
   explain_values(app,
-                 "Policies of --policy:\n"
-                 "  gain       the view with the highest expected gain\n"
-                 "  kriegel    boundary views: left, right, top, bottom\n"
-                 "  sequence   turntable of 8 views, then top; or --poses\n"
-                 "  random     a random view\n"
-                 "  frontier   the view with the most unknown voxels in it\n"
-                 "  fibonacci  evenly around the object\n"
-                 "  oracle     knows the mesh: an upper reference\n");
-  explain_values(app,
-                 "Sources of candidates for --generator:\n"
-                 "  boundary  in front of open surface boundaries\n"
-                 "  sphere, dome, rings, shell, sequence  sets of poses around the object, which\n"
-                 "            fills the view, at the sensor's working distance or more; a shell\n"
-                 "            fills the shells or boxes of --reach\n");
+                 "Values of --policy; the next view is:\n"
+                 "  gain       the one with the highest expected gain\n"
+                 "  kriegel    at an open edge of the surface: left, right, top, then bottom\n"
+                 "  sequence   the next of 8 on a turntable, then one from above; or of --poses\n"
+                 "  random     a random one\n"
+                 "  frontier   the one that sees the most unknown voxels\n"
+                 "  fibonacci  the next on an evenly covered sphere\n"
+                 "  oracle     the one that truly shows most; it knows the mesh\n");
+  explain_values(
+      app,
+      "Sources of candidates for --generator:\n"
+      "  boundary  in front of open edges of the surface\n"
+      "  sphere, dome, rings, sequence  sets of poses around the object; by default,\n"
+      "            the object fills the image, not nearer than the working distance\n"
+      "  shell     random poses in the shells or boxes of --reach, else at that distance\n");
   app.add_option("--poses", o.poses,
                  "TUM or .npy file of poses that --policy sequence takes in order after the start "
-                 "(default: the turntable)");
+                 "(default: a turntable)");
   app.add_option("--count", o.count,
-                 "number of poses of sphere, dome or shell (default: 500; sphere with --policy "
-                 "fibonacci: --max-views); rings: 48, 80, 288 or 864 (default: 48)")
+                 "number of poses for sphere, dome or shell (default: 500; with --policy "
+                 "fibonacci: --max-views), or for rings: 48, 80, 288 or 864 (default: 48)")
       ->check(counted(1, kMaxCount));
   app.add_option("--gain", o.gain,
                  "gain for --policy gain: paper (entropy removed), surface (expected new surface), "
@@ -87,21 +89,23 @@ void add_options(App& app, ReconstructOptions& o) {
   add_hazard_option(app, o.hazard);
   begin_group(app, "Gain");
   app.add_option("--criterion", o.criterion,
-                 "criterion of entropy and of the paper gain: log_diagonal, log_determinant [nat] "
-                 "or trace [m^2], which cannot be used with --gain combined")
+                 "criterion for entropy and the gain paper: log_diagonal or log_determinant [nat], "
+                 "or trace [m^2] (cannot be used with --gain combined)")
       ->check(one_of(criterion_names(), "criterion"));
   begin_group(app, "Stopping");
   app.add_option("--max-views", o.max_views, "view budget")->check(counted(1, kMaxCount));
   add_stop_option(app, o.stop);
   app.add_option("--tolerance", o.tolerance,
-                 "distance within which the surface covers a point of the mesh [m] (default: "
-                 "the larger of 0.005 and a voxel)");
+                 "a point of the mesh is covered if the surface is within this distance [m] "
+                 "(default: the larger of 0.005 and a voxel)");
   begin_group(app, "Views");
-  app.add_option("--cost-per-metre", o.cost_per_metre,
-                 "L: rank by gain - L * distance [nat/m; with --gain surface m^2/m]");
+  app.add_option(
+      "--cost-per-metre", o.cost_per_metre,
+      "L: rank by gain - L * distance from the last view [nat/m] (--gain surface: [m^2/m])");
   add_plan_option(app, o.plan);
   begin_group(app, "Obstacles");
-  app.add_option("--reach", o.reach, "TOML file of reachable boxes, shells, half-spaces and poses");
+  app.add_option("--reach", o.reach,
+                 "TOML file that states which poses the robot can reach (default: all)");
   app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
   app.add_option("--body", o.body, kBodyHelp);
   add_sensing_options(app, o.sensing);
