@@ -41,7 +41,7 @@ std::string fault_of_flag(const App& called, const std::string& flag) {
     if (flag == name) return flag + ": must follow the subcommand " + called.get_name();
     if (option->nonpositional()) flags.push_back(name);
     if (flag == "--" + CLI::detail::to_lower(name)) {  // a positional's
-      return flag + ": " + name + " is positional; give it without the flag";
+      return flag + ": " + name + " is a positional argument; give it without --";
     }
   }
   return flag + ": unknown flag for " + called.get_name() + did_you_mean(flag, flags);
@@ -97,9 +97,9 @@ void check_have_values(const App& program, const std::vector<std::string>& words
       continue;
     }
     const std::vector<std::string> choices = choices_of(**option);
-    throw UsageError(
-        ErrorCode::invalid_argument,
-        words[i] + ": needs a value" + (choices.empty() ? "" : "; there are " + listed(choices)));
+    throw UsageError(ErrorCode::invalid_argument,
+                     words[i] + ": needs a value" +
+                         (choices.empty() ? "" : "; valid values: " + listed(choices)));
   }
 }
 
@@ -116,7 +116,7 @@ std::string fault_of_folder(const App& called) {
       continue;
     }
     return path.string() +
-           ": the folder holds no map; to make one from frames, run viewgain model " +
+           ": the folder holds no map. To make one from frames, run viewgain model " +
            path.string() + " --voxel V --out RUN";
   }
   return {};

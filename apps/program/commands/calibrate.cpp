@@ -120,7 +120,7 @@ void calibrate_range(const Options& options) {
                 {"seconds", watch.seconds()}});
     return;
   }
-  std::printf("%zu frames at %zu distances: range error %.2f mm RMS, %.2f mm after calibration\n",
+  std::printf("%zu frames at %zu distances: RMS range error %.2f mm, after calibration %.2f mm\n",
               counts.used - result.left_out.size(), result.distances, 1e3 * result.rms_before,
               1e3 * result.rms_after);
   if (!counts.bad.empty()) std::printf("left out: %s\n", counts_text(counts.bad).c_str());
@@ -167,9 +167,10 @@ void calibrate(const Options& options) {
     std::printf("%10.3f %10s %16.3f %12.3f\n", step.range, with_commas(step.pixels).c_str(),
                 1e3 * step.sigma_axial, 1e3 * step.fitted_axial);
   }
-  std::printf("%zu frames (%s); lateral sigma %.3f px, from %.0f px of edges%s\n", used,
-              result.sensor.name.c_str(), result.sigma_lateral_px, result.edge_length,
-              result.lateral_in_model ? "" : "; the noise model fixes it at 1 px");
+  std::printf(
+      "%zu frames (%s); standard deviation across the ray %.3f px, from %.0f px of edges%s\n", used,
+      result.sensor.name.c_str(), result.sigma_lateral_px, result.edge_length,
+      result.lateral_in_model ? "" : "; the noise model always has 1 px");
   if (!bad.empty()) std::printf("left out: %s\n", counts_text(bad).c_str());
   std::printf("%s: sensor %s with this noise\n", options.out.c_str(), result.sensor.name.c_str());
 }

@@ -64,9 +64,9 @@ void convert(const Options& options) {
   }
   print_map(grid, statistics);
   if (lost.beliefs > 0 || lost.views > 0) {
-    std::printf("lost in the tree: beliefs of %s voxels, %s views%s\n",
+    std::printf("not stored in the tree: beliefs of %s voxels, %s views%s\n",
                 with_commas(lost.beliefs).c_str(), with_commas(lost.views).c_str(),
-                lost.hazard_counters ? ", hazard counters" : "");
+                lost.hazard_counters ? ", counts behind learned hazards" : "");
   }
   std::printf("%s\n", options.out.c_str());
 }

@@ -99,20 +99,22 @@ void print_summary(const Options& options, RecordingFormat format, const ImportR
               {"seconds", seconds}};
     return print_json(json);
   }
-  std::printf("%zu frames of %dx%d px, %s readings: %s\n", report.frames, camera.width,
+  std::printf("%zu frames of %dx%d px, %s pixels with a depth: %s\n", report.frames, camera.width,
               camera.height, with_commas(report.readings).c_str(), options.out.c_str());
   if (has_messages(format)) {
-    std::printf("depth images from %s, poses in %s\n", printable(report.depth_topic).c_str(),
-                printable(report.world).c_str());
+    std::printf("depth images from the topic %s, poses in the tf frame %s\n",
+                printable(report.depth_topic).c_str(), printable(report.world).c_str());
   }
   if (!bad.empty()) std::printf("left out: %s\n", counts_text(bad).c_str());
   print_mended(report.orthonormalized);
   if (!sensor) {
-    std::printf("no sensor.toml without --sensor: model needs a sensor file with %dx%d px\n",
-                camera.width, camera.height);
+    std::printf(
+        "no sensor.toml was written, because --sensor is missing: model needs --sensor with a file "
+        "for %dx%d px\n",
+        camera.width, camera.height);
   }
   if (!options.mask.empty() || !options.confidence.empty()) {
-    std::printf("masks: %zu frames, %s pixels masked out\n", report.masks,
+    std::printf("%zu frames have a mask; masks removed %s pixels\n", report.masks,
                 with_commas(report.masked_pixels).c_str());
   }
 }

@@ -120,7 +120,7 @@ void info(const Options& options) {
     for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
       std::printf(" %.2f", counters.factor(k));
     }
-    std::printf("  (near to far)\n");
+    std::printf("  (from near to far from known surface)\n");
   }
   std::printf("hash             %s\n", grid.content_hash().c_str());
   if (region) print(*region, unit);

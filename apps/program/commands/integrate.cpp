@@ -183,7 +183,8 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
     std::printf("depth images: %s m per unit\n", short_text(*scale).c_str());
   }
   std::printf(
-      "%zu %ss (%s), %s readings, %s of them in the workspace; %s out of range, %s invalid\n",
+      "%zu %ss (%s): %s measured points, %s of them in the workspace; %s pixels out of range, %s "
+      "invalid\n",
       taken, part_name(options), printable(source.sensor().name).c_str(),
       with_commas(totals.sum.readings).c_str(), with_commas(totals.sum.readings_inside).c_str(),
       with_commas(totals.sum.out_of_range).c_str(), with_commas(totals.sum.invalid).c_str());
@@ -194,14 +195,14 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
     std::printf("%s\n", registration_text(registration_counts(totals.registrations)).c_str());
   }
   if (totals.skipped > 0) {
-    std::printf("skipped, already in the map: %zu\n", totals.skipped);
+    std::printf("frames skipped because the map has them: %zu\n", totals.skipped);
   }
   std::printf("%s", masked_text(options.frames, totals.masked_pixels).c_str());
   if (options.jump_edge_filter != "off") {
     std::printf("flying pixels removed: %s\n", with_commas(totals.jump_edge_removed).c_str());
   }
   if (options.support_plane) {
-    std::printf("readings on the support plane: %s\n",
+    std::printf("pixels on the support plane: %s\n",
                 with_commas(totals.sum.plane_readings).c_str());
   }
   print_mended(source.orthonormalized());
@@ -250,11 +251,11 @@ void refuse_empty(const Options& options, const ReadingSource& source, const Tot
   if (!options.map.empty()) return;
   if (sum.readings_inside + sum.plane_readings + sum.voxels_crossed == 0) {
     refuse(options.clouds.front() + ": none of " + with_commas(sum.readings) +
-           " readings lies in the workspace");
+           " points lies in the workspace");
   }
   if (sum.readings > 0 && sum.readings_inside + sum.plane_readings == 0) {
     std::fprintf(stderr,
-                 "viewgain: warning: %s: none of %s readings lies in the workspace; they only mark "
+                 "viewgain: warning: %s: none of %s points lies in the workspace; they only mark "
                  "free space. Are --poses and --workspace right?\n",
                  options.clouds.front().c_str(), with_commas(sum.readings).c_str());
   }

@@ -116,13 +116,13 @@ void next(const Options& options) {
     print_json(json);
     return;
   }
-  std::printf("%zu views so far, %s; %s\n", model.grid().views().size(),
+  std::printf("%zu views so far; %s; %s\n", model.grid().views().size(),
               printable(sensor.name).c_str(), summary_of(views).c_str());
   std::printf("%s", text_of(views).c_str());
   if (options.proposal.reach.empty()) {
     std::printf("%s", outside_text(views, model.grid()).c_str());
   }
-  if (!options.out.empty()) std::printf("poses in %s\n", options.out.c_str());
+  if (!options.out.empty()) std::printf("poses written to %s\n", options.out.c_str());
 }
 
 }  // namespace

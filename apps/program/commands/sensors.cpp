@@ -77,7 +77,8 @@ void sensors(const Options& options) {
   if (options.common.json) {
     print_json(json);
   } else {
-    std::printf("axial, lateral: sigma of a reading at the working distance\n");
+    std::printf(
+        "axial, lateral: standard deviation along and across the ray at the working distance\n");
   }
 }
 

@@ -95,7 +95,7 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
   if (std::none_of(poses.begin(), poses.end(),
                    [&](const Pose& pose) { return sees_mesh(scene, sensor, rays, pose); })) {
-    refuse(options.mesh + ": no pose has the mesh in view and in range; the mesh lies in " +
+    refuse(options.mesh + ": from no pose is the mesh in view and in range; the mesh lies in " +
            describe(bounds_of(scene.mesh())) + " m (--size, --place)");
   }
 }
@@ -194,7 +194,7 @@ void simulate(const Options& options) {
   std::printf("%zu frames of %dx%d px (%s) of %s triangles in %.2f s: %s\n", poses.size(),
               sensor.camera.width, sensor.camera.height, printable(sensor.name).c_str(),
               with_commas(triangles).c_str(), seconds, options.out.c_str());
-  std::printf("pixels: %s readings, %s out of range, %s invalid\n",
+  std::printf("pixels: %s with a depth, %s out of range, %s invalid\n",
               with_commas(counts.readings).c_str(), with_commas(counts.out_of_range).c_str(),
               with_commas(counts.invalid).c_str());
   print_mended(source.orthonormalized);

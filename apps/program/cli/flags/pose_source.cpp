@@ -158,7 +158,8 @@ std::optional<Pose> begin_of_ways(const CostOptions& options,
   }
   if (last_pose) return last_pose;
   if (options.per_metre > 0) {
-    refuse("--cost-per-metre: the map has no view to start paths from; give --from x,y,z");
+    refuse(
+        "--cost-per-metre: the map has no view at which the path could start; give --from x,y,z");
   }
   return std::nullopt;
 }

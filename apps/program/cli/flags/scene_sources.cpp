@@ -173,11 +173,11 @@ bool is_same_sensor(const Sensor& a, const Sensor& b) { return readings_of(a) ==
 bool warn_of_other_sensor(const std::string& path, const BeliefGrid& grid, const Sensor& sensor) {
   const std::optional<Sensor> noted = map_sensor(grid);
   if (!noted || is_same_sensor(*noted, sensor)) return false;
-  std::fprintf(stderr,
-               "viewgain: warning: the readings in %s come from the sensor %s, but --sensor %s "
-               "differs: %s\n",
-               path.c_str(), printable(noted->name).c_str(), printable(sensor.name).c_str(),
-               printable(difference(*noted, sensor)).c_str());
+  std::fprintf(
+      stderr,
+      "viewgain: warning: the frames in %s come from the sensor %s, but --sensor %s differs: %s\n",
+      path.c_str(), printable(noted->name).c_str(), printable(sensor.name).c_str(),
+      printable(difference(*noted, sensor)).c_str());
   return true;
 }
 
@@ -197,12 +197,12 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
   if (asked) warn_of_other_sensor(path, grid, *asked);
   std::optional<Sensor> sensor = asked ? std::move(asked) : map_sensor(grid);
   if (!sensor) {
-    refuse(path + ": the map does not record its sensor; give --sensor");
+    refuse(path + ": the map does not name its sensor; give --sensor");
   }
   if (is_octomap(path) || has_states_alone(grid)) {
     std::fprintf(stderr,
-                 "viewgain: note: %s holds voxel states only: known surface counts as never "
-                 "measured (--gain surface is not affected), and its past views are unknown\n",
+                 "viewgain: note: %s holds voxel states only. Known surface is treated as not yet "
+                 "measured (this does not affect --gain surface), and past views are unknown\n",
                  path.c_str());
   }
   return {std::move(grid), *std::move(sensor)};
@@ -211,8 +211,8 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
 void require_known(const BeliefGrid& grid, const std::string& path) {
   if (grid.statistics().unknown < grid.voxel_count()) return;
   refuse(path +
-         ": all voxels are unknown, the map holds no reading. Was it made with a wrong workspace, "
-         "scale or poses (world to camera)?");
+         ": all voxels are unknown. Was the map made with a wrong workspace, a wrong scale, or "
+         "poses that are world to camera?");
 }
 
 }  // namespace viewgain::app

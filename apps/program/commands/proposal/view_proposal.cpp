@@ -165,7 +165,7 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
   if (options.distance) config.boundary.working_distance = *options.distance;
   if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
   if (!map.empty() && has_generator(options, "boundary") && grid.views().empty()) {
-    refuse(map + ": has no views, which --generator boundary requires; try --generator sphere");
+    refuse(map + ": --generator boundary requires a map with views; try --generator sphere");
   }
   if (!options.poses.empty()) config.sets.push_back({kGivenPoses, poses_in(options.poses)});
   const PoseSetRequest request = request_of(options, sensor, grid, config.feasibility.reach);

@@ -170,7 +170,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
                 beside_text(beside, run["settings"]).c_str());
     if (setup.visibility.tolerance < options.voxel) {
       std::printf(
-          "coverage is measured at %g mm, less than a voxel: correct surface may count as missed "
+          "coverage is measured at %g mm, less than a voxel. Correct surface may count as missed "
           "(--tolerance)\n",
           1e3 * setup.visibility.tolerance);
     }

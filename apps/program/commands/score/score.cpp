@@ -94,7 +94,7 @@ FeasiblePoses candidates_of(const Options& options, const PoseSource& source, co
 
 void check_left(const FeasiblePoses& candidates) {
   if (!candidates.poses.empty()) return;
-  refuse("no pose is left to score; dropped: " + counts_text(candidates.dropped));
+  refuse("no pose is left to score, because all were dropped: " + counts_text(candidates.dropped));
 }
 
 // What the poses cost, whichever of them are possible.
@@ -210,11 +210,11 @@ void name_by_input(Scores& scores, const FeasiblePoses& candidates) {
 void warn_of_prior(const GainEvaluator& evaluator, const Sensor& sensor) {
   const double axial = sensor.sigmas(sensor.working_distance).axial;
   if (evaluator.prior_sigma() >= axial) return;
-  std::fprintf(
-      stderr,
-      "viewgain: warning: the prior sigma, %.3g m, is below the sensor's along the ray, %.3g m at "
-      "%g m: unknown space would be more certain than a reading (--prior-sigma)\n",
-      evaluator.prior_sigma(), axial, sensor.working_distance);
+  std::fprintf(stderr,
+               "viewgain: warning: the prior sigma, %.3g m, is below the sensor's noise along the "
+               "ray, %.3g m at a range of %g m. Unknown voxels would be more certain than measured "
+               "ones (--prior-sigma)\n",
+               evaluator.prior_sigma(), axial, sensor.working_distance);
 }
 
 void score_by_registered_gains(const Options& options, const std::vector<std::string>& names) {
