@@ -209,9 +209,8 @@ Command add_simulate(App& program) {
   add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kSensorHelp)->required();
   begin_group(*app, "Mesh");
-  app->add_option(
-      "--size", options->size,
-      "scale the mesh so that its longest side is this long [m] (default: do not scale)");
+  app->add_option("--size", options->size,
+                  "length of the mesh's longest side after scaling [m] (default: no scaling)");
   app->add_option("--up", options->up, "axis of the mesh file that points up")
       ->check(one_of({"x", "y", "z"}, "axis"));
   app->add_option(

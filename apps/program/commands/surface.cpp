@@ -188,7 +188,7 @@ Command add_surface(App& program) {
                   "reference mesh (OFF, OBJ, STL, PLY) in the world frame");
   app->add_option(
       "--size", options->size,
-      "scale the reference mesh so that its longest side is this long [m] (default: do not scale)");
+      "length of the reference mesh's longest side after scaling [m] (default: no scaling)");
   app->add_option("--place", options->place,
                   "center: move the centre of the reference mesh's bounding box to the origin "
                   "(default: do not move)")

@@ -62,8 +62,8 @@ inline const std::string kSensorHelp =
 inline const std::string kMapSensorHelp = kSensorHelp + " (default: the sensor that the map names)";
 
 inline constexpr const char* kBodyHelp =
-    "x,y,z: width, height and depth of the camera's housing [m] (default: from the sensor file, "
-    "else those of the SR4000)";
+    "x,y,z: width, height and depth of the camera's housing [m] (default: from the sensor, else "
+    "those of an SR4000)";
 
 /// --seed, the same bounds in every subcommand.
 inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {

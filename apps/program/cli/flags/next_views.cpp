@@ -77,8 +77,8 @@ void add_plan_option(App& app, std::string& text) {
       "  possible and worth taking. next prints the first M views of the plan. model\n"
       "  does the same without --watch.\n");
   app.add_option("--plan", text,
-                 "K[,M]: plan up to K views together and replan after M of them (default: M = K; " +
-                     reference + "); 1: plan one view at a time");
+                 "K[,M]: plan K views together and replan after M of them (default: M = K; " +
+                     reference + "); 1: no plan");
 }
 
 PlanAhead parse_plan(const std::string& text) {

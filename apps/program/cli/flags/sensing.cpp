@@ -63,7 +63,7 @@ SimulatedNoise parse_noise(const std::string& text, bool readings) {
 void add_sensing_options(App& app, SensingOptions& o) {
   begin_group(app, "Simulated camera");
   app.add_option("--support-plane", o.support_plane,
-                 "height z of an infinite table, which hides what is below [m] (default: none)");
+                 "height z of an infinite table that occludes [m] (default: none)");
   const std::string reference = explain_values_in(
       "simulate", app,
       "Values of --noise, separated by commas:\n"
@@ -77,11 +77,11 @@ void add_sensing_options(App& app, SensingOptions& o) {
       "            per axis [m] and per component of the rotation vector [deg]. The\n"
       "            first pose has no error: it defines the world\n");
   app.add_option("--noise", o.noise,
-                 "noise of depths and poses: off, on, plain, flying, scale=E or "
-                 "pose=SIGMA_M/SIGMA_DEG; separate several by commas (" +
+                 "noise of depths and poses: off, on, plain, flying, scale=E, "
+                 "pose=SIGMA_M/SIGMA_DEG, separated by commas (" +
                      reference + ")");
   app.add_option("--background", o.background,
-                 "radius of a sphere around the origin that represents the room [m]; 0: no room");
+                 "radius of a sphere around the origin that represents the room [m]; 0: none");
   add_seed_option(app, o.seed, "seed for the noise of depths and poses");
 }
 
@@ -177,13 +177,12 @@ Json ScaleOptions::settings() const {
 
 void add_scale_options(App& app, ScaleOptions& options) {
   begin_group(app, "Scales");
+  app.add_option("--scales", options.scales,
+                 "COARSEST[,FINEST], each 0..3: merge voxels that one pixel covers into cells of "
+                 "up to 2^COARSEST voxels per edge; closer views split cells down to 2^FINEST");
   app.add_option(
-      "--scales", options.scales,
-      "COARSEST[,FINEST], each 0..3: where one pixel covers several voxels, merge them into cells "
-      "of up to 2^COARSEST voxels per edge; closer views split these down to 2^FINEST");
-  app.add_option("--fine", options.fine,
-                 "box x0,y0,z0,x1,y1,z1 [m] in which no voxels are merged (requires --scales); may "
-                 "be repeated")
+         "--fine", options.fine,
+         "box x0,y0,z0,x1,y1,z1 [m] without merged voxels (requires --scales); may be repeated")
       ->allow_extra_args(false);
 }
 

@@ -51,8 +51,8 @@ void add_sensing_options(App& app, SensingOptions& options);
 
 /// Wherever frames go into a map.
 inline constexpr const char* kJumpEdgeHelp =
-    "ANGLE_DEG, 1..10, or off: remove flying pixels; a pixel is one if the line to a nearer "
-    "neighbour is within ANGLE_DEG of the ray";
+    "ANGLE_DEG, 1..10, or off: remove flying pixels, whose line to a nearer neighbour is within "
+    "this angle of the ray";
 
 /// --jump-edge-filter ANGLE_DEG|off. Throws Error(invalid_argument) for other text; the filter
 /// itself refuses angles out of its bounds.

@@ -13,17 +13,16 @@ void add_stop_option(App& app, std::string& text) {
   const std::string reference = explain_values_in(
       "reconstruct", app,
       "Rules of --stop; LIMIT 0 disables any rule except coverage:\n"
-      "  gain      the best view gains less than LIMIT per voxel that it sees [nat] or\n"
-      "            [m^2] (--gain paper; default: 1.2; with --criterion trace, 0.01 of\n"
-      "            the first view's gain per voxel)\n"
+      "  gain      the best view gains less than LIMIT per voxel that it sees\n"
+      "            (--gain paper; default: 1.2 nat; trace: 0.01 of the first value)\n"
       "  area      the best view's expected new surface is below LIMIT times the\n"
-      "            surface so far, as a mean of three decisions (--gain surface or\n"
-      "            combined; default: 0.004)\n"
-      "  idle      LIMIT views in a row each change entropy and unknown voxels by less\n"
-      "            than 0.1 % (default: 3)\n"
-      "  promises  LIMIT views in a row each show less than a fifth of the expected new\n"
-      "            surface or gain (default: 3)\n"
-      "  coverage  the share LIMIT of the visible surface is covered (reconstruct only)\n");
+      "            surface so far, mean of three decisions (--gain surface, combined;\n"
+      "            default: 0.004)\n"
+      "  idle      LIMIT views in a row change entropy and unknown voxels by less than\n"
+      "            0.1 % (default: 3)\n"
+      "  promises  LIMIT views in a row show less than a fifth of what was expected\n"
+      "            (default: 3)\n"
+      "  coverage  a share LIMIT of the visible surface is covered (reconstruct only)\n");
   app.add_option("--stop", text,
                  "RULE=LIMIT,...: rules that end the run: gain, area, idle, promises, coverage (" +
                      reference + "); may be repeated")

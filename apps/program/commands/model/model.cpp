@@ -22,8 +22,8 @@ void add_model_options(App& app, ModelOptions& o) {
   begin_group(app, "Watching a folder");
   Option* watch = app.add_flag(
       "--watch", o.watch,
-      "process frames as they appear, until a signal comes or the file FRAMES_DIR/done exists "
-      "(requires --workspace; cannot be used with --costs, --from, --resume; see below)");
+      "process frames as they appear, until a signal or until FRAMES_DIR/done exists (requires "
+      "--workspace; cannot be used with --costs, --from, --resume; see below)");
   explain_values(app,
                  "With --watch:\n"
                  "  After each frame the program writes state.vdb, next.txt and next.json to OUT.\n"

@@ -91,8 +91,8 @@ void add_next_view_options(App& app, ProposalOptions& o) {
                  "further candidates");
   add_cost_options(app, o.costs, "--poses");
   app.add_option("--count", o.count,
-                 "number of poses for sphere, dome or shell (default: 500), or for rings: 48, 80, "
-                 "288 or 864 (default: 48)")
+                 "number of poses for sphere, dome or shell (default: 500) or rings: 48, 80, 288 "
+                 "or 864 (default: 48)")
       ->check(counted(1, 1'000'000));
   app.add_option("--distance", o.distance,
                  "distance of candidates [m]: from the surface for boundary, from --center for "
@@ -101,8 +101,8 @@ void add_next_view_options(App& app, ProposalOptions& o) {
                  "x,y,z: point that sets of poses look at, world frame [m] (default: the centre of "
                  "the workspace)");
   app.add_option("--reach", o.reach,
-                 "TOML file that states which poses the robot can reach (default: all; for "
-                 "boundary, those in the workspace if all views so far are in it)");
+                 "TOML file of poses that the robot can reach (default: all; for boundary, those "
+                 "in the workspace if it contains all views so far)");
   begin_group(app, "Obstacles");
   app.add_option("--body", o.body, kBodyHelp);
   app.add_option("--support-plane", o.support_plane,

@@ -20,15 +20,15 @@ constexpr std::size_t kMaxCount = 1'000'000;
 
 void add_output_options(App& app, RunOutputs& outputs) {
   begin_group(app, "Output");
-  add_switch(app, "--save-maps", outputs.save_maps,
-             "write the map after each view, maps/NN.vdb; reconstruct also writes the next "
-             "candidates, maps/NN.txt");
+  add_switch(
+      app, "--save-maps", outputs.save_maps,
+      "write maps/NN.vdb after each view; reconstruct also writes the candidates, maps/NN.txt");
   add_switch(app, "--pictures", outputs.pictures, "draw each view, views/NN.png");
   app.add_option("--report", outputs.report,
-                 "on: write report.html for a browser; RUN: also show the curves of the run in "
-                 "this folder; off: no report");
+                 "on: write report.html for a browser; RUN: also show the curves of another run; "
+                 "off: no report");
   app.add_flag("--resume", outputs.resume,
-               "continue this call after it was interrupted (kill, signal, full disk)");
+               "continue this call after an interruption (kill, signal, full disk)");
   app.add_option("--out", outputs.out, "folder to write")->required();
 }
 
@@ -38,9 +38,8 @@ void add_options(App& app, ReconstructOptions& o) {
       ->required();
   app.add_option("--sensor", o.sensor, kSensorHelp.c_str())->required();
   app.add_option("--voxel", o.voxel, "voxel size [m]")->required();
-  app.add_option(
-      "--size", o.size,
-      "scale the mesh so that its longest side is this long [m] (default: do not scale)");
+  app.add_option("--size", o.size,
+                 "length of the mesh's longest side after scaling [m] (default: no scaling)");
   app.add_option("--workspace", o.workspace,
                  "x0,y0,z0,x1,y1,z1: box to map [m] (default: a cube around the object, 8/7 of its "
                  "longest side)");
@@ -48,39 +47,38 @@ void add_options(App& app, ReconstructOptions& o) {
       ->check(one_of({"x", "y", "z"}, "axis"));
   begin_group(app, "Views");
   app.add_option("--from", o.from,
-                 "tx,ty,tz,qx,qy,qz,qw: start pose of the camera in the world [m] (default: 27 deg "
-                 "above the object, at an azimuth that depends on the seed)");
+                 "tx,ty,tz,qx,qy,qz,qw: start pose of the camera [m] (default: 27 deg above the "
+                 "object; --seed sets the azimuth)");
   app.add_option("--distance", o.distance,
-                 "distance from the object's centre to the start and to sets of poses [m] "
+                 "distance of the start and of sets of poses from the object's centre [m] "
                  "(default: see below)");
   app.add_option("--policy", o.policy, "how to choose views (see below)")
       ->check(one_of(policy_names(), "policy"));
   app.add_option("--generator", o.generator,
-                 "comma-separated sources of candidates, see below (default: boundary; for "
-                 "--policy random and fibonacci: sphere; sequence: sequence)")
+                 "comma-separated sources of candidates, see below (default: boundary; --policy "
+                 "random, fibonacci: sphere; sequence: sequence)")
       ->check(several_of(generator_names(), "generator"));
   explain_values(app,
-                 "Values of --policy; the next view is:\n"
-                 "  gain       the one with the highest expected gain\n"
-                 "  kriegel    at an open edge of the surface: left, right, top, then bottom\n"
-                 "  sequence   the next of 8 on a turntable, then one from above; or of --poses\n"
-                 "  random     a random one\n"
-                 "  frontier   the one that sees the most unknown voxels\n"
-                 "  fibonacci  the next on an evenly covered sphere\n"
-                 "  oracle     the one that truly shows most; it knows the mesh\n");
-  explain_values(
-      app,
-      "Sources of candidates for --generator:\n"
-      "  boundary  in front of open edges of the surface\n"
-      "  sphere, dome, rings, sequence  sets of poses around the object; by default,\n"
-      "            the object fills the image, not nearer than the working distance\n"
-      "  shell     random poses in the shells or boxes of --reach, else at that distance\n");
+                 "Views that --policy chooses:\n"
+                 "  gain       highest expected gain\n"
+                 "  kriegel    open edges of the surface: left, right, top, then bottom\n"
+                 "  sequence   8 views of a turntable, then one from above; or --poses\n"
+                 "  random     random views\n"
+                 "  frontier   most unknown voxels in view\n"
+                 "  fibonacci  evenly around the object\n"
+                 "  oracle     most surface in view; knows the mesh\n");
+  explain_values(app,
+                 "Sources of candidates for --generator:\n"
+                 "  boundary  in front of open edges of the surface\n"
+                 "  sphere, dome, rings, shell, sequence  sets of poses around the object; by\n"
+                 "            default it fills the image, at the working distance or more. With\n"
+                 "            --reach, a shell fills the shells or boxes of the reach file\n");
   app.add_option("--poses", o.poses,
-                 "TUM or .npy file of poses that --policy sequence takes in order after the start "
+                 "TUM or .npy file of poses for --policy sequence, taken in order after the start "
                  "(default: a turntable)");
   app.add_option("--count", o.count,
-                 "number of poses for sphere, dome or shell (default: 500; with --policy "
-                 "fibonacci: --max-views), or for rings: 48, 80, 288 or 864 (default: 48)")
+                 "number of poses for sphere, dome or shell (default: 500; --policy fibonacci: "
+                 "--max-views) or rings: 48, 80, 288 or 864 (default: 48)")
       ->check(counted(1, kMaxCount));
   app.add_option("--gain", o.gain,
                  "gain for --policy gain: paper (entropy removed), surface (expected new surface), "
@@ -89,23 +87,21 @@ void add_options(App& app, ReconstructOptions& o) {
   add_hazard_option(app, o.hazard);
   begin_group(app, "Gain");
   app.add_option("--criterion", o.criterion,
-                 "criterion for entropy and the gain paper: log_diagonal or log_determinant [nat], "
-                 "or trace [m^2] (cannot be used with --gain combined)")
+                 "criterion for entropy and the gain paper: log_diagonal, log_determinant [nat] or "
+                 "trace [m^2] (cannot be used with --gain combined)")
       ->check(one_of(criterion_names(), "criterion"));
   begin_group(app, "Stopping");
   app.add_option("--max-views", o.max_views, "view budget")->check(counted(1, kMaxCount));
   add_stop_option(app, o.stop);
   app.add_option("--tolerance", o.tolerance,
-                 "a point of the mesh is covered if the surface is within this distance [m] "
-                 "(default: the larger of 0.005 and a voxel)");
+                 "largest distance from surface to mesh that counts as covered [m] (default: the "
+                 "larger of 0.005 and a voxel)");
   begin_group(app, "Views");
-  app.add_option(
-      "--cost-per-metre", o.cost_per_metre,
-      "L: rank by gain - L * distance from the last view [nat/m] (--gain surface: [m^2/m])");
+  app.add_option("--cost-per-metre", o.cost_per_metre,
+                 "L: rank by gain - L * distance [nat/m; with --gain surface m^2/m]");
   add_plan_option(app, o.plan);
   begin_group(app, "Obstacles");
-  app.add_option("--reach", o.reach,
-                 "TOML file that states which poses the robot can reach (default: all)");
+  app.add_option("--reach", o.reach, "TOML file of poses that the robot can reach (default: all)");
   app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
   app.add_option("--body", o.body, kBodyHelp);
   add_sensing_options(app, o.sensing);

@@ -321,7 +321,7 @@ Command add_score(App& program) {
                   "with --feasible on, the camera stays above it (default: none)");
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
   app->add_option("--reach", options->reach,
-                  "TOML file that states which poses the robot can reach; other poses are dropped");
+                  "TOML file of poses that the robot can reach; other poses are dropped");
   add_switch(
       *app, "--feasible", options->feasible,
       "drop poses where the camera's housing touches voxels not known to be free, an obstacle or "
