@@ -66,7 +66,7 @@ void add_options(App& app, ReconstructOptions& o) {
                  "  random     random views\n"
                  "  frontier   most unknown voxels in view\n"
                  "  fibonacci  evenly around the object\n"
-                 "  oracle     most surface in view; knows the mesh\n");
+                 "  oracle     most newly covered surface; knows the mesh\n");
   explain_values(app,
                  "Sources of candidates for --generator:\n"
                  "  boundary  in front of open edges of the surface\n"
