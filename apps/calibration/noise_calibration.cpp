@@ -248,7 +248,7 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
          " of the pixels change their depth with time");
   }
   if (!(sigma * sigma > unit_ * unit_ / 12)) {
-    fail("depths scatter by no more than they are rounded, " + short_text(unit_) +
+    fail("depths scatter by no more than their rounding step of " + short_text(unit_) +
          " m. Are they filtered?");
   }
   const auto smooth = smooth_pixels(sensor_.camera, rays, pixels, sigma, unit_);

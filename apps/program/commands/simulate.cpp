@@ -95,7 +95,7 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
   if (std::none_of(poses.begin(), poses.end(),
                    [&](const Pose& pose) { return sees_mesh(scene, sensor, rays, pose); })) {
-    refuse(options.mesh + ": from no pose is the mesh in view and in range; the mesh lies in " +
+    refuse(options.mesh + ": the mesh is not in view and in range from any pose; it lies in " +
            describe(bounds_of(scene.mesh())) + " m (--size, --place)");
   }
 }

@@ -107,7 +107,7 @@ std::string stamps_misfit(const fs::path& dir, const TimedPoses& lines,
   std::erase_if(seconds, [](double time) { return !std::isfinite(time); });
   if (seconds.empty()) {
     return (dir / kPoses).string() +
-           ": the lines begin with no times, but the images have time stamps";
+           ": the lines contain no times, but the images have time stamps";
   }
   const auto [first, last] = std::minmax_element(seconds.begin(), seconds.end());
   const auto back = static_cast<double>(numbers.back());

@@ -246,8 +246,8 @@ class MessageImport {
   void warn_of_way(const std::string& frame, const Way& way) {
     if (TransformTree::span_of(way.moving)[0] == INT64_MIN) {
       warnings_.add(
-          "no transform between the world and the camera changes, and all images have the same "
-          "pose");
+          "no transform between the world and the camera changes, therefore all images have the "
+          "same pose");
       if (const std::string poses = topics_.listed_poses(); !poses.empty()) {
         warnings_.add("the recording also has topics of poses" + poses +
                       ", which are not used (--pose-topic)");

@@ -141,8 +141,8 @@ std::optional<SavedFrames> saved_frames(const fs::path& state, const ExecConfig&
   const std::set<std::string>& frames = grid.notes().frames;
   if (frames.size() != grid.views().size()) {
     throw Error(ErrorCode::format, state.string() + ": has " + std::to_string(grid.views().size()) +
-                                       " views of " + std::to_string(frames.size()) +
-                                       " frames by name; another program wrote it");
+                                       " views, but names " + std::to_string(frames.size()) +
+                                       " frames; another program wrote it");
   }
   return SavedFrames{frames, map_sensor(grid)};
 }
