@@ -312,7 +312,7 @@ Rows stl_rows() {
       refused("no_faces.stl", "no faces", std::string(84, '\0')),
       refused("nan.stl", "a coordinate of vertex 0 is not finite", nan),
       refused("none.stl", "no faces", "solid x\nendsolid x\n"),
-      refused("png.stl", "neither text", "\x89PNG\r\n\x1a\n"),
+      refused("png.stl", "neither a text STL file", "\x89PNG\r\n\x1a\n"),
       refused("text.stl", "neither a text STL file, which begins with \"solid\", nor a binary one",
               "box\n" + good),
       refused("inf.stl", ":4: the number 'inf' is not finite", change("0.000000", "inf")),

@@ -53,7 +53,8 @@ TEST_F(MessageRecordings, PosesMayComeFromATopic) {
   EXPECT_EQ(import(text, {"--pose-topic", "/pose"})["frames"], kImages);
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.3, 1e-9);
   refuse(text, "/none holds no poses", {"--pose-topic", "/none"});
-  (void)import(text, {}, "topics of poses (/odom, /pose, /tracker) are not used (--pose-topic)");
+  (void)import(text, {},
+               "topics of poses (/odom, /pose, /tracker), which are not used (--pose-topic)");
   refuse(text, "--pose-topic", {"--pose-topic", "/pose,0,0"});
   refuse(text, "expected a name before the pose", {"--pose-topic", ",0,0,0.2,0,0,0,1"});
 }
@@ -102,7 +103,7 @@ TEST_F(MessageRecordings, RobotsHaveTransformsInTheirNamespaces) {
   refuse(text, "the transform from 'base' to 'link' comes from several topics",
          {"--depth-topic", "/image_raw"});
   text.transform("/tf", 100, "base", "link", kStill);
-  refuse(text, "5 after the last one", {"--depth-topic", "/image_raw"});
+  refuse(text, "5 after the last transform", {"--depth-topic", "/image_raw"});
 }
 
 TEST_F(MessageRecordings, NothingIsExtrapolated) {
@@ -110,7 +111,7 @@ TEST_F(MessageRecordings, NothingIsExtrapolated) {
   add_transforms(text, 100.1, 100.4);  // of images from 100.05 to 100.45
   add_info(text);
   add_images(text);
-  EXPECT_EQ(import(text, {}, "1 before the first transform, 1 after the last one")["bad"],
+  EXPECT_EQ(import(text, {}, "1 before the first transform, 1 after the last transform")["bad"],
             (json{{"no_pose", 2}}));
   // Nor are gaps bridged.
   McapText gap;

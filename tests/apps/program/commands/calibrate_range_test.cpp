@@ -159,7 +159,7 @@ TEST_F(CalibrateRange, WeakTurnsAreEnoughOrRefused) {
         EXPECT_LT(result.offset_sigma, 0.0005);
       } catch (const Error& error) {
         ++refused;
-        EXPECT_NE(std::string(error.what()).find("turn the camera by 10 to 30 deg at more"),
+        EXPECT_NE(std::string(error.what()).find("Turn the camera by 10 to 30 deg at more"),
                   std::string::npos)
             << error.what();
         EXPECT_LT(share, 1) << noise;

@@ -171,7 +171,7 @@ TEST_F(ForeignMaps, CloudsAreIntegrated) {
   EXPECT_EQ(seen.at("readings_inside"), 1681);
   EXPECT_NE(run_well({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--voxel", "0.02",
                       "--sensor", "small.toml", "--out", "s.vdb"})
-                .find("1 clouds (small), 1,681 readings"),
+                .find("1 clouds (small): 1,681 measured points"),
             std::string::npos);
   // A workspace that ends before the wall has nothing but free space, and that is said.
   const auto carved =

@@ -101,7 +101,7 @@ def test_keeps_candidates_of_each_view(folder, program):
 def test_wrong_words_are_known_before_the_first_run(folder, program, calls):
     (folder / "spec.toml").write_text(SPEC.replace('"frontier"', '"nonsense"'))
     error = study("spec.toml", "--out", "out", code=1, program=program)
-    assert "spec.toml: cube, nonsense, seed 1: --policy: unknown policy nonsense; a gain is written \"gain:nonsense\"" in error
+    assert "spec.toml: cube, nonsense, seed 1: --policy: unknown policy nonsense; to use a gain, write \"gain:nonsense\"" in error
     assert calls() == [] and not (folder / "out").exists()
     (folder / "spec.toml").write_text(SPEC.replace("max_views", "max_view"))
     assert "line 7" in study("spec.toml", "--out", "other", code=2, program=program) and not (folder / "other").exists()
@@ -141,7 +141,7 @@ def test_a_wish_to_stop_leaves_what_is_whole(folder, program, wish):
         time.sleep(0.01)
     process.send_signal(wish)
     error = process.communicate(timeout=60)[1]
-    assert process.returncode == 130 and "the same call goes on" in error
+    assert process.returncode == 130 and "the same call continues" in error
     assert names("out") == ["runs"] and 1 <= runs_in("out") < 6
     assert len(names("out/runs")) == runs_in("out") + 1  # and the lock
 
