@@ -6,14 +6,15 @@
     contradictions.py VIEWGAIN MESH... [--seed N] [--every K]
 
 Simulates a room of boxes, a shelf, a bin and each mesh, with a time-of-flight and a stereo camera.
-Then it changes poses, images or intrinsics, by more and more. For each change it prints:
+Then it changes poses, images or intrinsics in growing steps. For each change it prints:
 
-- the share of the right map's surface that the wrong map has carved away, exactly and with a
+- carved: the share of the surface in the correct map that is free in the wrong map; also with a
   tolerance of one voxel
-- the two shares of contradicting readings
-- how often there was a warning
+- in free space: the share of points in space that other frames saw as free
+- seen past: the share of earlier points that later frames look through
+- noticed: how often there was a warning
 
-Right folders come first, with all noise that the sensor declares. Needs
+Folders without a mistake come first. They have all noise that the sensor file declares. Needs
 PYTHONPATH=build/release/python.
 """
 import argparse

@@ -1,22 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Compares promised new surface with measured new surface, by range.
+"""Compares expected with measured new surface, per range.
 
     far_views.py SENSOR SCENE RUN
 
 Results are in perf/results/prediction.md, "Far views".
 
 SCENE is a folder from scenes.py. RUN is a folder from `viewgain reconstruct --save-maps on` of that
-scene. After each of the first views, boundary and shell candidates (within the scene's reach) are
-sorted by the mean range of their promised surface. Some of the better half of each third are
-simulated. Columns:
+scene. After each of the first views, the candidates from boundaries and shells within reach are
+sorted by the mean range of the surface that they are expected to show. They are split into thirds.
+In each third, some candidates of the better half are simulated. Columns:
 
 - mean range
-- promised new surface
-- readings in new voxels / promised
-- area of the mesh that points newly cover / promised
-- of the uncovered mesh that the view sees, the share that is covered afterwards
+- expected new surface
+- measured surface in formerly unknown voxels, divided by the expected new surface
+- area of the mesh that points newly cover, divided by the expected new surface
+- share of the uncovered mesh in view that is covered afterwards
 """
 import argparse
 import json

@@ -7,15 +7,15 @@
 
 The objects are a plate, a sphere, a cylinder and the meshes (OFF, scaled to 0.35 m). A simulated
 SR4000 views them from 0.45 m, the plate from above and the others from all sides: 12 views, the
-same 12 views four times, and 60 views. The tables have a row for
+same 12 views four times, and 60 views. There are tables for
 
 - points and vertices
-- points by their distance from depth jumps
-- points with one disturbance left out at a time
+- points at several distances from depth jumps
+- points if one source of error is switched off
 
 z is the distance to the mesh divided by the standard deviation in its direction. If standard
 deviations are honest, the mean of min(z^2, 25) is 1 and the median of z^2 is 0.455. Points over
-10 mm from the mesh are outliers and count only as such.
+10 mm from the mesh are outliers, which are only counted.
 
 Run it with PYTHONPATH=build/release/python. It takes two minutes per object.
 """

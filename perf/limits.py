@@ -8,12 +8,12 @@
 DIR is the output of `python3 -m viewgain.study SPEC.toml --out DIR`. The spec must set
 kept_candidates. Visible parts of the true surface (visibility.py) are kept in DIR/visibility.
 
-Shares are shares of the samples that at least one view of the object sees. These views are a dense
-set and the candidates and views of all runs. The dense set has --dense poses on each of three
-spheres, at 0.8, 1 and 1.25 times the start's distance. The first view is given and counts.
+Shares refer to the samples on the surface that at least one view sees. The views are those of a
+dense set, and the candidates and views of all runs. The dense set has --dense poses on each of
+three spheres, at 0.8, 1 and 1.25 times the start's distance. The first view is given and counts.
 
 The minimum number of views and the best k views are integer programs. If one runs out of time, the
-table has the bounds that were proven. Needs PYTHONPATH=build/release/python and scipy.
+table shows the bounds that are proven. Needs PYTHONPATH=build/release/python and scipy.
 """
 import argparse
 import collections

@@ -6,8 +6,8 @@
     mistakes.py VIEWGAIN MESH... [--folders N] [--right N] [--first N]
 
 Simulates folders of frames with different objects, sensors, distances and seeds. It puts one
-mistake into each folder and calls `integrate`. The table has how many mistakes were noticed, by a
-warning or a refusal, and how many right folders raised a false alarm.
+mistake into each folder and calls `integrate`. The table shows how many mistakes caused a
+warning or an error, and how many folders without a mistake caused a false alarm.
 """
 import argparse
 import pathlib

@@ -13,8 +13,9 @@ A simulated Kinect v1 with all its noise views a room of 4 x 3 x 2.5 m: 24 frame
 - the mug alone
 - the room at one scale
 
-The first table has the cost of each map and how well it knows the mug. The second has the view that
-sees most of the handle, if the handle is the task. Needs PYTHONPATH=build/release/python.
+The first table shows the cost of each map, and how completely and accurately it shows the mug. The
+second shows how much of the handle the best next view sees, with and without task weights that make
+only the handle count. Needs PYTHONPATH=build/release/python.
 """
 import argparse
 import time

@@ -12,17 +12,18 @@ The protocol:
   pixels, 45 deg and no noise.
 - The next view is one of 128 Tammes directions, in the whole sphere, a half (z >= 0), a quarter
   (y >= 0, too) or an eighth (x >= 0, too).
-- The observable points are those that the allowed ones of 360 Tammes directions read, one point
-  per 0.005. NSC is the share of them with a reading within 0.01, 0.02 or 0.03.
-- The map is stable if each of three views in a row adds less than 1 % to the voxels of 0.01 with a
-  reading.
+- The observable points are those seen from 360 Tammes directions, as far as the task allows these,
+  thinned to one point per 0.005. NSC is the share of observable points that have a measured point
+  within 0.01, 0.02 or 0.03.
+- The map is stable if three views in a row each add less than 1 % to the number of measured voxels
+  of size 0.01.
 - The path goes around the unit sphere.
 
 Our choices: Tammes directions from tammes.py, 3,000 of the points, three starts (the directions
 nearest to x, y and z), voxels of 1/32 as in their planner, gains on every 8th pixel and row.
 
-Their files can be given instead: directions as three numbers per line, meshes as OFF or OBJ, in
-their unit sphere with --as-is. Needs PYTHONPATH=build/release/python and scipy.
+The authors' files can be used instead: directions as three numbers per line, meshes as OFF or OBJ.
+Use --as-is if the meshes are in the unit sphere. Needs PYTHONPATH=build/release/python and scipy.
 """
 import argparse
 import collections

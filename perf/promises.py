@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Compares the refinement that the combined gain promises with what frames bring.
+"""Compares the refinement that the combined gain predicts with the refinement that frames bring.
 
     promises.py SENSOR RUN...
 
 See apps/docs/guide/surface_gain.md.
 
 SENSOR is the preset of the runs. RUN is a folder from `viewgain reconstruct --save-maps on`. For
-each run, the table has the refinement [nat] promised for the views after the first. Next to it is
-the share by which the entropy of the points at the same voxels then fell. Supports maps of one
-scale, without obstacles and support plane.
+each run, the table has the refinement [nat] predicted for the views after the first. The next
+column has the decrease in entropy of the points in the same voxels, divided by the prediction.
+Supports maps of one scale, without obstacles and support plane.
 """
 import argparse
 import pathlib

@@ -12,7 +12,7 @@
 
 Each object is scaled, turned about the vertical at random (SEED) and placed in free space. Writes
 scene.off, reach.toml and flags.toml. The second command then takes ten views with a D435 and voxels
-of 5 mm, from above the bin or the table or in front of the shelf. In the meshes (OFF, OBJ), y is
+of 5 mm. The views are above the bin or table, or in front of the shelf. In the meshes (OFF, OBJ), y is
 up.
 """
 import argparse

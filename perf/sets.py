@@ -14,9 +14,9 @@ subsets, on every eighth pixel and row.
 
 Second table: `best_set` of 3 of the 200 poses, compared with the three best single views.
 
-- Seen is the surface that they truly see and that no view of the map has seen (visibility.py).
-- Modelled is the surface within 5 mm of a point of the map, once their frames are in.
-- Realised / promised is the newly seen surface over the set's value by the gain "surface".
+- Seen: surface that the views truly see and that no earlier view has seen (visibility.py).
+- Modelled: surface within 5 mm of a point of the map after the frames of these views were added.
+- Realised / promised: newly seen surface divided by the set's gain "surface".
 
 Needs PYTHONPATH=build/release/python.
 """

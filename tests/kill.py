@@ -53,7 +53,7 @@ def contents(folder):
                 if not line.startswith("|"):
                     columns = []
                 elif not columns:
-                    columns = [i for i, cell in enumerate(cells) if "[s]" in cell or "s a view" in cell]
+                    columns = [i for i, cell in enumerate(cells) if "[s]" in cell or "s per view" in cell]
                 found[name].append([cell for i, cell in enumerate(cells) if i not in columns])
         elif path.suffix == ".html":
             found[name] = re.sub(r'"seconds":\{[^}]*\}', "", path.read_text())

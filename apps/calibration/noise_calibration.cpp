@@ -238,29 +238,29 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
     variances.push_back(pixel.variance);
     moving += pixel.moves ? 1 : 0;
   }
-  if (variances.size() < kLeastSmooth) fail("hardly any pixel has readings in nine of ten frames");
+  if (variances.size() < kLeastSmooth) fail("hardly any pixel has a depth in nine of ten frames");
   NoiseCalibrationResult result;
   const double readings = static_cast<double>(variances.size());
   const double sigma = std::sqrt(detail::median(std::move(variances)));
   result.moving_share = static_cast<double>(moving) / readings;
   if (result.moving_share > kMayMove) {
     fail("the scene or the camera moves: " + percent(result.moving_share) +
-         " of the pixels change with time");
+         " of the pixels change their depth with time");
   }
   if (!(sigma * sigma > unit_ * unit_ / 12)) {
-    fail("readings scatter by no more than their rounding to " + short_text(unit_) +
+    fail("depths scatter by no more than their rounding step of " + short_text(unit_) +
          " m. Are they filtered?");
   }
   const auto smooth = smooth_pixels(sensor_.camera, rays, pixels, sigma, unit_);
   if (smooth.size() < kLeastSmooth) {
     fail("only " + std::to_string(smooth.size()) + " pixels lie on smooth surfaces seen at less " +
-         "than 30 degrees, " + std::to_string(kLeastSmooth) + " are needed");
+         "than 30 degrees; " + std::to_string(kLeastSmooth) + " are needed");
   }
   const auto edges = detail::edge_scatter(sensor_.camera, depths_, rays, pixels, sigma);
   if (edges.length < kLeastEdge) {
-    fail("too few depth edges for sigma_lateral: " + short_text(std::round(edges.length)) +
-         " px of straight edges where " + short_text(kLeastEdge) +
-         " are required; put a box in front of a wall");
+    fail("too few depth edges to measure the noise across the ray: " +
+         short_text(std::round(edges.length)) + " px of straight edges, but " +
+         short_text(kLeastEdge) + " px are required. Put a box in front of a wall");
   }
 
   result.sensor = sensor_;
@@ -273,7 +273,7 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
   for (int turn = 0; turn < kTurns; ++turn) {
     result.steps = steps_of(smooth, result.sensor, depths_.size(), lateral);
     if (result.steps.empty() || factor_of(result.steps) < 1e-3) {
-      fail("readings of smooth surfaces hardly scatter along the ray. Are they filtered?");
+      fail("depths of smooth surfaces hardly scatter along the ray. Are they filtered?");
     }
     std::visit(AxialFit{result.steps}, result.sensor.noise);
   }

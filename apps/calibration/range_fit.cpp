@@ -40,7 +40,8 @@ RangeFit::RangeFit(const Sensor& sensor) : sensor_(sensor) {
 }
 
 void RangeFit::add(const DepthFrame& frame, const Pose& T_world_camera, const std::string& name) {
-  if (frame.depth.size() != rays_.size()) refuse(name + ": has a different size from the sensor");
+  if (frame.depth.size() != rays_.size())
+    refuse(name + ": the image differs in size from the sensor");
   const auto saturated =
       std::count(frame.amplitude.begin(), frame.amplitude.end(), DepthFrame::kSaturated);
   if (static_cast<double>(saturated) > kMostSaturated * static_cast<double>(rays_.size())) {
@@ -82,9 +83,9 @@ void RangeFit::add(const DepthFrame& frame, const Pose& T_world_camera, const st
   }
   const double cosine = plane.z() / plane.norm();
   if (cosine < kLeastCosine) {
-    left_out_.push_back(name + ": the wall is seen at " +
+    left_out_.push_back(name + ": the wall is seen at an angle of " +
                         short_text(std::round(std::acos(cosine) * 180 / std::numbers::pi)) +
-                        " deg, more than 45");
+                        " deg; at most 45 deg can be used");
     return;
   }
   const Eigen::Matrix3d R = T_world_camera.rotation();
@@ -152,7 +153,7 @@ RangeFitResult RangeFit::solve() const {
   for (const Frame& frame : frames_) {
     const double turn = std::acos(std::min(1.0, wall.normal.dot(frame.normal_world)));
     if (turn * 180 / std::numbers::pi > kMostTurn) {
-      fail_range(frame.name + " shows a different wall from the others, or its pose is wrong");
+      fail_range(frame.name + " shows another wall than the other frames, or its pose is wrong");
     }
     offsets.push_back(frame.plane_offset);
   }
@@ -203,7 +204,8 @@ RangeFitResult RangeFit::solve() const {
       b -= weight * bend * bend.head(knots).dot(wall.errors);
     }
     const Eigen::VectorXd change = A.ldlt().solve(b);
-    if (!change.allFinite()) fail_range("the views do not determine the wall");
+    if (!change.allFinite())
+      fail_range("the frames do not determine where the wall is; take them from more directions");
     wall.errors += change.head(knots);
     wall.normal = (wall.normal + change[knots] * side + change[knots + 1] * up).normalized();
     wall.offset += change[knots + 2];
@@ -235,21 +237,22 @@ RangeFitResult RangeFit::solve() const {
   }
   const Eigen::Matrix<double, 6, 1> bend = B.ldlt().solve(c);
   const double sag = extent * bend.tail<3>().cwiseAbs().maxCoeff();
-  if (sag > kMostBend) fail_range("the wall is bent, by some " + millimetres(sag));
+  if (sag > kMostBend) fail_range("the wall is not flat: it is bent by about " + millimetres(sag));
   Eigen::Index worst = 0;
   if (after.cwiseAbs().maxCoeff(&worst) > kMostFrameError) {
-    fail_range(frames_[static_cast<std::size_t>(worst)].name + " is " + millimetres(after[worst]) +
-               " from the wall of the others: its pose is wrong, or the wall has moved");
+    fail_range(
+        frames_[static_cast<std::size_t>(worst)].name + " is " + millimetres(after[worst]) +
+        " away from the wall that the other frames show: its pose is wrong, or the wall has moved");
   }
   Eigen::VectorXd all = Eigen::VectorXd::Zero(size);
   all.head(knots).setConstant(1.0 / static_cast<double>(knots));
   const double variance = squares / static_cast<double>(ranges.size());
   result.offset_sigma = std::sqrt(variance * std::max(0.0, all.dot(A.ldlt().solve(all))));
   if (!(result.offset_sigma < kMostOffsetSigma)) {
-    fail_range("an offset of the camera cannot be distinguished from one of the wall (" +
-               millimetres(result.offset_sigma) +
-               "); turn the camera by 10 to 30 deg at "
-               "more distances, or take more frames");
+    fail_range(
+        "a constant range error cannot be told from a shift of the wall; it is uncertain by " +
+        millimetres(result.offset_sigma) +
+        ". Turn the camera by 10 to 30 deg at more distances, or take more frames");
   }
   std::sort(result.steps.begin(), result.steps.end(),
             [](const RangeStep& a, const RangeStep& b2) { return a.range < b2.range; });

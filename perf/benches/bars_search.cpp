@@ -37,8 +37,8 @@ struct Choices {
     const double worst = *std::max_element(regrets.begin(), regrets.end());
     char text[200];
     std::snprintf(text, sizeof text,
-                  "%zu maps, within 1 %% in %zu, the best in %zu, regret mean %.5f most %.5f, time "
-                  "p05 %.3f p95 %.3f",
+                  "%zu maps: within 1 %% of the best gain in %zu, the best view in %zu; mean loss "
+                  "%.5f, largest %.5f; relative time p05 %.3f, p95 %.3f",
                   regrets.size(), within(kMostRegret), within(0),
                   std::accumulate(regrets.begin(), regrets.end(), 0.0) / maps, worst,
                   quantile(time_ratios, 0.05), quantile(time_ratios, 0.95));

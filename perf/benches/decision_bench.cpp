@@ -93,7 +93,7 @@ World hall(const ExecConfig& exec) {
 
 World room(const DecisionOptions& options, const ExecConfig& exec) {
   if (options.recording.empty()) {
-    throw Error(ErrorCode::invalid_argument, "the map room needs --recording FOLDER");
+    throw Error(ErrorCode::invalid_argument, "the map room requires --recording FOLDER");
   }
   const FrameSequence recording = open_frames(options.recording, "kinect_v1");
   Eigen::AlignedBox3d seen;
@@ -208,9 +208,11 @@ Json report(const World& world, const Seconds& seconds, std::size_t boundary, bo
               {"rays", world.sensor.camera.ray_table().size()},
               {"boundary_candidates", boundary}};
   if (!json) {
-    std::printf("\n%s, voxels of %g m, %zu rays a view, %zu boundary candidates\n",
-                world.name.c_str(), world.before.voxel_size(),
-                world.sensor.camera.ray_table().size(), boundary);
+    std::printf(
+        "\n"
+        "%s, voxels of %g m, %zu rays per view, %zu boundary candidates\n",
+        world.name.c_str(), world.before.voxel_size(), world.sensor.camera.ray_table().size(),
+        boundary);
     std::printf("%-36s %10s %10s %10s\n", "", "ms", "p05", "p95");
   }
   for (const auto& [stage, s] : seconds) {
@@ -238,7 +240,7 @@ int run_decision(const DecisionOptions& options) {
   const ExecConfig exec{ThreadPool(options.num_threads).num_threads()};
   Json all = Json::array();
   if (!options.json) {
-    std::printf("a frame in, the best pose out, %d threads, %s\n", exec.num_threads,
+    std::printf("time from a new frame to the best pose, %d threads, %s\n", exec.num_threads,
                 cpu_name().c_str());
   }
   for (const std::string& name : options.maps) {

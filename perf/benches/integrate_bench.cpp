@@ -193,8 +193,10 @@ void print_table(const Json& json) {
   }
   for (const auto& [name, c] : json["agreement"].items()) {
     std::printf(
-        "\n%s, lines: %.6f of %d voxels in the same state; %d differ at boundaries, %d since our "
-        "misses fade before a reading, %d unexplained\n",
+        "\n"
+        "%s, voxels along rays: %.6f of %d voxels have the same state in both maps. %d differ at "
+        "voxel boundaries, %d because viewgain lowers the evidence less in front of a measured "
+        "point, %d for unknown reasons\n",
         name.c_str(), c["equal"].get<double>(), c["voxels"].get<int>(),
         c["differ_at_boundaries"].get<int>(), c["differ_by_tapered_misses"].get<int>(),
         c["unexplained"].get<int>());

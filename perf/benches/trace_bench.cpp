@@ -61,13 +61,14 @@ Json to_json(const TraceOptions& options, const TraceRun& run) {
 }
 
 void print_table(const Json& json) {
-  std::printf("%s, %d threads, %d rays a pose, %s, %s\n", json["scene"].get<std::string>().c_str(),
-              json["threads"].get<int>(), json["rays_per_pose"].get<int>(),
-              json["isa"].get<std::string>().c_str(), json["cpu"].get<std::string>().c_str());
+  std::printf("%s, %d threads, %d rays per pose, %s, %s\n",
+              json["scene"].get<std::string>().c_str(), json["threads"].get<int>(),
+              json["rays_per_pose"].get<int>(), json["isa"].get<std::string>().c_str(),
+              json["cpu"].get<std::string>().c_str());
   std::printf("scene: %d leaves and boxes, built in %.2f ms (median)\n\n",
               json["scene_primitives"].get<int>(), json["scene_build_ms"]["median"].get<double>());
   std::printf("%-18s %12s %8s %8s %6s %9s %9s  %s\n", "method", "Mrays/s", "p05", "p95", "poses",
-              "untraced", "by Embree", "rays in the oracle's voxel");
+              "untraced", "by Embree", "rays that end in the reference voxel");
   for (const Json& method : json["methods"]) {
     const auto name = method["name"].get<std::string>();
     std::printf("%-18s %12.3f %8.3f %8.3f %6d %8.1f%% %8.1f%%  %.6f, %d ties, %d wrong\n",
@@ -77,8 +78,10 @@ void print_table(const Json& json) {
                 100 * method["embree"].get<double>(), json["agreement"][name].get<double>(),
                 json["ties"][name].get<int>(), json["wrong"][name].get<int>());
   }
-  std::printf("\nembree_quads is \"%s\", the best robust one of:\n",
-              json["embree_variant"].get<std::string>().c_str());
+  std::printf(
+      "\n"
+      "embree_quads is \"%s\", the fastest of these variants that is robust:\n",
+      json["embree_variant"].get<std::string>().c_str());
   for (const auto& [name, variant] : json["embree_variants"].items()) {
     std::printf("  %-24s %8.3f, %d wrong\n", name.c_str(),
                 variant["rays_per_second"].get<double>() / 1e6, variant["wrong"].get<int>());
@@ -89,9 +92,10 @@ void print_table(const Json& json) {
   }
   const auto others = json["faults_of_others"].get<std::string>();
   std::printf("\n%s%s%s\n",
-              json["agree"].get<bool>() ? "viewgain agrees with the oracle"
-                                        : "VIEWGAIN DOES NOT AGREE WITH THE ORACLE",
-              others.empty() ? "" : "; of the others, ", others.c_str());
+              json["agree"].get<bool>()
+                  ? "viewgain agrees with the reference implementation"
+                  : "VIEWGAIN DOES NOT AGREE WITH THE REFERENCE IMPLEMENTATION",
+              others.empty() ? "" : "; other methods have ", others.c_str());
 }
 
 }  // namespace

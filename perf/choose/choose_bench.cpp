@@ -185,10 +185,12 @@ void print_table(const Json& json) {
     std::printf("%s, %s", e["scene"].get<std::string>().c_str(),
                 e["sensor"].get<std::string>().c_str());
     if (!race.is_null()) {
-      std::printf(": race of %zu sets, best found %.3f, most given away %.4f, time %.3f  %s",
-                  race["sets"].get<std::size_t>(), race["best_found"].get<double>(),
-                  race["most_given_away"].get<double>(), race["time_over_all"].get<double>(),
-                  race["pass"].get<bool>() ? "pass" : "MISSED");
+      std::printf(
+          ": %zu races; the best view was found in a share of %.3f, largest loss of gain %.4f, "
+          "time relative to all rays %.3f  %s",
+          race["sets"].get<std::size_t>(), race["best_found"].get<double>(),
+          race["most_given_away"].get<double>(), race["time_over_all"].get<double>(),
+          race["pass"].get<bool>() ? "pass" : "MISSED");
     }
     std::printf("\n");
     std::printf("  %6s %6s %9s %11s %8s\n", "share", "batch", "in 2 s.e.", "mean error", "bias");

@@ -6,13 +6,15 @@
     fit.py VIEWGAIN MESH... [--size M] [--voxel M] [--seed N] [--work DIR]
 
 Models each mesh with `reconstruct` and keeps the maps after views 1, 3 and 5. Noise-free rays from
-80 poses on a sphere then run through each map's unknown voxels. The script counts the metres that
-they pass and how often they meet the true surface, by distance d, elevation s above known surface
-and share o of directions that are open to free space. It prints the most likely model of the form
+80 poses on a sphere then run through each map's unknown voxels. The script counts how many
+metres the rays pass and how often they meet the true surface. It does so per distance d from known
+surface, elevation s above known surface, and share o of directions that are open to free space. It
+prints the most likely model of the form
 
     h = h_inf + h_0 exp(-d / lambda) c(s) g(o)
 
-and, for each mesh, the log-likelihood per meeting if the mesh is left out of the fit.
+and, for each mesh, the log-likelihood per ray that meets surface, if this mesh is left out of the
+fit.
 
 d, s and o are those of HazardField. Distances are to voxels with three hits. Their normal points to
 where more of 7^3 voxels is free. A direction is open if free space is within a tenth of the

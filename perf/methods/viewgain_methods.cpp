@@ -149,7 +149,8 @@ class ViewgainGain final : public TraceMethod {
         hits.begin(), hits.end(), [](const RayHit& hit) { return hit.kind != RayHit::Kind::none; });
     const ViewGain gain = evaluator_.evaluate(T_world_camera);
     if (model_ == GainModel::paper && gain.hits != ends) {
-      throw std::runtime_error("the gain was made of other hits than trace() gives");
+      throw std::runtime_error(
+          "the gain was computed from other hits than those that trace() returns");
     }
     std::transform(hits.begin(), hits.end(), endings.begin(), [&](const RayHit& hit) {
       return hit.kind == RayHit::Kind::none ? kMiss : static_cast<Ending>(map_.position(hit.voxel));

@@ -103,11 +103,16 @@ std::string name_of(const Json& run) {
 }
 
 void print(const Json& json) {
-  std::printf("%zu points, %zu candidates, complete model %zu voxels of 1 cm (theirs: 526)\n",
-              json["points"].get<std::size_t>(), json["candidates"].get<std::size_t>(),
-              json["voxels"].get<std::size_t>());
-  std::printf("counted by their OctoMap / points with a reading within %.1f mm [%%]\n\n",
-              1e3 * kCoveredWithin);
+  std::printf(
+      "%zu points, %zu candidates; the complete model has %zu voxels of 1 cm (526 in "
+      "NBV-Simulation)\n",
+      json["points"].get<std::size_t>(), json["candidates"].get<std::size_t>(),
+      json["voxels"].get<std::size_t>());
+  std::printf(
+      "share of the model's voxels in the OctoMap / share of points with a measured point within "
+      "%.1f mm [%%]\n"
+      "\n",
+      1e3 * kCoveredWithin);
   std::printf("| view | their log |");
   for (const Json& run : json["runs"]) std::printf(" %s |", name_of(run).c_str());
   std::printf("\n|---|---|");

@@ -196,11 +196,13 @@ Json row_of(const Turn& turn, double degrees, const FramesOptions& options,
 
 void print(const Json& json) {
   std::printf(
-      "log_diagonal against log_determinant on turned grids; given away: of the best gain by "
-      "log_determinant, mean (most)\n\n");
+      "log_diagonal compared with log_determinant on rotated grids. loss: share of the best gain "
+      "by log_determinant that the view chosen by log_diagonal lacks, mean (largest)\n"
+      "\n");
   std::printf(
-      "| turned | SR4000: Spearman (least) | given away | gain / gain | sigmas 8 : 1: Spearman "
-      "(least) | given away | gain / gain | views to 90 %%, by determinant | by diagonal |\n");
+      "| rotated by | SR4000: Spearman (lowest) | loss | ratio of gains | sigmas 8 : 1: Spearman "
+      "(lowest) | loss | ratio of gains | views to 90 %% with log_determinant | with log_diagonal "
+      "|\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
   for (const Json& row : json["rows"]) {
     std::printf("| %.0f deg about %s |", row["degrees"].get<double>(),

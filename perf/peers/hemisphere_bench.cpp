@@ -107,10 +107,11 @@ Json means_of(const std::vector<std::vector<double>>& runs) {
 
 void print(const Json& json) {
   std::printf(
-      "coverage of what all %zu views see [%%], voxels of 2 mm; views to %.1f %% "
-      "(MA-SCVP, other objects: %.1f)\n\n",
+      "Coverage [%%] of the surface that all %zu views together see, in voxels of 2 mm, and number "
+      "of views to %.1f %% (MA-SCVP on other objects: %.1f)\n"
+      "\n",
       json["views"].get<std::size_t>(), 100 * kTheirCoverage, kTheirViews);
-  std::printf("| object | ranked by | views to it | 1 | 2 | 3 | 4 | 5 | 8 | 12 | 20 |\n");
+  std::printf("| object | ranked by | number of views | after 1 | 2 | 3 | 4 | 5 | 8 | 12 | 20 |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Json& row : json["rows"]) {
     std::printf("| %s | %s | %.2f |", row["object"].get<std::string>().c_str(),

@@ -7,7 +7,8 @@
                        [--out build/sensors_in_time] [--seconds 10,20,30,60] [--speed 0.25]
                        [--settle 0.5] [--line-rate 50] [--seeds 3] [-- arguments of reconstruct]
 
-Runs `viewgain reconstruct` with the sensor sr4000 and with a sweep, which is a frame of 480 lines.
+Runs `viewgain reconstruct` with the sensor sr4000 and with a laser line scanner, whose frame is a
+sweep of 480 lines.
 Prints a Markdown table of coverage of the visible surface (5 mm), coverage of all surface (2.5 mm),
 RMS and removed entropy, after given times. Entropy starts from each sensor's own prior. The time is
 that of a robot, not of this program:

@@ -86,7 +86,7 @@ RayPattern ray_pattern(int rays_per_pose) {
   };
   if (rays(camera.width) * rays(camera.height) != rays_per_pose) {
     throw Error(ErrorCode::invalid_argument,
-                std::to_string(rays_per_pose) + " rays a pose: must be 950, 6336 or 25344");
+                std::to_string(rays_per_pose) + " rays per pose: must be 950, 6336 or 25344");
   }
   return pattern;
 }

@@ -129,7 +129,7 @@ TEST(Sensor, ASigmaMayLackAPartThatOthersMakeUpFor) {
     sensor.working_distance = 0.7;
     sensor.noise = noise;
     if (!is_valid)
-      return expect_error(ErrorCode::invalid_argument, "sigma along the ray is 0",
+      return expect_error(ErrorCode::invalid_argument, "the standard deviation along the ray is 0",
                           [&] { sensor.validate(); });
     EXPECT_NO_THROW(sensor.validate());
     for (const double t : {min_range, 0.45, 0.7, sensor.max_range}) {

@@ -190,7 +190,7 @@ vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_world_cam
   return guarded("evaluator T_world_camera depth", {evaluator, T_world_camera, depth}, [&] {
     const std::size_t pixels = evaluator->evaluator.rays_per_pose();
     if (count != pixels) {
-      refuse("room for " + std::to_string(count) + " pixels, but the image has " +
+      refuse("the array has room for " + std::to_string(count) + " pixels, but the image has " +
              std::to_string(pixels));
     }
     std::vector<RayHit::Kind> kinds;

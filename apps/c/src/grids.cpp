@@ -112,7 +112,7 @@ vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info) {
 vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count) {
   return guarded("grid states", {grid, states}, [&] {
     if (count != grid->grid.voxel_count()) {
-      refuse("room for " + std::to_string(count) + " states, but the grid has " +
+      refuse("the array has room for " + std::to_string(count) + " states, but the grid has " +
              std::to_string(grid->grid.voxel_count()) + " voxels");
     }
     grid->grid.copy_states({states, count});

@@ -143,7 +143,7 @@ Header read_header(LineReader& line) {
                   " is not ascii or binary; convert the file with pcl_convert_pcd_ascii_binary");
       }
     } else {
-      line.fail("the header's word " + quoted(words[0]) + " is unknown");
+      line.fail("the header's keyword " + quoted(words[0]) + " is unknown");
     }
   }
   if (!has_sizes) line.fail("the header has no line SIZE");

@@ -108,10 +108,10 @@ std::shared_ptr<const ClassicMap> checked(std::shared_ptr<const ClassicMap> map,
   for (const ClassicGain gain : config.gains) {
     if (!needs_occlusion(gain) || known == OcclusionKnown::yes) continue;
     std::string text(classic_gain_name(gain));
-    text.append(" needs to know what earlier views left behind surfaces, but ");
+    text.append(" depends on which voxels earlier views could not see behind surfaces, but ");
     refuse(text.append(known == OcclusionKnown::no_views
                            ? "the map records no views"
-                           : "the sensor of the map's readings is not given"));
+                           : "the sensor that these views used is not given"));
   }
   return map;
 }

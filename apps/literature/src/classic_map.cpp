@@ -26,7 +26,7 @@ void check(const VoxelScene* scene, const BeliefGrid& grid,
   const GridSnapshot& snapshot = scene->snapshot();
   if (!(snapshot.min_index == grid.min_index() && snapshot.dims == grid.dims() &&
         snapshot.voxel_size == grid.voxel_size() && snapshot.T_world_grid == grid.T_world_grid())) {
-    refuse("the scene does not belong to this map: their workspaces differ");
+    refuse("the scene was not built from this map: their workspaces differ");
   }
   if (!acquisition) return;
   acquisition->sensor.validate();

@@ -77,8 +77,8 @@ ModelProgress SurfaceModel::update(const Measurements& measurements) {
   const MapUpdate update = scorer_.add(measurements);
   if (first && update.counts.readings_inside == 0) {
     throw Error(ErrorCode::invalid_argument,
-                "the first view has no reading in the workspace: the start pose looks away from "
-                "it, is out of range, or a known obstacle hides it");
+                "the first view shows nothing in the workspace: the start pose looks away from it, "
+                "it is out of range, or a known obstacle hides it");
   }
   if (!is_in_map(update.verdict)) tried_.push_back(measurements.T_world_camera);
   return progress_after(update);

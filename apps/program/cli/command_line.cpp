@@ -41,7 +41,7 @@ std::string fault_of_flag(const App& called, const std::string& flag) {
     if (flag == name) return flag + ": must follow the subcommand " + called.get_name();
     if (option->nonpositional()) flags.push_back(name);
     if (flag == "--" + CLI::detail::to_lower(name)) {  // name of a positional
-      return flag + ": " + name + " is positional; give it without the flag";
+      return flag + ": " + name + " is a positional argument; give it without --";
     }
   }
   return flag + ": unknown flag for " + called.get_name() + did_you_mean(flag, flags);
@@ -98,9 +98,9 @@ void check_have_values(const App& program, const std::vector<std::string>& words
       continue;
     }
     const std::vector<std::string> choices = choices_of(**option);
-    throw UsageError(
-        ErrorCode::invalid_argument,
-        words[i] + ": needs a value" + (choices.empty() ? "" : "; there are " + listed(choices)));
+    throw UsageError(ErrorCode::invalid_argument,
+                     words[i] + ": needs a value" +
+                         (choices.empty() ? "" : "; valid values: " + listed(choices)));
   }
 }
 
@@ -117,7 +117,7 @@ std::string fault_of_folder(const App& called) {
       continue;
     }
     return path.string() +
-           ": the folder holds no map; to make one from frames, run viewgain model " +
+           ": the folder holds no map. To make one from frames, run viewgain model " +
            path.string() + " --voxel V --out RUN";
   }
   return {};
@@ -126,8 +126,8 @@ std::string fault_of_folder(const App& called) {
 std::unique_ptr<App> make_program(CommonOptions& common) {
   auto program = std::make_unique<App>(
       "viewgain scores camera poses by expected information gain. It simulates or reads depth "
-      "frames, integrates them into a voxel map and scores candidate views against it. Units are "
-      "m, rad, s and nat unless stated otherwise.",
+      "frames, integrates the frames into a voxel map and scores candidate views in this map. "
+      "Units are m, rad, s and nat unless stated otherwise.",
       "viewgain");
   program->formatter(std::make_shared<HelpFormatter>());
   program->set_help_flag("-h", "print the most common options");
@@ -140,8 +140,8 @@ std::unique_ptr<App> make_program(CommonOptions& common) {
                             "print the version");
   program
       ->set_config("--config", "",
-                   "TOML file of flags: keys are flag names without -- and positionals (mesh, "
-                   "map); the command line takes precedence")
+                   "TOML file of flags; keys are flag names without --, or names of positionals "
+                   "(mesh, map); flags on the command line take precedence")
       ->type_name("FILE");
   program->config_formatter(std::make_shared<FlagFile>(*program));
   return program;

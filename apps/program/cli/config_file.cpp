@@ -202,7 +202,8 @@ std::vector<CLI::ConfigItem> FlagFile::from_config(std::istream& in) const {
   for (const auto& [key, node] : file) {
     const std::string gone = successor_of("--" + std::string(key.str()));
     const Option* known = called.front()->get_option_no_throw("--" + std::string(key.str()));
-    if (!gone.empty() && known == nullptr) reader.fail(key.str(), "is of a removed flag: " + gone);
+    if (!gone.empty() && known == nullptr)
+      reader.fail(key.str(), "is the key of a removed flag: " + gone);
   }
   reader.refuse_unknown_keys();
   return given;

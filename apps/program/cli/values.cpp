@@ -185,7 +185,7 @@ std::string counts_text(const std::map<std::string, std::size_t>& counts) {
 
 void print_mended(std::size_t poses) {
   if (poses == 0) return;
-  std::printf("rotations orthonormalised: %zu\n", poses);
+  std::printf("poses with a slightly inexact rotation matrix, now corrected: %zu\n", poses);
 }
 
 void check_finite(std::string_view flag, double value) {

@@ -120,7 +120,7 @@ void calibrate_range(const Options& options) {
                 {"seconds", watch.seconds()}});
     return;
   }
-  std::printf("%zu frames at %zu distances: range error %.2f mm RMS, %.2f mm after calibration\n",
+  std::printf("%zu frames at %zu distances: RMS range error %.2f mm, after calibration %.2f mm\n",
               counts.used - result.left_out.size(), result.distances, 1e3 * result.rms_before,
               1e3 * result.rms_after);
   if (!counts.bad.empty()) std::printf("left out: %s\n", counts_text(counts.bad).c_str());
@@ -167,9 +167,10 @@ void calibrate(const Options& options) {
     std::printf("%10.3f %10s %16.3f %12.3f\n", step.range, with_commas(step.pixels).c_str(),
                 1e3 * step.sigma_axial, 1e3 * step.fitted_axial);
   }
-  std::printf("%zu frames (%s); lateral sigma %.3f px, from %.0f px of edges%s\n", used,
-              result.sensor.name.c_str(), result.sigma_lateral_px, result.edge_length,
-              result.lateral_in_model ? "" : "; the noise model fixes it at 1 px");
+  std::printf(
+      "%zu frames (%s); standard deviation across the ray %.3f px, from %.0f px of edges%s\n", used,
+      result.sensor.name.c_str(), result.sigma_lateral_px, result.edge_length,
+      result.lateral_in_model ? "" : "; the noise model always has 1 px");
   if (!bad.empty()) std::printf("left out: %s\n", counts_text(bad).c_str());
   std::printf("%s: sensor %s with this noise\n", options.out.c_str(), result.sensor.name.c_str());
 }
@@ -178,23 +179,25 @@ void calibrate(const Options& options) {
 
 Command add_calibrate(App& program) {
   auto options = std::make_shared<Options>();
-  App* app = program.add_subcommand(
-      "calibrate",
-      "Measure a depth camera and write a sensor file. --noise measures the scatter of readings, "
-      "from at least 30 frames of a static scene from one pose. --range measures the error of "
-      "ranges, from frames with poses of one flat wall at 8 distances or more.");
+  App* app =
+      program.add_subcommand("calibrate",
+                             "Measure a depth camera and write a sensor file. --noise measures how "
+                             "much depths scatter. It needs at least 30 frames of a static scene "
+                             "from one pose. --range measures the systematic range error. It needs "
+                             "frames of one flat wall from at least 8 distances, with poses.");
   app->add_option("FRAMES_DIR", options->frames, "folder of frames")->required();
   app->add_flag("--noise", options->noise,
-                "measure sigma_ax and sigma_lat in the sensor's noise model; requires edges in "
-                "front of a wall, but no poses");
+                "measure the standard deviations along and across the ray; the scene needs an "
+                "object in front of a wall, but the frames need no poses");
   app->add_flag("--range", options->range,
-                "measure range_calibration; turn the camera by 10 to 30 deg in some views");
+                "measure the range error, range_calibration in the sensor file; turn the camera by "
+                "10 to 30 deg for some frames");
   app->add_option(
       "--sensor", options->sensor,
-      kSensorHelp + "; the measured part is replaced (default: FRAMES_DIR/sensor.toml)");
+      kSensorHelp + ", whose measured part is replaced (default: FRAMES_DIR/sensor.toml)");
   app->add_option("--depth-scale", options->depth_scale,
-                  "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
-                  "poses.txt, 1e-3 with pose files)");
+                  "metres per unit of the depth images (default: from frames.toml; else 1e-4 for "
+                  "folders with poses.txt, 1e-3 for others)");
   app->add_option("--out", options->out, "sensor file to write (.toml)")->required();
   add_help(*app, kMapGroup,
            "calibrate --noise static --sensor sr4000 --depth-scale 1e-4 --out calibrated.toml");

@@ -25,9 +25,10 @@ namespace viewgain::app {
   }
   return text +
          formatted(
-             " their standard deviations claim (normalised error %.2f, ideal 1).\n"
-             "Its median is %.2f (ideal 0.455); %.1f %% are beyond 3 standard deviations (ideal "
-             "0.3 %%); %zu of %zu points are outliers, more than 10 mm off.\n",
+             " their standard deviations claim (mean squared normalised error %.2f, ideal 1).\n"
+             "The median of these squares is %.2f (ideal 0.455). %.1f %% of the points are more "
+             "than 3 standard deviations off (ideal 0.3 %%). %zu of %zu points are outliers, more "
+             "than 10 mm off.\n",
              found.mean_clipped, found.median, 100 * found.above_9, found.outliers,
              found.points + found.outliers);
 }

@@ -64,9 +64,9 @@ void convert(const Options& options) {
   }
   print_map(grid, statistics);
   if (lost.beliefs > 0 || lost.views > 0) {
-    std::printf("lost in the tree: beliefs of %s voxels, %s views%s\n",
+    std::printf("not stored in the tree: beliefs of %s voxels, %s views%s\n",
                 with_commas(lost.beliefs).c_str(), with_commas(lost.views).c_str(),
-                lost.hazard_counters ? ", hazard counters" : "");
+                lost.hazard_counters ? ", counts behind learned hazards" : "");
   }
   std::printf("%s\n", options.out.c_str());
 }
@@ -77,19 +77,21 @@ Command add_convert(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "convert",
-      "Convert a map between .vdb and OctoMap's .ot and .bt (.bt is read only). An OctoMap tree "
-      "holds states and log-odds (.bt: states only), but no beliefs, prior or views. If the map's "
-      "frame is a shift by whole voxels, the tree is shifted; any other frame is lost with a "
-      "warning. A .vdb also gets covariances and positions for viewers.");
+      "Convert a map between .vdb and the OctoMap formats .ot and .bt. A .bt file can only be "
+      "read. An .ot file holds voxel states and log-odds; beliefs, prior and views are lost. If "
+      "the map's frame is shifted by whole voxels, the tree is shifted too. Any other frame is "
+      "lost, with a warning. A .vdb file also gets covariances and mean positions for viewers.");
   app->add_option("IN", options->in, kMapHelp)->required();
   app->add_option("OUT", options->out, "map to write (.vdb or .ot)")->required();
   app->add_option("--workspace", options->workspace,
-                  "x0,y0,z0,x1,y1,z1: part of a tree to convert [m], grown to whole voxels "
-                  "(default: its known voxels)");
+                  "x0,y0,z0,x1,y1,z1: part of an OctoMap tree to convert [m] (default: all of its "
+                  "known voxels)");
   app->add_option("--prior-sigma", options->prior_sigma,
-                  "sigma of an unknown voxel of a tree [m] (default: the sensor's, else voxel/2)");
-  app->add_option("--sensor", options->sensor,
-                  std::string("sensor for the prior of a tree's voxels: ") + kSensorHelp);
+                  "standard deviation of an unknown voxel of an OctoMap tree [m] (default: from "
+                  "--sensor, else voxel/2)");
+  app->add_option(
+      "--sensor", options->sensor,
+      std::string("sensor that determines the default of --prior-sigma: ") + kSensorHelp);
   add_help(*app, kLookGroup, "convert map.vdb tree.ot");
   return command_of(app, options, convert);
 }

@@ -99,20 +99,22 @@ void print_summary(const Options& options, RecordingFormat format, const ImportR
               {"seconds", seconds}};
     return print_json(json);
   }
-  std::printf("%zu frames of %dx%d px, %s readings: %s\n", report.frames, camera.width,
+  std::printf("%zu frames of %dx%d px, %s pixels with a depth: %s\n", report.frames, camera.width,
               camera.height, with_commas(report.readings).c_str(), options.out.c_str());
   if (has_messages(format)) {
-    std::printf("depth images from %s, poses in %s\n", printable(report.depth_topic).c_str(),
-                printable(report.world).c_str());
+    std::printf("depth images from the topic %s, poses in the tf frame %s\n",
+                printable(report.depth_topic).c_str(), printable(report.world).c_str());
   }
   if (!bad.empty()) std::printf("left out: %s\n", counts_text(bad).c_str());
   print_mended(report.orthonormalized);
   if (!sensor) {
-    std::printf("no sensor.toml without --sensor: model needs a sensor file with %dx%d px\n",
-                camera.width, camera.height);
+    std::printf(
+        "no sensor.toml was written, because --sensor is missing: model needs --sensor with a file "
+        "for %dx%d px\n",
+        camera.width, camera.height);
   }
   if (!options.mask.empty() || !options.confidence.empty()) {
-    std::printf("masks: %zu frames, %s pixels masked out\n", report.masks,
+    std::printf("%zu frames have a mask; masks removed %s pixels\n", report.masks,
                 with_commas(report.masked_pixels).c_str());
   }
 }
@@ -153,16 +155,18 @@ Command add_import(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "import",
-      "Turn a recording into a folder of frames for integrate and model. Frames that cannot be "
-      "used are left out and counted by reason: no_pose, lost_pose, unreadable, wrong_size.");
+      "Convert a recording into a folder of frames for integrate and model. Frames that cannot be "
+      "used are left out and counted per reason: no_pose, lost_pose, unreadable or wrong_size.");
   app->add_option("SOURCE", options->source, "file or folder of the recording")->required();
   std::vector<std::string> formats{"auto"};
   formats.insert(formats.end(), kFormats.begin(), kFormats.end());
   app->add_option("--format", options->format,
                   "format of the recording; auto: detect from its contents")
       ->check(one_of(formats, "format"));
-  app->add_option("--sensor", options->sensor,
-                  kSensorHelp + "; source of noise and ranges, and of missing intrinsics");
+  app->add_option(
+      "--sensor", options->sensor,
+      kSensorHelp +
+          "; it states noise and range limits, and the intrinsics if the recording has none");
   app->add_option("--intrinsics", options->intrinsics,
                   "fx,fy,cx,cy [px] (default: from the recording, else from the sensor)");
   app->add_option("--depth-topic", options->depth_topic,
@@ -172,25 +176,27 @@ Command add_import(App& program) {
       "tf frame to use as the world (default: the topmost parent of the images' frame)");
   app->add_option("--camera-frame", options->camera_frame,
                   "FRAME[,tx,ty,tz,qx,qy,qz,qw]: tf frame to use instead of the images' frame_id, "
-                  "and the camera's pose in it");
+                  "and the camera's pose in FRAME");
   app->add_option("--pose-topic", options->pose_topic,
                   "TOPIC[,tx,ty,tz,qx,qy,qz,qw]: PoseStamped or Odometry topic to use instead of "
-                  "tf, and the camera's pose on its body");
+                  "tf, and the camera's pose on the body whose poses TOPIC holds");
   app->add_option("--max-time-gap", options->max_time_gap,
-                  "largest time from an image to its pose [s]; for tf, half the largest gap "
-                  "between the two transforms (default: 0.1; TUM's layout: 0.02)");
+                  "longest time between an image and its pose [s] (default: 0.1; TUM's layout: "
+                  "0.02); the tf transforms before and after an image may be twice as far apart");
   app->add_option(
       "--depth-scale", options->depth_scale,
       "metres per unit of 16-bit depth images (default: from the recording, else 1e-3)");
   add_mask_options(*app, options->mask, options->confidence);
   app->add_option("--out", options->out,
-                  "folder to write; files of an earlier import are replaced, others are refused")
+                  "folder to write; frames of an earlier import are replaced, frames from "
+                  "elsewhere are an error")
       ->required();
-  explain_values(*app,
-                 "Formats of recordings:\n"
-                 "  MCAP, rosbag2 (.db3), ROS 1 (.bag)  depth images and tf\n"
-                 "  transforms.json  nerfstudio or instant-ngp, with depth images\n"
-                 "  TUM              depth.txt, groundtruth.txt, images in 1/5000 m\n");
+  explain_values(
+      *app,
+      "Formats of recordings:\n"
+      "  MCAP, rosbag2 (.db3), ROS 1 (.bag)  depth images and tf\n"
+      "  transforms.json  from nerfstudio or instant-ngp, with depth images\n"
+      "  TUM              depth.txt, groundtruth.txt, depth images in units of 1/5000 m\n");
   add_help(*app, kMapGroup, "import scene --sensor kinect_v1 --out imported");
   return command_of(app, options, import_frames);
 }

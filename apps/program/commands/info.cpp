@@ -120,7 +120,7 @@ void info(const Options& options) {
     for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
       std::printf(" %.2f", counters.factor(k));
     }
-    std::printf("  (near to far)\n");
+    std::printf("  (from near to far from known surface)\n");
   }
   std::printf("hash             %s\n", grid.content_hash().c_str());
   if (region) print(*region, unit);
@@ -131,13 +131,14 @@ void info(const Options& options) {
 Command add_info(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
-      "info", "Print what a map holds: dimensions, voxel states, memory, entropy removed, views.");
+      "info",
+      "Print properties of a map: size, voxel states, memory, entropy removed, number of views.");
   app->add_option("MAP", options->map, kMapHelp)->required();
   app->add_option("--criterion", options->criterion,
                   "criterion of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
       ->check(one_of(criterion_names(), "criterion"));
   app->add_option("--workspace", options->region,
-                  "x0,y0,z0,x1,y1,z1: box to report separately, grid frame [m]");
+                  "x0,y0,z0,x1,y1,z1: box to report separately, in the grid's frame [m]");
   add_help(*app, kLookGroup, "info map.vdb --criterion trace");
   return command_of(app, options, info);
 }

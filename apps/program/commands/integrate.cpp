@@ -183,7 +183,8 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
     std::printf("depth images: %s m per unit\n", short_text(*scale).c_str());
   }
   std::printf(
-      "%zu %ss (%s), %s readings, %s of them in the workspace; %s out of range, %s invalid\n",
+      "%zu %ss (%s): %s measured points, %s of them in the workspace; %s pixels out of range, %s "
+      "invalid\n",
       taken, part_name(options), printable(source.sensor().name).c_str(),
       with_commas(totals.sum.readings).c_str(), with_commas(totals.sum.readings_inside).c_str(),
       with_commas(totals.sum.out_of_range).c_str(), with_commas(totals.sum.invalid).c_str());
@@ -194,14 +195,14 @@ void print_summary(const Options& options, const ReadingSource& source, const Be
     std::printf("%s\n", registration_text(registration_counts(totals.registrations)).c_str());
   }
   if (totals.skipped > 0) {
-    std::printf("skipped, already in the map: %zu\n", totals.skipped);
+    std::printf("frames skipped because the map has them: %zu\n", totals.skipped);
   }
   std::printf("%s", masked_text(options.frames, totals.masked_pixels).c_str());
   if (options.jump_edge_filter != "off") {
     std::printf("flying pixels removed: %s\n", with_commas(totals.jump_edge_removed).c_str());
   }
   if (options.support_plane) {
-    std::printf("readings on the support plane: %s\n",
+    std::printf("pixels on the support plane: %s\n",
                 with_commas(totals.sum.plane_readings).c_str());
   }
   print_mended(source.orthonormalized());
@@ -250,11 +251,11 @@ void refuse_empty(const Options& options, const ReadingSource& source, const Tot
   if (!options.map.empty()) return;
   if (sum.readings_inside + sum.plane_readings + sum.voxels_crossed == 0) {
     refuse(options.clouds.front() + ": none of " + with_commas(sum.readings) +
-           " readings lies in the workspace");
+           " points lies in the workspace");
   }
   if (sum.readings > 0 && sum.readings_inside + sum.plane_readings == 0) {
     std::fprintf(stderr,
-                 "viewgain: warning: %s: none of %s readings lies in the workspace; they only mark "
+                 "viewgain: warning: %s: none of %s points lies in the workspace; they only mark "
                  "free space. Are --poses and --workspace right?\n",
                  options.clouds.front().c_str(), with_commas(sum.readings).c_str());
   }
@@ -295,23 +296,22 @@ Command add_integrate(App& program) {
   App* app = program.add_subcommand("integrate",
                                     "Integrate depth frames or point clouds into a voxel map.");
   app->add_option("FRAMES_DIR", options->frames.folder,
-                  "folder of frames that simulate wrote, or recorded frames (see below)");
+                  "folder of depth images with poses (see below)");
   begin_group(*app, "Point clouds");
   app->add_option(
          "--cloud", options->clouds,
          "point cloud (.pcd or .ply; x, y, z [m]) to integrate instead of frames; may be repeated")
       ->allow_extra_args(false);
   app->add_option("--origin", options->origin,
-                  "x,y,z of the sensor [m], for clouds in world coordinates; viewpoint: from the "
-                  "VIEWPOINT of each .pcd");
+                  "x,y,z: position of the sensor for clouds in the world frame [m]; viewpoint: use "
+                  "VIEWPOINT in each .pcd");
   app->add_option("--poses", options->poses,
-                  "TUM file of sensor-to-world poses, line i for cloud i; points are then in the "
-                  "sensor's frame and VIEWPOINT is ignored");
+                  "TUM file of sensor-to-world poses, line i for cloud i; clouds are then in the "
+                  "sensor's frame, and VIEWPOINT is ignored");
   begin_group(*app, "Map");
-  app->add_option("--voxel", options->voxel, "voxel size [m]; required without --map");
-  app->add_option(
-      "--workspace", options->workspace,
-      "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels (default: what the frames or clouds see)");
+  app->add_option("--voxel", options->voxel, "voxel size [m] (required without --map)");
+  app->add_option("--workspace", options->workspace,
+                  "x0,y0,z0,x1,y1,z1: box to map [m] (default: all that the frames or clouds see)");
   app->add_option("--sensor", options->frames.sensor,
                   kSensorHelp + "; required for clouds (default: FRAMES_DIR/sensor.toml)");
   add_frame_folder_options(*app, options->frames);
@@ -319,28 +319,29 @@ Command add_integrate(App& program) {
   app->add_option("--jump-edge-filter", options->jump_edge_filter, kJumpEdgeHelp);
   add_scale_options(*app, options->scales);
   begin_group(*app, "Map");
-  app->add_option(
-      "--support-plane", options->support_plane,
-      "height z of the table [m]: its readings mark free space, but not surface (default: none)");
+  app->add_option("--support-plane", options->support_plane,
+                  "height z of the table under the object [m]; pixels that see the table mark free "
+                  "space, but no surface (default: none)");
   app->add_option("--prior-sigma", options->prior_sigma,
-                  "sigma of an unknown voxel [m] (default: the larger of voxel/2 and twice the "
-                  "sensor's axial sigma at its working distance)");
+                  "standard deviation of an unknown voxel [m] (default: the larger of voxel/2 and "
+                  "twice the sensor's noise along the ray at its working distance)");
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
   add_registration_option(*app, options->registration);
   begin_group(*app, "Map");
   app->add_option("--out", options->out, "map to write (.vdb, or OctoMap .ot)")->required();
   app->add_option("--map", options->map,
-                  "map to continue (.vdb, .ot, .bt), with its voxel size, workspace and prior; "
-                  "frames that a .vdb already holds are skipped");
+                  "map to extend (.vdb, .ot, .bt); voxel size, workspace and prior stay the same; "
+                  "frames that a .vdb already has are skipped");
   most_need(*app, {"--voxel", "--workspace", "--out", "--map", "--sensor", "--cloud",
                    "--support-plane", "--mask", "--register", "--on-contradiction"});
   explain_values(*app,
-                 "Files in FRAMES_DIR: those of simulate, or for each recorded frame NNNNNN:\n"
+                 "Files in FRAMES_DIR: those that simulate writes, or for each frame NNNNNN:\n"
                  "  frame-NNNNNN.depth.png      16 bit: depth along z\n"
-                 "  frame-NNNNNN.pose.txt       4x4, camera to world [m]\n"
-                 "  camera-intrinsics.txt       3x3, optional; overrides the sensor's\n"
-                 "  frame-NNNNNN.amplitude.png  16 bit, optional: cos/range^2 [1e-3 m^-2], which\n"
-                 "                              gives the incidence angle\n"
+                 "  frame-NNNNNN.pose.txt       4x4 matrix, camera to world [m]\n"
+                 "  camera-intrinsics.txt       3x3 matrix, optional; overrides the sensor's\n"
+                 "                              intrinsics\n"
+                 "  frame-NNNNNN.amplitude.png  16 bit, optional: cos(angle of incidence) /\n"
+                 "                              range^2 [1e-3 m^-2]\n"
                  "A point cloud marks free space on the lines from its sensor to its points.\n");
   add_help(*app, kMapGroup,
            "integrate frames --voxel 0.005 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out map.vdb");

@@ -116,13 +116,13 @@ void next(const Options& options) {
     print_json(json);
     return;
   }
-  std::printf("%zu views so far, %s; %s\n", model.grid().views().size(),
+  std::printf("%zu views so far; %s; %s\n", model.grid().views().size(),
               printable(sensor.name).c_str(), summary_of(views).c_str());
   std::printf("%s", text_of(views).c_str());
   if (options.proposal.reach.empty()) {
     std::printf("%s", outside_text(views, model.grid()).c_str());
   }
-  if (!options.out.empty()) std::printf("poses in %s\n", options.out.c_str());
+  if (!options.out.empty()) std::printf("poses written to %s\n", options.out.c_str());
 }
 
 }  // namespace
@@ -131,21 +131,22 @@ Command add_next(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "next",
-      "Propose the next-best views for a map, each with its gain and the reason for it. The list "
-      "is empty if no reachable view has a positive gain.");
+      "Propose the next-best views for a map. Print the gain of each view and the source of the "
+      "candidate. If no reachable view has a positive gain, the list is empty.");
   Options& o = *options;
   app->add_option("MAP", o.map, kMapHelp)->required();
   app->add_option("--sensor", o.sensor, kMapSensorHelp);
   add_next_view_options(*app, o.proposal);
-  app->add_option("--top", o.top,
-                  "maximum number of views, each with its marginal gain; all: every possible "
-                  "candidate with its own gain (--json: also why others were dropped)");
+  app->add_option(
+      "--top", o.top,
+      "maximum number of views, each with its marginal gain; all: every possible candidate, with "
+      "its gain alone (--json also prints why candidates were dropped)");
   app->add_option("--out", o.out,
                   "file of camera-to-world poses to write (.txt or .tum: TUM text; .npy), best "
-                  "first, or in the order of the plan");
+                  "first or in the order of the plan");
   app->add_flag("--explain", o.explain,
-                "print where the rays of each view end; if no view has a gain, those of up to 32 "
-                "candidates together (cannot be used with --top all)");
+                "print for each view where its rays end; if no view has a gain, print a sum over "
+                "up to 32 candidates (cannot be used with --top all)");
   most_need(*app, {"--top", "--out", "--sensor", "--generator", "--poses", "--gain", "--reach",
                    "--obstacle", "--plan", "--explain"});
   add_help(*app, kViewsGroup, "next map.vdb --sensor sr4000 --top 3 --out next.txt");

@@ -98,19 +98,19 @@ void render(const Options& options) {
 
 Command add_render(App& program) {
   auto options = std::make_shared<Options>();
-  App* app =
-      program.add_subcommand("render", "Draw a picture of a map or of a run's folder (PNG).");
+  App* app = program.add_subcommand(
+      "render", "Draw a map, or the result in a run's folder, as a PNG picture.");
   Options& o = *options;
   app->add_option("MAP", o.map, kMapHelp)->required();
-  auto* what =
-      app->add_option(
-             "KIND", o.what,
-             "what to draw: map (voxels), surface, or sigma (standard deviation of the surface)")
-          ->required();
+  auto* what = app->add_option("KIND", o.what,
+                               "what to draw: map (the voxels), surface, or sigma (the surface, "
+                               "coloured by its standard deviation)")
+                   ->required();
   what->check(one_of({"map", "surface", "sigma"}, "kind of picture"));
-  app->add_option("--viewer", o.viewer,
-                  "AZIMUTH,ELEVATION[,WIDTH]: viewing direction [deg], azimuth from +x to +y; "
-                  "picture width [px], 64..8192 (default: 1280)");
+  app->add_option(
+      "--viewer", o.viewer,
+      "AZIMUTH,ELEVATION[,WIDTH]: direction from the map to the viewer [deg], with azimuth 0 at +x "
+      "and 90 at +y, and width of the picture [px], 64..8192 (default: 1280)");
   app->add_option("--out", o.out, "PNG file to write")->required();
   add_help(*app, kLookGroup, "render run sigma --out sigma.png");
   return command_of(app, options, [](const Options& given) { render(given); });

@@ -77,7 +77,8 @@ void sensors(const Options& options) {
   if (options.common.json) {
     print_json(json);
   } else {
-    std::printf("axial, lateral: sigma of a reading at the working distance\n");
+    std::printf(
+        "axial, lateral: standard deviation along and across the ray at the working distance\n");
   }
 }
 
@@ -86,8 +87,8 @@ void sensors(const Options& options) {
 Command add_sensors(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand("sensors",
-                                    "List the presets of --sensor. With NAME, print that preset as "
-                                    "a sensor file, as a starting point for your own.");
+                                    "List the presets for --sensor. With NAME, print the preset as "
+                                    "a sensor file, which you can edit for your own camera.");
   app->add_option("NAME", options->name, "preset or .toml file to print");
   add_help(*app, kLookGroup, "sensors d435");
   return command_of(app, options, sensors);

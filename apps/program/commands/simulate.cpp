@@ -95,7 +95,7 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
   if (std::none_of(poses.begin(), poses.end(),
                    [&](const Pose& pose) { return sees_mesh(scene, sensor, rays, pose); })) {
-    refuse(options.mesh + ": no pose has the mesh in view and in range; the mesh lies in " +
+    refuse(options.mesh + ": the mesh is not in view and in range from any pose; it lies in " +
            describe(bounds_of(scene.mesh())) + " m (--size, --place)");
   }
 }
@@ -194,7 +194,7 @@ void simulate(const Options& options) {
   std::printf("%zu frames of %dx%d px (%s) of %s triangles in %.2f s: %s\n", poses.size(),
               sensor.camera.width, sensor.camera.height, printable(sensor.name).c_str(),
               with_commas(triangles).c_str(), seconds, options.out.c_str());
-  std::printf("pixels: %s readings, %s out of range, %s invalid\n",
+  std::printf("pixels: %s with a depth, %s out of range, %s invalid\n",
               with_commas(counts.readings).c_str(), with_commas(counts.out_of_range).c_str(),
               with_commas(counts.invalid).c_str());
   print_mended(source.orthonormalized);
@@ -210,38 +210,38 @@ Command add_simulate(App& program) {
   app->add_option("--sensor", options->sensor, kSensorHelp)->required();
   begin_group(*app, "Mesh");
   app->add_option("--size", options->size,
-                  "scale the mesh to this longest side of its bounding box [m] (default: the "
-                  "file's size, in metres)");
-  app->add_option("--up", options->up, "axis of the mesh to turn to +z")
+                  "length of the mesh's longest side after scaling [m] (default: no scaling)");
+  app->add_option("--up", options->up, "axis of the mesh file that points up")
       ->check(one_of({"x", "y", "z"}, "axis"));
-  app->add_option("--place", options->place,
-                  "mesh-to-world placement after --size and --up: center, x,y,z[,YAW_DEG], "
-                  "tx,ty,tz,qx,qy,qz,qw or center,x,y,z (default: as it is; see below)");
+  app->add_option(
+      "--place", options->place,
+      "where to put the mesh in the world, after --size and --up: center, x,y,z[,YAW_DEG], "
+      "tx,ty,tz,qx,qy,qz,qw or center,x,y,z (default: do not move; see below)");
   explain_values(
       *app,
-      "Values of --place, mesh to world [m, degrees around +z]:\n"
-      "  center                moves the bounding box's centre to the origin\n"
-      "  x,y,z[,YAW_DEG]       shifts and turns\n"
-      "  tx,ty,tz,qx,qy,qz,qw  shifts and turns\n"
-      "  center,...            first moves the centre to the origin, as in center,x,y,z\n"
-      "  The sphere of --background stays where it is.\n");
+      "Values of --place [m]:\n"
+      "  center                move the centre of the bounding box to the origin\n"
+      "  x,y,z[,YAW_DEG]       rotate around +z, then shift\n"
+      "  tx,ty,tz,qx,qy,qz,qw  rotate by the quaternion, then shift\n"
+      "  center,...            first center, then one of the others, as in center,x,y,z\n");
   add_sensing_options(*app, options->sensing);
   begin_group(*app, "Output");
-  app->add_option(
-         "--frames-per-view", options->frames_per_view,
-         "number of frames from each pose, numbered consecutively; poses.txt repeats the pose")
+  app->add_option("--frames-per-view", options->frames_per_view,
+                  "number of frames from each pose; poses.txt has one line per frame")
       ->check(counted(1, 1000));
   app->add_option("--out", options->out,
-                  "folder to write; frames of an earlier simulate are replaced, others are refused")
+                  "folder to write; frames of an earlier simulate are replaced, frames from "
+                  "elsewhere are an error")
       ->required();
   most_need(*app, {"--sensor", "--out", "--size", "--place", "--up", "--noise", "--support-plane",
                    "--background"});
   explain_values(*app,
                  "Files in OUT, for frame NNNNNN:\n"
-                 "  frame-NNNNNN.depth.png      16 bit: depth along z in units of 0.1 mm, larger\n"
-                 "                              if the sensor sees beyond 6.5534 m; 0 invalid,\n"
-                 "                              65535 out of range\n"
-                 "  frame-NNNNNN.amplitude.png  16 bit: cos/range^2 [1e-3 m^-2]; 65535 unknown\n"
+                 "  frame-NNNNNN.depth.png      16 bit: depth along z in units of 0.1 mm (more if\n"
+                 "                              the sensor's max_range is over 6.5534 m);\n"
+                 "                              0: invalid, 65535: out of range\n"
+                 "  frame-NNNNNN.amplitude.png  16 bit: cos(angle of incidence) / range^2\n"
+                 "                              [1e-3 m^-2]; 65535: unknown\n"
                  "  poses.txt                   TUM: reported poses, numbered like the frames\n"
                  "  sensor.toml, frames.toml    sensor and units\n");
   add_help(*app, kMapGroup,

@@ -96,14 +96,16 @@ void print(const QualityFigures& figures, double voxel_size) {
               100 * figures.coverage, tolerance, 100 * figures.coverage_2_5mm);
   if (!std::isnan(figures.coverage_visible)) {
     std::printf(
-        "; of the part that the map's views see: %.2f %% within %g mm (points %.2f %%, triangles "
-        "%.2f %%)",
+        "\n"
+        "of the part that the map's views see: %.2f %% within %g mm (by the points %.2f %%, by the "
+        "triangles %.2f %%)",
         100 * figures.coverage_visible, tolerance, 100 * figures.coverage_points,
         100 * figures.coverage_triangles);
   }
   std::printf(
-      "\nerror: surface RMS %.2f mm, 95 %% below %.2f mm; points RMS %.2f mm, 95 %% below %.2f "
-      "mm\n",
+      "\n"
+      "error of the surface: RMS %.2f mm, 95 %% below %.2f mm; of the points: RMS %.2f mm, 95 %% "
+      "below %.2f mm\n",
       1e3 * figures.surface_error.rms, 1e3 * figures.surface_error.p95,
       1e3 * figures.points_error.rms, 1e3 * figures.points_error.p95);
   std::printf("%s", consistency_text(figures.consistency).c_str());
@@ -133,7 +135,7 @@ void surface(const Options& options, const App& app) {
   const BeliefGrid map = load_map(options.map, nullptr, {}, exec);
   const std::vector<FusedPoint> points =
       fused_points(map, {.scale_sigma = scale_sigma_of(map)}, exec);
-  if (points.empty()) refuse(options.map + ": no voxel has readings that form a surface");
+  if (points.empty()) refuse(options.map + ": the map's voxels form no surface");
   const SurfaceMesh surface = surface_of(points, exec);
   std::optional<QualityFigures> figures;
   if (truth) {
@@ -163,7 +165,7 @@ void surface(const Options& options, const App& app) {
   std::printf("%s points, %s vertices, %s triangles, %.4g m^2", with_commas(points.size()).c_str(),
               with_commas(surface.vertices.size()).c_str(),
               with_commas(surface.triangles.size()).c_str(), mesh_area(surface));
-  if (median) std::printf(", sigma %.2f mm (median)", 1e3 * *median);
+  if (median) std::printf(", median standard deviation %.2f mm", 1e3 * *median);
   std::printf("\n");
   if (figures) print(*figures, map.voxel_size());
   for (const std::string& file : {options.out, options.points}) {
@@ -175,22 +177,24 @@ void surface(const Options& options, const App& app) {
 
 Command add_surface(App& program) {
   auto options = std::make_shared<Options>();
-  App* app = program.add_subcommand(
-      "surface",
-      "Write the surface in a map and its points as PLY; each vertex has a normal and the sigma "
-      "along it [m]. With --truth, measure their distance from a reference mesh.");
+  App* app =
+      program.add_subcommand("surface",
+                             "Write the surface and the points of a map as PLY files. Each vertex "
+                             "has a normal and a standard deviation along the normal [m]. With "
+                             "--truth, compare surface and points with a reference mesh.");
   app->add_option("MAP", options->map, kMapHelp)->required();
   app->add_option("--out", options->out, "surface to write (.ply)");
   app->add_option("--points", options->points, "points to write (.ply)");
   app->add_option("--truth", options->truth,
                   "reference mesh (OFF, OBJ, STL, PLY) in the world frame");
-  app->add_option("--size", options->size,
-                  "scale the reference mesh to this longest side [m] (default: as it is)");
+  app->add_option(
+      "--size", options->size,
+      "length of the reference mesh's longest side after scaling [m] (default: no scaling)");
   app->add_option("--place", options->place,
                   "center: move the centre of the reference mesh's bounding box to the origin "
-                  "(default: as it is)")
+                  "(default: do not move)")
       ->check(one_of({"center"}, "value"));
-  app->add_option("--up", options->up, "axis of the reference mesh to turn to +z")
+  app->add_option("--up", options->up, "axis of the reference mesh's file that points up")
       ->check(one_of({"x", "y", "z"}, "axis"));
   add_help(*app, kLookGroup, "surface map.vdb --out surface.ply --points points.ply");
   return command_of(app, options, [app](const auto& given) { surface(given, *app); });

@@ -192,8 +192,9 @@ Pose place_viewer(const std::vector<Vector3d>& points, const Vector3d& direction
   for (const Vector3d& p : points) {
     bounds.add(p);
     if (!p.allFinite() || !((bounds.max - bounds.min).maxCoeff() < kWidest)) {
-      refuse("a picture cannot show both a place at " + short_text(p.x()) + ", " +
-             short_text(p.y()) + ", " + short_text(p.z()) + " m and one that is " + "1000 km away");
+      refuse("a picture cannot show both a point at " + short_text(p.x()) + ", " +
+             short_text(p.y()) + ", " + short_text(p.z()) + " m and a point that is " +
+             "1000 km away");
     }
   }
   const Vector3d center = 0.5 * (bounds.min + bounds.max);

@@ -86,8 +86,8 @@ void Sensor::validate() const {
   });
   const double least = range_of_least_sigma(*this);
   if (!(noise_sigmas(least).axial > 0)) {
-    refuse("noise: sigma along the ray is 0 at a range of " + short_text(least) +
-           " m, which would make a reading exact; offset, linear or quadratic must be positive");
+    refuse("noise: the standard deviation along the ray is 0 at a range of " + short_text(least) +
+           " m, as if a depth could be exact. offset, linear or quadratic must be positive");
   }
   if (T_flange_camera && !rigid_pose(*T_flange_camera)) {
     fail("T_flange_camera is not a rigid transform");

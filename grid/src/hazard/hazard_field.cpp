@@ -200,7 +200,7 @@ void HazardField::find_distances(const GridSnapshot& snapshot,
                {cells.max.x * edge, cells.max.y * edge, cells.max.z * edge}};
   constexpr std::uint64_t kMostCells = std::uint64_t{1} << 31U;
   if (cells.volume() > kMostCells) {
-    throw Error(ErrorCode::capacity, "hazard: the known surface spreads over " +
+    throw Error(ErrorCode::capacity, "hazard: the known surface extends over " +
                                          std::to_string(cells.volume()) + " cells, " +
                                          std::to_string(kMostCells) + " is the maximum");
   }

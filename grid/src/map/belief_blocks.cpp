@@ -69,7 +69,7 @@ std::string fault_of_belief(const Belief& belief, double voxel_size) {
     is_clamped = is_clamped || std::abs(value) == kMost;
   }
   if (belief.hits > static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max())) {
-    return has("more than 2147483647 hits: ", std::to_string(belief.hits));
+    return has("a voxel with more than 2147483647 measured points: ", std::to_string(belief.hits));
   }
   // Sums that would overflow stay unchanged.
   if (is_clamped) return {};
@@ -94,7 +94,7 @@ std::string fault_of_belief(const Belief& belief, double voxel_size) {
       scale.cwiseProduct(factors.solve(scale.cwiseProduct(vector))) / voxel_size;
   const double farthest = offset.cwiseAbs().maxCoeff();
   if (!(farthest <= kFarthest))
-    return has("a point too many voxels away from its voxel: ", short_text(farthest));
+    return has("a point that is too many voxels away from its voxel: ", short_text(farthest));
   return {};
 }
 

@@ -91,10 +91,10 @@ std::vector<std::uint32_t> opposites(const SurfaceMesh& surface) {
       const std::uint32_t b = edges[end - 1].half_edge;
       if (end - i > 2 || edges[i].upper == v ||
           (a != b && start_of(surface, a) == start_of(surface, b))) {
-        refuse(
-            "surface: the edge of vertices " + std::to_string(v) + " and " +
-            std::to_string(edges[i].upper) +
-            " belongs to a loop, to more than two faces, or to two faces of different orientation");
+        refuse("surface: the edge of vertices " + std::to_string(v) + " and " +
+               std::to_string(edges[i].upper) +
+               " joins a vertex to itself, belongs to more than two faces, or to two faces of "
+               "opposite orientation");
       }
       if (a != b) {
         opposite[a] = b;

@@ -215,7 +215,7 @@ QuadraticPatch fit_patch(std::span<const Eigen::Vector3d> points, const Eigen::V
   const Eigen::Vector3d direction = outward.stableNormalized();
   const Eigen::Vector3d across = direction - w * w.dot(direction);
   if (w.isZero(0) || !(across.norm() > kParallelSine)) {
-    refuse("fit_patch: outward is parallel to the normal, or one of them is zero");
+    refuse("fit_patch: outward is parallel to the normal, or one of the two vectors is zero");
   }
   QuadraticPatch patch;
   patch.origin = origin;

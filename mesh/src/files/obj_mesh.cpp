@@ -35,10 +35,10 @@ class ObjReader {
       } else if (keyword == "surf") {
         lines_.fail("free-form surfaces are not supported");
       } else if (keyword == "call" || keyword == "csh") {
-        lines_.fail("statements that add other files or run commands are not supported");
+        lines_.fail("statements that include other files or run commands are not supported");
       } else if (std::find(kSkippedInObj.begin(), kSkippedInObj.end(), keyword) ==
                  kSkippedInObj.end()) {
-        lines_.fail("the word " + quoted(keyword) + " is not a known OBJ statement");
+        lines_.fail("the keyword " + quoted(keyword) + " is not a known OBJ statement");
       }
     }
     return std::move(mesh_).finish(repairs);
@@ -80,8 +80,8 @@ class ObjReader {
     // Seven numbers are x y z w r g b or x y z r g b a. The weight or alpha of 1 shows which.
     const bool has_weight = count == 4 || (count == 7 && numbers[6] != 1);
     if (has_weight && numbers[3] != 1) {
-      lines_.fail("weights other than 1, the fourth of " + std::to_string(count) +
-                  " numbers, are not supported");
+      lines_.fail("the fourth of " + std::to_string(count) +
+                  " numbers is a weight; weights other than 1 are not supported");
     }
     mesh_.add_vertex({numbers[0], numbers[1], numbers[2]}, lines_.line());
   }

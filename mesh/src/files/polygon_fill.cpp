@@ -127,7 +127,7 @@ bool PolygonFill::has_area() const {
 bool PolygonFill::triangulate(TriangleMesh& mesh, FillBudget& budget) {
   if (corners_.size() > kMostCorners) {
     throw Error(ErrorCode::format,
-                "has reflex corners among more than " + std::to_string(kMostCorners));
+                "is concave and has more than " + std::to_string(kMostCorners) + " corners");
   }
   // Scales by a power of two, so that few coordinates are rounded.
   Flat least = flat_.front(), most = least;

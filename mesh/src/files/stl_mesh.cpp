@@ -78,7 +78,7 @@ class StlText {
 
  private:
   [[noreturn]] void fail_at(const std::string& expected) {
-    lines_.fail("here is " + quoted(words_.peek()) + ", not \"" + expected + "\"");
+    lines_.fail("found " + quoted(words_.peek()) + ", not \"" + expected + "\"");
   }
   // Takes the word if it is the next one.
   bool is_next(std::string_view word) {
@@ -172,10 +172,13 @@ TriangleMesh stl_mesh(std::string_view bytes, const std::string& name, MeshRepai
     throw Error(ErrorCode::format, name + ": " + what);
   };
   if (bytes.size() < kStlBody)
-    fail("is neither text that begins with \"solid\" nor long enough for a binary STL file");
+    fail(
+        "is neither a text STL file, which begins with \"solid\", nor long enough for a binary "
+        "one");
   // Fewer bytes than a triangle's may follow.
   const std::uint64_t held = (bytes.size() - kStlBody) / kStlTriangle;
-  if (promised != held && !has_nul) fail("is neither text that begins with \"solid\" nor binary");
+  if (promised != held && !has_nul)
+    fail("is neither a text STL file, which begins with \"solid\", nor a binary one");
   if (promised != held) {
     fail("the header declares " + std::to_string(promised) + " triangles, but the file holds " +
          std::to_string(held));

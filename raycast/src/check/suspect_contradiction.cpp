@@ -25,18 +25,19 @@ bool contradicts(const FrameContradiction& frame, double share) {
 std::string contradiction_of(const FrameConsistency& found) {
   if (found.share_in_free > kInFree && found.in_free >= kEnoughContradictions) {
     return percent(found.share_in_free) +
-           " of the readings lie in space that other frames saw as free";
+           " of the points lie in space that other frames saw as free";
   }
   if (found.share_seen_past > kSeenPast && found.seen_past >= kEnoughContradictions) {
-    return "frames see past " + percent(found.share_seen_past) +
-           " of the readings of earlier frames, as if space that they saw as free held surface";
+    return "frames look through " + percent(found.share_seen_past) +
+           " of the points of earlier frames, as if there were free space";
   }
   const bool is_one =
       std::any_of(found.frames.begin(), found.frames.end(),
                   [](const FrameContradiction& frame) { return contradicts(frame, kOfAFrame); });
   if (!is_one) return {};
   return "up to " + percent(largest_share(found)) +
-         " of a frame's readings lie in space that other frames saw as free, or are seen past";
+         " of a frame's points lie in space that other frames saw as free, or other frames look "
+         "through them";
 }
 
 // Frames that are displaced, but by too little for their readings to contradict each other.
@@ -50,11 +51,12 @@ Suspicion suspect_displacement(const FrameConsistency& found, double voxel_size)
   }
   return {"displacement",
           "surfaces lie " + millimetres(found.displacement) +
-              " from those of earlier frames; the declared errors of sensor and poses explain " +
+              " from where earlier frames saw them; the declared errors of sensor and poses "
+              "explain only " +
               millimetres(found.expected) +
-              ". Are the poses late, is the hand-eye calibration or the focal length off, or do "
-              "the poses drift? Registration (--register on) corrects small errors. If the poses "
-              "cannot be better, declare their errors (pose_sigma_rad in the sensor file)"};
+              ". Are the poses late? Is the hand-eye calibration or the focal length wrong? Do the "
+              "poses drift? Registration (--register on) corrects small errors. If the poses "
+              "cannot be improved, declare their errors (pose_sigma_rad in the sensor file)"};
 }
 
 }  // namespace
@@ -84,11 +86,11 @@ Suspicion suspect_contradiction(const FrameConsistency& found, double voxel_size
   if (copies > 0) {
     return {"same_image",
             now + "; " + std::to_string(copies) + (copies == 1 ? " frame has" : " frames have") +
-                " the image of an earlier one at another pose: does the camera repeat images?"};
+                " the image of an earlier one at another pose. Does the camera repeat images?"};
   }
   return {"contradiction",
           now +
-              ": are the poses those of another frame (a flange, a body), late or early, or "
+              ". Are the poses those of a flange or body instead of the camera, late or early, or "
               "numbered differently from the images? Are the images mirrored, or the intrinsics "
               "those of another camera? Did an object move, or do the poses drift?"};
 }

@@ -192,8 +192,9 @@ Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames
   }
   fits = best_of(std::move(fits), 0.01);
   if (fits.empty()) return {};
-  const std::string text = percent(1 - now) + " of the depths are out of the sensor's range, " +
-                           percent(1 - fits[0].agreement) + " if ";
+  const std::string text = percent(1 - now) +
+                           " of the depths are out of the sensor's range; only " +
+                           percent(1 - fits[0].agreement) + " would be if ";
   std::vector<Convention> scales;
   for (const Fit& fit : fits) scales.push_back(fit.reading);
   if (auto met = fits_by_meetings(meeting, {}, scales); !met.empty()) fits = std::move(met);
@@ -216,7 +217,7 @@ Suspicion suspect_plane(std::span<const DepthFrame> frames, const FrameMeetings&
   }
   if (10 * under <= all) return {};
   const double share = static_cast<double>(under) / static_cast<double>(all);
-  return {"support_plane", percent(share) + " of the readings lie more than " + short_text(kUnder) +
+  return {"support_plane", percent(share) + " of the points lie more than " + short_text(kUnder) +
                                " m below the support plane at " + short_text(plane) + " m"};
 }
 
@@ -233,10 +234,10 @@ Suspicion suspect_along_ray(const FrameMeetings& meeting, const Meetings& as_sai
     return by_ray.close > fit.met.close && by_ray.share_close() > fit.met.share_close();
   });
   if (!fits_best) return {};
-  return {"depth_along_ray",
-          "where it matters, " + percent(*along_ray) +
-              " of the readings fit the other frames better if depths are along the ray, not "
-              "along z"};
+  return {
+      "depth_along_ray",
+      "where it makes a difference, " + percent(*along_ray) +
+          " of the depths fit the other frames better if depths are along the ray, not along z"};
 }
 
 // The mistake under which the frames fit each other.
@@ -252,16 +253,16 @@ Suspicion suspect_convention(const FrameMeetings& meeting, const Meetings& as_sa
   const std::string what = " would if " + words_of(fits);
   if (fits[0].reading.kind == kFocalLength) {
     return {kFocalLength, percent(as_said.share_close()) +
-                              " of the readings that frames have in common lie close together; " +
+                              " of the points that several frames see lie close to where the other "
+                              "frames see them; " +
                               percent(best.share_close()) + what};
   }
   const bool is_apart = as_said.met + as_said.seen_past < detail::kLeastMeetings;
-  const std::string now =
-      is_apart ? "frames from different places have nothing in common; they"
-               : percent(as_said.share_past()) +
-                     " of the readings that frames have in common lie in the free space of "
-                     "others; " +
-                     percent(best.share_past());
+  const std::string now = is_apart ? "frames from different places have no surface in common; they"
+                                   : percent(as_said.share_past()) +
+                                         " of the points that several frames see lie in space that "
+                                         "another frame saw as free; " +
+                                         percent(best.share_past());
   return {fits[0].reading.kind, now + what};
 }
 

@@ -32,8 +32,8 @@ struct Taken {
 };
 
 constexpr const char* kMaskRule =
-    "; pixels are ignored where a mask is nonzero or the confidence is below the least confidence. "
-    "If the masks show the object in white, invert them";
+    ". Pixels are ignored where a mask is nonzero or the confidence is below the least confidence. "
+    "If the object is white in the masks, invert them";
 
 // Whether a position is in the middle one of `parts` equal parts of a side.
 bool is_amid(std::size_t at, std::size_t size, std::size_t parts) {
@@ -128,7 +128,7 @@ Suspicion suspect_frame(const Sensor& sensor, const DepthFrame& frame, const Pos
   }
   if (best == nullptr) return {};
   return {best->kind, figure(std::round(100 * share_inside({}, middle))) +
-                          " % of the readings in the middle of the image lie in the workspace; " +
+                          " % of the points in the middle of the image lie in the workspace; " +
                           figure(std::round(100 * most)) + " % would if " + best->what};
 }
 
@@ -162,11 +162,11 @@ Suspicion suspect_masks(const Sensor& sensor, std::span<const DepthFrame> unmask
   if (inside.taken > 0 && inside.share() >= kNearlyAll && !leaves_middle) {
     const char* const where = map == nullptr ? "" : " in the workspace";
     return {"masks", "the masks remove " + figure(std::round(100 * inside.share())) +
-                         " % of the readings" + where + kMaskRule};
+                         " % of the depths" + where + kMaskRule};
   }
   if (middle.share() >= kMostOfMiddle && elsewhere.share() <= kLittleElse) {
     return {"masks", "the masks remove " + figure(std::round(100 * middle.share())) +
-                         " % of the readings in the middle of the images and " +
+                         " % of the depths in the middle of the images and " +
                          figure(std::round(100 * elsewhere.share())) + " % elsewhere" + kMaskRule};
   }
   return {};

@@ -55,7 +55,7 @@ Suspicion suspect_workspace(const BeliefGrid& map, const Sensor& sensor) {
   return {"workspace_unit", "the workspace is " + figure(side) + " m long and its voxels " +
                                 figure(map.voxel_size()) + " m, but the sensor's range ends at " +
                                 figure(sensor.max_range) +
-                                " m: lengths are in metres, not in millimetres"};
+                                " m. Lengths are in metres, not in millimetres"};
 }
 
 Suspicion suspect_obstacle(const Box& bounds, const BeliefGrid& map, const Sensor& sensor) {
@@ -95,7 +95,7 @@ Suspicion suspect_solid_obstacles(const Obstacles& obstacles, std::span<const Po
   return {"views_in_obstacle",
           std::to_string(inside) + " of the map's " + std::to_string(views.size()) +
               " views were taken inside an obstacle, where no view is possible. Boxes and closed "
-              "meshes are solid: give the walls of a room as an open mesh or as one box per wall"};
+              "meshes are solid. Give the walls of a room as an open mesh or as one box per wall"};
 }
 
 Suspicion suspect_reach(const ReachRegion& reach, const BeliefGrid& map, const Sensor& sensor) {
@@ -130,7 +130,7 @@ Suspicion suspect_reach(const ReachRegion& reach, const BeliefGrid& map, const S
   return {"reach_unit", "the nearest reachable place is " + figure(distance) +
                             " m from the map, but the sensor's range ends at " +
                             figure(sensor.max_range) +
-                            " m: the reach region is in metres, not in millimetres"};
+                            " m. Lengths in the reach file are in metres, not in millimetres"};
 }
 
 Suspicion suspect_support_plane(double z, const BeliefGrid& map, const Sensor& sensor) {
@@ -140,7 +140,7 @@ Suspicion suspect_support_plane(double z, const BeliefGrid& map, const Sensor& s
   return {"plane_unit", "the support plane at z = " + figure(z) + " m is " + figure(distance) +
                             " m from the map, but the sensor's range ends at " +
                             figure(sensor.max_range) +
-                            " m: its height is in metres, not in millimetres"};
+                            " m. The plane's height is in metres, not in millimetres"};
 }
 
 Suspicion suspect_object_size(double size, const BeliefGrid& map) {
@@ -150,14 +150,14 @@ Suspicion suspect_object_size(double size, const BeliefGrid& map) {
   return {"object_size_unit", "an object size of " + figure(size) + " m does not fit a map " +
                                   figure(side) + " m long with voxels of " +
                                   figure(map.voxel_size()) +
-                                  " m: its longest side is in metres, not in millimetres"};
+                                  " m. The object's longest side is in metres, not in millimetres"};
 }
 
 Suspicion suspect_clearance(double clearance) {
   if (clearance <= 2) return {};
-  return {"clearance_unit",
-          "a clearance of " + figure(clearance) +
-              " m around the body leaves no room anywhere: it is in metres, not in millimetres"};
+  return {"clearance_unit", "a clearance of " + figure(clearance) +
+                                " m around the camera's housing leaves no room anywhere. "
+                                "Clearances are in metres, not in millimetres"};
 }
 
 }  // namespace viewgain

@@ -42,7 +42,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 void check(const BestConfig& config, std::size_t poses) {
   detail::check_costs(config.costs, poses);
   if (config.measure != nullptr && config.run_measure != nullptr) {
-    refuse("views are chosen by one measure; two are given");
+    refuse("views are chosen by one measure, but two are given");
   }
   if (!(config.deadline >= 0)) {
     refuse("the deadline is " + short_text(config.deadline) + " s; it must be >= 0");

@@ -220,7 +220,7 @@ void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConf
   const ReachRegion::Tolerance& taken = config.taken_tolerance;
   if (!(std::isfinite(taken.distance) && taken.distance >= 0 && std::isfinite(taken.angle) &&
         taken.angle >= 0)) {
-    fail("the tolerance of views taken must be finite and not negative");
+    fail("the tolerance around taken views must be finite and not negative");
   }
   config.reach.validate();
   if (config.sensor) config.sensor->validate();

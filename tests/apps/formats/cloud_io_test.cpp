@@ -246,7 +246,7 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
   change("DATA 'bin'", "DATA binary", "DATA bin\n");
   change("pcl_convert_pcd_ascii_binary", "DATA binary", "DATA binary_compressed");
   change("no line DATA", good.substr(good.find("DATA")), "");
-  change("the header's word 'ply' is unknown", "VERSION 0.7", "ply");
+  change("the header's keyword 'ply' is unknown", "VERSION 0.7", "ply");
 
   const std::string ascii = pcd_ascii();
   expect_refused("bad.pcd", "bad.pcd:12: a point has 7 words; found 6", with(ascii, "\n12 ", "\n"));
@@ -270,7 +270,7 @@ TEST_F(CloudFiles, ForgedPlyHeadersAreNamedByLine) {
   change("a property needs a type and a name", "float x", "float x y");
   change("a list's count must be a whole number", "list uchar short", "list float short");
   change("an element needs", "element camera 2", "element camera");
-  change("the header's word 'property,'", "property float fx", "property, float fx");
+  change("the header's keyword 'property,'", "property float fx", "property, float fx");
   change("no line end_header", good.substr(good.find("end_header")), "");
   expect_refused("bad.ply", "bad.ply:10: the file continues",
                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"

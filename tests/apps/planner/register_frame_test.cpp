@@ -198,7 +198,7 @@ TEST(RegisterFrame, TooLittleOverlapLeavesThePose) {
   const Pose behind = test::camera_at(180, 0, kDistance);
   const FrameRegistration from_behind =
       alignment.register_frame(scene.grid, scene.see(behind), behind, kSigma);
-  expect_as_reported(from_behind, "readings show surface of the map");
+  expect_as_reported(from_behind, "points lie on surface that is also in the map");
   expect_the_prior(from_behind);
   EXPECT_EQ(from_behind.T_world_camera, behind);
   EXPECT_GT(from_behind.readings, 1000U);

@@ -366,7 +366,8 @@ TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
     refuses("pose 1 of the set \"mine\"", [&] { planner.add_poses({"mine", {{}, bad}}); });
   }
   refuses("end in .vdb", [&] { planner.save("state.ot"); });
-  refuses("without a frame", [&] { planner.add(std::span<const DepthFrame>(), scene.views[0]); });
+  refuses("at least one frame",
+          [&] { planner.add(std::span<const DepthFrame>(), scene.views[0]); });
   refuses("null", [&] { planner.add_generation(nullptr); });
   (void)planner.propose();
   const std::vector<double> few_costs(2);

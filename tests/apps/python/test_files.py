@@ -91,7 +91,7 @@ def test_frames(tmp_path):
     for i in range(2):
         (tmp_path / f"frame-{i:06}.depth.png").write_bytes(gray_png(pixels))
     (tmp_path / "frame-000001.amplitude.png").write_bytes(gray_png(pixels))
-    with pytest.warns(UserWarning, match="does not state depth_scale and out_of_range; assuming depth_scale = 1e-04.*state it in frames.toml"):
+    with pytest.warns(UserWarning, match="does not state depth_scale and out_of_range; assuming depth_scale = 1e-04.*If this is wrong, set the keys in frames.toml"):
         viewgain.read_frames(tmp_path)
     (tmp_path / "frames.toml").write_text('depth_scale = 1e-4\nout_of_range = "carve"\n')
     with warnings.catch_warnings():

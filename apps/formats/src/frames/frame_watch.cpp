@@ -211,7 +211,7 @@ struct FrameWatch::Impl {
           image = own + end;
           own = name;
         }
-        what = ": has the number of " + own + "; each frame needs a number of its own";
+        what = ": has the same number as " + own + "; each frame needs a number of its own";
       }
       if (!twins.contains(image)) {
         found.bad.push_back({number.value_or(std::numeric_limits<std::uint64_t>::max()),
@@ -284,9 +284,9 @@ struct FrameWatch::Impl {
         }
         if (entry.state == State::taken) continue;
         finding =
-            fault(FrameVerdict::changed,
-                  finding.frame->image.string() +
-                      ": was integrated with other contents; each frame needs a number of its own");
+            fault(FrameVerdict::changed, finding.frame->image.string() +
+                                             ": its contents have changed since it was integrated; "
+                                             "each frame needs a number of its own");
       }
       if (finding.fault.verdict == FrameVerdict::used || !is_stable) continue;
       found.bad.push_back(set_bad(number, entry, std::move(finding)));

@@ -26,8 +26,9 @@ namespace {
 template <typename Value>
 std::uint64_t apply(const Gray8Image& mask, int width, int height, std::vector<Value>& depth) {
   if (mask.width != width || mask.height != height || mask.pixels.size() != depth.size()) {
-    refuse("a mask of " + std::to_string(mask.width) + " x " + std::to_string(mask.height) +
-           " px for an image of " + std::to_string(width) + " x " + std::to_string(height) + " px");
+    refuse("the mask has " + std::to_string(mask.width) + " x " + std::to_string(mask.height) +
+           " px, but the image has " + std::to_string(width) + " x " + std::to_string(height) +
+           " px");
   }
   std::uint64_t removed = 0;
   for (std::size_t i = 0; i < depth.size(); ++i) {
@@ -157,7 +158,7 @@ void MaskFolder::require_mask_of_any(const std::vector<std::filesystem::path>& i
                   [this](const auto& image) { return is_there(file_of(image)); })) {
     return;
   }
-  refuse(folder_.string() + ": no image is named like a depth image" +
+  refuse(folder_.string() + ": no image has the name of a depth image" +
          (images.empty() ? "" : ", as " + images.front().filename().string()));
 }
 
@@ -273,10 +274,10 @@ std::string assumed_text(const FrameSequence& frames) {
   if (frames.is_out_of_range_assumed) {
     const bool carves = frames.out_of_range == Sensor::OutOfRange::carve;
     add("out_of_range", carves ? "\"carve\"" : "\"invalid\"",
-        carves ? "65535: no surface up to max_range" : "65535: no reading");
+        carves ? "65535: no surface up to max_range" : "65535: no depth");
   }
   return std::string("the folder does not state ") + keys + "; assuming " + values +
-         "; state it in " + kFrames;
+         ". If this is wrong, set the keys in " + kFrames;
 }
 
 DepthFrame load_frame(const FrameSequence& frames, std::size_t index) {

@@ -106,7 +106,8 @@ std::string stamps_misfit(const fs::path& dir, const TimedPoses& lines,
   std::vector<double> seconds = seconds_of(lines, said);
   std::erase_if(seconds, [](double time) { return !std::isfinite(time); });
   if (seconds.empty()) {
-    return (dir / kPoses).string() + ": the lines have no times, but the images have time stamps";
+    return (dir / kPoses).string() +
+           ": the lines contain no times, but the images have time stamps";
   }
   const auto [first, last] = std::minmax_element(seconds.begin(), seconds.end());
   const auto back = static_cast<double>(numbers.back());
@@ -116,10 +117,10 @@ std::string stamps_misfit(const fs::path& dir, const TimedPoses& lines,
          fixed_text(*last) + " s, and the time stamps of the images, " + fixed_text(start) +
          " to " + fixed_text(back * unit) + " s, do not overlap: no image has a pose within " +
          short_text(kMostGap) +
-         " s. If their clocks differ, write the seconds to add to the times of the poses, "
-         "pose_time_offset (" +
-         fixed_text(said.pose_time_offset + start - *first) + " if both begin together) into " +
-         in(dir);
+         " s. If their clocks differ, write pose_time_offset, the seconds to add to the times of "
+         "the poses (" +
+         fixed_text(said.pose_time_offset + start - *first) +
+         " if both begin at the same time), into " + in(dir);
 }
 
 std::string range_text(std::uint64_t first, std::uint64_t last) {
@@ -140,10 +141,10 @@ std::string numbers_misfit(const fs::path& dir, const TimedPoses& lines,
       " if the first line belongs to the first image";
   if (kind.are_whole) {
     cure =
-        "Write first_frame = " + std::to_string(static_cast<std::uint64_t>(lines.times.front())) +
-        " if the lines begin with the images' numbers and images or lines are missing, "
+        "If the lines begin with the images' numbers, but images or lines are missing, write "
         "first_frame = " +
-        first_image + " if the first line belongs to the first image,";
+        std::to_string(static_cast<std::uint64_t>(lines.times.front())) +
+        ". If the first line belongs to the first image, write first_frame = " + first_image;
   }
   return (dir / kPoses).string() + ": has " + poses + ", but there are " +
          std::to_string(numbers.size()) + " images numbered " +
@@ -208,7 +209,7 @@ bool PoseMatch::may_change(std::uint64_t number) const {
 
 std::string PoseMatch::no_pose_text(const std::string& image) const {
   if (is_by_stamps()) return "has no pose within " + short_text(gap_) + " s of " + image;
-  return "has " + std::to_string(lines_) + " poses, none for " + image;
+  return "has " + std::to_string(lines_) + " poses, but none for " + image;
 }
 
 PoseMatch match_poses(const fs::path& dir, const TimedPoses& lines,

@@ -132,8 +132,8 @@ class Db3Reader {
       return;
     }
     warnings_.add(journal.string() +
-                  ": is not read, because the recorder was interrupted; add its messages to the "
-                  "file with `sqlite3 FILE.db3 vacuum`");
+                  ": is not read. The recorder was interrupted; add the messages to the .db3 file "
+                  "with `sqlite3 FILE.db3 vacuum`");
   }
 
   const std::filesystem::path& path_;

@@ -59,8 +59,8 @@ class MessageImport {
     say_what_has_no_pose();
     if (stamps_back_ > 0) {
       warnings_.add(std::to_string(stamps_back_) +
-                    " images have a stamp before that of an earlier image; the clock was set back, "
-                    "or the recording holds two runs");
+                    " images have an earlier stamp than the image before. Either the clock was set "
+                    "back, or the recording holds two runs");
     }
     if (report_.frames == 0) dropped_.fail_without_frames(source_);
     report_.warnings = warnings_.texts();
@@ -102,7 +102,7 @@ class MessageImport {
     if (is_chosen && is_tf) {
       throw Error(ErrorCode::format,
                   source_.string() + ": " + message.topic.name + " (" + type +
-                      ") holds the transforms of all frames, not the poses of one body; leave out "
+                      ") holds the transforms of all frames, not the poses of one body. Leave out "
                       "--pose-topic and choose the world with --world");
     }
     std::vector<TransformMessage> transforms;
@@ -178,7 +178,7 @@ class MessageImport {
     } else if (config_.sensor) {
       report_.camera = config_.sensor->camera;
       warnings_.add("no camera_info belongs to " + report_.depth_topic +
-                    "; using the sensor's intrinsics. Give those of the camera with --intrinsics "
+                    "; the intrinsics of --sensor are used. To give others, use --intrinsics "
                     "(camera_info of other images: " +
                     topics_.listed_infos() + ")");
     } else {
@@ -229,14 +229,14 @@ class MessageImport {
         way.T_body_camera = *config_.sensor->T_flange_camera;
       } else {
         fail(config_.pose_topic +
-             " does not state the camera's pose on its body; give it after the topic "
+             " does not state the camera's pose on the body; give this pose after the topic "
              "(--pose-topic TOPIC,tx,ty,tz,qx,qy,qz,qw)");
       }
     }
     if (way.moving.empty()) {
       fail("the frame " + viewgain::quoted(frame) +
-           " of the images has no parent, so the camera would never move; record the transform "
-           "that leads to it, or choose the world with --world");
+           " of the images has no parent frame, and the camera would never move. Record the "
+           "transform to this frame, or choose the world with --world");
     }
     return ways_.emplace(frame, std::move(way)).first->second;
   } catch (const Error& error) {
@@ -246,9 +246,11 @@ class MessageImport {
   void warn_of_way(const std::string& frame, const Way& way) {
     if (TransformTree::span_of(way.moving)[0] == INT64_MIN) {
       warnings_.add(
-          "no transform that leads to the camera moves, so that all images have one pose");
+          "no transform between the world and the camera changes, therefore all images have the "
+          "same pose");
       if (const std::string poses = topics_.listed_poses(); !poses.empty()) {
-        warnings_.add("topics of poses" + poses + " are not used (--pose-topic)");
+        warnings_.add("the recording also has topics of poses" + poses +
+                      ", which are not used (--pose-topic)");
       }
     }
     const auto is_optical = [](const std::string& name) {
@@ -259,7 +261,7 @@ class MessageImport {
     for (const std::string& name : tree_.frames()) {
       if (!is_optical(name)) continue;
       warnings_.add("the images' frame " + viewgain::quoted(frame) +
-                    " is taken for an optical one (x right, y down, z ahead); should it be " +
+                    " is assumed to be an optical frame (x right, y down, z ahead). Should it be " +
                     viewgain::quoted(name) + " (--camera-frame)?");
     }
   }
@@ -309,8 +311,8 @@ class MessageImport {
     if (is_wrong_order_.value_or(false)) {
       is_wrong_order_ = false;  // reported once
       warnings_.add(of_message(message,
-                               "the image would be much smoother with its bytes in the other "
-                               "order. Is its is_bigendian wrong?"));
+                               "the image would be much smoother if its bytes were in the other "
+                               "order. Is is_bigendian wrong?"));
     }
     const GrayImage pixels = gray_image(depth, scale_);
     report_.readings += static_cast<std::uint64_t>(
@@ -380,8 +382,8 @@ ImportReport import_messages(const fs::path& source, const std::vector<fs::path>
                              const ImportConfig& config) {
   if (!config.masks.empty() || !config.confidences.empty()) {
     refuse(
-        "a recording of messages has no image files for masks to belong to; give the masks to the "
-        "command that reads the imported frames");
+        "a recording of messages has no image files that masks could belong to; give the masks to "
+        "the command that reads the imported frames");
   }
   return MessageImport(source, files, format, config).run(out);
 }

@@ -118,11 +118,12 @@ const CameraInfoMessage* MessageTopics::info_of(const std::string& depth_topic,
     };
     if (std::count_if(infos_.begin(), infos_.end(), has_frame) != 1) return nullptr;
     chosen = std::find_if(infos_.begin(), infos_.end(), has_frame);
-    warnings.add("the intrinsics are those of " + chosen->first + ", which has the images' frame");
+    warnings.add("the intrinsics come from " + chosen->first +
+                 ", the only camera_info with the images' frame");
   }
   if (chosen->second.others > 0) {
     warnings.add(chosen->first + " changes: " + std::to_string(chosen->second.others) +
-                 " messages differ from the first one, which is taken");
+                 " messages differ from the first one; the first one is used");
   }
   return &chosen->second.first;
 }
@@ -156,12 +157,12 @@ bool MessageTopics::is_rectified(const std::string& depth_topic, const CameraInf
       name.find("rect") != std::string::npos && (has_distortion || info.p[0] != 0);
   if (!is_rectified && has_distortion && name.find("raw") == std::string::npos) {
     warnings.add("the name of " + depth_topic +
-                 " contains neither raw nor rect; its images are taken as raw, with the distortion "
-                 "of camera_info");
+                 " contains neither raw nor rect; its images are assumed to have the distortion in "
+                 "camera_info");
   }
   if (is_rectified && info.r != kIdentity && info.r != std::array<double, 9>{}) {
     warnings.add("the camera_info of " + depth_topic +
-                 " has a rotation R; the images' frame is taken as the rectified one");
+                 " has a rotation R; the images' frame is assumed to be the rectified one");
   }
   return is_rectified;
 }

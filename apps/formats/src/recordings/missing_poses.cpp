@@ -19,8 +19,9 @@ void MissingPoses::add(TransformTree::Found why, std::int64_t stamp) {
 }
 
 std::string MissingPoses::text(const TransformTree::Chain& chain, bool are_all) const {
-  constexpr std::array kWhere{"before the first transform", "after the last one",
-                              "in gaps between them (--max-time-gap)", "in unconnected frames"};
+  constexpr std::array kWhere{"before the first transform", "after the last transform",
+                              "in gaps between transforms (--max-time-gap)",
+                              "in unconnected frames"};
   std::string text = "images without a pose:";
   for (std::size_t i = 0; i < kWhere.size(); ++i) {
     if (counts_[i] > 0) text += " " + std::to_string(counts_[i]) + " " + kWhere[i] + ",";
@@ -33,7 +34,7 @@ std::string MissingPoses::text(const TransformTree::Chain& chain, bool are_all) 
           " s, these images from " + seconds_text(from_) + " to " + seconds_text(to_) + " s";
   const bool is_apart = are_all && counts_[2] + counts_[3] == 0 &&
                         (from_ - 10 * kNanoseconds > span[1] || to_ + 10 * kNanoseconds < span[0]);
-  if (is_apart) text += ": the camera's clock is not the robot's";
+  if (is_apart) text += ": the camera's clock differs from the robot's";
   return text;
 }
 

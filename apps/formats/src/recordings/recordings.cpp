@@ -64,7 +64,7 @@ void check(const fs::path& source, const ImportConfig& config) {
            " must be within 0 and 1 m per unit");
   }
   if (config.T_body_camera && !config.camera_frame.empty()) {
-    refuse("the camera's place is given twice, in a tf frame and on the body of " +
+    refuse("the camera's pose is given twice: in a tf frame (--camera-frame) and on the body of " +
            config.pose_topic);
   }
   if (config.camera == PinholeCamera{}) return;

@@ -32,9 +32,8 @@ void split_compressed(std::string_view bytes, DepthMessage& depth) {
   depth.data = reader.bytes(reader.left());
   if (!depth.data.starts_with("\x89PNG")) {
     throw Error(ErrorCode::format,
-                "compressedDepth is only supported as PNG, not as RVL or others; record the raw "
-                "images, or republish them: `ros2 run image_transport republish compressedDepth "
-                "raw`");
+                "compressedDepth is only supported as PNG, not as RVL or others. Record the raw "
+                "images, or convert with `ros2 run image_transport republish compressedDepth raw`");
   }
 }
 

@@ -72,7 +72,7 @@ void TransformTree::finish(Warnings& warnings) {
     warnings.add("stamps of " + viewgain::quoted(edge.parent) + " to " +
                  viewgain::quoted(edge.child) + " go back by " +
                  short_text(static_cast<double>(edge.went_back / 1'000'000) * 1e-3) +
-                 " s; the clock was set back, or the recording holds two runs");
+                 " s. Either the clock was set back, or the recording holds two runs");
   }
 }
 
@@ -107,12 +107,12 @@ TransformTree::Chain TransformTree::chain(std::string& world, const std::string&
   if (edges == 0) {
     fail("no transform leads to the frame " + viewgain::quoted(frame) +
          "; existing frames: " + listed_frames(frames()) +
-         "; record /tf_static, too, or give a frame and the camera's pose in it with "
-         "--camera-frame");
+         ". Record /tf_static too, or use --camera-frame to give a frame and the camera's pose in "
+         "it");
   }
   if (edges >= joined.size()) {
     fail("the transforms of " + listed_frames(joined) +
-         " form a loop: a frame has two parents, as if two nodes published it");
+         " form a loop: a frame has two parents, perhaps because two nodes publish it");
   }
   if (world.empty() && roots.size() > 1) {
     fail("the frame " + viewgain::quoted(frame) +
@@ -129,7 +129,7 @@ TransformTree::Chain TransformTree::chain(std::string& world, const std::string&
     if (edge->is_ambiguous) {
       fail("the transform from " + viewgain::quoted(edge->parent) + " to " +
            viewgain::quoted(edge->child) +
-           " comes from several topics, and none is in the namespace of the depth images");
+           " comes from several topics, none of which is in the namespace of the depth images");
     }
     way.emplace_back(edge, is_down);
     at = is_down ? edge->parent : edge->child;

@@ -239,7 +239,7 @@ ImportReport import_transforms(const fs::path& file, const fs::path& out,
     }
     ++number;
   }
-  if (number == 0) fail("names no frame");
+  if (number == 0) fail("has no frames");
   if (config.camera.fx > 0) {
     report.camera = config.camera;
   } else {

@@ -182,8 +182,8 @@ struct ViewPlanner::Impl {
     for (const auto& [reason, count] : bad_frames(state.frames)) {
       counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
     }
-    refuse("no view can be proposed: no frame so far could be used (" + counts +
-           "). Are the poses world to camera, or are units or workspace wrong?");
+    refuse("no view can be proposed, because no frame could be used so far (" + counts +
+           "). Are the poses world to camera? Are units or workspace wrong?");
   }
 
   // After a decision, which replaces an earlier one of the same view.
@@ -265,13 +265,13 @@ AddedView ViewPlanner::add(const DepthFrame& frame, const Pose& T_world_camera,
 AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_world_camera,
                            const PoseSigma& pose_sigma) {
   Impl& m = *impl_;
-  if (frames.empty()) refuse("a view without a frame");
+  if (frames.empty()) refuse("a view needs at least one frame");
   return m.counted(m.scorer.add({T_world_camera, {frames.begin(), frames.end()}, pose_sigma}),
                    T_world_camera);
 }
 
 AddedView ViewPlanner::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera) {
-  if (is_in_map(verdict)) refuse("a dropped frame is not in the map");
+  if (is_in_map(verdict)) refuse("a dropped frame cannot have a verdict that puts it into the map");
   MapUpdate nothing;
   nothing.verdict = verdict;
   return impl_->counted(std::move(nothing), T_world_camera);
@@ -355,16 +355,16 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
   if (grid.voxel_size() != expected.voxel_size() || grid.dims() != expected.dims() ||
       grid.min_index() != expected.min_index() || grid.prior_sigma() != expected.prior_sigma() ||
       !(grid.T_world_grid() == expected.T_world_grid())) {
-    refuse(path.string() + ": its map, " + layout_text(grid) +
-           ", differs from the configuration, " + layout_text(expected));
+    refuse(path.string() + ": its map (" + layout_text(grid) +
+           ") differs from the configuration (" + layout_text(expected));
   }
   detail::PlannerState state = detail::state_of(path.string() + " (note planner)", note.mapped());
   std::size_t added = state.first_views;
   for (const auto& [verdict, count] : state.frames) added += is_in_map(verdict) ? count : 0;
   if (added != grid.views().size()) {
     refuse(path.string() + ": its map has " + std::to_string(grid.views().size()) +
-           " views, but its planner added " + std::to_string(added) +
-           ": the map has grown since; create a new planner");
+           " views, but its planner added only " + std::to_string(added) +
+           ". Create a new planner for this map");
   }
   auto impl = std::make_unique<Impl>(ViewScorer(std::move(grid), sensor, scorer, exec), config);
   impl->state = std::move(state);

@@ -169,17 +169,17 @@ JointRegistration::Verdict JointRegistration::verdict_of(std::size_t index) cons
              result.rotation > kMaxSigmas * frame.sigma.rotation) {
     result.reason = "the correction, " + rounded(1e3 * result.translation) + " mm and " +
                     rounded(result.rotation * 180 / std::numbers::pi) + " deg, exceeds " +
-                    rounded(kMaxSigmas) + " sigma of the reported pose";
+                    rounded(kMaxSigmas) + " standard deviations of the reported pose";
   } else if (found.readings.contradicts(readings)) {
     result.reason = rounded(100 * found.readings.contradiction()) +
-                    " % of the readings lie in free space of " + others_;
+                    " % of the points lie in space that is free according to " + others_;
   } else if (found.surface.contradicts(by_map ? 0 : readings)) {
-    result.reason = "the frame sees past " + rounded(100 * found.surface.contradiction()) +
-                    " % of the surface of " + others_;
+    result.reason = "the frame looks through " + rounded(100 * found.surface.contradiction()) +
+                    " % of the surface in " + others_;
   } else if (result.overlap < kMinOverlap || result.pairs < kMinPairs) {
     result.status = RegistrationStatus::too_little_overlap;
     result.reason = std::to_string(result.pairs) + " of " + std::to_string(readings) +
-                    " readings show surface of " + others_;
+                    " points lie on surface that is also in " + others_;
   } else {
     result.status = RegistrationStatus::registered;
   }

@@ -24,14 +24,14 @@ struct CommonOptions {
 inline void add_common_options(App& program, CommonOptions& options) {
   program.add_flag("--json", options.json, "print one JSON object instead of text");
   program.add_flag("--quiet", options.quiet, "do not print progress");
-  program.add_option("--threads", options.threads, "number of threads; 0: all cores");
+  program.add_option("--threads", options.threads, "number of threads (0: all cores)");
   program
       .add_option("--trace", options.trace,
-                  "how to find the voxels that rays hit: embree (BVH) or sweep (cells from near to "
-                  "far); automatic: sweep. The results are identical")
+                  "algorithm that traces rays: embree (a bounding volume hierarchy), sweep (cell "
+                  "by cell) or automatic (the same as sweep); it changes only the speed")
       ->check(one_of(tracer_names(), "tracer"));
   program.add_option("--save-config", options.save_config,
-                     "TOML file to write the given flags to, for --config");
+                     "TOML file to write with the flags of this call, to be read by --config");
 }
 
 [[nodiscard]] inline ExecConfig exec_of(const CommonOptions& options) {
@@ -54,17 +54,16 @@ inline void add_help(App& app, const char* group, const char* example) {
   app.group(group)->footer(app.get_footer() + "Example:\n  viewgain " + example);
 }
 
-inline constexpr const char* kMapHelp = "map (.vdb, or OctoMap .ot or .bt), or folder of a run";
+inline constexpr const char* kMapHelp = "map file (.vdb, or OctoMap .ot or .bt) or folder of a run";
 
 inline const std::string kSensorHelp =
-    "preset (" + listed(sensor_preset_names()) + ") or a .toml file";
+    "preset (" + listed(sensor_preset_names()) + ") or .toml file";
 
-inline const std::string kMapSensorHelp =
-    kSensorHelp + " (default: the sensor recorded in the map)";
+inline const std::string kMapSensorHelp = kSensorHelp + " (default: the sensor that the map names)";
 
 inline constexpr const char* kBodyHelp =
-    "x,y,z: width, height and depth of the sensor's housing [m] (default: from the sensor, else "
-    "the SR4000's)";
+    "x,y,z: width, height and depth of the camera's housing [m] (default: from the sensor, else "
+    "those of an SR4000)";
 
 /// Adds --seed, with the same bounds in every subcommand.
 inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {

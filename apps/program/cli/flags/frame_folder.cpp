@@ -67,26 +67,27 @@ void check_contradiction(const FrameFolderOptions& options, bool registers) {
 void add_frame_folder_options(App& app, FrameFolderOptions& options) {
   begin_group(app, "Frames");
   app.add_option("--depth-scale", options.depth_scale,
-                 "metres per unit of the depth images (default: from frames.toml, else 1e-4 with "
-                 "poses.txt, 1e-3 with pose files)");
+                 "metres per unit of the depth images (default: from frames.toml; else 1e-4 for "
+                 "folders with poses.txt, 1e-3 for others)");
   app.add_option("--out-of-range", options.out_of_range,
-                 "meaning of 65535: carve (free up to max_range) or invalid (default: from "
-                 "frames.toml or sensor, else carve with poses.txt, else invalid)")
+                 "meaning of depth 65535: carve (the ray is free up to max_range) or invalid "
+                 "(default: from frames.toml or the sensor; else carve for folders with poses.txt, "
+                 "invalid for others)")
       ->check(one_of({"carve", "invalid"}, "value"));
   add_mask_options(app, options.mask, options.confidence);
   app.add_option("--on-contradiction", options.on_contradiction,
-                 "frames that contradict the others: skip (omit those that --register refuses, "
-                 "warn about the rest), keep (requires --register on) or error")
+                 "what to do with frames that contradict others: skip (omit those that --register "
+                 "refuses; warn about the rest), keep (requires --register on) or error")
       ->check(one_of({"skip", "keep", "error"}, "value"));
 }
 
 void add_mask_options(App& app, std::string& mask, std::string& confidence) {
   app.add_option(
       "--mask", mask,
-      "folder of mask PNGs, grayscale, named like the depth images; nonzero pixels are ignored");
+      "folder of grayscale mask PNGs named like the depth images; nonzero pixels are ignored");
   app.add_option("--confidence", confidence,
-                 "DIR[,LEAST]: folder of confidence PNGs, grayscale, named like the depth images; "
-                 "pixels below LEAST (1..255, default 1) are ignored");
+                 "DIR[,LEAST]: folder of grayscale confidence PNGs named like the depth images; "
+                 "pixels below LEAST are ignored (1..255; default: 1)");
 }
 
 Confidence parse_confidence(const std::string& text) {

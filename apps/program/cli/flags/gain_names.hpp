@@ -32,7 +32,7 @@ namespace viewgain::app {
   CLI::Validator check = one_of(gain_model_names(), "gain");
   check.operation([](std::string& value) {
     return is_registered_gain(value)
-               ? value + " is a gain of the literature; only score and reconstruct support it"
+               ? value + " is a gain of the literature, which only score and reconstruct support"
                : fault_of_name(value, gain_model_names(), "gain");
   });
   return check;

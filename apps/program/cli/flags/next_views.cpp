@@ -29,7 +29,8 @@ constexpr std::array kOutcomes{
     Outcome{"unknown", "reach unknown space", &GainEvaluator::RayOutcomes::unknown},
     Outcome{"known_surface", "end on known surface", &GainEvaluator::RayOutcomes::known_surface},
     Outcome{"obstacle", "end on obstacles", &GainEvaluator::RayOutcomes::obstacle},
-    Outcome{"too_near", "hit something too near", &GainEvaluator::RayOutcomes::too_near},
+    Outcome{"too_near", "hit something nearer than min_range",
+            &GainEvaluator::RayOutcomes::too_near},
     Outcome{"out_of_range", "see free space up to the range limit",
             &GainEvaluator::RayOutcomes::out_of_range},
     Outcome{"out_of_map", "leave the map", &GainEvaluator::RayOutcomes::out_of_map}};
@@ -71,12 +72,13 @@ void add_plan_option(App& app, std::string& text) {
   const std::string reference = explain_values_in(
       "next", app,
       "Planning ahead with --plan K[,M]:\n"
-      "  The views of a plan come in an order with a short straight-line path. The\n"
-      "  planner replans after M views, or earlier if no remaining view is possible and\n"
-      "  promises enough. next, and model without --watch, list the first M.\n");
+      "  The views of a plan are ordered along a short path of straight lines. The\n"
+      "  planner replans after M views. It replans earlier if no remaining view is both\n"
+      "  possible and worth taking. next prints the first M views of the plan. model\n"
+      "  does the same without --watch.\n");
   app.add_option("--plan", text,
-                 "K[,M]: plan up to K views as a set and replan after M of them (default M: K; " +
-                     reference + "); 1: one view at a time");
+                 "K[,M]: plan K views together and replan after M of them (default: M = K; " +
+                     reference + "); 1: no plan");
 }
 
 PlanAhead parse_plan(const std::string& text) {
@@ -142,8 +144,8 @@ std::string help_text(std::size_t candidates, const std::map<std::string, std::s
   // Advice if most candidates are dropped for one reason.
   for (const auto& [reason, what] :
        {std::pair(kUnreachable,
-                  "out of reach: widen --reach, or add candidates with --generator boundary,shell"),
-        std::pair(std::string_view("too_near"), "too near: move them away with --distance")}) {
+                  "out of reach. Widen --reach, or add candidates with --generator boundary,shell"),
+        std::pair(std::string_view("too_near"), "too near. Move them away with --distance")}) {
     const auto found = dropped.find(std::string(reason));
     if (found == dropped.end() || 2 * found->second <= all) continue;
     return with_commas(found->second) + " of " + with_commas(all) + " candidates are " + what;
@@ -153,7 +155,7 @@ std::string help_text(std::size_t candidates, const std::map<std::string, std::s
 
 std::string summary_of(const NextViews& next) {
   if (next.candidates == 0 && next.dropped.empty())
-    return "no candidates: nothing is left to look at";
+    return "no candidates: the surface has no open edges, and no more surface is expected";
   const std::string count = with_commas(next.candidates);
   std::string text = next.candidates == 0 ? "no view is possible"
                      : next.views.empty()
@@ -165,8 +167,8 @@ std::string summary_of(const NextViews& next) {
   }
   if (next.candidates == 0 && next.dropped.contains("collision")) {
     text +=
-        " (the body would touch voxels not known to be free; check that --workspace "
-        "includes the camera's positions, and check --body)";
+        " (the camera's housing would touch voxels that are not known to be free; check --body, "
+        "and check that --workspace contains the positions of the camera)";
   }
   return text;
 }
@@ -200,7 +202,7 @@ std::string text_of(const NextViews& next) {
     text += " marginal: the increase over the views above\n";
   }
   if (next.plan_metres)
-    text += formatted("path length: %.3f m, straight lines\n", *next.plan_metres);
+    text += formatted("length of the path along straight lines: %.3f m\n", *next.plan_metres);
   if (next.views.front().worth <= 0) text += "no view gains more than it costs\n";
   return text + unworthy;
 }
@@ -217,8 +219,8 @@ std::string outside_text(const NextViews& next, const BeliefGrid& grid) {
   });
   if (outside == 0) return {};
   return std::to_string(outside) + " of " + std::to_string(next.views.size()) +
-         " views lie outside the workspace, where no space is known to be free (--workspace, "
-         "--reach)\n";
+         " views lie outside the workspace, where it is unknown whether space is free "
+         "(--workspace, --reach)\n";
 }
 
 std::vector<Pose> poses_of(const NextViews& next) {

@@ -71,30 +71,30 @@ void add_pose_options(App& app, PoseOptions& options) {
                  "TUM or .npy file of camera-to-world poses, or a set of poses such as "
                  "sphere:500,0.6 (see below)")
       ->required();
-  explain_values(
-      app,
-      "Values of --poses; sets of poses look at --center [m, degrees]:\n"
-      "  FILE (TUM)          lines with time tx ty tz qx qy qz qw [s, m]\n"
-      "  FILE.npy            rows with tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4)\n"
-      "                      matrices; float64 or float32\n"
-      "  sphere:N,RADIUS     Fibonacci lattice\n"
-      "  dome:N,RADIUS       upper half of the sphere\n"
-      "  rings:N,RADIUS      cylinder and dome rings of the literature; N: 48, 80, 288 or\n"
-      "                      864\n"
-      "  shell:N,RMIN,RMAX   random, from --seed\n"
-      "  orbit:N,RADIUS,ELEVATION[,START,STEP]  circle of latitude\n");
+  explain_values(app,
+                 "Values of --poses: a file, or a set of N poses that look at --center\n"
+                 "[m, degrees]:\n"
+                 "  FILE (TUM)          lines with time tx ty tz qx qy qz qw [s, m]\n"
+                 "  FILE.npy            structured array with fields tx, ty, tz, qx, qy, qz, qw,\n"
+                 "                      or (n, 4, 4) matrices; float64 or float32\n"
+                 "  sphere:N,RADIUS     evenly spread over a sphere\n"
+                 "  dome:N,RADIUS       evenly spread over the upper half of a sphere\n"
+                 "  rings:N,RADIUS      on rings around a cylinder and a dome; N is 48, 80, 288\n"
+                 "                      or 864\n"
+                 "  shell:N,RMIN,RMAX   random between two radii; --seed changes them\n"
+                 "  orbit:N,RADIUS,ELEVATION[,START,STEP]  on a circle at this elevation\n");
   app.add_option("--center", options.center,
-                 "x,y,z that sets of poses look at, world frame [m] (default: the origin)");
+                 "x,y,z: point that sets of poses look at, world frame [m] (default: the origin)");
 }
 
 void add_cost_options(App& app, CostOptions& options, const std::string& of) {
-  app.add_option(
-      "--costs", options.file,
-      "file with one cost per pose of " + of + ", subtracted from its gain, in the gain's unit");
+  app.add_option("--costs", options.file,
+                 "file with one cost per pose in " + of +
+                     ", in the gain's unit; each cost is subtracted from the gain of its pose");
   app.add_option("--cost-per-metre", options.per_metre, kCostPerMetreHelp);
   app.add_option("--from", options.from,
-                 "x,y,z: camera position where paths begin, world frame [m] (default: at the last "
-                 "frame, used or not; for a map file, at its last view)");
+                 "x,y,z: current position of the camera, world frame [m] (default: that of the "
+                 "last frame; for a map file, of its last view)");
 }
 
 void check(const CostOptions& options, bool has_way) {
@@ -158,7 +158,8 @@ std::optional<Pose> begin_of_ways(const CostOptions& options,
   }
   if (last_pose) return last_pose;
   if (options.per_metre > 0) {
-    refuse("--cost-per-metre: the map has no view to start paths from; give --from x,y,z");
+    refuse(
+        "--cost-per-metre: the map has no view at which the path could start; give --from x,y,z");
   }
   return std::nullopt;
 }

@@ -62,7 +62,8 @@ void check(const CostOptions& options, bool has_way = false);
                                                 const std::optional<Pose>& last_pose);
 
 inline constexpr const char* kCostPerMetreHelp =
-    "cost per metre of path from the camera's position, subtracted from gains, in the gain's unit";
+    "cost per metre from the camera's current position to a view, in the gain's unit; subtracted "
+    "from the view's gain";
 /// Adds the flags of CostOptions; `of`: what the costs of a file are for.
 void add_cost_options(App& app, CostOptions& options, const std::string& of);
 

@@ -70,13 +70,13 @@ void add_hazard_option(App& app, std::string& text) {
       "score", app,
       "Values of --hazard; size=L can precede one of the others, as in size=0.3,5:\n"
       "  RATE      one rate for all unknown voxels [1/m]\n"
-      "  FILE.vdb  a rate per voxel\n"
+      "  FILE.vdb  one rate per voxel\n"
       "  size=L    longest side of the object [m] (default: that of its seen part)\n"
-      "  By default, rates follow from the distance to the seen surface and from the\n"
-      "  elevation above it.\n");
+      "  By default, the rate is high near known surface and falls with the distance\n"
+      "  from it. It is lower in front of the surface and behind it.\n");
   app.add_option("--hazard", text,
-                 "rate at which rays meet surface in unknown voxels, for --gain surface and "
-                 "combined: RATE [1/m], FILE.vdb or size=L (" +
+                 "rate at which rays meet surface in unknown voxels: RATE [1/m], FILE.vdb or "
+                 "size=L (requires --gain surface or combined; " +
                      reference + ")");
 }
 
@@ -173,11 +173,11 @@ bool is_same_sensor(const Sensor& a, const Sensor& b) { return readings_of(a) ==
 bool warn_of_other_sensor(const std::string& path, const BeliefGrid& grid, const Sensor& sensor) {
   const std::optional<Sensor> noted = map_sensor(grid);
   if (!noted || is_same_sensor(*noted, sensor)) return false;
-  std::fprintf(stderr,
-               "viewgain: warning: the readings in %s come from the sensor %s, but --sensor %s "
-               "differs: %s\n",
-               path.c_str(), printable(noted->name).c_str(), printable(sensor.name).c_str(),
-               printable(difference(*noted, sensor)).c_str());
+  std::fprintf(
+      stderr,
+      "viewgain: warning: the frames in %s come from the sensor %s, but --sensor %s differs: %s\n",
+      path.c_str(), printable(noted->name).c_str(), printable(sensor.name).c_str(),
+      printable(difference(*noted, sensor)).c_str());
   return true;
 }
 
@@ -197,12 +197,12 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
   if (asked) warn_of_other_sensor(path, grid, *asked);
   std::optional<Sensor> sensor = asked ? std::move(asked) : map_sensor(grid);
   if (!sensor) {
-    refuse(path + ": the map does not record its sensor; give --sensor");
+    refuse(path + ": the map does not name its sensor; give --sensor");
   }
   if (is_octomap(path) || has_states_alone(grid)) {
     std::fprintf(stderr,
-                 "viewgain: note: %s holds voxel states only: known surface counts as never "
-                 "measured (--gain surface is not affected), and its past views are unknown\n",
+                 "viewgain: note: %s holds voxel states only. Known surface is treated as not yet "
+                 "measured (this does not affect --gain surface), and past views are unknown\n",
                  path.c_str());
   }
   return {std::move(grid), *std::move(sensor)};
@@ -211,8 +211,8 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
 void require_known(const BeliefGrid& grid, const std::string& path) {
   if (grid.statistics().unknown < grid.voxel_count()) return;
   refuse(path +
-         ": all voxels are unknown, the map holds no reading. Was it made with a wrong workspace, "
-         "scale or poses (world to camera)?");
+         ": all voxels are unknown. Was the map made with a wrong workspace, a wrong scale, or "
+         "poses that are world to camera?");
 }
 
 }  // namespace viewgain::app

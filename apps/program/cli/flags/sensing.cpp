@@ -68,21 +68,21 @@ void add_sensing_options(App& app, SensingOptions& o) {
       "simulate", app,
       "Values of --noise, separated by commas:\n"
       "  off       no noise\n"
-      "  on        the sensor's Gaussian noise along and across the ray; for sensors\n"
-      "            with a modulation frequency also flying pixels, which mix 3x3 rays\n"
-      "  plain     on without flying pixels\n"
+      "  on        the sensor's Gaussian noise along and across the ray. Sensors with a\n"
+      "            modulation frequency also get flying pixels, each a mix of 3x3 rays\n"
+      "  plain     Gaussian noise without flying pixels\n"
       "  flying    flying pixels only\n"
-      "  scale=E   ranges read 1 + E times the true value\n"
-      "  pose=SIGMA_M/SIGMA_DEG  error of reported poses per axis [m] and per\n"
-      "            rotation-vector component [deg]; the first pose is exact and\n"
-      "            defines the world\n");
+      "  scale=E   measured ranges are 1 + E times the true ones\n"
+      "  pose=SIGMA_M/SIGMA_DEG  standard deviations of errors in the reported poses,\n"
+      "            per axis [m] and per component of the rotation vector [deg]. The\n"
+      "            first pose has no error: it defines the world\n");
   app.add_option("--noise", o.noise,
-                 "noise of readings and poses: off, on, plain or flying, scale=E, "
+                 "noise of depths and poses: off, on, plain, flying, scale=E, "
                  "pose=SIGMA_M/SIGMA_DEG, separated by commas (" +
                      reference + ")");
   app.add_option("--background", o.background,
-                 "radius of a sphere around the origin that stands for the room [m]; 0: none");
-  add_seed_option(app, o.seed, "seed for the noise of readings and poses");
+                 "radius of a sphere around the origin that represents the room [m]; 0: none");
+  add_seed_option(app, o.seed, "seed for the noise of depths and poses");
 }
 
 SimulationConfig simulation_config(const SensingOptions& options, const SimulatedNoise& noise,
@@ -116,13 +116,13 @@ void add_registration_option(App& app, RegistrationOptions& options) {
   const std::string reference = explain_values_in(
       "integrate", app,
       "Values of --register:\n"
-      "  off       use poses as reported\n"
-      "  on        align frames with one another and leave out those that contradict\n"
-      "            the rest; integrate and model --watch align each with the map\n"
-      "  SIGMA_M,SIGMA_DEG  on, with these standard deviations of reported poses\n"
-      "            (default: 0.005,0.5; reconstruct: those of --noise if given)\n");
+      "  off       use the reported poses\n"
+      "  on        align frames with one another and leave out frames that contradict\n"
+      "            the rest. integrate and model --watch align each frame with the map\n"
+      "  SIGMA_M,SIGMA_DEG  on, with these standard deviations of the reported poses\n"
+      "            (default: 0.005,0.5; for reconstruct, those of --noise if given)\n");
   app.add_option("--register", options.text,
-                 "correct reported poses by aligning frames: off, on or SIGMA_M,SIGMA_DEG (" +
+                 "correct the reported poses by aligning frames: off, on or SIGMA_M,SIGMA_DEG (" +
                      reference + ")");
 }
 
@@ -178,11 +178,11 @@ Json ScaleOptions::settings() const {
 void add_scale_options(App& app, ScaleOptions& options) {
   begin_group(app, "Scales");
   app.add_option("--scales", options.scales,
-                 "COARSEST[,FINEST], each 0..3: merge voxels into cells of up to 2^COARSEST voxels "
-                 "per edge where a pixel covers them; closer views refine to 2^FINEST");
+                 "COARSEST[,FINEST], each 0..3: merge voxels that one pixel covers into cells of "
+                 "up to 2^COARSEST voxels per edge; closer views split cells down to 2^FINEST");
   app.add_option(
          "--fine", options.fine,
-         "box x0,y0,z0,x1,y1,z1 that keeps single voxels [m] (requires --scales); may be repeated")
+         "box x0,y0,z0,x1,y1,z1 [m] without merged voxels (requires --scales); may be repeated")
       ->allow_extra_args(false);
 }
 

@@ -12,20 +12,20 @@ namespace viewgain::app {
 void add_stop_option(App& app, std::string& text) {
   const std::string reference = explain_values_in(
       "reconstruct", app,
-      "Rules of --stop; LIMIT 0 disables a rule, except coverage:\n"
-      "  gain      the best view gains less than LIMIT per touched voxel [nat, m^2]\n"
-      "            (--gain paper; default: 1.2, trace: 0.01 of the first view's)\n"
-      "  area      the best candidate's expected new surface is below LIMIT times the\n"
+      "Rules of --stop; LIMIT 0 disables any rule except coverage:\n"
+      "  gain      the best view gains less than LIMIT per voxel that it sees\n"
+      "            (--gain paper; default: 1.2 nat; trace: 0.01 of the first value)\n"
+      "  area      the best view's expected new surface is below LIMIT times the\n"
       "            surface so far, mean of three decisions (--gain surface, combined;\n"
       "            default: 0.004)\n"
       "  idle      LIMIT views in a row change entropy and unknown voxels by less than\n"
       "            0.1 % (default: 3)\n"
-      "  promises  LIMIT views in a row bring less than a fifth of their prediction\n"
+      "  promises  LIMIT views in a row show less than a fifth of what was expected\n"
       "            (default: 3)\n"
-      "  coverage  LIMIT of the visible surface is covered, 0..1 (reconstruct only)\n");
+      "  coverage  a share LIMIT of the visible surface is covered (reconstruct only)\n");
   app.add_option("--stop", text,
-                 "RULE=LIMIT,...: stop by gain, area, idle, promises or coverage (" + reference +
-                     "); may be repeated")
+                 "RULE=LIMIT,...: rules that end the run: gain, area, idle, promises, coverage (" +
+                     reference + "); may be repeated")
       ->join(',')
       ->check(CLI::Validator(
           [](std::string& value) {

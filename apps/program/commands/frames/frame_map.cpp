@@ -75,12 +75,12 @@ Box seen_workspace(const FrameFolder& folder, const ScorerConfig& config, double
 
 void add_frame_map_options(App& app, FrameMapOptions& options) {
   app.add_option("FRAMES_DIR", options.folder.folder,
-                 "folder of frames with poses, as for integrate")
+                 "folder of depth images with poses (see viewgain integrate --help)")
       ->required();
   app.add_option("--sensor", options.folder.sensor, kSensorHelp + " (default: from the folder)");
   app.add_option("--voxel", options.voxel, "voxel size [m]")->required();
   app.add_option("--workspace", options.workspace,
-                 "x0,y0,z0,x1,y1,z1 [m], grown to whole voxels (default: what the frames see)");
+                 "x0,y0,z0,x1,y1,z1: box to map [m] (default: all that the frames see)");
   begin_group(app, "Frames");
   app.add_option("--jump-edge-filter", options.jump_edge_filter, kJumpEdgeHelp);
   add_scale_options(app, options.scales);

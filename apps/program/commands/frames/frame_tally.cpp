@@ -37,10 +37,11 @@ std::string refused_text(const FrameCounts& counts) {
       count_of(counts, FrameVerdict::used) + count_of(counts, FrameVerdict::carved);
   if (refused < kFew || refused <= 2 * taken) return {};
   return with_commas(refused) + " of " + with_commas(refused + taken) +
-         " frames contradict the others and were left out (--register on), so that the map holds " +
+         " frames contradict the others and were left out (--register on). The number of frames in "
+         "the map is " +
          with_commas(taken) +
-         ". Registration corrects only small errors. Are the poses those of the camera, do they "
-         "match the images in time, and are the intrinsics right?";
+         ". Registration corrects only small errors. Are the poses those of the camera? Do they "
+         "match the images in time? Are the intrinsics right?";
 }
 
 namespace {
@@ -151,7 +152,7 @@ void FrameTally::name_left_out() const {
 }
 
 std::string FrameTally::none_inside(const FrameFolder& folder) const {
-  return "none of " + with_commas(readings_) + " readings lies in the workspace at " +
+  return "none of " + with_commas(readings_) + " measured points lies in the workspace at " +
          short_text(folder.frames().depth_scale) +
          " m per unit of the depth images (--depth-scale)";
 }
@@ -208,7 +209,7 @@ void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
 void refuse_without_readings(const FrameFolder& folder, const FrameTally& bad) {
   if (const std::string why = mask_suspicion(folder); !why.empty())
     refuse(folder.name() + ": " + why);
-  std::string what = folder.name() + ": no frame has a reading at " +
+  std::string what = folder.name() + ": no frame has a depth in the sensor's range at " +
                      short_text(folder.frames().depth_scale) +
                      " m per unit of the depth images (--depth-scale)";
   const auto reasons = bad_frames(bad.counts());

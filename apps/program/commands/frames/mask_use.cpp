@@ -58,7 +58,7 @@ std::string MaskWatch::suspicion(const Sensor& sensor, const BeliefGrid& map, bo
 
 std::string masked_text(const FrameFolderOptions& options, std::uint64_t pixels) {
   if (options.mask.empty() && options.confidence.empty()) return {};
-  return "pixels masked out: " + with_commas(pixels) + "\n";
+  return "pixels removed by masks: " + with_commas(pixels) + "\n";
 }
 
 bool FrameTally::blames_masks(const FrameFolder& folder, const BeliefGrid& map) const {

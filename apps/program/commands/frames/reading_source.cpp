@@ -159,7 +159,7 @@ class CloudSource : public ReadingSource {
       progress.update(i + 1, files_.size());
       return reading_bounds(sensor_, cloud_.points, T_world_sensor_, {}, support_plane_);
     });
-    if (!seen) refuse("no cloud has readings");
+    if (!seen) refuse("no cloud has a point in the sensor's range");
     return *seen;
   }
   void start(BeliefGrid grid) override { grid_.emplace(std::move(grid)); }

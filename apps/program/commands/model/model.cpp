@@ -16,22 +16,22 @@ void add_model_options(App& app, ModelOptions& o) {
   add_next_view_options(app, o.proposal);
   app.add_option("--top", o.top,
                  "maximum number of views to propose, each with its marginal gain (with --plan, M "
-                 "replaces it)")
+                 "views are proposed)")
       ->check(counted(1, 1'000'000));
   add_output_options(app, o.outputs);
   begin_group(app, "Watching a folder");
-  Option* watch =
-      app.add_flag("--watch", o.watch,
-                   "wait for frames until a signal or FRAMES_DIR/done (requires --workspace; "
-                   "cannot be used with --costs, --from, --resume; see below)");
-  explain_values(
-      app,
-      "With --watch:\n"
-      "  After each frame the program writes state.vdb, next.txt and next.json to OUT.\n"
-      "  next.json says when to stop (--max-views, --stop). The same call resumes after\n"
-      "  a kill. --watch cannot be used with --pictures, --save-maps or --report.\n");
+  Option* watch = app.add_flag(
+      "--watch", o.watch,
+      "process frames as they appear, until a signal or until FRAMES_DIR/done exists (requires "
+      "--workspace; cannot be used with --costs, --from, --resume; see below)");
+  explain_values(app,
+                 "With --watch:\n"
+                 "  After each frame the program writes state.vdb, next.txt and next.json to OUT.\n"
+                 "  next.json says when to stop (--max-views, --stop). If the program was killed,\n"
+                 "  the same command continues. --watch cannot be used with --pictures,\n"
+                 "  --save-maps or --report.\n");
   app.add_option("--max-views", o.max_views,
-                 "view budget; when it is used up, next.json has the stop_reason max_views "
+                 "view budget; after that many views, the stop_reason in next.json is max_views "
                  "(requires --watch)")
       ->check(counted(1, 1'000'000))
       ->needs(watch);
@@ -47,8 +47,8 @@ Command add_model(App& program) {
   auto options = std::make_shared<ModelOptions>();
   App* app = program.add_subcommand(
       "model",
-      "Turn a folder of depth frames into a map, its surface and its points, and propose the next "
-      "views. With --watch, also take frames while another program writes them.");
+      "Build a map, a surface and a point cloud from a folder of depth frames, and propose the "
+      "next views. With --watch, process frames while another program writes them.");
   add_model_options(*app, *options);
   return command_of(app, options, [app](const ModelOptions& given) {
     const RunOutputs& outputs = given.outputs;

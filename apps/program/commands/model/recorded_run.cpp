@@ -289,7 +289,7 @@ class Recording {
 void print(const Options& options, const Json& run, const BeliefGrid& grid,
            const FrameCounts& counts, const NextViews& next) {
   print_map(grid, grid.statistics());
-  std::printf("%zu frames, %s readings, %s of them in the workspace\n",
+  std::printf("%zu frames, %s measured points, %s of them in the workspace\n",
               run["frames"].get<std::size_t>(),
               with_commas(run["readings"].get<std::uint64_t>()).c_str(),
               with_commas(run["readings_inside"].get<std::uint64_t>()).c_str());

@@ -36,7 +36,7 @@ ViewPlanner planner_of(const Sensor& sensor, const ScorerConfig& map, const Plan
                        const fs::path& state, const std::optional<SavedFrames>& saved,
                        const ExecConfig& exec) {
   if (saved && saved->sensor && !is_same_sensor(*saved->sensor, sensor)) {
-    refuse(state.string() + ": its frames come from " + saved->sensor->name + ", not from this " +
+    refuse(state.string() + ": its frames come from " + saved->sensor->name + ", not from " +
            sensor.name + "; choose a new folder");
   }
   return saved ? ViewPlanner::load(state, sensor, map, config, exec)
@@ -48,9 +48,9 @@ MaskFolder mask_folder(const char* flag, const fs::path& folder, const fs::path&
                        std::optional<std::uint8_t> least_confidence = {}) {
   std::error_code ignored;
   if (fs::equivalent(folder, frames, ignored)) {
-    refuse(std::string(flag) + " " + folder.string() +
-           ": is the folder of the depth images, whose names the masks have; put the masks into a "
-           "folder in it");
+    refuse(
+        std::string(flag) + " " + folder.string() +
+        ": is the folder of the depth images; masks have the same names and need another folder");
   }
   return MaskFolder(folder, least_confidence);
 }
@@ -70,7 +70,9 @@ std::set<std::string> images_in(const fs::path& folder) {
 ScorerConfig map_config_of(const ModelOptions& options) {
   ScorerConfig config = scorer_config(options.frames, options.proposal);
   if (options.frames.workspace.empty()) {
-    refuse("--watch requires --workspace x0,y0,z0,x1,y1,z1: future frames cannot determine it");
+    refuse(
+        "--watch requires --workspace x0,y0,z0,x1,y1,z1, because the frames to come are not known "
+        "yet");
   }
   config.workspace = parse_box("--workspace", options.frames.workspace);
   config.gain.model = parse_gain_model(options.proposal.gain);
@@ -139,8 +141,8 @@ std::optional<SavedFrames> saved_frames(const fs::path& state, const ExecConfig&
   const std::set<std::string>& frames = grid.notes().frames;
   if (frames.size() != grid.views().size()) {
     throw Error(ErrorCode::format, state.string() + ": has " + std::to_string(grid.views().size()) +
-                                       " views of " + std::to_string(frames.size()) +
-                                       " named frames; another program wrote it");
+                                       " views, but names " + std::to_string(frames.size()) +
+                                       " frames; another program wrote it");
   }
   return SavedFrames{frames, map_sensor(grid)};
 }

@@ -112,7 +112,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
   void print_summary(double seconds) const {
     if (is_done_ && count() == 0) {
       const std::string bad = counts_text(watch_->bad());
-      refuse(frames_.string() + ": finished without a frame" +
+      refuse(frames_.string() + ": is done, but no frame is in the map" +
              (bad.empty() ? "" : "; bad: " + bad));
     }
     if (options_.common.json) {
@@ -131,8 +131,8 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
       json["seconds"] = seconds;
       return print_json(json);
     }
-    std::printf("%zu frames in the map, %zu of them new; %zu waiting\n", count(), added_,
-                watch_->waiting());
+    std::printf("%zu frames in the map, %zu of them new; %zu more are not complete yet\n", count(),
+                added_, watch_->waiting());
     if (const std::string text = frames_text(carved(), watch_->bad()); !text.empty()) {
       std::printf("%s\n", text.c_str());
     }
@@ -287,7 +287,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     map_->answer(views_.answered_by(name), frame.T_world_camera);
     has_news_ = true;
     if (options_.common.quiet || !is_in_map(verdict)) return;
-    std::fprintf(stderr, "%s: %.4g m^2 of new surface, %.4g nat\n", name.c_str(),
+    std::fprintf(stderr, "%s: %.4g m^2 of new surface, %.4g nat of entropy removed\n", name.c_str(),
                  added.update.new_area, added.entropy_removed);
   }
 

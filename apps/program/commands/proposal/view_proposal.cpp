@@ -74,40 +74,44 @@ PoseSetRequest request_of(const ProposalOptions& options, const Sensor& sensor,
 void add_next_view_options(App& app, ProposalOptions& o) {
   begin_group(app, "Candidates");
   app.add_option("--generator", o.generator,
-                 "sources of candidates, comma-separated (default: boundary; for a map without "
-                 "surface or views: a sphere around the workspace; see below)")
+                 "comma-separated sources of candidates, see below (default: boundary; if the map "
+                 "has no surface or no views, a sphere around the workspace)")
       ->check(several_of(generator_names(), "generator"));
   explain_values(
       app,
-      "Sources of candidates for --generator, with their --distance by default:\n"
-      "  boundary  in front of open surface boundaries and of places where more surface\n"
-      "            is expected; the sensor's working distance\n"
-      "  sphere, dome, rings, sequence  around --center; the workspace fills the view\n"
-      "  shell     random, around --center; the shells or boxes of --reach\n");
+      "Sources of candidates for --generator:\n"
+      "  boundary  in front of open edges of the surface and of places where more\n"
+      "            surface is expected; --distance by default is the sensor's working\n"
+      "            distance\n"
+      "  sphere, dome, rings, sequence  sets of poses around --center; by default, the\n"
+      "            workspace fills the image\n"
+      "  shell     random poses in the shells or boxes of --reach, else around --center\n");
   app.add_option("--poses", o.poses,
-                 "TUM or .npy file of camera-to-world poses to choose from; with --generator, in "
-                 "addition to its candidates");
+                 "TUM or .npy file of camera-to-world poses to choose from; --generator adds "
+                 "further candidates");
   add_cost_options(app, o.costs, "--poses");
   app.add_option("--count", o.count,
-                 "number of poses of the sphere, dome or shell (default: 500); rings: 48, 80, 288 "
+                 "number of poses for sphere, dome or shell (default: 500) or rings: 48, 80, 288 "
                  "or 864 (default: 48)")
       ->check(counted(1, 1'000'000));
-  app.add_option(
-      "--distance", o.distance,
-      "distance from the surface (boundary) or from the centre (others) [m] (default: see below)");
+  app.add_option("--distance", o.distance,
+                 "distance of candidates [m]: from the surface for boundary, from --center for "
+                 "others (default: see below)");
   app.add_option("--center", o.center,
-                 "x,y,z that poses look at, world frame [m] (default: the workspace's centre)");
+                 "x,y,z: point that sets of poses look at, world frame [m] (default: the centre of "
+                 "the workspace)");
   app.add_option("--reach", o.reach,
-                 "TOML file of reachable boxes, shells, half-spaces and poses (default: "
-                 "everywhere; for boundary, the workspace if it contains all views so far)");
+                 "TOML file of poses that the robot can reach (default: all; for boundary, those "
+                 "in the workspace if it contains all views so far)");
   begin_group(app, "Obstacles");
   app.add_option("--body", o.body, kBodyHelp);
-  app.add_option("--support-plane", o.support_plane, "height z of a table [m]");
+  app.add_option("--support-plane", o.support_plane,
+                 "height z of the table under the object [m] (default: none)");
   app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
   begin_group(app, "Gain and order");
   add_hazard_option(app, o.hazard);
-  add_seed_option(app, o.seed, "seed of the shell");
-  app.add_option("--gain", o.gain, "gain to rank by: paper, surface or combined, as in score")
+  add_seed_option(app, o.seed, "seed for the random poses of shell");
+  app.add_option("--gain", o.gain, "gain that ranks the views (see viewgain score --help)")
       ->check(one_of_gain_models());
   add_plan_option(app, o.plan);
 }
@@ -161,7 +165,7 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
   if (options.distance) config.boundary.working_distance = *options.distance;
   if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
   if (!map.empty() && has_generator(options, "boundary") && grid.views().empty()) {
-    refuse(map + ": has no views, which --generator boundary requires; try --generator sphere");
+    refuse(map + ": --generator boundary requires a map with views; try --generator sphere");
   }
   if (!options.poses.empty()) config.sets.push_back({kGivenPoses, poses_in(options.poses)});
   const PoseSetRequest request = request_of(options, sensor, grid, config.feasibility.reach);

@@ -44,7 +44,7 @@ Checkpoint::Checkpoint(RunFolder& folder, const Json& head, bool resume)
     if (json_.dump() != last.dump()) {
       refuse(
           file_ +
-          ": comes from a run with other settings or another program version; without --resume " +
+          ": comes from a run with other settings or another program version. Without --resume " +
           "the run starts afresh");
     }
   }

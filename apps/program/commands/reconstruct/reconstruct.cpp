@@ -170,7 +170,7 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
                 beside_text(beside, run["settings"]).c_str());
     if (setup.visibility.tolerance < options.voxel) {
       std::printf(
-          "coverage is measured at %g mm, less than a voxel: correct surface may count as missed "
+          "coverage is measured at %g mm, less than a voxel. Correct surface may count as missed "
           "(--tolerance)\n",
           1e3 * setup.visibility.tolerance);
     }
@@ -187,8 +187,8 @@ Command add_reconstruct(App& program) {
   auto options = std::make_shared<ReconstructOptions>();
   App* app = program.add_subcommand(
       "reconstruct",
-      "Model a mesh with a simulated camera: take a view, update map and surface, propose and rank "
-      "views, move; repeat until little is left to gain.");
+      "Run the loop on a mesh with a simulated camera: take a view, update map and surface, choose "
+      "the next view. The run ends when little is left to gain.");
   add_options(*app, *options);
   return command_of(app, options, [app](const auto& given) { reconstruct(given, *app); });
 }

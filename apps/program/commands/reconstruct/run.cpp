@@ -64,7 +64,7 @@ void check_start(const ReconstructOptions& options, const RunSetup& setup, const
   if (checker.check(setup.start) != Infeasibility::obstacle) return;
   const std::string which =
       options.from.empty() ? "the start pose (--from)" : "--from " + options.from;
-  refuse(which + ": the sensor's body would overlap an --obstacle there");
+  refuse(which + ": the camera's housing would overlap an --obstacle");
 }
 
 SurfaceModelConfig model_config(const ReconstructOptions& options, const Stage& stage) {

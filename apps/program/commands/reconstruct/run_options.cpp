@@ -20,15 +20,15 @@ constexpr std::size_t kMaxCount = 1'000'000;
 
 void add_output_options(App& app, RunOutputs& outputs) {
   begin_group(app, "Output");
-  add_switch(app, "--save-maps", outputs.save_maps,
-             "write maps/NN.vdb after each view; reconstruct: also the candidates for the next "
-             "view, maps/NN.txt");
-  add_switch(app, "--pictures", outputs.pictures, "draw views/NN.png");
+  add_switch(
+      app, "--save-maps", outputs.save_maps,
+      "write maps/NN.vdb after each view; reconstruct also writes the candidates, maps/NN.txt");
+  add_switch(app, "--pictures", outputs.pictures, "draw each view, views/NN.png");
   app.add_option("--report", outputs.report,
-                 "on: write report.html, one file for a browser; or the folder of another run "
-                 "whose curves to overlay; off");
+                 "on: write report.html for a browser; RUN: also show the curves of another run; "
+                 "off: no report");
   app.add_flag("--resume", outputs.resume,
-               "resume this call after an interruption (kill, signal, full disk)");
+               "continue this call after an interruption (kill, signal, full disk)");
   app.add_option("--out", outputs.out, "folder to write")->required();
 }
 
@@ -39,46 +39,46 @@ void add_options(App& app, ReconstructOptions& o) {
   app.add_option("--sensor", o.sensor, kSensorHelp.c_str())->required();
   app.add_option("--voxel", o.voxel, "voxel size [m]")->required();
   app.add_option("--size", o.size,
-                 "scale the object to this longest side [m] (default: the file's size, in metres)");
+                 "length of the mesh's longest side after scaling [m] (default: no scaling)");
   app.add_option("--workspace", o.workspace,
-                 "x0,y0,z0,x1,y1,z1 [m] (default: a cube of 0.4/0.35 times the longest side around "
-                 "the object)");
+                 "x0,y0,z0,x1,y1,z1: box to map [m] (default: a cube around the object, 8/7 of its "
+                 "longest side)");
   app.add_option("--up", o.up, "axis of the mesh file that points up")
       ->check(one_of({"x", "y", "z"}, "axis"));
   begin_group(app, "Views");
   app.add_option("--from", o.from,
-                 "tx,ty,tz,qx,qy,qz,qw: start pose of the camera in the world [m] (default: 27 deg "
-                 "above the object, at an azimuth that depends on the seed)");
+                 "tx,ty,tz,qx,qy,qz,qw: start pose of the camera [m] (default: 27 deg above the "
+                 "object; --seed sets the azimuth)");
   app.add_option("--distance", o.distance,
-                 "distance from the object's centre for the start and the sets of poses [m] "
+                 "distance of the start and of sets of poses from the object's centre [m] "
                  "(default: see below)");
   app.add_option("--policy", o.policy, "how to choose views (see below)")
       ->check(one_of(policy_names(), "policy"));
   app.add_option("--generator", o.generator,
-                 "sources of candidates, comma-separated (see below) (default: boundary; random "
-                 "and fibonacci: sphere; sequence: sequence)")
+                 "comma-separated sources of candidates, see below (default: boundary; --policy "
+                 "random, fibonacci: sphere; sequence: sequence)")
       ->check(several_of(generator_names(), "generator"));
   explain_values(app,
-                 "Policies of --policy:\n"
-                 "  gain       the view with the highest expected gain\n"
-                 "  kriegel    boundary views: left, right, top, bottom\n"
-                 "  sequence   turntable of 8 views, then top; or --poses\n"
-                 "  random     a random view\n"
-                 "  frontier   the view with the most unknown voxels in it\n"
+                 "Views that --policy chooses:\n"
+                 "  gain       highest expected gain\n"
+                 "  kriegel    open edges of the surface: left, right, top, then bottom\n"
+                 "  sequence   8 views of a turntable, then one from above; or --poses\n"
+                 "  random     random views\n"
+                 "  frontier   most unknown voxels in view\n"
                  "  fibonacci  evenly around the object\n"
-                 "  oracle     knows the mesh: an upper reference\n");
+                 "  oracle     most newly covered surface; knows the mesh\n");
   explain_values(app,
                  "Sources of candidates for --generator:\n"
-                 "  boundary  in front of open surface boundaries\n"
-                 "  sphere, dome, rings, shell, sequence  sets of poses around the object, which\n"
-                 "            fills the view, at the sensor's working distance or more; a shell\n"
-                 "            fills the shells or boxes of --reach\n");
+                 "  boundary  in front of open edges of the surface\n"
+                 "  sphere, dome, rings, shell, sequence  sets of poses around the object; by\n"
+                 "            default it fills the image, at the working distance or more. With\n"
+                 "            --reach, a shell fills the shells or boxes of the reach file\n");
   app.add_option("--poses", o.poses,
-                 "TUM or .npy file of poses that --policy sequence takes in order after the start "
-                 "(default: the turntable)");
+                 "TUM or .npy file of poses for --policy sequence, taken in order after the start "
+                 "(default: a turntable)");
   app.add_option("--count", o.count,
-                 "number of poses of sphere, dome or shell (default: 500; sphere with --policy "
-                 "fibonacci: --max-views); rings: 48, 80, 288 or 864 (default: 48)")
+                 "number of poses for sphere, dome or shell (default: 500; --policy fibonacci: "
+                 "--max-views) or rings: 48, 80, 288 or 864 (default: 48)")
       ->check(counted(1, kMaxCount));
   app.add_option("--gain", o.gain,
                  "gain for --policy gain: paper (entropy removed), surface (expected new surface), "
@@ -87,21 +87,21 @@ void add_options(App& app, ReconstructOptions& o) {
   add_hazard_option(app, o.hazard);
   begin_group(app, "Gain");
   app.add_option("--criterion", o.criterion,
-                 "criterion of entropy and of the paper gain: log_diagonal, log_determinant [nat] "
-                 "or trace [m^2], which cannot be used with --gain combined")
+                 "criterion for entropy and the gain paper: log_diagonal, log_determinant [nat] or "
+                 "trace [m^2] (cannot be used with --gain combined)")
       ->check(one_of(criterion_names(), "criterion"));
   begin_group(app, "Stopping");
   app.add_option("--max-views", o.max_views, "view budget")->check(counted(1, kMaxCount));
   add_stop_option(app, o.stop);
   app.add_option("--tolerance", o.tolerance,
-                 "distance within which the surface covers a point of the mesh [m] (default: "
-                 "the larger of 0.005 and a voxel)");
+                 "largest distance from surface to mesh that counts as covered [m] (default: the "
+                 "larger of 0.005 and a voxel)");
   begin_group(app, "Views");
   app.add_option("--cost-per-metre", o.cost_per_metre,
                  "L: rank by gain - L * distance [nat/m; with --gain surface m^2/m]");
   add_plan_option(app, o.plan);
   begin_group(app, "Obstacles");
-  app.add_option("--reach", o.reach, "TOML file of reachable boxes, shells, half-spaces and poses");
+  app.add_option("--reach", o.reach, "TOML file of poses that the robot can reach (default: all)");
   app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
   app.add_option("--body", o.body, kBodyHelp);
   add_sensing_options(app, o.sensing);

@@ -116,7 +116,8 @@ std::string beside_text(const Json& beside, const Json& own) {
   std::string text = beside["name"].get<std::string>() +
                      " for comparison: " + std::to_string(views.size()) + " views";
   if (const double visible = last("coverage_visible"); !std::isnan(visible)) {
-    text += formatted(", %.2f %% visible, RMS %.2f mm", 100 * visible, 1e3 * last("rms_error"));
+    text += formatted(", %.2f %% of the visible surface covered, RMS error %.2f mm", 100 * visible,
+                      1e3 * last("rms_error"));
   }
   if (const double way = last("travelled"); !std::isnan(way)) text += formatted(", %.2f m", way);
   std::string others;
@@ -187,22 +188,23 @@ void RunReport::set_registrations(std::vector<FrameRegistration> registrations) 
 std::string RunReport::progress_line() const {
   const Entry& e = views_.back();
   std::string text = formatted(
-      "view %2zu  %6.2f %% visible at %g mm, RMS %.2f mm, unknown %s, +%.4g %s", e.record.index,
-      100 * e.quality.coverage_visible, 1e3 * tolerance_, 1e3 * e.quality.surface_error.rms,
-      with_commas(e.record.progress.unknown_voxels).c_str(), e.record.realised_gain,
-      entropy_unit_.data());
-  text += formatted(", new %.3g m^2", e.record.progress.new_area);
+      "view %2zu  %6.2f %% of the visible surface covered at %g mm, RMS %.2f mm, unknown %s, gain "
+      "%.4g %s",
+      e.record.index, 100 * e.quality.coverage_visible, 1e3 * tolerance_,
+      1e3 * e.quality.surface_error.rms, with_commas(e.record.progress.unknown_voxels).c_str(),
+      e.record.realised_gain, entropy_unit_.data());
+  text += formatted(", new surface %.3g m^2", e.record.progress.new_area);
   if (!std::isnan(e.record.predicted_area)) {
-    text += formatted(" of %.3g predicted", e.record.predicted_area);
+    text += formatted(" (predicted %.3g)", e.record.predicted_area);
   }
   if (e.record.chosen_as && e.record.chosen_as->boundary_class) {
     text.append("  ").append(boundary_class_name(*e.record.chosen_as->boundary_class));
   }
   const std::size_t candidates = e.record.proposal.candidates.size();
   if (e.record.decision) {
-    text +=
-        formatted("  next: gain %.4g %s of %zu candidates, %zu dropped", e.record.decision->gain,
-                  gain_unit_.data(), candidates, total(e.record.proposal.dropped));
+    text += formatted("  next: gain %.4g %s, best of %zu candidates; %zu dropped",
+                      e.record.decision->gain, gain_unit_.data(), candidates,
+                      total(e.record.proposal.dropped));
   }
   return text;
 }
@@ -270,16 +272,17 @@ std::string RunReport::text(StopReason reason) const {
   if (!dropped.empty()) {
     const std::size_t feasible = last.record.proposal.candidates.size();
     const std::string help = help_text(feasible, dropped);
-    text += formatted("last candidates: %zu feasible; dropped: %s%s%s\n", feasible,
+    text += formatted("candidates after the last view: %zu possible; dropped: %s%s%s\n", feasible,
                       counts_text(dropped).c_str(), help.empty() ? "" : "; ", help.c_str());
   }
   text += formatted(
-      "coverage at %g mm: %.2f %% of the object, %.2f %% of its visible part (points %.2f %%, "
-      "triangles %.2f %%); at 2.5 mm: %.2f %%\n",
+      "coverage within %g mm: %.2f %% of the object, %.2f %% of its visible part (by points %.2f "
+      "%%, by triangles %.2f %%); within 2.5 mm: %.2f %% of the object\n",
       1e3 * tolerance_, 100 * q.coverage, 100 * q.coverage_visible, 100 * q.coverage_points,
       100 * q.coverage_triangles, 100 * q.coverage_2_5mm);
   text += formatted(
-      "error: surface RMS %.2f mm, 95 %% below %.2f mm; points RMS %.2f mm, 95 %% below %.2f mm\n",
+      "error of the surface: RMS %.2f mm, 95 %% below %.2f mm; of the points: RMS %.2f mm, 95 %% "
+      "below %.2f mm\n",
       1e3 * q.surface_error.rms, 1e3 * q.surface_error.p95, 1e3 * q.points_error.rms,
       1e3 * q.points_error.p95);
   text += consistency_text(q.consistency);
@@ -287,7 +290,7 @@ std::string RunReport::text(StopReason reason) const {
     text += registration_text(registration_counts(registrations_)) + "\n";
   }
   text +=
-      formatted("entropy removed %.6g %s, unknown voxels %s, path length %.2f m\n",
+      formatted("entropy removed: %.6g %s; unknown voxels: %s; path length: %.2f m\n",
                 last.record.progress.entropy_removed, entropy_unit_.data(),
                 with_commas(last.record.progress.unknown_voxels).c_str(), last.record.travelled);
   double sum = 0;

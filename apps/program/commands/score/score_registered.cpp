@@ -116,7 +116,7 @@ void RegisteredScores::print_json(std::size_t top) const {
 void RegisteredScores::print_table(std::size_t top) const {
   std::printf("gains of the literature, sensor %s\n", printable(sensor.name).c_str());
   if (!dropped.empty()) {
-    std::printf("%zu of %zu poses; dropped: %s\n", numbers.size(), source.poses.size(),
+    std::printf("%zu of %zu poses scored; dropped: %s\n", numbers.size(), source.poses.size(),
                 counts_text(dropped).c_str());
   }
   std::vector<std::string> heads;

@@ -218,7 +218,7 @@ void ScoreReport::print_table() const {
               std::string(gain_unit(model, parse_criterion(criterion))).c_str());
   print_mended(source.orthonormalized);
   if (!scores.dropped.empty()) {
-    std::printf("%zu of %zu poses; dropped: %s\n", scores.candidates, source.poses.size(),
+    std::printf("%zu of %zu poses scored; dropped: %s\n", scores.candidates, source.poses.size(),
                 counts_text(scores.dropped).c_str());
   }
   if (scores.estimates) {
@@ -227,8 +227,9 @@ void ScoreReport::print_table() const {
     print_rows(scores.best, source, model);
   }
   if (scores.set_gain) {
-    std::printf("set gain: %.6g; lower bound, each voxel by its best view alone: %.6g\n",
-                *scores.set_gain, scores.set_gain_by_best_alone);
+    std::printf(
+        "gain of the set: %.6g; lower bound, if each voxel counts only for its best view: %.6g\n",
+        *scores.set_gain, scores.set_gain_by_best_alone);
   }
   const std::size_t poses = scores.candidates, in_full = scores.scored.gains.size();
   const int threads = evaluator.num_threads();
@@ -239,7 +240,7 @@ void ScoreReport::print_table() const {
       with_commas(evaluator.rays_per_pose()).c_str(), with_commas(grid.voxel_count()).c_str(),
       threads, threads == 1 ? "thread" : "threads", std::string(evaluator.scene().isa()).c_str());
   if (in_full < poses) {
-    std::printf("%s estimated, %s scored in full, %s rays traced\n",
+    std::printf("%s poses estimated, %s scored with all rays; %s rays traced\n",
                 with_commas(scores.estimated).c_str(), with_commas(in_full).c_str(),
                 with_commas(scores.rays_traced).c_str());
   }

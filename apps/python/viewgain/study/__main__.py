@@ -21,24 +21,24 @@ from .table import table
 def _arguments(words):
     parser = argparse.ArgumentParser(
         prog="python3 -m viewgain.study",
-        description="Compares policies and gains: a run of `viewgain reconstruct` for every object, policy, seed, sensor, voxel and size of "
-                    "a spec, in one table. If it was stopped or killed, the same call goes on with what is there.",
-        epilog="DIR gets results.csv, results.json, table.md, coverage.png, differences.png and runs/. Exit code 1: a run failed; "
-               "2: invalid input; 130: interrupted.")
+        description="Compares policies and gains in one table. Runs `viewgain reconstruct` for each object, policy, seed, sensor, voxel size and "
+                    "object size in SPEC. If the study was stopped or killed, the same call continues it.",
+        epilog="Files in DIR: results.csv, results.json, table.md, coverage.png, differences.png and runs/. Exit codes: 1 if a run failed, "
+               "2 for invalid input, 130 if interrupted.")
     parser.add_argument("spec", metavar="SPEC", type=pathlib.Path,
-                        help="TOML file: lists objects, policies, seeds, sensors and voxels [m], and max_views; optional: a list "
-                             "of sizes [m], against, tolerance [m], flags and kept_candidates")
-    parser.add_argument("--out", metavar="DIR", type=pathlib.Path, required=True, help="folder for results")
+                        help="TOML file with the lists objects, policies, seeds, sensors and voxels [m], and with max_views; optional keys: sizes [m] "
+                             "(a list), against, tolerance [m], flags and kept_candidates")
+    parser.add_argument("--out", metavar="DIR", type=pathlib.Path, required=True, help="folder to write results to")
     parser.add_argument("--jobs", type=int, metavar="N", help="number of parallel runs on this machine (default: one per thread)")
     parser.add_argument("--scheduler", metavar="ADDRESS",
-                        help="Dask scheduler (tcp://HOST:8786) whose workers make the runs; they need the program and the files at the same paths")
-    parser.add_argument("--program", metavar="PATH", help="the program viewgain; default: that beside this package, else on PATH")
-    parser.add_argument("--quiet", action="store_true", help="no progress")
+                        help="Dask scheduler (tcp://HOST:8786) whose workers do the runs; each worker needs the program and the files at the same paths")
+    parser.add_argument("--program", metavar="PATH", help="path of the program viewgain (default: next to this package, else on PATH)")
+    parser.add_argument("--quiet", action="store_true", help="do not print progress")
     options = parser.parse_args(words)
     if options.jobs is not None and not 1 <= options.jobs <= 1000:
         parser.error(f"--jobs must be in 1..1000, not {options.jobs}")
     if options.jobs is not None and options.scheduler:
-        parser.error("--jobs cannot be used with --scheduler: the cluster decides how many runs are made at once")
+        parser.error("--jobs cannot be used with --scheduler, because the cluster decides how many runs are done at once")
     return options
 
 
@@ -48,7 +48,7 @@ def _check_folder(out, spec):
         raise SpecError(f"--out {out}: is a file; choose a new folder")
     others = [path for path in out.iterdir() if path.resolve() != spec.resolve()] if out.is_dir() else []
     if others and not (out / "runs/.lock").is_file():
-        raise SpecError(f"--out {out}: has files, but no runs/ of a study; choose a new folder")
+        raise SpecError(f"--out {out}: has files that no study wrote; choose a new folder")
 
 
 def _csv(rows):
@@ -85,7 +85,7 @@ def _study(options):
             _warn(f"no {name}: {error}")
     for name in draw.keys() - files.keys():
         (options.out / name).unlink(missing_ok=True)  # may be from another spec
-    print(f"{text}\nleft in {options.out}: {', '.join(files)}, runs/")
+    print(f"{text}\nwritten to {options.out}: {', '.join(files)}, runs/")
 
 
 def _warn(line):
@@ -103,7 +103,7 @@ def main(words=None):
         _study(options)
         return 0
     except KeyboardInterrupt:
-        print(f"viewgain.study: stopped; the same call goes on with what is in {options.out}", file=sys.stderr)
+        print(f"viewgain.study: stopped; the same call continues with the runs in {options.out}", file=sys.stderr)
         return 130
     except (SpecError, RunError, OSError) as error:
         print(f"viewgain.study: {error}", file=sys.stderr)

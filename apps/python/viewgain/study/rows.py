@@ -67,7 +67,7 @@ def early_ends(rows, max_views) -> list[str]:
         reasons = collections.Counter(row["stop_reason"] for row in of if row["views"] < max_views)
         if reasons:
             lines.append(f"{sum(reasons.values())} of {len(of)} runs of {name} ended before {max_views} views "
-                         f"({', '.join(f'{reason} {count}' for reason, count in reasons.items())}); their coverage stays as it was then")
+                         f"({', '.join(f'{reason} {count}' for reason, count in reasons.items())}); for the remaining views, their last coverage counts")
     return lines
 
 

@@ -115,7 +115,7 @@ def make_run(words, title, kept, beside, is_own=False, folder=None, children=Non
             record = json.loads(pathlib.Path(work, "run/run.json").read_text(encoding="utf-8"))
             record["seconds"] = {"total": seconds} if is_own else record["seconds"]
         except FileNotFoundError:
-            raise RunError(f"{title}: {words[0]} wrote no run.json to the folder of --out", 2) from None
+            raise RunError(f"{title}: {words[0]} wrote no run.json into the folder that --out names", 2) from None
         except (LookupError, TypeError, ValueError) as error:
             raise RunError(f"{title}: run.json of {words[0]}: {type(error).__name__}: {error}", 2) from None
         lines = []
@@ -154,7 +154,7 @@ def _study_folder(out):
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise SpecError(f"--out {out}: another study is running there; to use several machines, give --scheduler") from None
+            raise SpecError(f"--out {out}: another study uses this folder; to use several machines, give --scheduler") from None
         except OSError:
             pass  # a file system without locks
         for left in runs.glob(".run-*"):
@@ -217,7 +217,7 @@ def _on_cluster(scheduler, progress):
     try:
         client = distributed.Client(scheduler, timeout="10s", set_as_default=False)
     except (OSError, ValueError) as error:
-        raise SpecError(f"--scheduler {scheduler}: no scheduler answers there: {error}") from error
+        raise SpecError(f"--scheduler {scheduler}: no scheduler answers: {error}") from error
     with client:
         if not client.nthreads():
             progress(f"{scheduler} has no workers yet; waiting {_WORKERS_WITHIN} s for one")
@@ -253,7 +253,7 @@ def _results(futures, title, scheduler):
         except RunError as error:
             yield futures[future], error
         except Exception as error:  # of a cluster
-            cure = "; its workers need this package and scipy" if "ModuleNotFoundError" in repr(error) else ""
+            cure = "; the workers need this package and scipy" if "ModuleNotFoundError" in repr(error) else ""
             yield futures[future], RunError(f"{title(futures[future])}: on {scheduler}: {type(error).__name__}: {error}{cure}")
 
 
@@ -270,7 +270,7 @@ def make_runs(spec: Spec, out, jobs: Optional[int] = None, scheduler: Optional[s
                 for run in spec.runs if (folder / run.hash / "run.json").exists()}
         missing = [run for run in spec.runs if run.hash not in rows]
         if rows:
-            progress(f"{len(rows)} of {len(spec.runs)} runs are there")
+            progress(f"{len(rows)} of {len(spec.runs)} runs are done already")
         if missing:
             at = _here(jobs or cores, str(folder.resolve())) if scheduler is None else _on_cluster(scheduler, progress)
             with at as submit:
@@ -288,7 +288,7 @@ def _check(spec, futures, scheduler):
     for run, made in _results(futures, spec.title, scheduler):
         if isinstance(made, RunError):
             is_word = "--policy" in str(made) and not run.policy.gain and not run.policy.command
-            hint = f"; a gain is written \"gain:{run.policy.name}\"" if is_word else ""
+            hint = f"; to use a gain, write \"gain:{run.policy.name}\"" if is_word else ""
             raise RunError(f"{spec.path}: {made}{hint}", made.code)
         _row_of(spec, run, made[0], 1)
 
@@ -311,7 +311,7 @@ def _gather(spec, folder, futures, scheduler, rows, progress):
         left = (time.monotonic() - begin) / done * (len(futures) - done)
         progress(f"run {total - len(futures) + done} of {total}: {spec.title(run)}, {seconds:.1f} s; {_time_text(left)} left")
     if failures:
-        raise RunError(f"{len(failures)} of {total} runs failed, the first: {failures[0]}; repeat the call to make them again", failures[0].code)
+        raise RunError(f"{len(failures)} of {total} runs failed, the first: {failures[0]}; repeat the call to run them again", failures[0].code)
 
 
 def _row_of(spec, run, record, max_views):
@@ -337,10 +337,10 @@ def _row(path, run, max_views):
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
         if record["configuration"] != run.configuration:
-            raise ValueError("its configuration differs from that of this run")
+            raise ValueError("its configuration differs from the spec")
         return row_of(run, record, max_views)
     except (AttributeError, LookupError, TypeError, ValueError) as error:
-        raise SpecError(f"{path}: {type(error).__name__}: {error}; remove its folder and repeat the call") from error
+        raise SpecError(f"{path}: {type(error).__name__}: {error}; remove the folder of this file and repeat the call") from error
 
 
 def _time_text(seconds):

@@ -224,7 +224,7 @@ def _policy(reader, value):
     if isinstance(value, dict):
         name, command = value.get("name"), value.get("command")
         if set(value) != {"name", "command"} or not _is_name(name) or ":" in name or not isinstance(command, str) or "\0" in command:
-            reader.fail("policies", f"holds {value!r}; your own policy must be {{name = \"...\", command = \"...\"}}, its name without : and |")
+            reader.fail("policies", f"holds {value!r}; your own policy must be {{name = \"...\", command = \"...\"}}, and its name must not contain : or |")
         try:
             words = shlex.split(command)
         except ValueError as error:
@@ -236,7 +236,7 @@ def _policy(reader, value):
     if value.startswith("tour:") or value == "tour":
         counts = re.fullmatch(r"tour:([1-9]\d{0,3}):([1-9]\d{0,3})", value)
         if not counts or not 2 <= int(counts[1]) <= 1000 or int(counts[2]) > int(counts[1]):
-            reader.fail("policies", f"holds {value!r}; a tour must be \"tour:K:M\": plan K views (2..1000), replan after M of them")
+            reader.fail("policies", f"holds {value!r}; a tour must be \"tour:K:M\", which plans K views (2..1000) and replans after M of them")
         return Policy(value, value, words=("--policy=gain", f"--plan={counts[1]},{counts[2]}"))
     policy, colon, gain = value.partition(":")
     if (policy == "gain") != bool(gain) or (colon and not gain) or not policy:
@@ -288,7 +288,7 @@ def read_spec(path, version: str = "") -> Spec:
             reader.fail(key, f"holds {twice!r} twice")
     count = len(sensors) * len(voxels) * len(sizes) * len(objects) * len(seeds) * len(policies)
     if count > _MOST_RUNS:
-        reader.fail("seeds", f"make {count:,} runs with the other lists; the maximum is {_MOST_RUNS:,}")
+        reader.fail("seeds", f"make {count:,} runs together with the other lists; the maximum is {_MOST_RUNS:,}")
 
     shared = {"version": version, "format": _FORMAT, "max_views": max_views, "tolerance": tolerance, "kept_candidates": kept,
               "flags": [_flag_identity(flag) for flag in flags]}

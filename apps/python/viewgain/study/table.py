@@ -59,8 +59,8 @@ def _counts(rows, goal, max_views):
 
 
 def _means(groups, max_views):
-    text = _head(["policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "AUC ↑", "in the end ↑", "RMS [mm] ↓", "consistency →1", "way [m] ↓",
-                  "decisions", "s a view", "time [s] ↓"])
+    text = _head(["policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "AUC ↑", "final coverage ↑", "RMS [mm] ↓", "consistency →1", "path [m] ↓",
+                  "decisions", "s per view", "time [s] ↓"])
     for name, rows in groups.items():
         cells = [name, *(_counts(rows, goal, max_views) for goal in GOALS)]
         cells.append(_with_interval(rows, values_of(rows, "auc"), 3))
@@ -92,10 +92,10 @@ def _pairs(groups, against, max_views):
     if len(groups) < 2:
         return ""
     other = groups[against]
-    text = (f"\nPaired with {against}: mean difference ± standard error (wins-ties-losses; p of the sign test, of Wilcoxon's signed-rank "
-            f"test; of {len(other)} pairs p cannot be below {_probability(min(1.0, 2.0 ** (1 - len(other))))}). The way to 95 % is of "
-            "pairs that both got there\n\n" +
-            _head(["policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "way to 95 % [m] ↓", "AUC ↑", "RMS [mm] ↓"]))
+    text = (f"\nDifferences to {against}, paired by object and seed: mean ± standard error (wins-ties-losses; p of the sign test, p of "
+            f"Wilcoxon's signed-rank test). The smallest possible p with {len(other)} pairs is {_probability(min(1.0, 2.0 ** (1 - len(other))))}. "
+            "The path to 95 % is compared for pairs in which both runs got there.\n\n" +
+            _head(["policy", "to 80 % ↓", "to 90 % ↓", "to 95 % ↓", "path to 95 % [m] ↓", "AUC ↑", "RMS [mm] ↓"]))
     last = f"{100 * GOALS[-1]:.0f}"
     for name, rows in groups.items():
         if name == against:
@@ -117,7 +117,7 @@ def _pairs(groups, against, max_views):
 def _by_object(groups, objects):
     if len(objects) < 2:
         return ""
-    text = "\nAUC and way [m] by object\n\n" + _head(["policy", *objects])
+    text = "\nAUC and path length [m] per object\n\n" + _head(["policy", *objects])
     for name, rows in groups.items():
         of = [[row for row in rows if row["object"] == one] for one in objects]
         text += _line([name, *(f"{_mean(values_of(some, 'auc'), 3)}; {_mean(values_of(some, 'travelled'), 1)}" for some in of)])
@@ -126,21 +126,25 @@ def _by_object(groups, objects):
 
 def _introduction(rows, objects, max_views, tolerance):
     if len(objects) > 1:
-        of_two = " (of two: no more than how alike these are)" if len(objects) == 2 else ""
-        errors = f"standard errors by object, for runs on one object are not independent{of_two}; p is of these objects, by runs.\n"
+        of_two = " With two objects, it only shows how alike these two are." if len(objects) == 2 else ""
+        errors = ("standard error, computed per object because runs on one object are not independent." + of_two +
+                  " p treats runs as independent; it holds for these objects only.\n")
     else:
-        errors = "standard errors over the runs on the one object, which say nothing of others.\n"
+        errors = "standard error over the runs on this object. It does not hold for other objects.\n"
     return (
         f"{len(rows)} runs: {', '.join(objects)}; {len({row['seed'] for row in rows})} seeds; {max_views} views.\n\n"
-        "- ↓ less is better, ↑ more is.\n"
-        f"- Views to a share of the visible surface (within {_short(1e3 * tolerance)} mm): mean / median / runs that never got there. "
-        f"These count as {max_views + 1} in means, also of differences; a mean with such runs is at least (≥) that. Then the mean way "
-        "until there, of such runs the whole.\n"
-        "- decisions: views that were decided on anew, not taken as a plan said. s a view: candidates and choice.\n"
-        "- AUC: mean coverage over the views. In the end: coverage by the last view. RMS: error of the surface that is there, lower too "
-        "where hard places are not. Consistency: the points' squared errors by their own sigmas, 1 if these are honest, above if too small.\n"
-        "- A - where no run got there, or nothing can be said.\n"
-        "- ± of a policy's mean: its 95 % interval (Student's t) for other seeds on the same objects; fewer than about 5 seeds make it wide.\n"
+        "- ↓: less is better. ↑: more is better.\n"
+        f"- to 80, 90, 95 %: number of views until this share of the visible surface is covered within {_short(1e3 * tolerance)} mm. "
+        "A cell has the mean, the median, the number of runs that never got there, and the mean path length until then.\n"
+        f"- A run that never got there counts as {max_views + 1} views in means and differences, and with its whole path. "
+        "≥ marks means with such runs, which are lower bounds.\n"
+        "- AUC: mean coverage over the views. final coverage: coverage after the last view.\n"
+        "- RMS: error of the reconstructed surface. It may be low because difficult places are missing.\n"
+        "- consistency: mean squared error of the points divided by their variances. 1 is ideal; above 1, the variances are too small.\n"
+        "- decisions: number of times that views were ranked; a plan counts once. s per view: time to generate candidates and choose one.\n"
+        "- A cell is - if no run got there, or if there is nothing to compute.\n"
+        "- ± of a policy's mean: half of a 95 % interval (Student's t) for other seeds on the same objects. It is wide with fewer than "
+        "about 5 seeds.\n"
         f"- ± of a difference: {errors}")
 
 

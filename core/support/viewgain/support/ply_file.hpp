@@ -121,10 +121,10 @@ class PlyAsciiNumbers {
     if (word_ == line_.words().size()) return;
     const bool is_broken = first_line_ != line_.line();
     throw Error(ErrorCode::format,
-                line_.name() + ":" + std::to_string(first_line_) + ": the header says " +
+                line_.name() + ":" + std::to_string(first_line_) + ": the header declares " +
                     std::to_string(numbers_) + " numbers, " +
                     (is_broken ? "which end within line " + std::to_string(line_.line())
-                               : "here are " + std::to_string(line_.words().size())));
+                               : "this line has " + std::to_string(line_.words().size())));
   }
   void end_file() const {
     while (line_.next()) {
@@ -232,7 +232,7 @@ class PlyFile {
           fail("the property " + quoted(all.back().name) + " is declared twice");
         }
       } else {
-        fail("the header's word " + quoted(words[0]) + " is unknown");
+        fail("the header's keyword " + quoted(words[0]) + " is unknown");
       }
     }
     if (format_ == Format::none) fail("the header has no format line");

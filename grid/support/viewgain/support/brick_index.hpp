@@ -45,7 +45,7 @@ struct BrickIndex {
       if (count > kMostNodes) {
         throw Error(ErrorCode::capacity, "the workspace has more than " +
                                              std::to_string(kMostNodes) +
-                                             " cubes of 128 voxels, the limit of this gain");
+                                             " cubes of 128 voxels, the limit for this gain");
       }
     }
     node_entries.assign(count, shared_node(fill));

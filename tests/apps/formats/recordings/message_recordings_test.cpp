@@ -143,7 +143,7 @@ TEST_F(MessageRecordings, CamerasAreThoseOfTheImages) {
   McapText text;
   add_transforms(text);
   add_images(text);
-  EXPECT_EQ(import(text, {}, "using the sensor's intrinsics")["intrinsics"],
+  EXPECT_EQ(import(text, {}, "the intrinsics of --sensor are used")["intrinsics"],
             (json{60, 60, 23.5, 17.5}));
   expect_refused({"import", "rec.mcap", "--out", "new"}, "no camera_info belongs to");
   // That of another frame is named, to be given by hand.
@@ -166,7 +166,7 @@ TEST_F(MessageRecordings, OneOfSeveralTopicsIsChosen) {
   EXPECT_EQ(import(text, {"--depth-topic", kTopic})["frames"], kImages);
   // The other one has no camera_info beside it, but the same frame.
   EXPECT_EQ(import(text, {"--depth-topic", "/other/image_raw"},
-                   "the intrinsics are those of /camera/depth/camera_info")["frames"],
+                   "the intrinsics come from /camera/depth/camera_info")["frames"],
             kImages);
   // Where both are recorded, the compressed images are those of the raw topic.
   McapText twice = good();
@@ -192,7 +192,7 @@ TEST_F(MessageRecordings, WhatIsBrokenIsNamed) {
   refuse(of_others, "no transform leads to the frame 'optical'; existing frames: 'base', 'link'");
   McapText top = no_tf;
   top.transform("/tf", 100, "optical", "link", kStill);
-  refuse(top, "has no parent, so the camera would never move");
+  refuse(top, "has no parent frame, and the camera would never move");
   refuse(McapText(), "holds no message");
   McapText no_depth;
   add_transforms(no_depth);
@@ -205,7 +205,7 @@ TEST_F(MessageRecordings, WhatIsBrokenIsNamed) {
   add_transforms(clocks, 900, 901);
   add_info(clocks);
   add_images(clocks);
-  refuse(clocks, "the camera's clock is not the robot's");
+  refuse(clocks, "the camera's clock differs from the robot's");
   // An empty image, a damaged one, a quaternion that is none.
   McapText some = good();
   some.image(kTopic, 100.3, "optical", kWidth, kHeight, "16UC1", "short", 2 * kWidth);
@@ -229,10 +229,10 @@ TEST_F(MessageRecordings, WhatIsSuspiciousIsSaid) {
     wrong.image(kTopic, image_time(i), "optical", kWidth, kHeight, "16UC1", rows_mm(i, true),
                 2 * kWidth);
   }
-  (void)import(wrong, {}, "Is its is_bigendian wrong?");
+  (void)import(wrong, {}, "Is is_bigendian wrong?");
   McapText back = good();
   add_images(back);
-  EXPECT_EQ(import(back, {}, "1 images have a stamp before that of an earlier image")["frames"],
+  EXPECT_EQ(import(back, {}, "1 images have an earlier stamp than the image before")["frames"],
             2 * kImages);
   McapText twice = good();
   add_transforms(twice);
@@ -288,18 +288,19 @@ TEST_F(MessageRecordings, FlagsAndFilesThatDoNotFitAreRefused) {
   const auto import = [](const std::string& source, const Strings& more = {}) {
     return test::joined({"import", source, "--sensor", "small.toml", "--out", "frames"}, more);
   };
-  expect_refused({{import("rec.mcap", {"--format", "tum"}), "has format mcap"},
-                  {import("rec.mcap", {"--mask", "none"}), "no image files for masks to belong to"},
-                  {import("rec.mcap", {"--depth-scale", "2"}), "within 0 and 1"},
-                  {import("rec.mcap", {"--depth-scale", "-1"}), "--depth-scale"},
-                  {import("both"), "two kinds, .mcap and .bag"},
-                  {import("none"), "contains no recording"},
-                  {import("packed"), "unzstd"},
-                  {import("text.mcap"), "is not a recording"},
-                  {import("old.bag"), "rosbag fix"},
-                  {import("whole.db3.zstd"), "unzstd"},
-                  {import("empty.db3"), "empty.db3"},
-                  {import("nowhere.mcap"), "nowhere.mcap"}});
+  expect_refused(
+      {{import("rec.mcap", {"--format", "tum"}), "has format mcap"},
+       {import("rec.mcap", {"--mask", "none"}), "no image files that masks could belong to"},
+       {import("rec.mcap", {"--depth-scale", "2"}), "within 0 and 1"},
+       {import("rec.mcap", {"--depth-scale", "-1"}), "--depth-scale"},
+       {import("both"), "two kinds, .mcap and .bag"},
+       {import("none"), "contains no recording"},
+       {import("packed"), "unzstd"},
+       {import("text.mcap"), "is not a recording"},
+       {import("old.bag"), "rosbag fix"},
+       {import("whole.db3.zstd"), "unzstd"},
+       {import("empty.db3"), "empty.db3"},
+       {import("nowhere.mcap"), "nowhere.mcap"}});
 }
 
 }  // namespace

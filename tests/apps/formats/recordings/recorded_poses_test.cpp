@@ -46,14 +46,15 @@ TEST_F(MessageRecordings, PosesMayComeFromATopic) {
   EXPECT_NEAR(x_of(4), 0.45, 1e-9);
   EXPECT_EQ(import(text, {"--pose-topic", "/odom"})["world"], "odom");
   EXPECT_NEAR(x_of(1), 0.1 + 2 * 0.15, 1e-9);
-  refuse(text, "/pose does not state the camera's pose on its body", {"--pose-topic", "/pose"});
+  refuse(text, "/pose does not state the camera's pose on the body", {"--pose-topic", "/pose"});
   Sensor mounted = read_sensor_toml(dir / "small.toml");
   mounted.T_flange_camera = Pose(Eigen::Matrix3d::Identity(), {0, 0, 0.3});
   write_sensor_toml(dir / "small.toml", mounted);
   EXPECT_EQ(import(text, {"--pose-topic", "/pose"})["frames"], kImages);
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.3, 1e-9);
   refuse(text, "/none holds no poses", {"--pose-topic", "/none"});
-  (void)import(text, {}, "topics of poses (/odom, /pose, /tracker) are not used (--pose-topic)");
+  (void)import(text, {},
+               "topics of poses (/odom, /pose, /tracker), which are not used (--pose-topic)");
   refuse(text, "--pose-topic", {"--pose-topic", "/pose,0,0"});
   refuse(text, "expected a name before the pose", {"--pose-topic", ",0,0,0.2,0,0,0,1"});
 }
@@ -66,7 +67,7 @@ TEST_F(MessageRecordings, TheCamerasFrameMayBeGiven) {
   for (std::size_t i = 0; i < kImages; ++i) {
     text.image(kTopic, image_time(i), "link", kWidth, kHeight, "16UC1", rows_mm(i), 2 * kWidth);
   }
-  (void)import(text, {}, "should it be 'optical' (--camera-frame)?");
+  (void)import(text, {}, "Should it be 'optical' (--camera-frame)?");
   (void)import(text, {"--camera-frame", "/optical"});
   expect_frames(open_frames(dir / "frames"));
   (void)import(text, {"--camera-frame", "link,0.1,0,0,0,0,0,1"});
@@ -77,7 +78,7 @@ TEST_F(MessageRecordings, TheCamerasFrameMayBeGiven) {
   EXPECT_NEAR(pose.m[9], -1, 1e-9);               // y down
   refuse(text, "no transform leads to the frame 'lens'", {"--camera-frame", "lens"});
   refuse(text, "--camera-frame", {"--camera-frame", "link,0,0"});
-  refuse(text, "the camera's place is given twice",
+  refuse(text, "the camera's pose is given twice",
          {"--camera-frame", "link", "--pose-topic", "/pose,0,0,0,0,0,0,1"});
 }
 
@@ -92,17 +93,17 @@ TEST_F(MessageRecordings, RobotsHaveTransformsInTheirNamespaces) {
   text.transform("/tf_static", 0, "link", "optical", kStill);
   add_info(text);
   add_images(text, "/robot/camera/image_raw");
-  EXPECT_EQ(import(text, {}, "the intrinsics are those of")["world"], "room");
+  EXPECT_EQ(import(text, {}, "the intrinsics come from")["world"], "room");
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[3], 100.15 + 0.2, 1e-9);
   add_images(text, "/image_raw");
   text.transform("/tf_static", 0, "hall", "room", kStill);
   EXPECT_EQ(import(text, {"--depth-topic", "/robot/camera/image_raw"},
-                   "the intrinsics are those of")["world"],
+                   "the intrinsics come from")["world"],
             "hall");
   refuse(text, "the transform from 'base' to 'link' comes from several topics",
          {"--depth-topic", "/image_raw"});
   text.transform("/tf", 100, "base", "link", kStill);
-  refuse(text, "5 after the last one", {"--depth-topic", "/image_raw"});
+  refuse(text, "5 after the last transform", {"--depth-topic", "/image_raw"});
 }
 
 TEST_F(MessageRecordings, NothingIsExtrapolated) {
@@ -110,7 +111,7 @@ TEST_F(MessageRecordings, NothingIsExtrapolated) {
   add_transforms(text, 100.1, 100.4);  // of images from 100.05 to 100.45
   add_info(text);
   add_images(text);
-  EXPECT_EQ(import(text, {}, "1 before the first transform, 1 after the last one")["bad"],
+  EXPECT_EQ(import(text, {}, "1 before the first transform, 1 after the last transform")["bad"],
             (json{{"no_pose", 2}}));
   // Nor are gaps bridged.
   McapText gap;
@@ -118,7 +119,7 @@ TEST_F(MessageRecordings, NothingIsExtrapolated) {
   gap.transform("/tf", 101, "base", "link", {1, 0, 0.5, 0, 0, 0, 1});
   add_info(gap);
   add_images(gap);
-  const json gaps = import(gap, {}, "4 in gaps between them (--max-time-gap)");
+  const json gaps = import(gap, {}, "4 in gaps between transforms (--max-time-gap)");
   EXPECT_EQ(gaps["frames"], 1);
   EXPECT_NE(gaps.dump().find("the largest gap is 0.9 s, from 'base' to 'link'"), std::string::npos);
   EXPECT_EQ(import(gap, {"--max-time-gap", "1"})["frames"], kImages);

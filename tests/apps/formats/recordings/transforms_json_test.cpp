@@ -188,7 +188,7 @@ TEST_F(TransformsJson, WhatCannotBeReadIsNamed) {
   scene = good();
   scene["integer_depth_scale"] = 7;
   refuse(scene, "depth scale 7");
-  refuse({{"frames", json::array()}}, "names no frame");
+  refuse({{"frames", json::array()}}, "has no frames");
   write("scene/transforms.json", "{\"frames\": [");
   expect_refused(call(), "is not JSON with a list");
   const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');

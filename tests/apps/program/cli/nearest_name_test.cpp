@@ -77,7 +77,7 @@ TEST_F(Spelling, TheNearestIsNamed) {
        {{"score", "map.vdb", "--poss=5,1"},
         "--poss: unknown flag for score; did you mean --poses?"},
        {{"convert", "map.vdb", "--out", "map.ot"},
-        "--out: OUT is positional; give it without the flag (see"},
+        "--out: OUT is a positional argument; give it without -- (see"},
        {{"reconstruct", "--voxel=0.01", "--policy=best", "--sensor=sr4000", "--out=run", "--",
          "cube.off"},
         "--policy: unknown policy best"},

@@ -127,7 +127,8 @@ TEST_F(CalibrateRange, WavesAndOffsetsAreFound) {
 TEST_F(CalibrateRange, NoiseDoesNotBiasTheTable) {
   sigma = 0.005;
   expect_refused_fit(
-      "an offset of the camera cannot be distinguished");  // too few pixels, but not bent
+      "a constant range error cannot be told from a shift of the wall");  // too few pixels, but not
+                                                                          // bent
   sensor.camera = {176, 144, 220, 220, 87.5, 71.5};
   for (const double noise : {0.002, 0.005}) {
     sigma = noise;
@@ -158,7 +159,7 @@ TEST_F(CalibrateRange, WeakTurnsAreEnoughOrRefused) {
         EXPECT_LT(result.offset_sigma, 0.0005);
       } catch (const Error& error) {
         ++refused;
-        EXPECT_NE(std::string(error.what()).find("turn the camera by 10 to 30 deg at more"),
+        EXPECT_NE(std::string(error.what()).find("Turn the camera by 10 to 30 deg at more"),
                   std::string::npos)
             << error.what();
         EXPECT_LT(share, 1) << noise;
@@ -171,7 +172,7 @@ TEST_F(CalibrateRange, WeakTurnsAreEnoughOrRefused) {
 
 TEST_F(CalibrateRange, WhatDoesNotTellItIsRefusedOrNamed) {
   const std::vector<View> good = views;
-  expect_refused_fit("the wall is bent", 0.05);
+  expect_refused_fit("the wall is not flat", 0.05);
   views.resize(7);
   expect_refused_fit("frames at 7 distances; 8 distances");
   views.assign(20, good[3]);
@@ -186,7 +187,7 @@ TEST_F(CalibrateRange, WhatDoesNotTellItIsRefusedOrNamed) {
                "frame " + std::to_string(&view - good.data()));
     saturated.add(frame_of(view, &error_at), pose_of(view), "good");
   }
-  expect_error([&] { (void)turned.solve(); }, "frame 4 shows a different wall from the others");
+  expect_error([&] { (void)turned.solve(); }, "frame 4 shows another wall than the other frames");
   saturated.add(bright, pose_of(good[0]), "bright");
   saturated.add(frame_of({1, 60, 0}, &error_at), pose_of({1, 60, 0}), "slanted");
   DepthFrame no_wall = frame_of(good[0], &error_at);
@@ -195,13 +196,14 @@ TEST_F(CalibrateRange, WhatDoesNotTellItIsRefusedOrNamed) {
   const RangeFitResult result = saturated.solve();
   ASSERT_EQ(result.left_out.size(), 3U);
   EXPECT_EQ(result.left_out[0], "bright: 1728 pixels are saturated");
-  EXPECT_EQ(result.left_out[1], "slanted: the wall is seen at 60 deg, more than 45");
+  EXPECT_EQ(result.left_out[1],
+            "slanted: the wall is seen at an angle of 60 deg; at most 45 deg can be used");
   EXPECT_EQ(result.left_out[2], "cluttered: no flat wall fills most of the image");
   expect_error(
       [&] {
         saturated.add({2, 2, {1, 1, 1, 1}}, {}, "small");
       },
-      "small: has a different size from the sensor");
+      "small: the image differs in size from the sensor");
 }
 
 TEST_F(CalibrateRange, ByTheProgram) {
@@ -220,7 +222,7 @@ TEST_F(CalibrateRange, ByTheProgram) {
   EXPECT_EQ(report["steps"].size(), 12);
   EXPECT_LT(left_by(read_sensor_toml(dir / "found.toml"), &error_at), 0.001);
   const std::string text = run_well({"calibrate", "--range", "wall", "--out", "found.toml"});
-  EXPECT_NE(text.find("12 frames at 12 distances: range error "), std::string::npos) << text;
+  EXPECT_NE(text.find("12 frames at 12 distances: RMS range error "), std::string::npos) << text;
   expect_refused(
       {{{"calibrate", "wall", "--out", "new.toml"}, "give either --noise or --range"},
        {{"calibrate", "wall", "--noise", "--range", "--out", "new.toml"}, "give either"}});

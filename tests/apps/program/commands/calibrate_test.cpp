@@ -158,7 +158,7 @@ TEST_F(CalibrateNoise, WhatDoesNotTellTheNoiseIsRefused) {
   expect_refused({{with("few"), "needs 30 frames from one pose, not 29"},
                   {with("moving"), "the scene or the camera moves"},
                   {with("flat"), "too few depth edges"},
-                  {with("exact"), "no more than their rounding to 1e-04 m"},
+                  {with("exact"), "no more than their rounding step of 1e-04 m"},
                   {{"calibrate", "flat", "--out", "new.toml"}, "give either --noise or --range"},
                   {{"calibrate", "--noise", "flat", "--out", "new.txt"}, "must end in .toml"},
                   {test::joined(with("flat"), {"--depth-scale", "0"}), "--depth-scale"},

@@ -93,7 +93,7 @@ TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
   const json continued = run_json({"integrate", "frames", "--map", "tree.ot", "--out", "again.ot"});
   EXPECT_EQ(continued.at("prior_sigma"), map.at("prior_sigma"));
   EXPECT_EQ(run_json({"info", "again.ot"}).at("free"), continued.at("free"));
-  EXPECT_NE(run_well({"convert", "map.vdb", "tree.ot"}).find("lost in the tree: beliefs of"),
+  EXPECT_NE(run_well({"convert", "map.vdb", "tree.ot"}).find("not stored in the tree: beliefs of"),
             std::string::npos);
 }
 
@@ -171,7 +171,7 @@ TEST_F(ForeignMaps, CloudsAreIntegrated) {
   EXPECT_EQ(seen.at("readings_inside"), 1681);
   EXPECT_NE(run_well({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--voxel", "0.02",
                       "--sensor", "small.toml", "--out", "s.vdb"})
-                .find("1 clouds (small), 1,681 readings"),
+                .find("1 clouds (small): 1,681 measured points"),
             std::string::npos);
   // A workspace that ends before the wall has nothing but free space, and that is said.
   const auto carved =
@@ -206,7 +206,7 @@ TEST_F(ForeignMaps, WrongUseIsRefused) {
   expect_refused(with_cloud({"--origin", "0,0,0", "--poses", "poses.txt"}), "--poses");
   expect_refused(with_cloud({"--poses", "poses.txt"}), "2 poses for 1 clouds");
   expect_refused(with_cloud({"--origin", "0,0,0", "--depth-scale", "1"}), "--depth-scale");
-  expect_refused(with_cloud({"--origin", "0,0,90"}), "no cloud has readings");
+  expect_refused(with_cloud({"--origin", "0,0,90"}), "no cloud has a point in the sensor's range");
   expect_refused(integrate({"frames", "--origin", "0,0,0"}), "requires --cloud");
   expect_refused(integrate({"--cloud", "cut.pcd", "--sensor", "small.toml", "--origin", "0,0,0"}),
                  "cut.pcd:");

@@ -148,7 +148,7 @@ TEST_F(Next, WhereMostIsOutOfReachItSaysWhatWouldHelp) {
     const std::string text = run_well({"next", "run/map.vdb", "--generator", generator, "--reach",
                                        "arm.toml", "--sensor", "tof.toml"});
     const std::string help = std::to_string(far) + " of " + std::to_string(all) +
-                             " candidates are out of reach: widen --reach, or";
+                             " candidates are out of reach. Widen --reach, or";
     EXPECT_EQ(text.find(help) != std::string::npos, 2 * far > all) << generator << text;
     EXPECT_EQ(text.find("out of reach") != std::string::npos, 2 * far > all) << generator << text;
     helped += 2 * far > all ? 1 : 0;

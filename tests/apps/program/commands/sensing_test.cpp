@@ -215,7 +215,7 @@ TEST_F(Sensing, AMeshIsPlacedInTheWorld) {
       {{{"--place", "1,2"}, "--place 1,2"},
        {{"--place", "1,2,3,4,5"}, "--place"},
        {{"--place", "0,0,0,0,0,0,2"}, "norm"},
-       {{"--place", "90,0,0"}, "no pose has the mesh in view"}});
+       {{"--place", "90,0,0"}, "the mesh is not in view and in range from any pose"}});
 }
 
 TEST_F(Sensing, MendedMeshesAreReported) {

@@ -121,7 +121,7 @@ TEST_F(WatchMasks, AMaskedArmIsNoPartOfTheMap) {
     fs::remove_all(dir / "plan");
   }
   const std::string text = run_well(test::joined(watch(), {"--quiet"}));
-  EXPECT_NE(text.find("pixels masked out: "), std::string::npos) << text;
+  EXPECT_NE(text.find("pixels removed by masks: "), std::string::npos) << text;
 }
 
 TEST_F(WatchMasks, RefusesFoldersThatCannotHoldMasks) {

@@ -127,7 +127,7 @@ TEST_F(Workflow, FramesThatAMapHasAreSkipped) {
   EXPECT_EQ(grow({"--map", "library.vdb", "--out", "library.vdb"})["skipped"], 6);
   EXPECT_EQ(read("library.vdb"), read("map.vdb"));
   EXPECT_NE(run_well({"integrate", "frames", "--map", "map.vdb", "--out", "map.vdb"})
-                .find("skipped, already in the map: 6"),
+                .find("frames skipped because the map has them: 6"),
             std::string::npos);
   // Another image of the same name is another frame, and so is one from another pose.
   write("frames/" + names(1), read("frames/" + names(4)));

@@ -84,8 +84,8 @@ def test_only_what_is_new_is_made_and_progress_says_how_long(folder, program, ca
     process = start("spec.toml", "--out", "out", program=program)
     said = process.communicate()[1].splitlines()
     assert process.returncode == 0 and len(calls()) == 9
-    assert said[0] == "6 of 9 runs are there" and [line.startswith("warning: ") for line in said[4:]] == [True] * (len(said) - 4)
-    assert "ended before 12 views (no_gain 1); their coverage stays as it was then" in said[4]
+    assert said[0] == "6 of 9 runs are done already" and [line.startswith("warning: ") for line in said[4:]] == [True] * (len(said) - 4)
+    assert "ended before 12 views (no_gain 1); for the remaining views, their last coverage counts" in said[4]
     assert said[1].startswith("run 7 of 9: cube, ") and said[3].endswith("; 0 s left")
     assert (folder / "out/results.json").stat().st_mode & 0o777 == 0o600  # as of every file that is written anew
 
@@ -101,7 +101,7 @@ def test_keeps_candidates_of_each_view(folder, program):
 def test_wrong_words_are_known_before_the_first_run(folder, program, calls):
     (folder / "spec.toml").write_text(SPEC.replace('"frontier"', '"nonsense"'))
     error = study("spec.toml", "--out", "out", code=1, program=program)
-    assert "spec.toml: cube, nonsense, seed 1: --policy: unknown policy nonsense; a gain is written \"gain:nonsense\"" in error
+    assert "spec.toml: cube, nonsense, seed 1: --policy: unknown policy nonsense; to use a gain, write \"gain:nonsense\"" in error
     assert calls() == [] and not (folder / "out").exists()
     (folder / "spec.toml").write_text(SPEC.replace("max_views", "max_view"))
     assert "line 7" in study("spec.toml", "--out", "other", code=2, program=program) and not (folder / "other").exists()
@@ -141,7 +141,7 @@ def test_a_wish_to_stop_leaves_what_is_whole(folder, program, wish):
         time.sleep(0.01)
     process.send_signal(wish)
     error = process.communicate(timeout=60)[1]
-    assert process.returncode == 130 and "the same call goes on" in error
+    assert process.returncode == 130 and "the same call continues" in error
     assert names("out") == ["runs"] and 1 <= runs_in("out") < 6
     assert len(names("out/runs")) == runs_in("out") + 1  # and the lock
 
@@ -152,7 +152,7 @@ def test_one_study_at_a_time_in_a_folder(folder, program):
     while runs_in("out") < 1:
         assert process.poll() is None
         time.sleep(0.01)
-    assert "another study is running there" in study("spec.toml", "--out", "out", code=2, program=program)
+    assert "another study uses this folder" in study("spec.toml", "--out", "out", code=2, program=program)
     process.terminate()
     process.communicate()
 
@@ -176,10 +176,10 @@ def test_a_folder_of_other_things_is_refused(folder, program):
     (folder / "spec.toml").write_text(SPEC)
     (folder / "other").mkdir()
     (folder / "other/notes.txt").write_text("mine")
-    assert "--out other: has files, but no runs/ of a study; choose a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
+    assert "--out other: has files that no study wrote; choose a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
     assert names("other") == ["notes.txt"]
     (folder / "other/runs").mkdir()  # of something else
-    assert "--out other: has files, but no runs/ of a study; choose a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
+    assert "--out other: has files that no study wrote; choose a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
     # The spec may lie there, and stays as it is.
     (folder / "home").mkdir()
     spec = SPEC.replace("cube.off", "../cube.off").replace("tof.toml", "../tof.toml")
@@ -194,7 +194,7 @@ exec {program} reconstruct "$@"
 """)
     (folder / "spec.toml").write_text(SPEC.replace('"frontier"', '{name = "mine", command = "sh mine.sh"}'))
     error = study("spec.toml", "--out", "out", "--jobs", "1", code=1, program=program)
-    assert "1 of 6 runs failed, the first: cube, mine, seed 1: no luck; repeat the call to make them again" in error
+    assert "1 of 6 runs failed, the first: cube, mine, seed 1: no luck; repeat the call to run them again" in error
     assert runs_in("out") == 5 and not (folder / "out/results.csv").exists()
     (folder / "mine.sh").write_text(f'exec {program} reconstruct "$@"\n')
     study("spec.toml", "--out", "out", program=program)

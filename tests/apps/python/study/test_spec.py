@@ -159,7 +159,7 @@ def test_hashes_follow_what_can_change_a_result(folder):
     ("seeds = [3, 1]", "seeds = [9000000000000000000]", ["line 4", "2^62"]),
     ("voxels = [0.01, 0.005]", f"voxels = [{10**400}]", ["line 6", "positive"]),
     ('"frontier", ', '"frontier", {name = "frontier", command = "x"}, ', ["line 2", "'frontier' twice"]),
-    ('"frontier", ', '{name = "gain:x", command = "x"}, ', ["line 2", "without :"]),
+    ('"frontier", ', '{name = "gain:x", command = "x"}, ', ["line 2", "must not contain :"]),
     ('"frontier", ', """{name = "x", command = "sh -c 'x"}, """, ["line 2", "No closing quotation"]),
     ('"tof.toml"', '"tof.toml", "./tof.toml"', ["line 5", "twice"]),
     ('"more/ball.off"', '{mesh = "more/ball.off", reach = 3}', ["line 1", "3"]),

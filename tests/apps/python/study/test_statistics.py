@@ -100,7 +100,7 @@ def test_figures_of_a_run():
     assert cases == 6
     assert rows.row_of(run_of("sr4000", "cube", 3, "mine"), {**record, "seconds": {"total": 9}}, 5)["deciding_seconds"] is None
     assert rows.early_ends([row, {**row, "views": 5}, {**row, "gain": "paper", "views": 5}], 5) == [
-        "1 of 2 runs of gain:combined ended before 5 views (max_views 1); their coverage stays as it was then"]
+        "1 of 2 runs of gain:combined ended before 5 views (max_views 1); for the remaining views, their last coverage counts"]
 
 
 def cells(text):
