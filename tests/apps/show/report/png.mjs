@@ -69,3 +69,18 @@ export function meanShade({ data, channels }) {
   for (let i = 0; i < data.length; i += channels) sum += data[i] + data[i + 1] + data[i + 2];
   return sum / (3 * (data.length / channels));
 }
+
+/** The part of the picture that has a colour: its edges and how many pixels there are. */
+export function boundsOf({ data, channels, width }, colour) {
+  const bounds = { number: 0, left: Infinity, right: -Infinity, top: Infinity, bottom: -Infinity };
+  for (let i = 0; i < data.length / channels; ++i) {
+    if (colour.some((value, c) => Math.abs(data[i * channels + c] - value) > 6)) continue;
+    const [x, y] = [i % width, Math.floor(i / width)];
+    bounds.number += 1;
+    bounds.left = Math.min(bounds.left, x);
+    bounds.right = Math.max(bounds.right, x);
+    bounds.top = Math.min(bounds.top, y);
+    bounds.bottom = Math.max(bounds.bottom, y);
+  }
+  return bounds;
+}
