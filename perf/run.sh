@@ -2,7 +2,7 @@
 # How fast is viewgain on this machine, next to other libraries? Installs and builds what is missing,
 # measures, prints one table and saves it.
 #   perf/run.sh [OUT]     OUT: folder for table.md and the figures as JSON (default: out/perf)
-# Environment (defaults): THREADS (2, for which the bars are stated; 0: all); MAPS to search (10).
+# Environment (defaults): THREADS (2, for which the bars are stated; 0: all); MAPS to search (6).
 set -euo pipefail
 
 if [ $# -gt 1 ] || [[ "${1:-}" == -* ]]; then
@@ -11,7 +11,7 @@ if [ $# -gt 1 ] || [[ "${1:-}" == -* ]]; then
 fi
 repository=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-$repository/out/perf}
-threads=${THREADS:-2} maps=${MAPS:-10}
+threads=${THREADS:-2} maps=${MAPS:-6}
 mkdir -p "$out"
 
 "$repository/apps/install_dependencies.sh" --perf
@@ -26,20 +26,20 @@ log=$out/build.log
   exit 1
 }
 
-echo "measuring takes about MINUTES minutes on two quiet cores" >&2
+echo "measuring takes about 6 minutes on two quiet cores" >&2
 # Exit code 1: a bar is missed or an answer is wrong. The table tells both.
 measure() {
   local name=$1
   shift
-  echo "$name" >&2
+  echo "measuring: $name" >&2
   "$bench" "$@" --json --threads "$threads" >"$out/$name.json" || [ $? -eq 1 ]
 }
 started=$SECONDS
 measure trace trace --poses 100 --repetitions 5
-measure trace_512 trace --voxels 512 --without octomap,openvdb --poses 40 --repetitions 3
+measure trace_256 trace --voxels 256 --without octomap,openvdb,tree64 --poses 40 --repetitions 3
 measure integrate integrate
 measure decision decision --maps camel-128 --candidates 500
-measure bars bars --maps "$maps" \
+measure bars bars --maps "$maps" --repetitions 3 \
   --only scaling,latency,update,search,memory,decision,hazard,classic,surroundings
 echo "measured in $((SECONDS - started)) s" >&2
 

@@ -5,7 +5,7 @@
 
     run_table.py FOLDER
 
-FOLDER holds trace.json, trace_512.json, integrate.json, decision.json and bars.json, as
+FOLDER holds trace.json, trace_256.json, integrate.json, decision.json and bars.json, as
 `viewgain-bench` printed them. The exit code is 1 if an answer of viewgain is wrong.
 """
 import json
@@ -85,12 +85,15 @@ def frame_row(integrate):
     return rival_row("a frame into the map [ms]", "OctoMap, one thread", short(theirs), short(ours), theirs / ours, 100)
 
 
-def decision_row(decision):
+def decision_rows(decision):
     ms = {name: entry["median"] for name, entry in decision[0]["milliseconds"].items()}
     theirs = ms["octomap_integrate"] + CANDIDATES * ms["octomap_gain_of_a_view"]
     ours = ms["integrate"] + ms["scene"] + ms[f"paper {CANDIDATES}"]
-    return rival_row(f"a frame to the best of {CANDIDATES} views [ms]", "OctoMap, entropy gain, one thread", short(theirs),
-                     short(ours), theirs / ours)
+    count, race = ms[f"surface_frontier_count {CANDIDATES}"], ms[f"combined {CANDIDATES} two stages"]
+    return [rival_row(f"a frame to the best of {CANDIDATES} views by `paper` [ms]", "OctoMap, entropy gain, one thread",
+                      short(theirs), short(ours), theirs / ours),
+            rival_row(f"the best of {CANDIDATES} views by `race` with `combined` [ms]", "`surface_frontier_count`, ours", short(count),
+                      short(race), count / race)]
 
 
 def figure_rows(bars):
@@ -108,7 +111,7 @@ def figure_rows(bars):
 
 def main(folder):
     read = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.json")}
-    trace, large, integrate = read["trace"], read["trace_512"], read["integrate"]
+    trace, large, integrate = read["trace"], read["trace_256"], read["integrate"]
     versions = ", ".join(f"{name} {version}" for name, version in trace["versions"].items() if version)
     print(f"{trace['cpu']}, {trace['threads']} threads, {trace['isa']}; {trace['compiler']}; {versions}; "
           f"viewgain {trace['commit']}\n")
@@ -117,10 +120,10 @@ def main(folder):
     rows = trace_rows(trace, RIVALS)
     rows += trace_rows(large, [(key, name, "first voxel of each ray", "viewgain_trace", bar, reason)
                                for key, name, bar, reason in LARGE])
-    rows += [frame_row(integrate), decision_row(read["decision"]), *figure_rows(read["bars"])]
+    rows += [frame_row(integrate), *decision_rows(read["decision"]), *figure_rows(read["bars"])]
     for row in rows:
         print(f"| {' | '.join(row)} |")
-    wrong = [name for name in ("trace", "trace_512", "integrate") if not read[name]["agree"]]
+    wrong = [name for name in ("trace", "trace_256", "integrate") if not read[name]["agree"]]
     if wrong:
         print(f"\n**Wrong answers** of viewgain in {', '.join(wrong)}.")
     return 1 if wrong else 0

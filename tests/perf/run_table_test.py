@@ -20,12 +20,13 @@ def trace(size, **changes):
 
 
 def files(**changes):
-    stages = {"integrate": 1, "scene": 1, "paper 500": 48, "octomap_integrate": 500, "octomap_gain_of_a_view": 99}
+    stages = {"integrate": 1, "scene": 1, "paper 500": 48, "octomap_integrate": 500, "octomap_gain_of_a_view": 99,
+              "surface_frontier_count 500": 90, "combined 500 two stages": 30}
     bars = [{"name": "update_over_build", "value": 0.2, "bar": 0.35, "better": "lower", "pass": True},
             {"name": "wall_over_free", "value": 0.7, "bar": 0.8, "better": "higher", "pass": False},
             {"name": "thread_scaling", "value": 1.95, "bar": 1.9, "better": "higher", "pass": False, "note": "answers differ"},
             {"name": "decision_ms_500", "value": 50, "bar": None, "better": "lower", "pass": None}]
-    made = {"trace": trace(128), "trace_512": trace(512),
+    made = {"trace": trace(128), "trace_256": trace(256),
             "integrate": {"agree": True, "milliseconds": {"octomap": {"median": 300}, "viewgain_cones": {"median": 1.5}}},
             "decision": [{"milliseconds": {name: {"median": ms} for name, ms in stages.items()}}], "bars": bars}
     return {**made, **changes}
@@ -54,9 +55,11 @@ class RunTable(unittest.TestCase):
         self.assertEqual(octomap[2:4], ["300 ×", "≥ 1,000"])
         self.assertTrue(octomap[4].startswith("**missed**: "))
         self.assertEqual(rows["a frame into the map [ms]", "OctoMap, one thread"], ["300", "1.50", "200 ×", "≥ 100", "met"])
-        self.assertEqual(rows["a frame to the best of 500 views [ms]", "OctoMap, entropy gain, one thread"],
+        self.assertEqual(rows["a frame to the best of 500 views by `paper` [ms]", "OctoMap, entropy gain, one thread"],
                          ["50,000", "50.0", "1,000 ×", "", ""])
-        self.assertEqual(rows["first voxel of each ray, 512³ [million rays/s]", "dense DDA, ours"][2:], ["3.00 ×", "≥ 1.3", "met"])
+        self.assertEqual(rows["the best of 500 views by `race` with `combined` [ms]", "`surface_frontier_count`, ours"][:3],
+                         ["90.0", "30.0", "3.00 ×"])
+        self.assertEqual(rows["first voxel of each ray, 256³ [million rays/s]", "dense DDA, ours"][2:], ["3.00 ×", "≥ 1.3", "met"])
 
     def test_misses_are_rows_with_a_reason(self):
         _, _, rows = printed(files())
@@ -67,9 +70,9 @@ class RunTable(unittest.TestCase):
         self.assertEqual(rows["frame to best of 500 by `paper` [ms]", ""][1:], ["50.0", "", "", ""])
 
     def test_wrong_answers_fail(self):
-        code, lines, _ = printed(files(trace_512=trace(512, agree=False)))
+        code, lines, _ = printed(files(trace_256=trace(256, agree=False)))
         self.assertEqual(code, 1)
-        self.assertIn("trace_512", lines[-1])
+        self.assertIn("trace_256", lines[-1])
 
 
 if __name__ == "__main__":
