@@ -28,7 +28,8 @@ function outOfHalfSpace(p, [x, y, z, offset]) {
 /** How far a position is out of reach [m]; 0: within the boxes, shells and half-spaces. */
 export function outOfReach(p, { boxes = [], shells = [], half_spaces: halves = [] } = {}) {
   const nearest = (parts, out) => (parts.length > 0 ? Math.min(...parts.map((part) => out(p, part))) : 0);
-  return Math.max(nearest(boxes, outOfBox), nearest(shells, outOfShell), 0, ...halves.map((half) => outOfHalfSpace(p, half)));
+  const ofHalves = halves.map((half) => outOfHalfSpace(p, half));
+  return Math.max(nearest(boxes, outOfBox), nearest(shells, outOfShell), 0, ...ofHalves);
 }
 
 /** The distance to the nearest of points that lie one after the other; NaN where there is none. */

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 // Walls around a scene: a bin's sides, a shelf's back, a room's ceiling. From outside they hide what is inside.
-import { Matrix4, Vector3 } from "three";
+import { BufferAttribute, Matrix4, Vector3 } from "three";
 
 // A wall covers this share of the scene's section, and lies in the outer part of the scene.
 const leastShare = 0.35;
@@ -11,16 +11,15 @@ const slices = 64;
 const leastCosine = 0.95;
 
 /** Areas of faces along each axis by sign and slice, from the lowest coordinate. */
-function slicesOf(faces, box) {
+function slicesOf(forEachFace, low, extent) {
   const areas = [0, 1, 2].map(() => [new Float64Array(slices), new Float64Array(slices)]);
-  for (const { at, normal, area } of faces) {
+  forEachFace((at, normal, area) => {
     for (let axis = 0; axis < 3; ++axis) {
-      const cosine = normal[axis];
-      if (Math.abs(cosine) < leastCosine) continue;
-      const share = (at[axis] - box.low[axis]) / (box.high[axis] - box.low[axis]);
-      areas[axis][cosine > 0 ? 1 : 0][Math.min(slices - 1, Math.max(0, Math.floor(share * slices)))] += area;
+      if (Math.abs(normal[axis]) < leastCosine) continue;
+      const slice = Math.floor(((at[axis] - low[axis]) / extent[axis]) * slices);
+      areas[axis][normal[axis] > 0 ? 1 : 0][Math.min(slices - 1, Math.max(0, slice))] += area;
     }
-  }
+  });
   return areas;
 }
 
@@ -36,25 +35,26 @@ function depthOf(shareAt) {
   return last + 1;
 }
 
+function boxOf(points) {
+  const low = [Infinity, Infinity, Infinity];
+  const high = low.map((v) => -v);
+  for (let i = 0; i < points.length; ++i) {
+    low[i % 3] = Math.min(low[i % 3], points[i]);
+    high[i % 3] = Math.max(high[i % 3], points[i]);
+  }
+  return { low, high };
+}
+
 /**
  * Planes (n, d) such that what lies at n·p > d is a wall; n points outwards. None of a body that is closed
- * all around, unless cameras are in it. `faces`: at, normal, area, in the grid's frame; `cameras`: positions
- * there.
+ * all around, unless cameras are in it. All in the grid's frame: `points` (coordinates one after the other),
+ * `forEachFace`, which calls back with a face's middle, normal and area, and `cameras`.
  */
-export function wallPlanes(faces, cameras) {
-  if (faces.length === 0) return [];
-  const box = { low: [0, 1, 2].map(() => Infinity), high: [0, 1, 2].map(() => -Infinity) };
-  for (const { corners } of faces) {
-    for (const corner of corners) {
-      for (let c = 0; c < 3; ++c) {
-        box.low[c] = Math.min(box.low[c], corner[c]);
-        box.high[c] = Math.max(box.high[c], corner[c]);
-      }
-    }
-  }
-  const extent = box.high.map((high, c) => high - box.low[c]);
-  if (extent.some((side) => !(side > 0))) return [];
-  const areas = slicesOf(faces, box);
+export function wallPlanes(points, forEachFace, cameras) {
+  const { low, high } = boxOf(points);
+  const extent = high.map((v, c) => v - low[c]);
+  if (!extent.every((side) => side > 0)) return [];
+  const areas = slicesOf(forEachFace, low, extent);
   const planes = [];
   for (let axis = 0; axis < 3; ++axis) {
     const section = extent[(axis + 1) % 3] * extent[(axis + 2) % 3];
@@ -69,54 +69,47 @@ export function wallPlanes(faces, cameras) {
       const inside = ((depth + 1) / slices) * extent[axis];
       const normal = [0, 0, 0];
       normal[axis] = sign;
-      planes.push({ normal, offset: sign > 0 ? box.high[axis] - inside : -(box.low[axis] + inside) });
+      planes.push({ normal, offset: sign > 0 ? high[axis] - inside : -(low[axis] + inside) });
     }
   }
-  const isInside = (p) => p.every((v, c) => v > box.low[c] && v < box.high[c]);
+  const isInside = (p) => p.every((v, c) => v > low[c] && v < high[c]);
   const closed = planes.filter(({ normal }) => normal[2] >= 0).length === 5;
   return closed && !cameras.some(isInside) ? [] : planes;
 }
 
-/** The faces of a mesh, moved by `matrix`. */
-export function facesOfMesh({ vertices, triangles }, matrix) {
-  const at = (index) => new Vector3().fromArray(vertices, 3 * index).applyMatrix4(matrix);
-  const faces = [];
+const moved = (points, matrix) => new BufferAttribute(points.slice(), 3).applyMatrix4(matrix).array;
+
+/** Calls back with each triangle. */
+const facesOfMesh = (points, triangles) => (use) => {
+  const corner = (index) => [points[3 * index], points[3 * index + 1], points[3 * index + 2]];
   for (let t = 0; t + 2 < triangles.length; t += 3) {
-    const [a, b, c] = [at(triangles[t]), at(triangles[t + 1]), at(triangles[t + 2])];
-    const normal = b.clone().sub(a).cross(c.clone().sub(a));
-    const twice = normal.length();
-    if (!(twice > 0)) continue;
-    const middle = a.clone().add(b).add(c).divideScalar(3);
-    faces.push({ at: middle.toArray(), normal: normal.divideScalar(twice).toArray(), area: twice / 2,
-      corners: [a, b, c].map((corner) => corner.toArray()) });
+    const [a, b, c] = [corner(triangles[t]), corner(triangles[t + 1]), corner(triangles[t + 2])];
+    const [u, v] = [b.map((x, i) => x - a[i]), c.map((x, i) => x - a[i])];
+    const cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    const twice = Math.hypot(...cross);
+    if (twice > 0) use(a.map((x, i) => (x + b[i] + c[i]) / 3), cross.map((x) => x / twice), twice / 2);
   }
-  return faces;
-}
+};
 
 /** Cubes have a face along each axis. */
-export function facesOfCubes({ centers, size }, matrix) {
-  const faces = [];
-  for (let i = 0; i < centers.length; i += 3) {
-    const at = new Vector3().fromArray(centers, i).applyMatrix4(matrix).toArray();
-    for (let axis = 0; axis < 3; ++axis) {
-      const normal = [0, 0, 0];
-      normal[axis] = 1;
-      faces.push({ at, normal, area: size * size, corners: [at] });
-    }
+const facesOfCubes = (centres, size) => (use) => {
+  for (let i = 0; i < centres.length; i += 3) {
+    const at = centres.subarray(i, i + 3);
+    for (const normal of [[1, 0, 0], [0, 1, 0], [0, 0, 1]]) use(at, normal, size * size);
   }
-  return faces;
-}
+};
 
 /** The walls of a report, as planes in the world. */
 export async function wallsOf(report) {
   const toWorld = new Matrix4().set(...report.T_world_grid, 0, 0, 0, 1);
   const toGrid = toWorld.clone().invert();
   const last = report.steps[report.steps.length - 1];
-  const faces = report.isRun ? facesOfMesh(await report.part(report.truth ?? last.surface), toGrid)
-    : facesOfCubes(await report.part(report.score.map), toGrid);
+  const part = await report.part(report.isRun ? report.truth ?? last.surface : report.score.map);
+  const points = moved(report.isRun ? part.vertices : part.centers, toGrid);
+  const forEachFace = report.isRun ? facesOfMesh(points, part.triangles) : facesOfCubes(points, part.size);
   const cameras = report.steps.filter(({ pose }) => pose).map(({ pose }) =>
     new Vector3(pose[3], pose[7], pose[11]).applyMatrix4(toGrid).toArray());
-  return wallPlanes(faces, cameras).map(({ normal, offset }) => {
+  return wallPlanes(points, forEachFace, cameras).map(({ normal, offset }) => {
     const n = new Vector3().fromArray(normal).transformDirection(toWorld);
     const point = new Vector3().fromArray(normal).multiplyScalar(offset).applyMatrix4(toWorld);
     return { normal: n, offset: n.dot(point) };

@@ -26,7 +26,8 @@ export function buildCameraTools(state, report, stage) {
     const workspace = workspacePoints(report.workspace, report.T_world_grid);
     const corner = nearCorner(workspace, stage.homeDirection);
     // The axes' names are a little beyond their ends.
-    const axes = [0, 1, 2].map((axis) => corner.clone().setComponent(axis, corner.getComponent(axis) + 1.3 * axesLength * stage.radius));
+    const beyond = 1.3 * axesLength * stage.radius;
+    const axes = [0, 1, 2].map((axis) => corner.clone().setComponent(axis, corner.getComponent(axis) + beyond));
     stage.home([...workspace, ...axes, ...(pose ? pyramid(pose) : [])]);
   };
   const button = (name, title, onclick) => el("button", { type: "button", title, onclick }, name);

@@ -35,8 +35,10 @@ function columnsOf(report, part, chosen, why) {
       cell: (row) => (Number.isNaN(row.area) ? none : short(areas.factor * row.area, areas.finest)) });
   }
   columns.push(
-    { name: "From", title: "What proposed it: a class of boundary, or a generator", value: (row) => `${row.class ?? ""} ${row.generator}`,
-      cell: (row) => (row.class ? el("span", {}, classCell(row.class), ` ${words(row.generator)}`) : words(row.generator)) },
+    { name: "From", title: "What proposed it: a class of boundary, or a generator",
+      value: (row) => `${row.class ?? ""} ${row.generator}`,
+      cell: ({ class: boundary, generator }) =>
+        boundary ? el("span", {}, classCell(boundary), ` ${words(generator)}`) : words(generator) },
     { name: "Why", title: "Why it was chosen, kept or dropped", long: true,
       value: (row) => (row.id === chosen ? "" : row.reason ?? "kept"), cell: fate });
   return columns;
@@ -87,8 +89,8 @@ export function buildCandidateTable(state, report) {
         host.replaceChildren(el("p", { class: "totals" }, "No candidate was proposed after this view."));
         return;
       }
-      table = new Table("Candidates for the next view", columnsOf(report, part, chosen, reasonsOf(report, report.steps[step], part, surface)),
-        choose, 1);
+      const why = reasonsOf(report, report.steps[step], part, surface);
+      table = new Table("Candidates for the next view", columnsOf(report, part, chosen, why), choose, 1);
       table.setRows(rowsOf(part));
       host.replaceChildren(totals(part), table.element);
     }

@@ -61,10 +61,13 @@ export function reasonsOf(report, step, part, surface) {
       return metres > 0 ? `${metres < 5e-4 ? "under 1 mm" : length(metres)} outside the reach` : "outside the reach";
     },
     taken: (id) => {
-      const away = taken.map((pose) => distance(positionOf(pose), positionOf(poseOf(id))) + 0.01 * angleBetween(pose, poseOf(id)));
-      const view = away.indexOf(Math.min(...away));
-      const apart = `${length(distance(positionOf(taken[view]), positionOf(poseOf(id))))} and ${fixed(angleBetween(taken[view], poseOf(id)), 1)}°`;
-      return `like view ${view}, ${apart} apart`;
+      const own = poseOf(id);
+      const metres = taken.map((pose) => distance(positionOf(pose), positionOf(own)));
+      const degrees = taken.map((pose) => angleBetween(pose, own));
+      // A degree counts as a centimetre.
+      const apart = metres.map((far, i) => far + 0.01 * degrees[i]);
+      const view = apart.indexOf(Math.min(...apart));
+      return `like view ${view}, ${length(metres[view])} and ${fixed(degrees[view], 1)}° apart`;
     },
     plane: (id) => {
       const height = Number.isFinite(settings.support_plane)
