@@ -35,7 +35,7 @@ function columnsOf(report, part, chosen, why) {
       cell: (row) => (Number.isNaN(row.area) ? none : short(areas.factor * row.area, areas.finest)) });
   }
   columns.push(
-    { name: "From", title: "What proposed it: a class of boundary, or a generator",
+    { name: "From", title: "What proposed it: a class of boundary, or a generator", long: true,
       value: (row) => `${row.class ?? ""} ${row.generator}`,
       cell: ({ class: boundary, generator }) =>
         boundary ? el("span", {}, classCell(boundary), ` ${words(generator)}`) : words(generator) },
