@@ -36,18 +36,18 @@ FIGURES = [
     ("stages_over_paper", "`race` of 2,000 by `surface` / scoring all by `paper`", "time", WALK),
     ("stages_over_paper_combined", "`race` of 2,000 by `combined` / scoring all by `paper`", "time", WALK),
     ("classic_over_paper", "ten gains of the literature / `paper`", "time", "they also walk through free space"),
-    ("thread_scaling", "2 threads / 1, 200 poses", "speed", "the machine is busy"),
-    ("latency_scaling", "2 threads / 1, one pose", "time", "the machine is busy, or its cores share caches"),
+    ("thread_scaling", "2 threads / 1, 200 poses", "speed", "1.97 on a quiet machine"),
+    ("latency_scaling", "2 threads / 1, one pose", "time", "0.58 to 0.62 on a quiet machine"),
     ("cost_512_over_128", "a pose at 512³ / at 128³", "time", "every hit is in another voxel"),
     ("update_over_build", "scene update / build, 512³", "time", ""),
     ("wall_over_free", "with / without a wall of 100 boxes", "speed", PACKETS),
-    ("mesh_over_free", "with / without a mesh around", "speed", PACKETS),
+    ("mesh_over_free", "with / without a mesh around", "speed", "0.98 on a quiet machine"),
     ("table_over_free", "with / without a table", "speed", PACKETS),
     ("lens_over_pinhole", "with / without a lens", "speed", ""),
     ("hazard_ms_128", "chance of surface in unknown voxels, 128³", "ms", "not studied"),
     ("hazard_ms_512", "chance of surface in unknown voxels, 512³", "ms", "not studied"),
     ("memory_mb", "memory of map and scene, 512³ after 8 views", "MB", ""),
-    ("turn_ms", "frame to best view by `combined`, with surface and candidates", "ms", "the machine is slow or busy"),
+    ("turn_ms", "frame to best view by `combined`, with surface and candidates", "ms", "depends on the machine and its load"),
     ("decision_ms_100", "frame to best of 100 by `paper`", "ms", ""),
     ("decision_ms_500", "frame to best of 500 by `paper`", "ms", ""),
     ("decision_ms_2000", "frame to best of 2,000 by `paper`", "ms", ""),
@@ -113,8 +113,10 @@ def main(folder):
     read = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.json")}
     trace, large, integrate = read["trace"], read["trace_256"], read["integrate"]
     versions = ", ".join(f"{name} {version}" for name, version in trace["versions"].items() if version)
+    load = folder / "load.txt"
+    before = f"; load before it {load.read_text(encoding='utf-8').strip()}" if load.exists() else ""
     print(f"{trace['cpu']}, {trace['threads']} threads, {trace['isa']}; {trace['compiler']}; {versions}; "
-          f"viewgain {trace['commit']}\n")
+          f"viewgain {trace['commit']}{before}\n")
     print("| what | rival | its figure | viewgain | viewgain is faster by | bar | met, or why not |")
     print("|---|---|---|---|---|---|---|")
     rows = trace_rows(trace, RIVALS)

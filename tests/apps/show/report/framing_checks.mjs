@@ -3,9 +3,7 @@
 // What the first look shows: the chosen camera and the workspace, clear of what lies over the scene; and the
 // panel beside it.
 import { check } from "./checks.mjs";
-import { boundsOf } from "./png.mjs";
-
-const chosen = [0x0c, 0x8a, 0x4f];
+import { boundsOf, colouredLike, differentFrom } from "./png.mjs";
 
 /** The part of the scene that nothing lies over, in pixels of the scene. */
 async function freePart({ page }) {
@@ -38,9 +36,13 @@ export async function checkFraming(report, data) {
   const look = async (when) => {
     const picture = await report.viewer();
     const part = await freePart(report);
-    const camera = boundsOf(picture, chosen);
+    // The camera and its rays, which end in the workspace.
+    const toggleChosen = () => report.drawn(() => page.locator('[data-layer="chosen"]').click());
+    await toggleChosen();
+    const camera = boundsOf(picture, differentFrom(await report.viewer()));
+    await toggleChosen();
     check(camera.number > 50 && isWithin(camera, part), `${when}, the chosen camera is in sight: ${JSON.stringify(camera)}`);
-    const box = boundsOf(picture, theme === "dark" ? [0x3a, 0x45, 0x54] : [0xbc, 0xc5, 0xd0]);
+    const box = boundsOf(picture, colouredLike(theme === "dark" ? [0x3a, 0x45, 0x54] : [0xbc, 0xc5, 0xd0]));
     check(box.number > 100 && isWithin(box, part), `${when}, the workspace is in sight: ${JSON.stringify(box)}`);
   };
   await look("at first");
