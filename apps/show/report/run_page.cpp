@@ -123,6 +123,27 @@ Json candidates_json(const Proposal& proposal, const CandidateGeneration& genera
   return to_json(shown);
 }
 
+// What the robot and the camera allow; with it the page says by how much a candidate was refused.
+Json limits_json(const FeasibilityConfig& config) {
+  Json boxes = Json::array(), shells = Json::array(), half_spaces = Json::array();
+  for (const Box& box : config.reach.boxes) boxes.push_back({box.min, box.max});
+  for (const ReachRegion::Shell& shell : config.reach.shells) {
+    const Vector3d& c = shell.center;
+    shells.push_back({c.x(), c.y(), c.z(), shell.min_radius, shell.max_radius});
+  }
+  for (const ReachRegion::HalfSpace& half : config.reach.half_spaces) {
+    const Vector3d& n = half.normal;
+    half_spaces.push_back({n.x(), n.y(), n.z(), half.offset});
+  }
+  return {{"body", config.body.size},
+          {"clearance", config.clearance},
+          {"min_range", config.sensor ? Json(config.sensor->min_range) : Json()},
+          {"near_share", config.max_near_share},
+          {"boxes", boxes},
+          {"shells", shells},
+          {"half_spaces", half_spaces}};
+}
+
 // The unknown voxels from which most is expected of a view.
 Json expected_json(const GridSnapshot& snapshot, std::vector<VoxelContribution> voxels,
                    const Json& unit) {
@@ -159,7 +180,10 @@ void RunPage::add_view(const ViewRecord& record, const SurfaceModel& model,
                        const CandidateGeneration& generation, const EstimatedViews& estimated,
                        const GainEvaluator& evaluator,
                        std::vector<VoxelContribution> contributions) {
-  if (views_.empty()) head_ = page_head("reconstruct", title_, evaluator, sensor_, criterion_);
+  if (views_.empty()) {
+    head_ = page_head("reconstruct", title_, evaluator, sensor_, criterion_);
+    head_["limits"] = limits_json(generation.config().feasibility);
+  }
   Json view{{"pose", pose_rows(record.T_world_camera)},
             {"surface", to_json(shown_surface(model, truth_.get()))},
             {"points", points_json(model.points())}};

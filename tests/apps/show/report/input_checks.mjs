@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keys, mouse and touch.
 import { check } from "./checks.mjs";
+import { tabOfPlots } from "./panel_checks.mjs";
 import { differing } from "./png.mjs";
 
 const some = 25;
 
 /** Whether the tab key gets to what can be operated, in order. */
-async function checkFocusOrder({ page }) {
+async function checkFocusOrder({ page }, tab) {
   await page.locator("body").evaluate(() => document.activeElement.blur());
   await page.mouse.click(640, 20);
   const reached = [];
@@ -18,7 +19,7 @@ async function checkFocusOrder({ page }) {
       return id || dataset.layer || tagName.toLowerCase();
     }));
   }
-  const order = ["theme", "open-help", "canvas", "workspace", "play", "slider", "tab-plots"];
+  const order = ["theme", "open-help", "canvas", "workspace", "play", "slider", `tab-${tab}`];
   const places = order.map((name) => reached.indexOf(name));
   const missed = order.filter((_, i) => places[i] < 0);
   check(missed.length === 0, `the tab key reaches all, not ${missed.join(", ")}`);
@@ -29,8 +30,8 @@ export async function checkKeyboard(report, data) {
   const { page } = report;
   const press = (key) => report.drawn(() => page.keyboard.press(key));
   await report.goTo(0);
-  await page.locator("#tab-plots").click();
-  await checkFocusOrder(report);
+  await page.locator(`#tab-${tabOfPlots(data)}`).click();
+  await checkFocusOrder(report, tabOfPlots(data));
   await page.locator("#stage canvas").focus();
   await press("ArrowRight");
   check((await report.shown()) === 1, "the right arrow goes to the next step");

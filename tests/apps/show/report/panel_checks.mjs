@@ -6,6 +6,9 @@ import { differing } from "./png.mjs";
 
 const finite = (values) => values.filter((value) => Number.isFinite(value)).length;
 
+/** Scored poses have their plot above the ranking. */
+export const tabOfPlots = (data) => (data.kind === "score" ? "ranking" : "plots");
+
 /** How many points each plot must have, by its id. */
 function expectedPoints(data) {
   if (data.kind === "score") {
@@ -24,7 +27,7 @@ function expectedPoints(data) {
 
 export async function checkPlots(report, data) {
   const { page } = report;
-  await page.locator("#tab-plots").click();
+  await page.locator(`#tab-${tabOfPlots(data)}`).click();
   for (const [id, points] of Object.entries(expectedPoints(data))) {
     const found = await page.locator(`[data-plot="${id}"] circle`).count();
     check(found === points, `the plot ${id} has ${points} points, not ${found}`);
@@ -90,13 +93,21 @@ export async function checkCandidates(report, data) {
   const rows = await panel.locator("tbody tr").count();
   check(rows === number, `the table has all ${number} candidates, not ${rows}`);
   const fate = (index) => panel.locator(`tr[data-id="${index}"] td`).last().textContent();
-  if (chosen !== null) check((await fate(chosen)).trim() === "chosen", "the table tells which was chosen");
+  if (chosen !== null) {
+    const why = (await fate(chosen)).trim();
+    check(/^chosen: (largest )?gain:? [\d.,]+ nat, [\d.]+ % (above the next|below the largest)$/.test(why),
+      `the table tells why one was chosen: ${why}`);
+  }
   const dropped = candidates.reason.findIndex((reason) => reason >= 0);
   if (dropped >= 0) {
-    const reason = candidates.reasons[candidates.reason[dropped]].replace(/_/g, " ");
-    check((await fate(dropped)).includes(reason), `the table tells why a candidate was dropped: ${reason}`);
+    const reason = candidates.reasons[candidates.reason[dropped]];
+    const why = await fate(dropped);
+    const words = { too_near: /rays end within the least range, \d+ mm; surface at \d+ mm/,
+      collision: /body touches unknown or occupied space/, taken: /like view \d+/, unreachable: /\d+ mm outside the reach/ };
+    check(why.startsWith("dropped: ") && words[reason]?.test(why), `the table tells why a candidate was dropped (${reason}): ${why}`);
   }
   const other = candidates.reason.findIndex((reason, i) => reason === -1 && i !== chosen);
+  check(/^kept: gain (≈ )?[\d.]+ % (below|above) the chosen$/.test((await fate(other)).trim()), "the table compares with the chosen one");
   const before = await report.viewer();
   const row = panel.locator(`tr[data-id="${other}"]`);
   await report.drawn(() => row.click());

@@ -69,3 +69,25 @@ export function meanShade({ data, channels }) {
   for (let i = 0; i < data.length; i += channels) sum += data[i] + data[i + 1] + data[i + 2];
   return sum / (3 * (data.length / channels));
 }
+
+export const colouredLike = (colour) => (picture, at) =>
+  colour.every((value, c) => Math.abs(picture.data[at + c] - value) <= 6);
+
+export const differentFrom = (other) => (picture, at) =>
+  [0, 1, 2].some((c) => Math.abs(picture.data[at + c] - other.data[at + c]) > 12);
+
+/** The part of a picture that has some property: its edges and how many pixels there are. */
+export function boundsOf(picture, has) {
+  const { data, channels, width } = picture;
+  const bounds = { number: 0, left: Infinity, right: -Infinity, top: Infinity, bottom: -Infinity };
+  for (let i = 0; i < data.length / channels; ++i) {
+    if (!has(picture, i * channels)) continue;
+    const [x, y] = [i % width, Math.floor(i / width)];
+    bounds.number += 1;
+    bounds.left = Math.min(bounds.left, x);
+    bounds.right = Math.max(bounds.right, x);
+    bounds.top = Math.min(bounds.top, y);
+    bounds.bottom = Math.max(bounds.bottom, y);
+  }
+  return bounds;
+}

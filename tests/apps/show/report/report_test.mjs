@@ -9,6 +9,7 @@ import { mkdirSync, readFileSync, statSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { launch, OpenReport } from "./browser.mjs";
 import { check, summary } from "./checks.mjs";
+import { checkFraming, checkSpace } from "./framing_checks.mjs";
 import { checkKeyboard, checkMouseAndTouch } from "./input_checks.mjs";
 import { checkHostileNames, checkWithoutWebgl } from "./other_pages.mjs";
 import { checkCandidates, checkPlots, checkRows } from "./panel_checks.mjs";
@@ -67,6 +68,8 @@ async function checkScheme(browser, scheme) {
   check(filledShare(first) > 0.02, `the first picture is not blank (${scheme})`);
   await keepPicture(report, scheme);
   await checkLayout(report);
+  await checkFraming(report, data);
+  await checkSpace(report, data);
   if (kind === "reconstruct") {
     await checkTwoRuns(report, data);
     await checkShownNumbers(report, data);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Reports of a run and of a ranking, in a real browser: report_test.mjs says what is checked. Skipped (77)
+# Reports of runs and of a ranking, in a real browser: report_test.mjs and wall_test.mjs say what is checked. Skipped (77)
 # where npm, its registry or the browser is missing, or the program was built without npm.
 #   report_test.sh VIEWGAIN_BIN_FOLDER WORK_FOLDER
 set -euo pipefail
@@ -54,7 +54,7 @@ OFF
 3 3 2 10
 3 3 10 6
 MESH
-rm -rf run before
+rm -rf run before in_bin
 status=0
 run() { viewgain reconstruct object.off --size 0.3 --sensor sr4000 --voxel 0.006 --pictures off "$@" >log.txt 2>&1; }
 run --max-views 3 --policy random --out before
@@ -65,5 +65,10 @@ if [ "$status" -ne 0 ]; then
   exit 1
 fi
 viewgain score run/map.vdb --poses sphere:200,0.6 --report score.html >>log.txt 2>&1
+node make_bin.mjs >bin.off
+printf '[[box]]\nmin = [-1, -1, 0.25]\nmax = [1, 1, 1]\n' >reach.toml
+viewgain reconstruct bin.off --sensor sr4000 --voxel 0.008 --pictures off --max-views 2 --reach reach.toml \
+  --from 0,0,0.6,1,0,0,0 --report on --out in_bin >>log.txt 2>&1
+node wall_test.mjs in_bin/report.html run/report.html
 node report_test.mjs run/report.html reconstruct
 node report_test.mjs score.html score

@@ -6,6 +6,7 @@ import { byId, el } from "./dom.js";
 import { layersOf, LayerStack } from "./layers/stack.js";
 import { outlookOf } from "./scene/outlook.js";
 import { Stage } from "./scene/stage.js";
+import { wallsOf } from "./scene/walls.js";
 import { State } from "./state.js";
 import { buildCameraTools } from "./ui/camera_tools.js";
 import { buildCandidateTable } from "./ui/candidate_table.js";
@@ -20,6 +21,9 @@ import { followTheme, themeColours } from "./ui/theme.js";
 import { buildTimeline } from "./ui/timeline.js";
 import { buildViewTable } from "./ui/view_table.js";
 
+// Where less than this is left beside the layers, the scene lies under them [px].
+const leastFree = 260;
+
 function trouble(text) {
   const line = byId("trouble");
   line.textContent = text;
@@ -30,10 +34,13 @@ function trouble(text) {
 const mostKept = ({ steps }) =>
   Math.max(...steps.map(({ candidates }) => candidates?.reason.filter((r) => r === -1).length ?? 0));
 
-/** The last view of a run, the best of scored poses, unless the address says otherwise. */
+/** The first view of a run with a choice among candidates, the best of scored poses, or as the address says. */
 function startStep(report) {
   const last = report.steps.length - 1;
-  return Math.min(Number(/^#step=(\d+)$/.exec(location.hash)?.[1] ?? (report.isRun ? last : 0)), last);
+  const isChoice = ({ candidates, chosen }) =>
+    Number.isInteger(chosen) && candidates.reason.filter((reason) => reason === -1).length > 1;
+  const first = report.steps.findIndex(isChoice);
+  return Math.min(Number(/^#step=(\d+)$/.exec(location.hash)?.[1] ?? (first < 0 ? last : first)), last);
 }
 
 /** Null where the browser has no WebGL. */
@@ -52,21 +59,29 @@ function withoutStage(state) {
 }
 
 /** The 3-D viewer follows the state; returns the keys that it adds. */
-function buildViewer(state, report, stage, layers) {
+function buildViewer(state, report, stage, layers, walls) {
   const viewer = byId("viewer");
   const stack = new LayerStack(report, stage, layers, (legends) => {
     showLegend(byId("legend"), legends);
+    if (!viewer.dataset.drawn) makeRoom();
     viewer.dataset.shown = String(state.values.step);
     viewer.dataset.drawn = String(1 + Number(viewer.dataset.drawn ?? 0));
   });
-  buildLayersPanel(state, report, layers);
+  stage.cutaway.setWalls(walls);
+  buildLayersPanel(state, report, layers, stage, walls);
   const panel = byId("layers");
-  const makeRoom = () => stage.setAside(panel.open && stage.canvas.clientWidth > 600 ? panel.offsetWidth : 0);
-  panel.addEventListener("toggle", makeRoom);
-  makeRoom();
-  stage.onDraw = () => showScale(byId("scale"), stage.pixelsPerMetre());
-  stage.home();
   const camera = buildCameraTools(state, report, stage);
+  const makeRoom = () => {
+    stage.setCovered({
+      left: panel.open && stage.canvas.clientWidth > panel.offsetWidth + leastFree ? panel.offsetWidth : 0,
+      top: byId("camera-tools").offsetHeight + 10,
+      bottom: byId("legend").offsetHeight + 10,
+    });
+    if (stage.isHome) camera.home();
+  };
+  panel.addEventListener("toggle", makeRoom);
+  new ResizeObserver(makeRoom).observe(byId("stage"));
+  stage.onDraw = () => showScale(byId("scale"), stage.pixelsPerMetre());
   let colours = null;
   state.follow(["theme"], ({ theme }) => {
     colours = themeColours(theme);
@@ -91,7 +106,7 @@ function buildViewer(state, report, stage, layers) {
       act: (key) => stage.move(0, key === "w" ? -angle : angle, 1) },
     { keys: ["+", "=", "-"], shown: "+ -", does: "come closer, go back",
       act: (key) => stage.move(0, 0, key === "-" ? 1.12 : 1 / 1.12) },
-    { keys: ["h"], shown: "H", does: "look at everything", act: camera.home },
+    { keys: ["h"], shown: "H", does: "look at the workspace and the chosen camera", act: camera.home },
     ...(camera.lookTaken
       ? [{ keys: ["v"], shown: "V", does: "look through the view just taken", act: camera.lookTaken }] : []),
     { keys: ["n"], shown: "N", does: "look through the next or the selected pose", act: camera.look },
@@ -114,7 +129,9 @@ async function build(report) {
     colouring: "plain",
     sigmas: 3,
     best: report.isRun && mostKept(report) > 400 ? 200 : Infinity,
-    tab: "plots",
+    walls: true,
+    front: 0,
+    tab: report.isRun ? "plots" : "ranking",
     other: report.beside ? otherRun(report.beside.name, report.beside) : null,
     theme: "light",
   });
@@ -125,7 +142,7 @@ async function build(report) {
   const tabs = report.isRun
     ? [["plots", "Plots", plots], ["candidates", "Candidates", buildCandidateTable(state, report)],
       ["views", "Views", buildViewTable(state, report, timeline.go)], ["run", "Run", buildFigures(state, report)]]
-    : [["plots", "Plot", plots], ["ranking", "Ranking", buildRankingTable(state, report, timeline.go)],
+    : [["ranking", "Ranking", el("div", {}, plots, buildRankingTable(state, report, timeline.go))],
       ["run", "Run", buildFigures(state, report)]];
   buildTabs(state, tabs.map(([id, name, content]) => ({ id, name, content })));
   // A candidate belongs to its step.
@@ -133,7 +150,7 @@ async function build(report) {
 
   const outlook = await outlookOf(report);
   const stage = stageOn(outlook);
-  const viewerKeys = stage ? buildViewer(state, report, stage, layers) : [];
+  const viewerKeys = stage ? buildViewer(state, report, stage, layers, await wallsOf(report)) : [];
   if (!stage) withoutStage(state);
   bindKeys([
     { keys: ["ArrowLeft", "ArrowRight"], shown: "← →", does: "step before, after",

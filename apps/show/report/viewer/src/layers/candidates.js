@@ -4,7 +4,7 @@
 import { Group } from "three";
 import { chosenColour, hitColours, ramps, selectedColour } from "../colours.js";
 import { poseAt } from "../data/parts.js";
-import { unitOf } from "../format.js";
+import { unitFor } from "../format.js";
 import { frustumLines, pyramids } from "../scene/frusta.js";
 import { bundleOf } from "../scene/lines.js";
 
@@ -37,7 +37,7 @@ export const candidates = {
   async build({ step, report, stage, values }) {
     const part = await report.part(step.candidates);
     const { low, high } = gainRange(part);
-    const unit = unitOf(report.gain_unit);
+    const unit = unitFor(report.gain_unit, high);
     const indices = keptByGain(part).slice(0, values.best);
     const write = (index, target, at) =>
       ramps.gain.write((part.gain[index] - low) / (high - low), target, at);

@@ -4,7 +4,7 @@
 import { Color } from "three";
 import { hitColours, ramps } from "../colours.js";
 import { quantile } from "../data/parts.js";
-import { unitOf } from "../format.js";
+import { unitFor } from "../format.js";
 import { cubes } from "../scene/cubes.js";
 
 const greatest = (values) => {
@@ -21,11 +21,11 @@ export const map = {
   swatch: mapColour,
   ofAllSteps: () => true,
   has: (step) => step.map && step.map.centers.rows > 0,
-  async build({ step, report }) {
+  async build({ step, report, stage }) {
     const { centers, size } = await report.part(step.map);
     const linear = new Color(mapColour).toArray();
     const write = (i, target) => [target[0], target[1], target[2]] = linear;
-    return { object: cubes(centers, size, write) };
+    return { object: stage.cutaway.apply(cubes(centers, size, write)) };
   },
 };
 
@@ -35,18 +35,18 @@ export const contributions = {
   on: true,
   swatch: hitColours.unknown,
   has: (step) => step.contributions && step.contributions.centers.rows > 0,
-  async build({ step, report }) {
+  async build({ step, report, stage }) {
     const { centers, value, state, unit, size } = await report.part(step.contributions);
-    const { name, factor } = unitOf(unit);
     const high = greatest(value);
+    const { name, factor } = unitFor(unit, high);
     const write = (i, target) =>
       (state[i] === 1 ? ramps.unknown : ramps.occupied).write(value[i] / high, target, 0);
     const bar = (title, ramp) => ({ title, ramp, low: 0, high: high * factor });
     const legend = [
-      bar(`from unknown [${name}]`, ramps.unknown),
-      bar(`from occupied [${name}]`, ramps.occupied),
+      bar(`per unknown voxel [${name}]`, ramps.unknown),
+      bar(`per occupied voxel [${name}]`, ramps.occupied),
     ];
-    return { object: cubes(centers, size, write, { scale: 1.06 }), legend };
+    return { object: stage.cutaway.apply(cubes(centers, size, write, { scale: 1.06 })), legend };
   },
 };
 
@@ -56,12 +56,12 @@ export const expected = {
   on: false,
   swatch: ramps.unknown.css(0.7),
   has: (step) => step.expected && step.expected.centers.rows > 0,
-  async build({ step, report }) {
+  async build({ step, report, stage }) {
     const { centers, value, unit, size } = await report.part(step.expected);
-    const { name, factor } = unitOf(unit);
     const high = quantile(value, 0.98) || 1;
+    const { name, factor } = unitFor(unit, high);
     const write = (i, target) => ramps.unknown.write(value[i] / high, target, 0);
-    const legend = { title: `expected [${name}]`, ramp: ramps.unknown, low: 0, high: high * factor, open: true };
-    return { object: cubes(centers, size, write), legend };
+    const legend = { title: `expected per voxel [${name}]`, ramp: ramps.unknown, low: 0, high: high * factor, open: true };
+    return { object: stage.cutaway.apply(cubes(centers, size, write)), legend };
   },
 };

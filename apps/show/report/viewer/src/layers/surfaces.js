@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The viewgain authors
 // SPDX-License-Identifier: Apache-2.0
 // Layers of a run's surface: surface so far, boundaries, patches, points, truth; the view just taken; the box.
-import { Box3, Group } from "three";
+import { Group } from "three";
 import { classColours, patchColour, ramps, truthColour } from "../colours.js";
 import { ellipsoids, greatestSigmas } from "../scene/ellipsoids.js";
+import { axesLength, nearCorner, workspacePoints } from "../scene/framing.js";
 import { frustumLines, matrixOf } from "../scene/frusta.js";
 import { axesAt, boundaryLines, workspaceLines } from "../scene/lines.js";
 import { coloursOf, meshOf } from "../scene/meshes.js";
@@ -24,13 +25,13 @@ export const surface = {
   swatch: "var(--surface)",
   has: (step) => step.surface && step.surface.triangles.rows > 0,
   key: ({ colouring }) => colouring,
-  async build({ step, report, values, theme }) {
+  async build({ step, report, stage, values, theme }) {
     const part = await report.part(step.surface);
     const by = values.colouring;
-    if (!part[by]) return { object: meshOf(part, { colour: theme.surface }) };
+    if (!part[by]) return { object: stage.cutaway.apply(meshOf(part, { colour: theme.surface })) };
     const valuesOf = async (end) => (await report.part(end.surface))[by] ?? [];
     const range = await report.range(by, valuesOf);
-    const object = meshOf(part, { colours: coloursOf(part[by], ramps[by], range) });
+    const object = stage.cutaway.apply(meshOf(part, { colours: coloursOf(part[by], ramps[by], range) }));
     return { object, legend: barOf(titles[by], ramps[by], range) };
   },
 };
@@ -42,8 +43,8 @@ export const boundaries = {
   swatch: `conic-gradient(${[classColours.top, classColours.right, classColours.bottom, classColours.left]
     .map((colour, i) => `${colour} ${90 * i - 45}deg ${90 * i + 45}deg`).join(",")})`,
   has: (step) => step.boundaries && step.boundaries.start.length > 0,
-  async build({ step, report }) {
-    const object = boundaryLines(await report.part(step.boundaries), 4);
+  async build({ step, report, stage }) {
+    const object = stage.cutaway.clip(boundaryLines(await report.part(step.boundaries), 4));
     return { object, legend: { title: "boundaries", marks: Object.entries(classColours) } };
   },
 };
@@ -54,8 +55,8 @@ export const patches = {
   on: false,
   swatch: patchColour,
   has: (step) => step.patches && step.patches.triangles.rows > 0,
-  build: async ({ step, report }) => ({
-    object: meshOf(await report.part(step.patches), { colour: patchColour }),
+  build: async ({ step, report, stage }) => ({
+    object: stage.cutaway.apply(meshOf(await report.part(step.patches), { colour: patchColour })),
   }),
 };
 
@@ -66,11 +67,11 @@ export const points = {
   swatch: ramps.sigma.css(0.7),
   has: (step) => step.points && step.points.positions.rows > 0,
   key: ({ sigmas }) => sigmas,
-  async build({ step, report, values }) {
+  async build({ step, report, stage, values }) {
     const valuesOf = async (end) => (end.points ? greatestSigmas(await report.part(end.points)) : []);
     const range = await report.range("points", valuesOf);
     const object = ellipsoids(await report.part(step.points), values.sigmas, ramps.sigma, range);
-    return { object, legend: barOf("greatest σ [mm]", ramps.sigma, range) };
+    return { object: stage.cutaway.apply(object), legend: barOf("greatest σ [mm]", ramps.sigma, range) };
   },
 };
 
@@ -92,8 +93,8 @@ export const truth = {
   swatch: truthColour,
   ofAllSteps: () => true,
   has: (step, values, report) => Boolean(report.truth),
-  build: async ({ report }) => ({
-    object: meshOf(await report.part(report.truth), { colour: truthColour, opacity: 0.38 }),
+  build: async ({ report, stage }) => ({
+    object: stage.cutaway.apply(meshOf(await report.part(report.truth), { colour: truthColour, opacity: 0.38 })),
   }),
 };
 
@@ -107,12 +108,9 @@ export const workspace = {
   async build({ report, stage, theme }) {
     const lines = workspaceLines(report.workspace, theme.ground);
     lines.applyMatrix4(matrixOf(report.T_world_grid));
-    const { min, max } = new Box3().setFromObject(lines);
-    // The corner of the floor that is seen before the object.
-    const { x, y } = stage.homeDirection;
-    const corner = [x > 0 ? max.x : min.x, y > 0 ? max.y : min.y, min.z];
+    const corner = nearCorner(workspacePoints(report.workspace, report.T_world_grid), stage.homeDirection);
     const object = new Group();
-    object.add(lines, axesAt(corner, 0.2 * stage.radius, theme.ink));
+    object.add(lines, axesAt(corner.toArray(), axesLength * stage.radius, theme.ink));
     return { object };
   },
 };

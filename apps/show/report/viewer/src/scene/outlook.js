@@ -7,12 +7,22 @@ import { matrixOf } from "./frusta.js";
 
 // A little off the side shows depth [rad].
 const aside = 0.35;
+// How far above the scene one looks down from [rad]: further where the cameras do, as into a bin.
+const [leastHeight, mostHeight, shareOfCameras] = [0.38, 0.9, 0.65];
 
 /** Where the run started, or the best pose. */
 async function firstPose(report) {
   const { pose, chosen, candidates } = report.steps[0];
   if (report.isRun) return pose;
   return chosen === null ? null : poseAt((await report.part(candidates)).poses, chosen);
+}
+
+/** The mean angle of the cameras above the ground, seen from the centre [rad]; 0: there are none. */
+async function camerasHeight(report, centre) {
+  const poses = report.isRun ? report.steps.map(({ pose }) => pose) : [await firstPose(report)];
+  const heights = poses.filter(Boolean).map((pose) => Math.atan2(pose[11] - centre.z,
+    Math.hypot(pose[3] - centre.x, pose[7] - centre.y)));
+  return heights.length > 0 ? heights.reduce((sum, h) => sum + h, 0) / heights.length : 0;
 }
 
 /** Points of the whole object, as far as it is known. */
@@ -50,5 +60,6 @@ export async function outlookOf(report) {
   const toPose = pose ? Math.atan2(pose[7] - centre.y, pose[3] - centre.x) : -Math.PI / 2;
   const nearer = Math.cos(toPose - side) >= 0 ? side : side + Math.PI;
   const towards = Math.sin(toPose - nearer) >= 0 ? -aside : aside;
-  return { centre, radius, azimuth: nearer + towards, firstPose: pose };
+  const height = shareOfCameras * (await camerasHeight(report, centre));
+  return { centre, radius, azimuth: nearer + towards, height: Math.min(mostHeight, Math.max(leastHeight, height)) };
 }

@@ -6,12 +6,12 @@ import {
   Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { Cutaway } from "./cutaway.js";
+import { fittingPosition } from "./framing.js";
 
 const homeFieldOfView = 36;
-// How far above the scene home looks down from [rad].
-const homeHeight = 0.38;
-// Home goes back up to this much further, if that brings the first camera in sight.
-const homeBack = 1.3;
+// What home shows stays this far from the edges of the free part of the picture [px].
+const homeMargin = 22;
 
 const column = (pose, c) => new Vector3(pose[c], pose[4 + c], pose[8 + c]);
 
@@ -20,7 +20,7 @@ export class Stage {
   #size = new Vector2();
 
   /** Throws where the browser has no WebGL. */
-  constructor(host, { centre, radius, azimuth, firstPose }) {
+  constructor(host, { centre, radius, azimuth, height }) {
     this.renderer = new WebGLRenderer({ antialias: true });
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     this.canvas = this.renderer.domElement;
@@ -30,11 +30,13 @@ export class Stage {
 
     this.centre = centre;
     this.radius = radius;
-    this.firstPose = firstPose;
-    this.homeDirection = new Vector3().setFromSphericalCoords(1, Math.PI / 2 - homeHeight, azimuth);
+    this.renderer.localClippingEnabled = true;
+    this.cutaway = new Cutaway();
+    this.homeDirection = new Vector3().setFromSphericalCoords(1, Math.PI / 2 - height, azimuth);
     // Spherical coordinates have their pole along y.
     this.homeDirection.set(this.homeDirection.z, this.homeDirection.x, this.homeDirection.y);
-    this.aside = 0;
+    // Strips of the picture that other parts of the page cover [px].
+    this.covered = { left: 0, top: 0, bottom: 0 };
     this.scene = new Scene();
     this.content = new Group();
     this.camera = new PerspectiveCamera(homeFieldOfView, 1, radius / 100, radius * 40);
@@ -53,9 +55,10 @@ export class Stage {
     this.controls.minDistance = radius / 20;
     this.controls.maxDistance = radius * 15;
     this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("start", () => (this.isHome = false));
     new ResizeObserver(() => this.#fit(host)).observe(host);
     this.#fit(host);
-    this.home();
+    this.home([centre]);
   }
 
   #fit(host) {
@@ -68,16 +71,16 @@ export class Stage {
     this.drawNow();
   }
 
-  /** Leaves a strip of pixels at the left out when it looks at the middle. */
-  setAside(pixels) {
-    this.aside = pixels;
+  /** Leaves strips of pixels out: the left one always, those above and below when it goes home. */
+  setCovered(strips) {
+    Object.assign(this.covered, strips);
     this.#shift();
     this.draw();
   }
 
   #shift() {
     const { width, height } = this.#size;
-    this.camera.setViewOffset(width, height, -this.aside / 2, 0, width, height);
+    this.camera.setViewOffset(width, height, -this.covered.left / 2, 0, width, height);
   }
 
   setColours(background, ground) {
@@ -97,6 +100,7 @@ export class Stage {
 
   drawNow() {
     this.controls.update();
+    this.cutaway.update(this.camera.position, this.controls.target, this.radius);
     this.renderer.render(this.scene, this.camera);
     this.onDraw?.();
   }
@@ -112,38 +116,46 @@ export class Stage {
     this.camera.updateProjectionMatrix();
   }
 
-  home() {
+  /** The tangents of the half angles of what is left free, with a margin. */
+  #freeTangents() {
+    const { width, height } = this.#size;
+    const focal = height / 2 / Math.tan((this.camera.fov * Math.PI) / 360);
+    const { left, top, bottom } = this.covered;
+    const tangent = (pixels) => Math.max(0.1 * height, pixels - homeMargin) / Math.max(1, focal);
+    return { aside: tangent((width - left) / 2), top: tangent(height / 2 - top), bottom: tangent(height / 2 - bottom) };
+  }
+
+  /** Looks from the report's side so that all points are in the free part of the picture. */
+  home(points) {
     this.#setFieldOfView(homeFieldOfView);
-    const half = (homeFieldOfView * Math.PI) / 360;
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = (0.86 * this.radius) / Math.sin(half) / narrow;
-    this.controls.target.copy(this.centre);
-    this.camera.position.copy(this.centre).addScaledVector(this.homeDirection, distance);
-    const near = this.camera.position.clone();
-    if (this.firstPose && !this.include(this.firstPose, homeBack)) this.camera.position.copy(near);
+    const position = fittingPosition(points, this.homeDirection, this.#freeTangents());
+    const depth = Math.max(this.radius / 4, position.clone().sub(this.centre).dot(this.homeDirection));
+    this.camera.position.copy(position);
+    this.controls.target.copy(position).addScaledVector(this.homeDirection, -depth);
+    this.isHome = true;
     this.draw();
   }
 
-  /**
-   * Goes back until a camera of the data is in sight, beside what lies over the stage, but no further
-   * than `most` times as far; whether it is.
-   */
-  include(pose, most = Infinity) {
-    const left = -0.92 + (2 * this.aside) / Math.max(1, this.#size.x);
-    const inSight = () => {
-      this.camera.lookAt(this.controls.target);
-      this.camera.updateMatrixWorld();
-      const at = column(pose, 3).project(this.camera);
-      return at.z < 1 && at.x > left && at.x < 0.92 && Math.abs(at.y) < 0.82;
-    };
+  /** Whether a point is in the free part of the picture. */
+  isInSight(point) {
+    this.camera.lookAt(this.controls.target);
+    this.camera.updateMatrixWorld();
+    const { width, height } = this.#size;
+    const at = point.clone().project(this.camera);
+    const [x, y] = [((at.x + 1) / 2) * width, ((1 - at.y) / 2) * height];
+    const { left, top, bottom } = this.covered;
+    return at.z < 1 && x > left && x < width && y > top && y < height - bottom;
+  }
+
+  /** Goes back until a camera of the data is in sight. */
+  include(pose) {
     const offset = () => this.camera.position.distanceTo(this.controls.target);
-    const furthest = Math.min(0.9 * this.controls.maxDistance, most * offset());
-    while (!inSight() && offset() < furthest) this.move(0, 0, 1.05);
-    return inSight();
+    while (!this.isInSight(column(pose, 3)) && offset() < 0.9 * this.controls.maxDistance) this.move(0, 0, 1.05);
   }
 
   /** Looks through a camera of the data, upright. */
   lookFrom(pose, frustum) {
+    this.isHome = false;
     const height = Math.max(...frustum.map(([, y]) => Math.abs(y)));
     const width = Math.max(...frustum.map(([x]) => Math.abs(x)));
     this.#setFieldOfView((360 / Math.PI) * Math.atan(Math.max(height, width / this.camera.aspect)));
@@ -157,6 +169,7 @@ export class Stage {
 
   /** Turns about the target, by angles [rad], and moves to `scale` times the distance. */
   move(aside, down, scale) {
+    this.isHome = false;
     const offset = this.camera.position.clone().sub(this.controls.target);
     // Spherical has its pole along y: turned so that it is the world's z.
     const around = new Spherical().setFromVector3(new Vector3(offset.y, offset.z, offset.x));

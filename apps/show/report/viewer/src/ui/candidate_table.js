@@ -3,22 +3,25 @@
 // The table of the candidates that the next view was chosen from, and why each was kept or dropped.
 import { chosenColour, ramps } from "../colours.js";
 import { el, swatch } from "../dom.js";
-import { count, none, short, unitOf, words } from "../format.js";
+import { count, none, short, unitFor, words } from "../format.js";
 import { gainRange } from "../layers/candidates.js";
 import { Table } from "./table.js";
+import { reasonsOf } from "./why.js";
 import { classCell } from "./view_table.js";
 
-function columnsOf(report, part, chosen, withClass) {
-  const unit = unitOf(report.gain_unit);
+function columnsOf(report, part, chosen, why) {
   const { low, high } = gainRange(part);
+  const unit = unitFor(report.gain_unit, high);
+  const areas = unitFor("m^2", part.area.reduce((most, area) => (area > most ? area : most), 0));
   const gainCell = ({ gain, exact }) => {
     if (Number.isNaN(gain)) return none;
     const mark = swatch(ramps.gain.css((gain - low) / (high - low)));
-    return el("span", { class: "mark" }, `${exact ? "" : "≈ "}${short(gain * unit.factor)}`, mark);
+    return el("span", { class: "mark" }, `${exact ? "" : "≈ "}${short(gain * unit.factor, unit.finest)}`, mark);
   };
   const fate = ({ id, reason }) => {
-    if (id === chosen) return el("span", { class: "mark strong" }, swatch(chosenColour), "chosen");
-    return reason === null ? "kept" : `dropped: ${words(reason)}`;
+    const [name, text] = [id === chosen ? "chosen" : reason === null ? "kept" : "dropped", why(id, reason)];
+    const head = id === chosen ? el("span", { class: "mark strong" }, swatch(chosenColour), name) : name;
+    return el("span", { title: text }, head, `: ${text}`);
   };
   const columns = [
     { name: "#", title: "Index of the candidate", number: true,
@@ -27,17 +30,16 @@ function columnsOf(report, part, chosen, withClass) {
       value: (row) => row.gain, cell: gainCell },
   ];
   if (report.gain_unit !== "m^2" && part.area.some(Number.isFinite)) {
-    columns.push({ name: "Area cm²", title: "New surface expected [cm²]", number: true, value: (row) => row.area,
-      cell: (row) => (Number.isNaN(row.area) ? none : short(1e4 * row.area)) });
-  }
-  if (withClass) {
-    columns.push({ name: "Class", title: "Class of its boundary",
-      value: (row) => row.class, cell: (row) => classCell(row.class) });
+    columns.push({ name: `Area ${areas.name}`, title: `New surface expected [${areas.name}]`, number: true,
+      value: (row) => row.area,
+      cell: (row) => (Number.isNaN(row.area) ? none : short(areas.factor * row.area, areas.finest)) });
   }
   columns.push(
-    { name: "Generator", title: "What proposed it",
-      value: (row) => row.generator, cell: (row) => words(row.generator) },
-    { name: "Why", title: "Why it was kept or dropped",
+    { name: "From", title: "What proposed it: a class of boundary, or a generator", long: true,
+      value: (row) => `${row.class ?? ""} ${row.generator}`,
+      cell: ({ class: boundary, generator }) =>
+        boundary ? el("span", {}, classCell(boundary), ` ${words(generator)}`) : words(generator) },
+    { name: "Why", title: "Why it was chosen, kept or dropped", long: true,
       value: (row) => (row.id === chosen ? "" : row.reason ?? "kept"), cell: fate });
   return columns;
 }
@@ -71,7 +73,6 @@ function totals(part) {
 /** Follows the step only while its tab is open: the candidates of a step may be thousands. */
 export function buildCandidateTable(state, report) {
   const host = el("div", { class: "candidates" });
-  const withClass = report.steps.some(({ candidates }) => candidates?.class.some((c) => c >= 0));
   let table = null;
   let shown = null;
   const choose = (candidate) => state.set({ candidate });
@@ -81,13 +82,15 @@ export function buildCandidateTable(state, report) {
       shown = step;
       const { candidates, chosen } = report.steps[step];
       const part = candidates ? await report.part(candidates) : null;
+      const surface = (await report.part(report.steps[step].surface)).vertices;
       if (shown !== step) return;
       table = null;
       if (!part || part.reason.length === 0) {
         host.replaceChildren(el("p", { class: "totals" }, "No candidate was proposed after this view."));
         return;
       }
-      table = new Table("Candidates for the next view", columnsOf(report, part, chosen, withClass), choose, 1);
+      const why = reasonsOf(report, report.steps[step], part, surface);
+      table = new Table("Candidates for the next view", columnsOf(report, part, chosen, why), choose, 1);
       table.setRows(rowsOf(part));
       host.replaceChildren(totals(part), table.element);
     }

@@ -5,34 +5,35 @@ import { byId, el } from "../dom.js";
 import { none, percent, short, stopWords, unitOf, unitOfKey, withUnit, words } from "../format.js";
 
 /** Nested objects as rows, their names one after the other; lists on one line. */
-function rowsOf(report, object, prefix = "") {
+function rowsOf(report, object, asGiven, prefix = "") {
   return Object.entries(object ?? {}).flatMap(([key, value]) => {
     const unit = unitOfKey(prefix + key, report);
     const name = prefix.split(".").slice(0, -1).concat(key).map(words).join(", ");
     if (key === "stop_reason") return [[name, stopWords(value)]];
     if (Array.isArray(value)) {
-      return [[name, value.map((part) => textOf(part, unit, false)).join(", ") + (unit ? ` ${unitOf(unit).name}` : "")]];
+      return [[name, value.map((part) => textOf(part, unit, asGiven, false)).join(", ") + (unit ? ` ${unitOf(unit).name}` : "")]];
     }
-    if (value !== null && typeof value === "object") return rowsOf(report, value, `${prefix}${key}.`);
-    return [[name, textOf(value, unit)]];
+    if (value !== null && typeof value === "object") return rowsOf(report, value, asGiven, `${prefix}${key}.`);
+    return [[name, textOf(value, unit, asGiven)]];
   });
 }
 
-function textOf(value, unit, named = true) {
+/** Settings as they were given, to six figures; what came out with the figures that mean something. */
+function textOf(value, unit, asGiven, named = true) {
   if (value === null || value === undefined) return none;
   if (typeof value === "number") {
+    if (!asGiven && named) return withUnit(value, unit);
     const { name, factor } = unitOf(unit);
-    const shown = value * factor;
-    const large = Number.isInteger(shown) || Math.abs(shown) >= 1000;
-    const digits = large ? shown.toLocaleString("en", { maximumFractionDigits: 1 }) : String(Number(shown.toPrecision(4)));
+    const shown = Number((value * factor).toPrecision(6));
+    const digits = shown.toLocaleString("en", { maximumSignificantDigits: 6 });
     return named && name ? `${digits} ${name}` : digits;
   }
   if (typeof value === "boolean") return value ? "yes" : "no";
   return typeof value === "string" ? value : JSON.stringify(value);
 }
 
-function list(report, title, object) {
-  const rows = rowsOf(report, object);
+function list(report, title, object, asGiven = false) {
+  const rows = rowsOf(report, object, asGiven);
   if (rows.length === 0) return null;
   const cells = rows.map(([name, value]) =>
     el("tr", {}, el("th", { scope: "row" }, name), el("td", {}, value)));
@@ -51,7 +52,7 @@ export function buildFigures(state, report) {
     const lists = [
       list(report, `After view ${step}`, Object.fromEntries(ofView)),
       list(report, report.isRun ? "Of the whole run" : "Figures", Object.fromEntries(entries.filter((e) => !isOfView(e)))),
-      list(report, "Settings", report.settings)];
+      list(report, "Settings", report.settings, true)];
     host.replaceChildren(...lists.filter(Boolean));
   });
   return host;
@@ -63,7 +64,7 @@ function runHeadline(report, step, other) {
   const beside = other?.figures[step];
   const entries = [["visible surface covered", percent(f.coverage_visible), percent(beside?.coverage_visible)],
     ["RMS error", withUnit(f.rms_error, "m"), withUnit(beside?.rms_error, "m")],
-    ["way", withUnit(f.travelled, "m as it is"), withUnit(beside?.travelled, "m as it is")]];
+    ["path length", withUnit(f.travelled, "m as it is"), withUnit(beside?.travelled, "m as it is")]];
   if (Number.isFinite(s.frames)) entries.unshift(["frames in the map", short(s.frames), none]);
   if (step === report.steps.length - 1 && s.stop_reason) entries.push([`ended: ${stopWords(s.stop_reason)}`, "", none]);
   return entries;

@@ -97,10 +97,29 @@ function choices(state, report, layers) {
   return rows;
 }
 
-export function buildLayersPanel(state, report, layers) {
+/** What stands before the scene: walls by themselves, the rest by a slider. */
+function cuts(state, stage, walls) {
+  const front = el("input", { type: "range", id: "front", min: "0", max: "100", step: "1", value: "0",
+    "aria-label": "Cut the front", oninput: () => state.set({ front: Number(front.value) / 100 }) });
+  const title = "Fades what is nearest to you";
+  const rows = [el("label", { class: "choice", title }, el("span", {}, "Cut front"), front)];
+  if (walls.length > 0) {
+    const box = el("input", { type: "checkbox", id: "walls", onchange: () => state.set({ walls: box.checked }) });
+    box.checked = state.values.walls;
+    const why = "Fades walls that stand between you and the scene";
+    rows.unshift(el("label", { class: "layer", title: why }, box, el("span", {}, "See through near walls")));
+  }
+  state.follow(["walls", "front"], (values) => {
+    Object.assign(stage.cutaway, { walls: values.walls, front: values.front });
+    stage.draw();
+  });
+  return rows;
+}
+
+export function buildLayersPanel(state, report, layers, stage, walls) {
   const panel = byId("layers");
   if (report.isRun) panel.append(presetButtons(state, layers, colourings(report)));
   panel.append(...layers.map((layer, index) => layerRow(state, report, layer, index)));
-  panel.append(...choices(state, report, layers));
+  panel.append(...choices(state, report, layers), ...cuts(state, stage, walls));
   panel.open = matchMedia("(min-width: 901px)").matches;
 }

@@ -83,7 +83,7 @@ function bars(group, series, places, y, width) {
 }
 
 /**
- * @param plot title, unit, series (name, values, colour, dashed, other: of another run), stacked, top (of the
+ * @param plot title, unit, finest (step that means something), series (name, values, colour, dashed, other: of another run), stacked, top (of the
  * axis), firstName (the number of the first step), stepName
  */
 export function buildPlot(state, plot, go) {
@@ -111,9 +111,9 @@ export function buildPlot(state, plot, go) {
   const readout = el("span", { class: "readout" });
   const several = series.length > 1;
   const tell = (i) => {
-    const shown = stacked ? [short(totals[i])]
+    const shown = stacked ? [short(totals[i], plot.finest)]
       : series.filter((one) => Number.isFinite(one.values[i])).map((one) => {
-        const value = el("span", {}, `${short(one.values[i])}`);
+        const value = el("span", {}, short(one.values[i], plot.finest));
         if (several) value.style.color = one.colour;
         return value;
       });
@@ -145,6 +145,6 @@ export function buildPlot(state, plot, go) {
       return el("span", {}, mark, name);
     })) : null;
   return el("figure", { class: plot.wide ? "plot wide" : "plot", "data-plot": plot.id },
-    el("figcaption", {}, el("span", { class: "name" }, plot.title, unit ? el("small", {}, ` ${unit}`) : null), readout),
+    el("figcaption", {}, el("span", { class: "name" }, plot.title), unit ? el("small", {}, unit) : null, readout),
     drawing, names);
 }

@@ -4,7 +4,7 @@
 import { stageColours } from "../colours.js";
 import { dataOf, otherRun } from "../data/report.js";
 import { el } from "../dom.js";
-import { unitOf, words } from "../format.js";
+import { unitFor, unitOf, words } from "../format.js";
 import { buildPlot } from "./plots.js";
 
 const main = "var(--plot-1)";
@@ -36,8 +36,9 @@ function stageSeries(report) {
 
 function runPlots(report, other) {
   const figures = report.steps.map((step) => step.figures);
+  const most = (key) => Math.max(0, ...valuesOf(figures, key).filter(Number.isFinite));
   // Series: name, key; the first of a plot is drawn of the other run, too.
-  const plot = (id, title, { name, factor }, [first, ...more]) => ({ id, title, unit: name, series: [
+  const plot = (id, title, { name, factor, finest }, [first, ...more]) => ({ id, title, unit: name, finest, series: [
     { name: first[0], colour: main, values: valuesOf(figures, first[1], factor) },
     ...more.map(([text, key]) => ({ name: text, colour: second, dashed: true, values: valuesOf(figures, key, factor) })),
     ...(other ? [{ name: other.name, colour: "var(--plot-other)", other: true,
@@ -46,17 +47,18 @@ function runPlots(report, other) {
   return [
     { ...plot("coverage", "Coverage", unitOf("%"), [["this run", "coverage_visible"]]), top: 100 },
     plot("error", "Error", unitOf("m"), [["RMS", "rms_error"], ["95 %", "p95_error"]]),
-    plot("area", "New surface", unitOf("m^2"), [["realised", "realised_area"], ["predicted", "predicted_area"]]),
+    plot("area", "New surface", unitFor("m^2", most("realised_area")), [["realised", "realised_area"], ["predicted", "predicted_area"]]),
     plot("entropy", "Entropy removed", unitOf(report.entropy_unit), [["this run", "entropy_removed"]]),
-    { id: "seconds", title: "Time by stage", unit: "s", stacked: true, wide: true, series: stageSeries(report) },
+    { id: "seconds", title: "Time by stage", unit: "s", finest: 0.01, stacked: true, wide: true, series: stageSeries(report) },
   ];
 }
 
 function scorePlots(report) {
   const column = report.score.columns.indexOf("gain");
-  const { name, factor } = unitOf(report.gain_unit);
-  const values = report.score.rows.map((row) => (column >= 0 && row[column] !== null ? factor * row[column] : NaN));
-  return [{ id: "gain", title: "Gain by rank", unit: name, wide: true,
+  const gains = report.score.rows.map((row) => (column >= 0 && row[column] !== null ? row[column] : NaN));
+  const { name, factor, finest } = unitFor(report.gain_unit, Math.max(0, ...gains.filter(Number.isFinite)));
+  const values = gains.map((gain) => factor * gain);
+  return [{ id: "gain", title: "Gain by rank", unit: name, finest, wide: true,
     series: [{ name: "gain", colour: main, values }] }];
 }
 

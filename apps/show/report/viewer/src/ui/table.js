@@ -24,7 +24,7 @@ export class Table {
   #selected = null;
   #elements = new Map();
 
-  /** columns: name, title, number, value(row), cell(row) -> text or node; rows have an `id`; sortBy: a column to start with. */
+  /** columns: name, title, number, long (its text wraps), value(row), cell(row) -> text or node; rows have an `id`; sortBy: a column to start with. */
   constructor(label, columns, choose, sortBy = null) {
     this.columns = columns;
     this.choose = choose;
@@ -87,7 +87,8 @@ export class Table {
   }
 
   #row(row) {
-    const cells = this.columns.map(({ cell, number }) => el("td", { class: number ? "number" : null }, cell(row)));
+    const cells = this.columns.map(({ cell, number, long }) =>
+      el("td", { class: number ? "number" : long ? "long" : null }, cell(row)));
     const element = el("tr", { "data-id": String(row.id), class: row.muted ? "muted" : null,
       onclick: () => this.choose(row.id) }, ...cells);
     element.tabIndex = -1;
