@@ -296,4 +296,4 @@ def test_a_run_is_that_of_reconstruct(folder):
     kept = (folder / "out/runs" / rows[0]["hash"] / "candidates.txt").read_text().splitlines()
     assert [line.split()[0] for line in kept] == ["1"] * 4 + ["2"] * 4 and all(len(line.split()) == 8 for line in kept)
     (folder / "spec.toml").write_text((folder / "spec.toml").read_text().replace('"frontier"', '"unknown_count"'))
-    assert "a gain is written \"gain:unknown_count\"" in study("spec.toml", "--out", "out", code=2, program=REAL)
+    assert "to use a gain, write \"gain:unknown_count\"" in study("spec.toml", "--out", "out", code=2, program=REAL)
