@@ -142,7 +142,7 @@ async function build(report) {
   const tabs = report.isRun
     ? [["plots", "Plots", plots], ["candidates", "Candidates", buildCandidateTable(state, report)],
       ["views", "Views", buildViewTable(state, report, timeline.go)], ["run", "Run", buildFigures(state, report)]]
-    : [["ranking", "Ranking", el("div", {}, plots, buildRankingTable(state, report, timeline.go))],
+    : [["ranking", "Ranking", el("div", { class: "ranking" }, plots, buildRankingTable(state, report, timeline.go))],
       ["run", "Run", buildFigures(state, report)]];
   buildTabs(state, tabs.map(([id, name, content]) => ({ id, name, content })));
   // A candidate belongs to its step.
