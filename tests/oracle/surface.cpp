@@ -14,7 +14,7 @@
 namespace viewgain::oracle {
 namespace {
 
-using Cell = HazardCells::Cell;
+using Cell = std::tuple<int, int, int>;
 
 Cell cell_of(Index3 v, int shift) { return {v.x >> shift, v.y >> shift, v.z >> shift}; }
 
@@ -62,33 +62,6 @@ struct Run {
 };
 
 }  // namespace
-
-Index3 HazardCells::lowest(Index3 voxel) {
-  const int shift = shift_of(voxel);
-  return {voxel.x >> shift << shift, voxel.y >> shift << shift, voxel.z >> shift << shift};
-}
-
-int HazardCells::shift_of(Index3 voxel) {
-  int shift = hazard_.cell_shift();
-  for (int wider = shift + 1; wider <= 3 && is_uniform(voxel, wider); ++wider) shift = wider;
-  return shift;
-}
-
-bool HazardCells::is_uniform(Index3 voxel, int shift) {
-  const auto [entry, is_first] =
-      known_[static_cast<std::size_t>(shift)].try_emplace(cell_of(voxel, shift), true);
-  if (!is_first) return entry->second;
-  const auto low = [shift](int i) { return i >> shift << shift; };
-  const int edge = 1 << shift;
-  for (int i = 0; i < edge * edge * edge && entry->second; ++i) {
-    const Index3 v{low(voxel.x) + i / (edge * edge), low(voxel.y) + i / edge % edge,
-                   low(voxel.z) + i % edge};
-    entry->second = (!map_.inside(v) || map_.state(v) == VoxelState::unknown) &&
-                    hazard_.rate(v) == hazard_.rate(voxel) &&
-                    hazard_.is_new(v) == hazard_.is_new(voxel);
-  }
-  return entry->second;
-}
 
 Pool pool_of(const BeliefGrid& grid, const DenseMap& map, Index3 voxel) {
   Pool pool;
@@ -140,7 +113,6 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
   const auto misses = [&](double t) { return 1 + sensor.noise_sigmas(t).axial / V; };
   SurfaceValue value;
   std::map<Cell, Eigen::Matrix3d> refined;
-  HazardCells cells(map, hazard);
 
   const std::vector<Ray> rays =
       view_rays(grid.T_world_grid(), V, sensor.camera, config.pixel_stride, T_world_camera);
@@ -199,7 +171,7 @@ SurfaceValue surface_value(const BeliefGrid& grid, const DenseMap& map, const Ha
           in_stretch = false;
           return false;
         case VoxelState::unknown: {
-          const Cell cell = cell_of(cells.lowest(voxel), 0);
+          const Cell cell = cell_of(voxel, hazard.cell_shift());
           if (run && (run->cell != cell || run->end != begin)) close();
           if (!in_stretch) {
             in_stretch = true;

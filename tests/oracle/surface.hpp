@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <map>
-#include <tuple>
-
 #include "oracle/rays.hpp"
 #include "viewgain/grid/hazard.hpp"
 
@@ -19,27 +15,6 @@ struct SurfaceValue {
   /// The most that one pixel adds, and besides all that hangs on comparisons that rounding decides.
   double pixel_area = 0;        ///< [m²]
   double pixel_refinement = 0;  ///< [nat]
-};
-
-/// The cubes in which a ray's run is summed: the largest aligned one around an unknown voxel, of up
-/// to 8³, that holds unknown voxels alone and has one rate, but at least the field's cell. Outside
-/// the workspace counts as unknown.
-class HazardCells {
- public:
-  using Cell = std::tuple<int, int, int>;
-
-  HazardCells(const DenseMap& map, const HazardField& hazard) : map_(map), hazard_(hazard) {}
-
-  /// Binary logarithm of the edge of an unknown voxel's cube, and its lowest voxel.
-  [[nodiscard]] int shift_of(Index3 voxel);
-  [[nodiscard]] Index3 lowest(Index3 voxel);
-
- private:
-  [[nodiscard]] bool is_uniform(Index3 voxel, int shift);
-
-  const DenseMap& map_;
-  const HazardField& hazard_;
-  std::array<std::map<Cell, bool>, 4> known_;  // by shift
 };
 
 /// What is known of the surface at a voxel.

@@ -32,8 +32,9 @@ Index3 voxel_of(std::uint64_t key, Index3 lowest) {
 
 }  // namespace
 
-double SurfaceSet::worth_of(Index3 least, int side, double rate) const {
+double SurfaceSet::worth_of(Index3 least, double rate) const {
   const double V = driver_.scene().snapshot.voxel_size;
+  const int side = 1 << surface_.bricks().rate_shift;
   const std::vector<GainConfig::WeightRegion>& weights = driver_.core()->config.weights;
   double weight = 1;
   if (!weights.empty()) {
@@ -57,10 +58,13 @@ SurfaceSet::Look SurfaceSet::look(const Pose& T_world_camera, Workspace& workspa
   look.seen.hits = 0;
   look.seen.status = ViewGain::Status::ok;
   struct Seen {
-    int side;
     double rate, area;
   };
-  std::vector<Seen> seen;  // by place
+  std::vector<Seen> seen;  // by index of the cell
+  const int shift = surface_.bricks().rate_shift;
+  const auto least = [shift](Index3 cell) {
+    return Index3{cell.x << shift, cell.y << shift, cell.z << shift};
+  };
   VoxelPlaces& cells = workspace.cells;
   cells.begin();
   workspace.occupied.begin();
@@ -74,16 +78,15 @@ SurfaceSet::Look SurfaceSet::look(const Pose& T_world_camera, Workspace& workspa
         }
         if (!(share.area > 0)) return;
         const Index3& v = share.voxel;
-        const int side = share.cell;
         bool is_new = false;
-        const std::uint32_t place = cells.of({v.x & -side, v.y & -side, v.z & -side}, is_new);
-        if (is_new) seen.push_back({side, share.rate, 0});
+        const std::uint32_t place = cells.of({v.x >> shift, v.y >> shift, v.z >> shift}, is_new);
+        if (is_new) seen.push_back({share.rate, 0});
         seen[place].area += share.area;
       });
   look.cells.reserve(cells.count());
   for (std::uint32_t i = 0; i < cells.count(); ++i) {
-    const Index3 at = cells.voxel(i);
-    const double worth = worth_of(at, seen[i].side, seen[i].rate);
+    const Index3 at = least(cells.voxel(i));
+    const double worth = worth_of(at, seen[i].rate);
     if (worth > 0) look.cells.push_back({key_of(at), worth, std::min(1.0, seen[i].area / worth)});
   }
   if (refines()) {

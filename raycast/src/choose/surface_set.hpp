@@ -75,9 +75,9 @@ class SurfaceSet {
   [[nodiscard]] double combined(double area, double refinement) const {
     return surface_.nats_per_area() * area + driver_.core()->config.refinement_weight * refinement;
   }
-  /// a p of a hazard cell, by its least voxel and its edge [voxels], in m².
-  [[nodiscard]] double worth_of(Index3 least, int side, double rate) const;
-  /// The refinement of the voxel by the chosen views and `added` beyond that of the chosen.
+  /// a p of the hazard cell with this lowest voxel [m²].
+  [[nodiscard]] double worth_of(Index3 least, double rate) const;
+  /// Additional refinement of the voxel by `added` after the chosen views.
   [[nodiscard]] double refinement(const Refined& added) const;
 
   const ViewDriver& driver_;
@@ -85,9 +85,9 @@ class SurfaceSet {
   std::vector<std::shared_ptr<const Look>> looks_;  // null: not kept
   std::atomic<std::size_t> kept_ = 0;               // [bytes]
   std::unordered_map<std::uint64_t, Cell> cells_;
-  std::vector<float> missed_;  // of the cells, by BrickTable::place_of()
-  std::unordered_map<std::uint64_t, SymmetricMatrix3> known_;  // Σ T Λ_r of the chosen [m⁻²]
-  double refined_ = 0;                                         // by the chosen [nat]
+  std::vector<float> missed_;  // per cell, by BrickTable::place_of(); else 1
+  std::unordered_map<std::uint64_t, SymmetricMatrix3> known_;  // Σ T Λ_r of the chosen views [m⁻²]
+  double refined_ = 0;  // refinement by the chosen views [nat]
 };
 
 }  // namespace viewgain::detail

@@ -214,7 +214,6 @@ struct SurfaceShare {
   double area;         ///< P min(ω t², cap) ρ(t) w_v where surface is new, else 0 [m²]
   SymmetricMatrix3 information{};  ///< occupied, combined: T Λ_r [m⁻²]
   double rate = 0;                 ///< unknown: of its hazard cell [1/voxel]
-  std::int32_t cell = 0;           ///< unknown: the edge of that cell [voxels]
 };
 
 /// A ray of a sample that ends in an occupied voxel.

@@ -11,16 +11,6 @@
 #include "trace/scene_tracing.hpp"
 
 namespace viewgain::detail {
-namespace {
-
-// Are two visits in one hazard cell, one right after the other?
-bool is_same_run(const VoxelVisit& a, const VoxelVisit& b) {
-  return a.lane == b.lane && a.state == b.state && a.end == b.begin &&
-         ((a.x ^ b.x) | (a.y ^ b.y) | (a.z ^ b.z)) < a.cell;
-}
-
-}  // namespace
-
 void SurfaceView::find_visits(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                               Workspace& workspace) const {
   WalkTask task;
@@ -71,6 +61,14 @@ class SurfaceView::ShareFinder {
   }
 
  private:
+  // Whether two visits are in one cell of the hazard field, one right after the other.
+  [[nodiscard]] bool is_same_run(const VoxelVisit& a, const VoxelVisit& b) const {
+    const int shift = surface_.bricks_.rate_shift;
+    return a.lane == b.lane && a.state == b.state && a.end == b.begin &&
+           a.x >> shift == b.x >> shift && a.y >> shift == b.y >> shift &&
+           a.z >> shift == b.z >> shift;
+  }
+
   // The ray ends in an occupied voxel.
   void end(const VoxelVisit& visit, bool follows_on) {
     const int lane = static_cast<int>(visit.lane);
@@ -118,8 +116,7 @@ class SurfaceView::ShareFinder {
                          part,
                          is_new ? area : 0.0,
                          {},
-                         rate,
-                         visit.cell});
+                         rate});
     };
     double weight_of_run = is_weighted_ ? 0.0 : 1.0;
     for (const VoxelVisit* visit = first; visit != last; ++visit) {

@@ -41,6 +41,17 @@ Eigen::Vector3f unpack_normal(std::uint32_t bits) {
 
 using Cubes = std::array<std::uint32_t, kCubes>;  // the states of a brick's voxels
 
+// The edge that a cube of unknown voxels with one rate may have: so small that it matters little
+// where in it a ray ends.
+std::uint32_t largest_cell(float rate, unsigned shift) {
+  constexpr float kMostDepth = 0.005F;  // of a ray along the edge
+  std::uint32_t edge = BrickIndex::kBrick;
+  while (edge > 1U << shift && !(std::abs(rate) * static_cast<float>(edge) <= kMostDepth)) {
+    edge /= 2;
+  }
+  return edge;
+}
+
 // What BrickTable::records has of a brick. Voxels by x << 6 | y << 3 | z: an octal digit each.
 class BrickRecords {
  public:
@@ -58,8 +69,10 @@ class BrickRecords {
         [&](unsigned x, unsigned y, unsigned z) -> Voxel& {
           return voxels_[x << 6U | y << 3U | z];
         },
-        [](Voxel voxel, unsigned edge) {
-          const bool may_grow = 2 * voxel.edge == edge && voxel.state != BrickTable::kOccupiedVoxel;
+        [this](Voxel voxel, unsigned edge) {
+          const bool may_grow = 2 * voxel.edge == edge &&
+                                voxel.state != BrickTable::kOccupiedVoxel &&
+                                edge <= largest_cell(voxel.rate, shift_);
           voxel.edge = edge;
           return may_grow ? std::optional(voxel) : std::nullopt;
         });
@@ -102,12 +115,12 @@ class BrickRecords {
     return (voxel >> 7U & 3U) << 4U | (voxel >> 4U & 3U) << 2U | (voxel >> 1U & 3U);
   }
 
-  // To what is left beside edge and state.
+  // Rounded to the nearest number that leaves room for edge and state; the sign stays.
   static std::uint32_t rounded(float rate) {
     constexpr std::uint32_t kRest = BrickTable::kStateBits | BrickTable::kTopBits;
-    constexpr std::uint32_t kHalf = (kRest + 1) / 2, kLargest = 0x7F7FFFFF;
+    constexpr std::uint32_t kHalf = (kRest + 1) / 2, kLargest = 0x7F7FFFFF;  // finite
     const auto bits = std::bit_cast<std::uint32_t>(rate);
-    return ((bits & kLargest) < kLargest - kHalf ? bits + kHalf : bits) & ~kRest;
+    return ((bits & 0x7FFFFFFFU) < kLargest - kHalf ? bits + kHalf : bits) & ~kRest;
   }
 
   void find_rates(const HazardField& hazard, Index3 origin) {
@@ -196,14 +209,14 @@ class BrickTableMaker {
   void add_far() {
     cubes_.assign(kCubes, 0);
     const float rate = hazard_.far_rate() * static_cast<float>(hazard_.voxel_size());
-    constexpr auto kEdge = static_cast<std::uint32_t>(BrickIndex::kBrick);
+    const std::uint32_t edge = largest_cell(rate, static_cast<unsigned>(table_.rate_shift));
     if (table_.rate_shift == 0) {
       for (unsigned i = 0; i < BrickRecords::kVoxels; ++i) {
-        BrickRecords::append_voxel(BrickTable::kUnknownVoxel, kEdge, rate, table_.records);
+        BrickRecords::append_voxel(BrickTable::kUnknownVoxel, edge, rate, table_.records);
       }
     } else {
       for (unsigned i = 0; i < kCubes; ++i) {
-        BrickRecords::append_cube(BrickTable::kAllUnknown, kEdge, rate, table_.records);
+        BrickRecords::append_cube(BrickTable::kAllUnknown, edge, rate, table_.records);
       }
     }
   }

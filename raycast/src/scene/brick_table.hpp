@@ -16,8 +16,8 @@ namespace viewgain::detail {
 
 /// States and hazard of unknown space, looked up by place, for rays that go on through it.
 ///
-/// A hazard cell is the smallest cube for which a run of a ray is summed: the HazardField's cell,
-/// or the largest aligned cube of up to 8³ voxels that is unknown throughout and has one rate.
+/// Where rates are low, cells of the HazardField that are unknown throughout and have one rate are
+/// joined: rays cross aligned cubes of up to 8³ voxels in one step.
 struct BrickTable : BrickIndex {
   /// Kinds of entries, in the two highest bits. The rest: for a free brick, the edge of the largest
   /// aligned free cube around it [voxels], 8 to 128; else the place of its first record. Bricks
@@ -31,8 +31,8 @@ struct BrickTable : BrickIndex {
   double pooling_length = 1;  ///< [voxels]: Pooling::length
   int rate_shift = 0;         ///< HazardField::cell_shift()
 
-  /// What one gather reads. The sign of a rate is set where surface is not new. An edge is that of
-  /// the largest aligned cube around the voxel that is free throughout, or unknown with one rate.
+  /// What is read for a step. The sign of a rate is set where surface is not new. An edge is that
+  /// of the largest aligned cube around the voxel that is free throughout, or unknown and joined.
   /// - If rate_shift is 0, a word per voxel: its rate [1/voxel], of which the five lowest bits are
   ///   replaced by edge - 1 (kTopBits) and the state (kStateBits).
   /// - Otherwise two words per cube of 2³ voxels, in unknown bricks per cell of the hazard field:

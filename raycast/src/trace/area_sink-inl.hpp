@@ -64,10 +64,11 @@ HWY_INLINE Shares shares_of(VF x) {
 template <bool kMissed>
 class AreaSink {
  public:
+  using Finder = AreaFinder<kMissed>;
   static constexpr bool kCountsVoxels = false;
 
-  [[nodiscard]] static HWY_INLINE MF ends(const AreaFinder::Place& place, MF counts) {
-    return AreaFinder::is_in(place, BrickTable::kOccupiedVoxel, counts);
+  [[nodiscard]] static HWY_INLINE MF ends(const typename Finder::Place& place, MF counts) {
+    return Finder::is_in(place, BrickTable::kOccupiedVoxel, counts);
   }
 
   HWY_INLINE AreaSink(const float* solid_angle, const PixelWorth& worth, const float* missed)
@@ -79,8 +80,8 @@ class AreaSink {
         at_(hn::Set(df, worth.at)),
         missed_(missed) {}
 
-  HWY_INLINE void step(const AreaFinder& finder, const Step<AreaFinder::Place>& step) {
-    const MF unknown = AreaFinder::is_in(step.place, BrickTable::kUnknownVoxel, step.counts);
+  HWY_INLINE void step(const Finder& finder, const Step<typename Finder::Place>& step) {
+    const MF unknown = Finder::is_in(step.place, BrickTable::kUnknownVoxel, step.counts);
     const MF occupied = step.ends;
     const VF t = step.t, next = step.next;
     // A cell that a ray only touches ends its run, too.

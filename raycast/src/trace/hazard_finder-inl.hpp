@@ -21,8 +21,12 @@ namespace viewgain::detail::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Finds states and hazard; unknown voxels one by one, if kByVoxel.
-template <bool kByVoxel>
+// How much of unknown space is a step: a voxel; what there is in a cell of the hazard field; or
+// what BrickTable joins.
+enum class Steps { voxels, cells, joined };
+
+// Finds states and hazard.
+template <Steps kSteps>
 class HazardFinder {
  public:
   // The entries of bricks and the places of records.
@@ -34,7 +38,6 @@ class HazardFinder {
     VI edge;
     VF rate;  // of unknown voxels [1/voxel]
     VI entry;
-    VI cell;  // edge of the hazard cell, if kByVoxel
   };
 
   explicit HWY_INLINE HazardFinder(const BrickTable& table)
@@ -58,13 +61,13 @@ class HazardFinder {
   HWY_INLINE Place place(const Found& found, const Voxels& at) const {
     // A free brick's entry is the edge.
     static_assert(BrickTable::kFree == 0 && BrickTable::kFreeVoxel == 0);
-    Place place{hn::Zero(du), found.entry, hn::Zero(df), found.entry, hn::Zero(di)};
+    Place place{hn::Zero(du), found.entry, hn::Zero(df), found.entry};
     if (!hn::AllTrue(di, is_free(found.entry))) read(found, at, place);
-    if constexpr (kByVoxel) {
-      place.cell = cells(place.edge);
-      const VU unknown = hn::Set(du, BrickTable::kUnknownVoxel);
-      place.edge =
-          hn::IfThenElse(hn::RebindMask(di, hn::Eq(place.state, unknown)), set_i(1), place.edge);
+    if constexpr (kSteps != Steps::joined) {
+      const VI most = set_i(kSteps == Steps::voxels ? 1 : 1 << table_.rate_shift);
+      const MI unknown =
+          hn::RebindMask(di, hn::Eq(place.state, hn::Set(du, BrickTable::kUnknownVoxel)));
+      place.edge = hn::IfThenElse(unknown, hn::Min(place.edge, most), place.edge);
     }
     return place;
   }
@@ -73,13 +76,9 @@ class HazardFinder {
     return hn::And(lanes, hn::RebindMask(df, hn::Eq(place.state, hn::Set(du, state))));
   }
 
-  // Edges of the hazard cells that unknown cubes are a part of, or the whole.
-  [[nodiscard]] HWY_INLINE VI cells(VI edge) const {
-    return hn::Max(edge, set_i(1 << table_.rate_shift));
-  }
-  // BrickTable::place_of() the hazard cells of lanes in unknown voxels.
+  // BrickTable::place_of() the field's cells of lanes in unknown voxels.
   [[nodiscard]] HWY_INLINE VI places(const Place& place, const Voxels& at, MF lanes) const {
-    const VI within = hn::Sub(cells(place.edge), set_i(1));
+    const VI within = set_i((1 << table_.rate_shift) - 1);
     const Voxels lowest{hn::AndNot(within, at.x), hn::AndNot(within, at.y),
                         hn::AndNot(within, at.z)};
     return hn::IfThenElseZero(
@@ -159,8 +158,9 @@ class HazardFinder {
   VI first_;  // entry of each lane's node
 };
 
-using AreaFinder = HazardFinder<false>;
-using VisitFinder = HazardFinder<true>;
+template <bool kMissed>  // what of each cell is left counts, so cells must be told apart
+using AreaFinder = HazardFinder<kMissed ? Steps::cells : Steps::joined>;
+using VisitFinder = HazardFinder<Steps::voxels>;
 
 }  // namespace
 }  // namespace viewgain::detail::HWY_NAMESPACE

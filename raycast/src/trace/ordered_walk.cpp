@@ -41,12 +41,11 @@ class VisitSink {
     const std::uint32_t wanted = bits_of(hn::Or(step.ends, unknown));
     if (wanted == 0) return;
     HWY_ALIGN float begins[kWidth], ends[kWidth], rates[kWidth];
-    HWY_ALIGN std::int32_t xs[kWidth], ys[kWidth], zs[kWidth], cells[kWidth];
+    HWY_ALIGN std::int32_t xs[kWidth], ys[kWidth], zs[kWidth];
     HWY_ALIGN std::uint32_t states[kWidth];
     hn::Store(step.t, df, begins);
     hn::Store(step.next, df, ends);
     hn::Store(step.place.rate, df, rates);
-    hn::Store(step.place.cell, di, cells);
     hn::Store(step.at.x, di, xs);
     hn::Store(step.at.y, di, ys);
     hn::Store(step.at.z, di, zs);
@@ -54,7 +53,7 @@ class VisitSink {
     for (std::uint32_t left = wanted; left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
       out_.push_back({static_cast<std::uint32_t>(lane0_ + i), states[i], xs[i], ys[i], zs[i],
-                      begins[i], ends[i], rates[i], cells[i]});
+                      begins[i], ends[i], rates[i]});
     }
   }
 
@@ -69,7 +68,8 @@ template <bool kMissed>
 void area_of(const BrickTable& table, const WalkLimits& limits, std::span<const WalkTask> tasks,
              const PixelWorth& worth, const float* missed, WalkedTile* out) {
   using Sink = AreaSink<kMissed>;
-  using Walk = PacketWalk<AreaFinder, Sink>;
+  using Finder = AreaFinder<kMissed>;
+  using Walk = PacketWalk<Finder, Sink>;
   constexpr std::size_t kPackets = kTileRays / kWidth;
   const std::size_t count = tasks.size() * kPackets;
   for (std::size_t i = 0; i < count; i += 2) {
@@ -79,7 +79,7 @@ void area_of(const BrickTable& table, const WalkLimits& limits, std::span<const 
               lane_b = static_cast<int>((i + 1) % kPackets) * kWidth;
     Sink sink_a(tasks[tile_a].solid_angle + lane_a, worth, missed),
         sink_b(tasks[tile_b].solid_angle + lane_b, worth, missed);
-    Walk a{AreaFinder(table)}, b{AreaFinder(table)};
+    Walk a{Finder(table)}, b{Finder(table)};
     bool goes_a = a.begin(table, limits, tasks[tile_a], lane_a),
          goes_b = has_b && b.begin(table, limits, tasks[tile_b], lane_b);
     while (goes_a && goes_b) {

@@ -44,7 +44,6 @@ struct VoxelVisit {
   std::int32_t x, y, z;  ///< table coordinates
   float begin, end;      ///< along the ray [voxels]
   float rate;            ///< [1/voxel], signed as in BrickTable::records; unknown voxels only
-  std::int32_t cell;     ///< edge of its hazard cell [voxels]
 };
 
 /// Walks rays through the bricks in order, through unknown voxels to the first occupied one or the

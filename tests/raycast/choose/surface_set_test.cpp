@@ -12,7 +12,6 @@
 #include <stop_token>
 #include <tuple>
 
-#include "oracle/surface.hpp"
 #include "raycast/scene_makers.hpp"
 
 namespace viewgain {
@@ -23,20 +22,18 @@ struct SetOracle {
   std::vector<double> worth;                 // a p of each cell [m²]
   std::vector<std::vector<double>> reached;  // R of each pose and cell
 
-  SetOracle(const GainEvaluator& surface, const BeliefGrid& grid, const VoxelScene& scene,
-            std::span<const Pose> poses) {
+  SetOracle(const GainEvaluator& surface, const VoxelScene& scene, std::span<const Pose> poses) {
     const HazardField& hazard = scene.hazard();
-    const oracle::DenseMap dense(grid);
-    oracle::HazardCells cells(dense, hazard);
+    const int voxels = 1 << hazard.cell_shift();
+    const double side = hazard.voxel_size() * voxels;
+    const auto cell_of = [&](int i) { return static_cast<int>(std::floor(double(i) / voxels)); };
     std::map<std::tuple<int, int, int>, std::size_t> places;
     std::vector<std::map<std::size_t, double>> shown;
     for (const Pose& pose : poses) {
       std::map<std::size_t, double>& of_pose = shown.emplace_back();
       for (const VoxelContribution& part : surface.contributions(pose)) {
         if (part.state != VoxelState::unknown || !(part.gain > 0)) continue;
-        const auto [x, y, z] = cells.lowest(part.voxel);
-        const double side = std::ldexp(hazard.voxel_size(), cells.shift_of(part.voxel));
-        const std::tuple cell(x, y, z);
+        const std::tuple cell(cell_of(part.voxel.x), cell_of(part.voxel.y), cell_of(part.voxel.z));
         const auto [found, is_new] = places.try_emplace(cell, worth.size());
         if (is_new) {
           worth.push_back(side * side * (1 - std::exp(-double(hazard.rate(part.voxel)) * side)));
@@ -83,7 +80,7 @@ TEST(SurfaceSet, IsPlainGreedysAndNearTheBestOfAllSubsets) {
   for (std::uint64_t seed = 200; seed < 212; ++seed) {
     const Made made(seed, kPoses);
     const GainEvaluator evaluator(made.scene, made.sensor, {.model = GainModel::surface});
-    const SetOracle oracle(evaluator, made.map.grid, *made.scene, made.poses);
+    const SetOracle oracle(evaluator, *made.scene, made.poses);
     const ViewSet set = evaluator.best_set(made.poses, kChosen);
     double best = 0;
     for (std::uint32_t bits = 0; bits < 1U << kPoses; ++bits) {

@@ -50,10 +50,12 @@ struct FourPairs {
 };
 HWY_INLINE FourPairs four_pairs(const std::uint32_t* base, __m128i index) {
   const FourIndices at(index);
-  const auto pair = [&](int i)
-                        HWY_ATTR { return reinterpret_cast<const double*>(base + 2 * at[i]); };
-  const __m128 a = _mm_castpd_ps(_mm_loadh_pd(_mm_load_sd(pair(0)), pair(1)));
-  const __m128 b = _mm_castpd_ps(_mm_loadh_pd(_mm_load_sd(pair(2)), pair(3)));
+  const auto pair = [&](int i) HWY_ATTR { return base + 2 * at[i]; };
+  const auto two_pairs = [](const std::uint32_t* low, const std::uint32_t* high) HWY_ATTR {
+    const __m128i first = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(low));
+    return _mm_loadh_pi(_mm_castsi128_ps(first), reinterpret_cast<const __m64*>(high));
+  };
+  const __m128 a = two_pairs(pair(0), pair(1)), b = two_pairs(pair(2), pair(3));
   return {_mm_castps_si128(_mm_shuffle_ps(a, b, 0x88)),
           _mm_castps_si128(_mm_shuffle_ps(a, b, 0xDD))};
 }
