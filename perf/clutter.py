@@ -1,0 +1,198 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The viewgain authors
+# SPDX-License-Identifier: Apache-2.0
+"""How do policies compare in clutter and under a reach? Prints the tables of results/clutter.md.
+
+    clutter.py DIR [--jobs N] [--program PATH] [--tables]
+
+Runs every policy on the scenes of scenes.toml with use = "report": with an SR4000 from three start
+poses, which are the seeds, then with a D435 in two scenes from one. If it is stopped, the same call
+goes on with the runs that are in DIR. About four hours on two cores. Needs PYTHONPATH=apps/python,
+the program viewgain, and apps/install_dependencies.sh --perf.
+"""
+import argparse
+import json
+import pathlib
+import sys
+
+import numpy as np
+from scipy import stats
+import viewgain.study as study
+from viewgain.study import rows as of_rows
+from viewgain.study.runs import version_of
+
+import meshes
+import scenes
+
+GOALS = (.6, .7, .8, .9)
+MAX_VIEWS = 12
+OURS = "gain:combined"
+COUNTS = ("gain:surface_frontier_count", "gain:unknown_count", "frontier")
+POLICIES = [OURS, "gain:surface", "gain:paper", *COUNTS,
+            {"name": "random", "command": "viewgain reconstruct --policy random --generator shell"}, "oracle"]
+SEEDS = (1, 2, 3)
+D435_SCENES, D435_SEEDS = ("bin-31", "shelf-33"), (1,)
+
+
+def toml(value):
+    """A string, a number, a list or a table with string keys."""
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key} = {toml(one)}' for key, one in value.items())}}}"
+    return f"[{', '.join(map(toml, value))}]" if isinstance(value, (list, tuple)) else json.dumps(value)
+
+
+def scene_object(folder, seed):
+    """The scene as an object of a study, from its start pose number `seed`."""
+    flags = scenes.tomllib.loads((folder / "flags.toml").read_text(encoding="utf-8"))
+    start = np.loadtxt(folder / "starts.txt")[seed - 1, 1:]
+    joined = lambda numbers: ",".join(f"{v:.6f}" for v in numbers)
+    return {"mesh": str(folder / "scene.off"), "name": folder.name, "reach": str(folder / "reach.toml"),
+            "flags": [f"--from={joined(start)}", f"--workspace={joined(flags['workspace'])}"]}
+
+
+def is_made(folder):
+    """Whether the scene's files are newer than what makes them."""
+    sources = [pathlib.Path(scenes.__file__).with_name(name) for name in ("scenes.py", "scenes.toml", "meshes.py")]
+    flags = folder / "flags.toml"  # the last one written
+    return flags.exists() and flags.stat().st_mtime > max(source.stat().st_mtime for source in sources)
+
+
+def specs(out, program):
+    """The study's specs, one per sensor and seed, most important first. Writes the scenes and the specs to `out`."""
+    reported = [name for name, scene in scenes.listed().items() if scene["use"] == "report"]
+    for name in reported:
+        if not is_made(out / "scenes" / name):
+            scenes.write_listed([name], out / "scenes")
+    for sensor, names, seeds in (("sr4000", reported, SEEDS), ("d435", D435_SCENES, D435_SEEDS)):
+        for seed in seeds:
+            keys = {"objects": [scene_object((out / "scenes" / name).resolve(), seed) for name in names], "policies": POLICIES,
+                    "seeds": [seed], "sensors": [sensor], "voxels": [.005], "max_views": MAX_VIEWS}
+            path = out / f"{sensor}-{seed}.toml"
+            path.write_text("".join(f"{key} = {toml(value)}\n" for key, value in keys.items()), encoding="utf-8")
+            yield study.read_spec(path, version_of(program))
+
+
+class Run:
+    """The figures of one run."""
+
+    def __init__(self, run, record, area):
+        self.scene, self.policy, self.seed, self.sensor = run.object.name, run.policy.name, run.seed, run.sensor
+        row = study.row_of(run, record, MAX_VIEWS)
+        covered, views = row["coverage_by_view"], record["per_view"]
+        self.views_to = [next((i + 1 for i, share in enumerate(covered) if share >= goal), None) for goal in GOALS]
+        self.metres_to = [views[min(count or len(views), len(views)) - 1]["travelled"] for count in self.views_to]
+        self.auc, self.end, self.rms = row["auc"], row["coverage_visible"], 1e3 * row["rms_error"]
+        self.visible = sum(view["true_new_area"] for view in views) / row["coverage_visible"] / area
+
+
+def finished(spec, out):
+    """The runs of the spec that have been made."""
+    areas = {}
+    for run in spec.runs:
+        path = out / "runs" / run.hash / "run.json"
+        if not path.exists():
+            continue
+        if run.object.mesh not in areas:
+            vertices, triangles = meshes.read_mesh(run.object.mesh)
+            corners = vertices[triangles]
+            areas[run.object.mesh] = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
+        yield Run(run, json.loads(path.read_text(encoding="utf-8")), areas[run.object.mesh])
+
+
+def line(cells):
+    return f"| {' | '.join(map(str, cells))} |\n"
+
+
+def head(cells):
+    return line(cells) + "|---" * len(cells) + "|\n"
+
+
+def by_scene(runs, key):
+    """Mean over the scenes of the mean of each."""
+    return np.mean([np.mean([key(run) for run in runs if run.scene == scene]) for scene in dict.fromkeys(run.scene for run in runs)])
+
+
+def means(runs):
+    """Views and metres to each goal; a run that never gets there counts as MAX_VIEWS + 1 views and with its whole path."""
+    text = head(["policy", *(f"to {100 * goal:.0f} %: views; metres" for goal in GOALS), "AUC", "in the end", "RMS [mm]"])
+    for policy in dict.fromkeys(run.policy for run in runs):
+        own = [run for run in runs if run.policy == policy]
+        cells = [policy]
+        for i in range(len(GOALS)):
+            never = sum(run.views_to[i] is None for run in own)
+            views, metres = by_scene(own, lambda run: run.views_to[i] or MAX_VIEWS + 1), by_scene(own, lambda run: run.metres_to[i])
+            cells.append(f"{'≥ ' if never else ''}{views:.2f}; {metres:.1f}" + (f" ({never} never)" if never else ""))
+        text += line([*cells, f"{by_scene(own, lambda run: run.auc):.3f}", f"{100 * by_scene(own, lambda run: run.end):.1f} %",
+                      f"{by_scene(own, lambda run: run.rms):.2f}"])
+    return text
+
+
+def scores(runs):
+    names = list(dict.fromkeys(run.scene for run in runs))
+    text = head(["AUC", *names])
+    for policy in dict.fromkeys(run.policy for run in runs):
+        of = [[run.auc for run in runs if (run.policy, run.scene) == (policy, name)] for name in names]
+        text += line([policy, *(f"{np.mean(values):.3f}" if values else "-" for values in of)])
+    return text
+
+
+def interval(values):
+    """Mean ± half its 95 % interval (Student's t)."""
+    half = stats.t.ppf(.975, len(values) - 1) * np.std(values, ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.nan
+    return f"{np.mean(values):+.3f}" + (f" ± {half:.3f}" if np.isfinite(half) else "")
+
+
+def pairs(runs):
+    """AUC of OURS minus that of each policy, same scene and seed."""
+    names = list(dict.fromkeys(run.scene for run in runs))
+    auc = {(run.policy, run.scene, run.seed): run.auc for run in runs}
+    text = head(["policy", *names, "all, other scenes", "all, other seeds", "ahead"])
+    for policy in dict.fromkeys(run.policy for run in runs if run.policy != OURS):
+        d = {name: [auc[OURS, name, seed] - value for (one, scene, seed), value in auc.items()
+                    if (one, scene) == (policy, name) and (OURS, name, seed) in auc] for name in names}
+        d = {name: values for name, values in d.items() if values}
+        every, clusters = sum(d.values(), []), [name for name, values in d.items() for _ in values]
+        half = of_rows.half_interval(every, clusters)
+        text += line([policy, *(interval(d[name]) if name in d else "-" for name in names), interval([np.mean(v) for v in d.values()]),
+                      f"± {half:.3f}" if np.isfinite(half) else "-", f"{sum(v > 0 for v in every)} of {len(every)}"])
+    return text
+
+
+def unseen(runs):
+    text = head(["scene", "seen from no pose in reach"])
+    for name in dict.fromkeys(run.scene for run in runs):
+        text += line([name, f"{100 * (1 - np.mean([run.visible for run in runs if run.scene == name])):.0f} %"])
+    return text
+
+
+def tables(runs):
+    text = ""
+    for sensor in dict.fromkeys(run.sensor for run in runs):
+        own = [run for run in runs if run.sensor == sensor]
+        text += f"## {sensor}: {len(own)} runs, seeds {', '.join(map(str, sorted({run.seed for run in own})))}\n\n"
+        text += "\n".join(table(own) for table in (means, scores, pairs, unseen)) + "\n"
+    return text
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=pathlib.Path, metavar="DIR", help="folder of the runs")
+    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="number of runs at once (default: 2)")
+    parser.add_argument("--program", metavar="PATH", help="the program viewgain (default: on PATH)")
+    parser.add_argument("--tables", action="store_true", help="make no runs; print the tables of those in DIR")
+    args = parser.parse_args()
+    runs = []
+    try:
+        program = study.find_program(args.program)
+        args.out.mkdir(parents=True, exist_ok=True)
+        for spec in specs(args.out, program):
+            if not args.tables:
+                study.make_runs(spec, args.out, args.jobs, None, program, lambda said: print(said, file=sys.stderr, flush=True))
+            runs += finished(spec, args.out)
+    except (study.SpecError, study.RunError) as error:
+        sys.exit(f"clutter.py: {error}")
+    print(tables(runs), end="")
+
+
+if __name__ == "__main__":
+    main()
