@@ -60,8 +60,8 @@ class Clutter(unittest.TestCase):
         self.assertEqual((got[1], got[4]), ("-", "3 of 3"))
         self.assertEqual(clutter.interval([.1]), "+0.100")
 
-    def test_unseen_is_the_rest_of_the_visible_share(self):
-        self.assertEqual(cells(clutter.unseen(self.runs + [run("table", "oracle", 1, .6, visible=.75)]), "table"), ["25 %"])
+    def test_the_rest_of_the_visible_share(self):
+        self.assertEqual(cells(clutter.not_visible(self.runs + [run("table", "oracle", 1, .6, visible=.75)]), "table"), ["25 %"])
         self.assertEqual(clutter.tables([]), "")
 
     def test_toml_is_read_back(self):
@@ -72,7 +72,7 @@ class Clutter(unittest.TestCase):
     def test_specs_have_every_run_once(self):
         with tempfile.TemporaryDirectory() as folder:
             specs = list(clutter.specs(pathlib.Path(folder), VIEWGAIN))
-            self.assertEqual([len(spec.runs) for spec in specs], [6 * 8] * 3 + [2 * 8])
+            self.assertEqual([len(spec.runs) for spec in specs], [6 * 4] * 6 + [2 * 4] * 2)
             runs = [one for spec in specs for one in spec.runs]
             self.assertEqual(len({one.hash for one in runs}), len(runs))
             starts = {(one.object.name, word) for one in runs for word in one.object.words if word.startswith("--from=")}
