@@ -122,10 +122,10 @@ def by_scene(runs, key):
 
 def means(runs):
     """Views and metres to each goal; a run that never gets there counts as MAX_VIEWS + 1 views and with its whole path."""
-    text = head(["policy", *(f"to {100 * goal:.0f} %: views; metres" for goal in GOALS), "AUC", "in the end", "RMS [mm]"])
+    text = head(["policy", "runs", *(f"to {100 * goal:.0f} %: views; metres" for goal in GOALS), "AUC", "in the end", "RMS [mm]"])
     for policy in dict.fromkeys(run.policy for run in runs):
         own = [run for run in runs if run.policy == policy]
-        cells = [policy]
+        cells = [policy, len(own)]
         for i in range(len(GOALS)):
             never = sum(run.views_to[i] is None for run in own)
             views, metres = by_scene(own, lambda run: run.views_to[i] or MAX_VIEWS + 1), by_scene(own, lambda run: run.metres_to[i])
@@ -159,6 +159,8 @@ def pairs(runs):
         d = {name: [auc[OURS, name, seed] - value for (one, scene, seed), value in auc.items()
                     if (one, scene) == (policy, name) and (OURS, name, seed) in auc] for name in names}
         d = {name: values for name, values in d.items() if values}
+        if not d:
+            continue
         every, clusters = sum(d.values(), []), [name for name, values in d.items() for _ in values]
         half = of_rows.half_interval(every, clusters)
         text += line([policy, *(interval(d[name]) if name in d else "-" for name in names), interval([np.mean(v) for v in d.values()]),

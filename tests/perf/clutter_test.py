@@ -40,6 +40,7 @@ class Clutter(unittest.TestCase):
     def test_means_are_of_scenes_and_count_runs_that_never_get_there(self):
         table = clutter.means(self.runs + [run("bin", "frontier", 4, .6, (2, 3, 4, None))])
         ours, other = cells(table, "gain:combined"), cells(table, "frontier")
+        self.assertEqual((ours.pop(0), other.pop(0)), ("6", "7"))
         self.assertEqual(ours[:4], ["2.00; 0.2", "3.00; 0.3", "4.00; 0.4", "5.00; 0.5"])
         self.assertEqual(other[3], f"≥ {clutter.MAX_VIEWS + 1}.00; 2.0 (7 never)")
         self.assertEqual(ours[4:], ["0.660", "76.0 %", "1.50"])
@@ -59,6 +60,7 @@ class Clutter(unittest.TestCase):
         got = cells(clutter.pairs(some), "frontier")
         self.assertEqual((got[1], got[4]), ("-", "3 of 3"))
         self.assertEqual(clutter.interval([.1]), "+0.100")
+        self.assertEqual(len(clutter.pairs([one for one in self.runs if one.policy == "frontier"]).splitlines()), 2)  # the head
 
     def test_the_rest_of_the_visible_share(self):
         self.assertEqual(cells(clutter.not_visible(self.runs + [run("table", "oracle", 1, .6, visible=.75)]), "table"), ["25 %"])
