@@ -7,7 +7,7 @@
 
 Runs every policy on the scenes of scenes.toml with use = "report": with an SR4000 from three start
 poses, which are the seeds, then with a D435 in two scenes from one. If it is stopped, the same call
-goes on with the runs that are in DIR. About two hours on two cores. Needs the program viewgain,
+goes on with the runs that are in DIR. About an hour on two idle cores. Needs the program viewgain,
 apps/install_dependencies.sh --perf, and PYTHONPATH=build/release/python.
 
 The visible surface, of which shares are stated, is what 2,562 poses see that look at the middle of the
@@ -120,8 +120,16 @@ def by_scene(runs, key):
     return np.mean([np.mean([key(run) for run in runs if run.scene == scene]) for scene in dict.fromkeys(run.scene for run in runs)])
 
 
+def comparable(runs):
+    """The runs of those scenes and seeds that the first policies all have, so that means are of the same."""
+    policies = {run.policy for run in runs} & {OURS, *COUNTS}
+    shared = [{(run.scene, run.seed) for run in runs if run.policy == policy} for policy in policies]
+    return [run for run in runs if all((run.scene, run.seed) in pairs for pairs in shared)]
+
+
 def means(runs):
     """Views and metres to each goal; a run that never gets there counts as MAX_VIEWS + 1 views and with its whole path."""
+    runs = comparable(runs)
     text = head(["policy", "runs", *(f"to {100 * goal:.0f} %: views; metres" for goal in GOALS), "AUC", "in the end", "RMS [mm]"])
     for policy in dict.fromkeys(run.policy for run in runs):
         own = [run for run in runs if run.policy == policy]
