@@ -2,13 +2,13 @@
 # Installs the Debian packages, those that are missing only, that are needed
 #   apps/install_dependencies.sh          to build and run the program, and for the demo's mesh
 #   apps/install_dependencies.sh --tests    for what tests/run.sh builds and runs as well
-#   apps/install_dependencies.sh --perf     for all that and the benchmarks
+#   apps/install_dependencies.sh --perf     for all that, the benchmarks and 820 meshes of furniture
 #   apps/install_dependencies.sh --browser  for all that and the test of the report in a browser
 #   apps/install_dependencies.sh --docs     for all that and the documentation site (target `docs`)
 #   apps/install_dependencies.sh --fuzz     for all that --tests is for and libFuzzer
 #   apps/install_dependencies.sh --packages for all that --tests is for and Debian packages
-#   apps/install_dependencies.sh --furniture for all that --tests is for and 820 meshes of furniture
-#   apps/install_dependencies.sh --all      for all of it, except the furniture
+#   apps/install_dependencies.sh --furniture for all that --tests is for and the furniture
+#   apps/install_dependencies.sh --all      for all of it
 # Asks nothing; uses sudo only if not root.
 set -euo pipefail
 
@@ -26,7 +26,7 @@ tests=(
   python3-scipy python3-distributed
   libgtest-dev liboctomap-dev libopenvdb-tools file locales
 )
-perf=(libbenchmark-dev libnanovdb-dev)
+perf=(libbenchmark-dev libnanovdb-dev sweethome3d-furniture)
 browser=(chromium-headless-shell)
 fuzz=(clang-19 libclang-rt-19-dev)
 docs=(doxygen doxygen-awesome-css python3-sphinx python3-myst-parser furo libjs-mathjax)

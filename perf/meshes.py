@@ -1,17 +1,40 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
 """Reads and writes meshes, for the scripts."""
+import pathlib
+import re
 import sys
+import tarfile
+import zipfile
 
 import numpy as np
 
+CGAL = pathlib.Path("/usr/share/doc/libcgal-dev/data.tar.gz")
+FURNITURE = pathlib.Path("/usr/share/sweethome3d/furniture")
+
+
+def packaged(path):
+    """The file's name and bytes for "cgal:NAME", a mesh of libcgal-demo, or "LIBRARY:NAME", one of sweethome3d-furniture;
+    None for other paths."""
+    library, colon, name = str(path).partition(":")
+    if not colon or not re.fullmatch(r"[\w-]+", library) or pathlib.Path(path).exists():
+        return None
+    if library == "cgal":
+        with tarfile.open(CGAL) as archive:
+            return f"{name}.off", archive.extractfile(f"data/meshes/{name}.off").read()
+    with zipfile.ZipFile(FURNITURE / f"{library}.sh3f") as archive:
+        wanted = re.compile(rf"[^/]+/{re.escape(name)}/{re.escape(name)}\.obj", re.IGNORECASE)
+        found = next((one for one in sorted(archive.namelist()) if wanted.fullmatch(one)), f"{name}.obj")
+        return found, archive.read(found)
+
 
 def read_mesh(path):
-    """Vertices and triangles of an OFF or OBJ file. Exits with a message if the file is not a mesh."""
+    """Vertices and triangles of an OFF or OBJ file, or of a mesh that packaged() finds. Exits with a message if it is not a mesh."""
     try:
-        with open(path, encoding="utf-8") as file:
-            lines = [words for words in (line.split("#")[0].split() for line in file) if words]
-        if str(path).lower().endswith(".obj"):
+        name, data = packaged(path) or (str(path), pathlib.Path(path).read_bytes())
+        text = data.decode("utf-8", errors="replace")
+        lines = [words for words in (line.split("#")[0].split() for line in text.splitlines()) if words]
+        if name.lower().endswith(".obj"):
             vertices = [words[1:4] for words in lines if words[0] == "v"]
             faces = [[int(word.split("/")[0]) for word in words[1:]] for words in lines if words[0] == "f"]
             faces = [[i - 1 if i > 0 else len(vertices) + i for i in face] for face in faces]
@@ -27,7 +50,7 @@ def read_mesh(path):
         vertices = np.array(vertices, float)
         if len(triangles) == 0 or triangles.min() < 0 or triangles.max() >= len(vertices):
             raise ValueError("no faces, or a face with a vertex that does not exist")
-    except (OSError, ValueError, IndexError) as error:
+    except (OSError, ValueError, KeyError, IndexError, zipfile.BadZipFile, tarfile.TarError) as error:
         sys.exit(f"{path}: expected a mesh in an OFF or OBJ file: {error}")
     return vertices, triangles.astype(np.uint32)
 

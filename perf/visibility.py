@@ -45,13 +45,13 @@ class KnownObject:
         self.points = (1 - s) * corners[of, 0] + s * (1 - t) * corners[of, 1] + s * t * corners[of, 2]
         self.normals = normals[of] / (2 * areas[of][:, None])
 
-    def sees(self, T_world_camera):
+    def sees(self, T_world_camera, least_cosine=LEAST_COSINE):
         """One bool per sample."""
         sight = self.points - T_world_camera[:3, 3]
         ranges = np.linalg.norm(sight, axis=1)
         cosine = np.abs((sight * self.normals).sum(axis=1)) / ranges
         at_camera = sight @ T_world_camera[:3, :3]
-        asked = np.flatnonzero((cosine >= LEAST_COSINE) & (ranges > self.sensor.min_range) & (ranges < self.sensor.max_range) &
+        asked = np.flatnonzero((cosine >= least_cosine) & (ranges > self.sensor.min_range) & (ranges < self.sensor.max_range) &
                                (at_camera[:, 2] > 0))
         seen = np.zeros(len(self.points), bool)
         if len(asked) == 0:
