@@ -56,15 +56,16 @@ struct VIEWGAIN_EXPORT EstimatedViews {
   std::vector<BoundaryCandidate> candidates;        ///< ordered by run, patch and variant
 };
 
-/// The paper's viewpoint estimator, after Kriegel et al., ICRA 2011. Its details are unpublished,
-/// so this definition is ours (mesh/README.md). It fits a patch to a surface region at each
-/// boundary run, extrapolates the patch, and places views in front of it.
+/// Proposes views past the boundaries of a surface, after Kriegel et al., ICRA 2011. That paper
+/// leaves details open; the sizes and thresholds here are viewgain's. The estimator fits a patch to
+/// a surface region at each boundary run, extrapolates the patch, and places views in front of it.
 ///
-/// Runs longer than patch_length are cut into equal parts, closed ones into at least three. A patch
-/// is fitted to the vertices of grow_region() within a turn of 45°, with its origin at the mean of
-/// its edges. It is extrapolated outward until known surface fills the fraction `overlap` of the
-/// nominal view, at most by the depth of its region and a turn of max_turn. The camera stands at
-/// distance · working_distance along the normal at that point and looks back at it.
+/// Runs longer than patch_length are cut into equal parts; closed runs into at least three. For
+/// each part, a patch is fitted to the vertices of grow_region() within a turn of 45°. Its origin
+/// is the mean of the part's edges. The target of a view lies on the extrapolated patch, where
+/// known surface fills the fraction `overlap` of the nominal view. The extrapolation ends at the
+/// depth of the region or at a turn of max_turn. The camera stands at distance · working_distance
+/// from the target, along the patch's normal there, and looks at the target.
 ///
 /// `views` are T_world_camera in the order taken, working_distance [m]; `sees` as in boundary_runs.
 /// Throws Error(invalid_argument) for an overlap outside (0, 1), an empty list of variants, lengths
