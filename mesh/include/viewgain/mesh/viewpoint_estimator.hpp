@@ -22,7 +22,7 @@ struct VIEWGAIN_EXPORT EstimatorConfig {
   double patch_length = 0.06;  ///< longer runs are cut into parts of about this length [m]
   /// Inward extent of the surface region to which a patch is fitted [m].
   double region_depth = 0.05;
-  double overlap = 0.5;  ///< fraction of known surface in the next view, in (0, 1)
+  double overlap = 0.5;  ///< fraction of a view that known surface should fill, in (0, 1)
   double max_turn = 60.0 * std::numbers::pi / 180;  ///< largest turn of the extrapolation [rad]
   /// Candidates are made for all combinations of distances, tilts and rolls, with rolls varying
   /// fastest. Distances are multiples of the working distance. Tilts are in (-pi/2, pi/2). A tilt
@@ -44,7 +44,7 @@ struct VIEWGAIN_EXPORT BoundaryCandidate {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();    ///< point it looks at, world [m]
   double distance = 0;                                 ///< distance from the target [m]
   double tilt = 0, roll = 0;                           ///< tilt and roll of the variant [rad]
-  bool nominal = false;  ///< whether it is untilted, unrolled and at the first distance
+  bool nominal = false;  ///< whether tilt and roll are 0 and the distance is the first
 };
 
 /// Candidates with the runs and patches that they come from.

@@ -262,9 +262,10 @@ class VIEWGAIN_EXPORT GainEvaluator {
   ///
   /// In later rounds, a pose is skipped if its gain in an earlier round shows that it cannot win.
   /// This is exact for surface and log_determinant, which are submodular. With combined, the best
-  /// pose can, rarely, be missed. With log_diagonal and trace, no pose is skipped. Cost: with the
-  /// paper's gain up to k batches of about twice evaluate(); otherwise one batch, and about ten
-  /// times evaluate() per pose that is scored again for the first time; up to 256 MB.
+  /// pose can, rarely, be missed. With log_diagonal and trace, no pose is skipped. Cost with the
+  /// paper's gain: up to k batches, each about twice evaluate(). Cost otherwise: one batch, and
+  /// about ten times evaluate() when a pose is scored again for the first time. Memory: up to 256
+  /// MB.
   [[nodiscard]] ViewSet best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                  const BatchControl& control = {}) const;
 

@@ -33,8 +33,8 @@ namespace viewgain {
 /// Settings of a ViewScorer. Defaults suit an object at the origin.
 struct VIEWGAIN_EXPORT ScorerConfig {
   double voxel_size = GridConfig{}.voxel_size;  ///< [m]
-  /// The mapped part of the world, in the grid frame [m]; extended to whole voxels. Let it start at
-  /// the table; otherwise the paper's gain counts unknown space below the table.
+  /// The mapped part of the world, in the grid frame [m]; extended to whole voxels. The workspace
+  /// should start at the table; otherwise the paper's gain counts unknown space below the table.
   Box workspace = GridConfig{}.workspace;
   Pose T_world_grid{};  ///< pose of the grid frame
   /// Standard deviation of the surface in an unknown voxel [m]. Unset: default_prior_sigma().

@@ -33,8 +33,8 @@ struct VIEWGAIN_EXPORT Obstacles {
 /// Surroundings of the map, world frame.
 struct VIEWGAIN_EXPORT Surroundings {
   Obstacles obstacles{};  ///< known obstacles
-  /// Height z of an infinite table [m]. Bodies stay above it. It ends descending rays, except with
-  /// the paper's gain.
+  /// Height z of an infinite table [m]. Bodies must stay above the table. Descending rays end at
+  /// the table, except with the paper's gain.
   std::optional<double> support_plane{};
 };
 

@@ -144,8 +144,8 @@ class VIEWGAIN_EXPORT ViewPlanner {
   [[nodiscard]] Ranking rank(std::span<const Pose> T_world_camera, std::size_t k = 1,
                              const RankConfig& config = {}, const BatchControl& control = {});
 
-  /// Reports whether a commanded pose was `reached`. It is not proposed again, and is removed from
-  /// the current proposal, so that the indices of later candidates decrease. Throws
+  /// Reports whether a commanded pose was `reached`. The pose is not proposed again. It is also
+  /// removed from the current proposal, so the indices of later candidates decrease. Throws
   /// Error(invalid_argument) for a pose that is not rigid (1e-3).
   void tried(const Pose& T_world_camera, bool reached);
 
