@@ -32,7 +32,7 @@ struct VIEWGAIN_EXPORT Belief {
   bool operator==(const Belief&) const = default;
 };
 
-/// The voxel at offset (x << 6 | y << 3 | z) in the leaf with the lowest voxel `origin`.
+/// The voxel at an offset (x << 6 | y << 3 | z) in a leaf. `origin` is the leaf's lowest voxel.
 [[nodiscard]] inline Index3 offset_voxel(Index3 origin, unsigned offset) {
   return {origin.x + static_cast<std::int32_t>(offset >> 6U),
           origin.y + static_cast<std::int32_t>(offset >> 3U & 7U),
@@ -51,8 +51,8 @@ struct VIEWGAIN_EXPORT Belief {
   return offset & (kept << 6U | kept << 3U | kept);
 }
 
-/// Fraction of a cell's information that belongs to one voxel. The cell is treated as a piece of
-/// surface that covers 4^scale voxels.
+/// Fraction of a cell's information that belongs to one voxel, 1 / 4^scale. The surface in a cell
+/// is assumed to pass through 4^scale voxels.
 [[nodiscard]] inline double surface_share(int scale) { return 1.0 / (1 << 2 * scale); }
 
 /// One bit per voxel of an 8³ leaf: word x, bit y << 3 | z (OpenVDB's order).

@@ -43,13 +43,14 @@ struct VIEWGAIN_EXPORT GridConfig {
 /// The belief grid: the state of a workspace, voxel by voxel.
 ///
 /// Voxel (i,j,k) covers [i,i+1) x [j,j+1) x [k,k+1) times V in the grid frame. The workspace is
-/// extended to whole voxels; a face within 1e-6 voxel of the lattice lies on it. At first all
-/// voxels are unknown, which takes little memory. A known voxel has a log-odds in steps of 0.05
-/// within [-2, 3.5]. Above 0 it is occupied, otherwise free. A voxel is hit by the readings
-/// (measured depths) that end in it. It then has a Belief, and keeps it if it becomes free.
+/// extended to whole voxels. A face within 1e-6 voxels of a voxel boundary counts as lying on it.
+/// At first all voxels are unknown, which takes little memory. A known voxel has a log-odds in
+/// steps of 0.05 within [-2, 3.5]. If the log-odds is above 0, the voxel is occupied, otherwise
+/// free. Readings (measured depths) that end in a voxel hit it. A voxel that was hit has a Belief,
+/// and keeps the belief if it becomes free.
 ///
-/// Each leaf of 8³ voxels has a scale s, initially 0 and at most 3. Its cells of 2^s voxels per
-/// edge have one state, log-odds and belief each, which all their voxels share
+/// Each leaf of 8³ voxels has a scale s, initially 0 and at most 3. It is divided into cells of 2^s
+/// voxels per edge. All voxels of a cell share one state, log-odds and belief
 /// (apps/docs/guide/scales.md).
 ///
 /// Thread safety: const members may run from many threads at once, but not during a non-const one.
@@ -63,8 +64,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
     std::optional<Belief> belief{};  ///< empty: no belief; set() then removes an existing one
   };
 
-  /// Voxel counts and the paper's measure of progress, for a map or a part of it ("selected
-  /// parts").
+  /// Voxel counts of a map or a part of it, and the removed entropy that measures progress in Foix
+  /// et al. (2012).
   struct Statistics {
     std::uint64_t unknown = 0;   ///< voxels never observed
     std::uint64_t free = 0;      ///< voxels known to be free
@@ -73,15 +74,15 @@ class VIEWGAIN_EXPORT BeliefGrid {
     /// Sum over occupied voxels of H(Λ_0) - H(Λ_0 + Λ_v) [nat, or m² for trace]; a cell of scale s
     /// counts as 4^s voxels that share its Λ.
     double entropy_removed = 0;
-    /// Readings that ended there, whatever the current state of their voxels.
+    /// Number of readings that ended in the map or part. Their voxels may be free by now.
     std::uint64_t hits = 0;
   };
 
   /// `sensor`: the map's sensor, which determines prior_sigma if that is not set. Throws
-  /// Error(invalid_argument) naming the value unless voxel_size is at least 2e-5 m (smaller ones
-  /// have no OpenVDB transform), voxel_size and prior_sigma are positive and finite, the workspace
-  /// is finite and not inside out, and T_world_grid is a rigid transform (1e-9). Throws
-  /// Error(capacity) above 65,536 voxels along an axis, 2^40 voxels, or indices of ±2^30.
+  /// Error(invalid_argument) naming the value if voxel_size is below 2e-5 m, voxel_size or
+  /// prior_sigma is not positive and finite, the workspace is not finite or is inside out, or
+  /// T_world_grid is not a rigid transform (1e-9). Throws Error(capacity) above 65,536 voxels along
+  /// an axis, 2^40 voxels, or indices of ±2^30.
   explicit BeliefGrid(const GridConfig& config, const Sensor& sensor = {});
   ~BeliefGrid();
   BeliefGrid(BeliefGrid&&) noexcept;
@@ -129,8 +130,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Error(invalid_argument) unless the size is voxel_count(). Cost: one pass over the array.
   void copy_states(std::span<std::uint8_t> states) const;
 
-  /// Sets one voxel of the workspace, for importers and tests. Without a belief, an existing one is
-  /// removed. Throws Error(invalid_argument) without a change if the voxel lies outside the
+  /// Sets one voxel of the workspace, for importers and tests. If no belief is given, an existing
+  /// one is removed. Throws Error(invalid_argument) without a change if the voxel lies outside the
   /// workspace, the log-odds is NaN, or the belief is impossible: a number that is not finite,
   /// information that is not positive semidefinite, or a position Λ⁻¹η more than 2^28 voxels away.
   /// Rounding errors of the information are repaired.
@@ -156,9 +157,9 @@ class VIEWGAIN_EXPORT BeliefGrid {
 
   /// Sets the scale of the leaves that a region of the grid frame [m] touches; bounds may be
   /// infinite. A leaf that the workspace cuts off gets the largest scale that fits. When cells
-  /// merge, their beliefs add up; the new cell is occupied if one of them was. When a cell is
-  /// split, the new cell that contains the mean of its readings gets the belief; the rest of an
-  /// occupied cell becomes unknown. Returns the number of changed leaves. Throws
+  /// merge, their beliefs add up, and the new cell is occupied if one of the old cells was. When a
+  /// cell is split, its belief goes to the new cell that contains the mean of its readings. The
+  /// other parts of an occupied cell become unknown. Returns the number of changed leaves. Throws
   /// Error(invalid_argument) for a NaN or a scale outside 0..3. Cost: one pass over the map.
   std::uint64_t resample(const Box& region, int scale);
 
@@ -194,14 +195,14 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// pass over the map's blocks.
   [[nodiscard]] Statistics statistics(Criterion criterion = Criterion::log_diagonal) const;
   /// Statistics of the voxels whose centres lie in a half-open region of the grid frame [m]. The
-  /// belief of a larger cell counts if the cell's lowest voxel does. Bounds may be infinite. Throws
-  /// Error(invalid_argument) if one is NaN.
+  /// belief of a cell larger than a voxel counts if the centre of the cell's lowest voxel lies in
+  /// the region. Bounds may be infinite. Throws Error(invalid_argument) if a bound is NaN.
   [[nodiscard]] Statistics statistics(const Box& region,
                                       Criterion criterion = Criterion::log_diagonal) const;
   /// Mean position uncertainty [m] of the region's occupied voxels with a belief: √(tr(Λ_v⁻¹ +
-  /// e²/12 I) / 3), where e is the edge of the cell. A cell of scale s has the weight 4^s, like its
-  /// area. NaN if there are none. Throws like statistics(). Cost: one pass over the occupied
-  /// voxels.
+  /// e²/12 I) / 3), where e is the edge of the cell. A cell of scale s has the weight 4^s, because
+  /// its area is 4^s times that of a voxel. NaN if there are no such voxels. Throws like
+  /// statistics(). Cost: one pass over the occupied voxels.
   [[nodiscard]] double mean_sigma(const Box& region) const;
 
   /// Hash of states, log-odds, beliefs, layout, prior, views and, if present, hazard counters and
@@ -212,9 +213,9 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// The data that a VoxelScene needs. Immutable and independent of later changes to the grid;
   /// beliefs are shared and copied on write. Cost: one pass over the leaves that are not free.
   [[nodiscard]] GridSnapshot snapshot() const;
-  /// The same result, but leaves in regions of 32³ voxels that did not change since `before` are
-  /// copied from it. `before` must come from this grid or the grid it was cloned from; any other
-  /// snapshot has no effect.
+  /// The same result, but faster: leaves in regions of 32³ voxels that did not change since
+  /// `before` are copied from `before`. `before` must come from this grid or the grid it was cloned
+  /// from; any other snapshot has no effect.
   [[nodiscard]] GridSnapshot snapshot(const GridSnapshot& before) const;
 
  private:

@@ -19,17 +19,18 @@ class DisplacementFit;
 
 /// Agreement of a frame with the others, counted on a sample of its readings (measured depths).
 struct VIEWGAIN_EXPORT FrameContradiction {
-  std::size_t readings = 0;   ///< of this frame, in the workspace and on a smooth surface
-  std::size_t in_free = 0;    ///< of these, those in space that other frames saw as free
+  std::size_t readings = 0;   ///< readings of this frame in the workspace, on a smooth surface
+  std::size_t in_free = 0;    ///< number of these in space that other frames saw as free
   std::size_t others = 0;     ///< readings of earlier frames that this frame sees, or sees past
-  std::size_t seen_past = 0;  ///< of these, those in space that this frame shows as free
+  std::size_t seen_past = 0;  ///< number of these in space that this frame shows as free
   /// Readings of earlier frames that project onto flat parts of this one.
   std::size_t compared = 0;
-  /// Distance of this frame's surface from that of the earlier frames: RMS along the normals,
-  /// without the part that noise explains [m]. 0 if too few readings were compared.
+  /// Distance between this frame's surface and the same surface in earlier frames [m]. It is the
+  /// RMS along the normals, without the part that noise explains. 0 if too few readings were
+  /// compared.
   double displacement = 0;
-  /// Displacement that the declared errors explain [m]: those of a reading (at most 0.35 % of the
-  /// range), of the scale and of both poses.
+  /// Displacement that the declared errors explain [m]. These are the errors of a reading (at most
+  /// 0.35 % of the range), of the scale, and of the poses of both frames.
   double expected = 0;
   /// An earlier frame with the same image from another pose, if any.
   std::optional<std::size_t> same_image_as{};
@@ -46,8 +47,9 @@ struct VIEWGAIN_EXPORT FrameContradiction {
 
 /// Compares frames while they go into a map. Counts the readings in space that other frames saw as
 /// free, and measures how far apart the surfaces of different frames lie. A reading is in free
-/// space if its voxel and all voxels within three standard deviations along its ray are free. It
-/// counts if that holds before its frame is integrated or after all frames.
+/// space if its voxel and all voxels within three standard deviations along its ray are free. This
+/// is checked twice, before the reading's frame is integrated and after all frames. The reading
+/// counts if it is in free space at one of these times.
 ///
 /// Thread safety: one call at a time. Deterministic. Cost: 0.3 ms per frame; at most 4 MB.
 /// @code
@@ -66,7 +68,7 @@ class VIEWGAIN_EXPORT FrameAgreement {
 
   /// Takes a frame that is about to be integrated into the map `before`. Flying pixels must be
   /// removed and known depths marked. `pose_sigma`: as in FrameIntegrator::integrate(). Throws
-  /// Error(invalid_argument) without a change for a frame of another size, a pose that is not
+  /// Error(invalid_argument), and changes nothing, for a frame of another size, a pose that is not
   /// rigid, and a sigma that is negative or not finite.
   void look(const BeliefGrid& before, const DepthFrame& frame, const Pose& T_world_camera,
             const PoseSigma& pose_sigma = {});

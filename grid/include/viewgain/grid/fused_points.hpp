@@ -32,13 +32,17 @@ struct VIEWGAIN_EXPORT FusedPoint {
 struct VIEWGAIN_EXPORT FusedPointsConfig {
   /// False: pools the beliefs in a short column of voxels along the surface normal into one point,
   /// because noise spreads readings of the same surface over several voxels. True: makes one point
-  /// per occupied voxel, centre + Λ_v⁻¹ η_v, as in the paper.
+  /// per occupied voxel, at the weighted mean of its readings, as in Foix et al. (2012). This mean
+  /// is the voxel's centre + Λ_v⁻¹ η_v, with Λ_v and η_v from its Belief.
   bool per_voxel = false;
   std::uint32_t min_hits = 2;  ///< points with fewer readings are omitted
-  /// Omits points with little evidence, such as the halo at silhouettes: less than this fraction of
-  /// the upper quartile among points within 4 lengths whose normals differ by less than 60°. 0
-  /// keeps all. Evidence is the number of readings divided by that of one frontal view at the same
-  /// range. Surface seen from afar, or on the less seen side of a thin wall, is therefore kept.
+  /// Omits points with little evidence, such as the halo at silhouettes. The evidence of a point is
+  /// its number of readings, divided by the number that one frontal view at the same range would
+  /// give. Surface that was seen from afar is therefore kept.
+  ///
+  /// A point is omitted if its evidence is below this fraction of the upper quartile among its
+  /// neighbours. Neighbours are the points within 4 pooling lengths whose normals differ by less
+  /// than 60°. The less seen side of a thin wall is therefore kept. 0 keeps all points.
   double min_relative_evidence = 0.25;
   double normal_radius = 5.0;  ///< radius of the ball whose beliefs give the surface normal, at
                                ///< most 8 [pooling lengths]
@@ -50,32 +54,36 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
   /// hole. Rare small gaps remain.
   double min_distance = 0.75;
   /// Square root of F [m], a variance that is added in all directions. It stands for errors that a
-  /// point's readings share, and for blur from pooling. Default with per_voxel: F = edge² / 12.
-  /// Otherwise F = min(1, 0.2 + 2 / e) · ((0.19 σ)² + (0.43 s)² + (0.02 edge)²), where e is the
-  /// evidence in frontal views, σ the standard deviation of one reading along the normal, s the
-  /// scatter of the voxel means in the column, and `edge` that of the pooled voxels or cubes.
+  /// point's readings share, and for blur from pooling. Default: F = edge² / 12 with per_voxel,
+  /// otherwise F = min(1, 0.2 + 2 / e) · ((0.19 σ)² + (0.43 s)² + (0.02 edge)²).
+  /// - e: evidence of the point, see min_relative_evidence
+  /// - σ: standard deviation of one reading along the normal [m]
+  /// - s: standard deviation of the voxels' mean readings in the column, along the normal [m]
+  /// - edge: edge length of the voxels, or of the cubes in which they are pooled [m]
   std::optional<double> floor_sigma{};
   /// Sensor::scale_sigma of the camera. A scale error moves all readings of a point together, so
-  /// scale_sigma² w wᵀ is added to the point's covariance. w [m] is the mean vector to the point
-  /// from the views on its free side, weighted by their number of readings; occlusion is ignored.
-  /// Without views nothing is added.
+  /// scale_sigma² w wᵀ is added to the point's covariance. w [m] is the mean vector from the views
+  /// to the point. Only views on the point's free side count, each with an estimate of its number
+  /// of readings as the weight. Occlusion is ignored. Without such views nothing is added.
   double scale_sigma = 0;
-  /// Starts points only at voxels, or cubes, whose centre [m, world frame] satisfies this; empty:
-  /// at all of them. Near the border of the selection, points can differ from those of the whole
-  /// map.
+  /// Makes points only from voxels (or pooled cubes) whose centre [m, world frame] satisfies this
+  /// predicate. If it is empty, all voxels are used. Near the border of the selection, points can
+  /// differ from those of the whole map.
   std::function<bool(const Eigen::Vector3d&)> where{};
 };
 
-/// Surface points of a map, with covariances. A pooled point starts at an occupied voxel, or a cube
-/// of voxels (pooling_of), and moves along the local normal to the mean of the readings in its
-/// column, including those of voxels that became free. Its covariance is that of the mean, plus the
-/// terms of floor_sigma and scale_sigma. Both sides of a thin wall are kept; min_distance thins out
-/// redundant points. grid/README.md ("Surface points") has the details.
+/// Surface points of a map, with covariances. A pooled point starts at an occupied voxel or cube of
+/// voxels (pooling_of()). Along the local normal, it moves to the mean of all readings in its
+/// column. Readings in voxels that have since become free are included. The point's covariance is
+/// that of the mean, plus the terms of floor_sigma and scale_sigma. Both sides of a thin wall are
+/// kept; min_distance thins out redundant points. grid/README.md ("Surface points") has the
+/// details.
 ///
-/// Points are ordered by scale, finest first, then by the starting voxel or cube; each scale is
-/// pooled separately. Deterministic for any number of threads. Cost: about 1 µs per voxel that was
-/// ever hit where config.where is true, 0.3 µs elsewhere. Throws Error(invalid_argument) naming a
-/// setting that is negative, not finite or too large.
+/// In a map with cells of several sizes (BeliefGrid::scale()), the cells of each size are pooled
+/// separately. Points from the smallest cells come first. Within a size, points are ordered by the
+/// voxel or cube that they start from. Deterministic for any number of threads. Cost per voxel that
+/// was ever hit: about 1 µs if config.where accepts it, otherwise 0.3 µs. Throws
+/// Error(invalid_argument) naming a setting that is negative, not finite or too large.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<FusedPoint> fused_points(
     const BeliefGrid& grid, const FusedPointsConfig& config = {}, const ExecConfig& exec = {});
 
@@ -86,11 +94,12 @@ struct VIEWGAIN_EXPORT Pooling {
   double length = 0;  ///< edge of the cubes or the footprint, whichever is longer [m]
 };
 
-/// Pooling of a map. The footprint is the standard deviation of a reading across its ray, estimated
-/// from Λ_v / hits as the median over the occupied voxels. Cubes are as large as possible below
-/// 1.42 footprints; if voxels are larger than that, shift is 0. With a scale, 0 to 3: the pooling
-/// of leaves of this scale, with cubes of at least their cell size. Never throws. Thread safe.
-/// Cost: about 20 ns per occupied voxel.
+/// Pooling of a map. The footprint is the standard deviation of a reading across its ray. It is
+/// estimated from the beliefs, as the median over the occupied voxels. The edge of the cubes is as
+/// large as possible below 1.42 footprints; if voxels are larger than that, shift is 0. If `scale`
+/// (0 to 3) is given, only leaves with this scale (BeliefGrid::scale()) are considered, and the
+/// cubes are at least as large as the cells of these leaves. Never throws. Thread safe. Cost: about
+/// 20 ns per occupied voxel.
 [[nodiscard]] VIEWGAIN_EXPORT Pooling pooling_of(const GridSnapshot& snapshot,
                                                  std::optional<int> scale = {});
 

@@ -32,7 +32,7 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   };
   /// A cube of 32³ lattice voxels; its leaves and tiles are contiguous in the lists.
   struct Region {
-    std::uint64_t number = 0;   ///< regions are sorted by it; the same in all snapshots of a grid
+    std::uint64_t number = 0;   ///< the same in all snapshots of a grid; regions are sorted by it
     std::uint64_t changed = 0;  ///< time of the last change to its voxels
     /// A region's leaves are sorted by x, then y, then z of their origin.
     std::uint32_t first_leaf = 0;
@@ -57,7 +57,8 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   /// For a snapshot made from an earlier one, the time of that one; otherwise 0.
   std::uint64_t shared_until = 0;
 
-  /// Whether the region is unchanged since that earlier snapshot, if listed there.
+  /// Whether the region is unchanged since the earlier snapshot, if this snapshot was made from
+  /// one.
   [[nodiscard]] bool is_shared(const Region& region) const {
     return shared_until != 0 && region.changed <= shared_until;
   }

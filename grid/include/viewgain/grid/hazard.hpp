@@ -26,17 +26,18 @@ class OpenDirections;
 
 /// Settings of the hazard: the rate [1/m] at which a ray through unknown voxels meets the surface.
 /// A rate of 0 means that there is no surface, so no ray ends there. If a ray reaches known surface
-/// from behind, surface is expected in the unknown voxels before it that have positive rates. Rates
-/// below 1e-30 /m are 0 in single precision.
+/// from behind, the back of this surface is expected in the unknown voxels just passed, where their
+/// rates are positive. Rates below 1e-30 /m are 0 in single precision.
 struct VIEWGAIN_EXPORT HazardConfig {
   /// Model of the hazard as a function of the location relative to known surface
-  /// (apps/docs/guide/surface_gain.md). h(d, s, o) = far_rate + near_rate c(s) g(o) exp(-d /
-  /// decay_length), and far_rate beyond 5 decay lengths.
+  /// (apps/docs/guide/surface_gain.md): h(d, s, o) = far_rate + near_rate c(s) g(o) exp(-d /
+  /// decay_length). Beyond 5 decay lengths the hazard is far_rate. c is continuation() and g is
+  /// openness().
   /// - d: distance to known surface
-  /// - s: sine of the elevation above the tangent plane at the nearest point of known surface; 1 is
-  /// straight towards free space
-  /// - o: fraction of the 26 directions in which free space comes within 2.2 decay lengths, before
-  /// anything occupied
+  /// - s: sine of the elevation of the location above the tangent plane at the nearest point of
+  ///   known surface; 1 is straight towards free space
+  /// - o: fraction of the 26 directions to neighbouring cells in which free space begins within 2.2
+  ///   decay lengths, before anything occupied
   ///
   /// Members check nothing; validate() does.
   struct Model {
@@ -58,12 +59,13 @@ struct VIEWGAIN_EXPORT HazardConfig {
     }
 
     /// c(s): surfaces continue in their direction and bend away from free space rather than into
-    /// it. Fitted; piecewise linear in steps of 1/5 of s; 1 at -0.4, less elsewhere.
+    /// it. A fitted function, piecewise linear in steps of 1/5 of s. It is 1 at -0.4 and less
+    /// elsewhere.
     [[nodiscard]] static VIEWGAIN_EXPORT double continuation(double sine_of_elevation);
 
     /// g(o): surface lies between free space and hidden space. Voxels with free space in nearly all
-    /// directions are gaps in free space; voxels with none lie deep inside. Fitted; piecewise
-    /// linear in steps of 1/13 of o.
+    /// directions are gaps in free space; voxels with none lie deep inside. A fitted function,
+    /// piecewise linear in steps of 1/13 of o.
     [[nodiscard]] static VIEWGAIN_EXPORT double openness(double share_of_directions);
 
     /// Hazard [1/m] at this distance from known surface [m]; `shape` is c g.
@@ -81,14 +83,14 @@ struct VIEWGAIN_EXPORT HazardConfig {
     float outside = 0;         ///< [1/m]
   };
 
-  /// Longest side of the object [m]. Defaults to that of the box around the surface seen so far, or
-  /// of the workspace if none was seen.
+  /// Longest side of the object [m]. Default: the longest side of the box around the surface seen
+  /// so far, or of the workspace if no surface was seen.
   std::optional<double> object_size{};
   std::optional<Model> model{};  ///< defaults to Model::for_size
   /// Rates per voxel that replace the model; null: none.
   std::shared_ptr<const Volume> volume{};
-  /// Corrects the start values by the statistics of the frames so far (GridSnapshot::hazard). Has
-  /// no effect on a given model or volume. The statistics refer to distances in decay lengths, so
+  /// Corrects the start values by counts from the frames so far (GridSnapshot::hazard). Has no
+  /// effect if `model` or `volume` is set. The counts refer to distances in decay lengths, so
   /// object_size should be the same for all scenes of a map.
   bool calibrated = true;
 
@@ -107,20 +109,23 @@ struct VIEWGAIN_EXPORT HazardConfig {
 /// Hazard of a map in its current state. Immutable; all members may be called from many threads.
 ///
 /// Rates are constant in hazard cells: cubes of 1, 2, 4 or 8 voxels per edge, about 0.28 decay
-/// lengths wide. Distances are between cell centres, to the nearest cell with evidence: with an
-/// occupied voxel of at least 3 hits or, for voxels finer than the footprint, such a cube of
-/// pooling_of(). Distances above 5 decay lengths or 127 cells count as infinite; this limit is
-/// called the cut. The surface normal points to where more of the surrounding 7³ cells are free.
-/// HazardCounters::factor() scales the start values per class of distance. Rates of a volume are
-/// per voxel. Members accept any voxel, never throw, and take constant time.
+/// lengths wide. The distance of a cell is measured to the nearest cell with evidence, between the
+/// cells' centres. A cell has evidence if it contains an occupied voxel with at least 3 hits. If
+/// voxels are finer than the footprint, the cubes of pooling_of() take the place of voxels.
+/// Distances above 5 decay lengths or 127 cells count as infinite; this limit is called the cut.
+/// The surface normal points to where more of the surrounding 7³ cells are free.
+/// HazardCounters::factor() scales the start values, separately for each class of distance. Rates
+/// of a HazardConfig::volume are per voxel. Members accept any voxel, never throw, and take
+/// constant time.
 class VIEWGAIN_EXPORT HazardField {
  public:
   /// Computes exact distances in the box of cells with evidence, extended by the cut. Cost: about 7
-  /// ms for an object of 112³ voxels in any workspace; 16 bytes per cell, of which 4 remain. Throws
-  /// like HazardConfig::validate(), and Error(capacity) above 2³¹ cells.
+  /// ms for an object of 112³ voxels in any workspace. Needs 16 bytes per cell during the call and
+  /// 4 bytes afterwards. Throws like HazardConfig::validate(), and Error(capacity) above 2³¹ cells.
   explicit HazardField(const GridSnapshot& snapshot, const HazardConfig& config = {});
 
-  /// The start values, or the given model. Rates can differ from it because of the map's counters.
+  /// The start values, or HazardConfig::model if it was set. Because of the map's counters, rates
+  /// can differ from the start values.
   [[nodiscard]] const HazardConfig::Model& model() const { return model_; }
   /// Rate beyond the cut [1/m]; with a volume, outside its box.
   [[nodiscard]] float far_rate() const { return far_rate_; }

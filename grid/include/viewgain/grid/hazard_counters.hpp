@@ -11,14 +11,15 @@
 namespace viewgain {
 
 /// Counts, per class of distance from known surface, how often real rays met the surface in unknown
-/// space, and how often the hazard model predicted it. Part of a map. Integers, so that all
-/// machines agree. Members check nothing: a class must be below kClasses.
+/// space, and how often the hazard model predicted it. Part of a map. The counts are integers, so
+/// that all machines get the same result. Members check nothing: a class must be below kClasses.
 struct VIEWGAIN_EXPORT HazardCounters {
   /// Number of distance classes.
   static constexpr std::size_t kClasses = 8;
   /// Upper limits of the classes [decay lengths]; the last class has none.
   static constexpr std::array<double, kClasses - 1> kEnds{0.5, 1, 1.5, 2, 3, 4, 5};
-  /// Total weight of a frame, whatever its number of rays, because they are strongly correlated.
+  /// Total weight of a frame. It does not depend on the number of rays, because the rays of a frame
+  /// are strongly correlated.
   static constexpr std::int64_t kFrame = 1'000'000;
   /// When a frame is added, the counts of earlier frames are multiplied by kKeptOf10 / 10, because
   /// hazards decrease as the map grows.
@@ -41,8 +42,8 @@ struct VIEWGAIN_EXPORT HazardCounters {
     return k;
   }
 
-  /// Factor for the model's rates in a class: the mean of the Gamma posterior. The prior has mean 1
-  /// and, over all classes, the weight of two frames.
+  /// Factor for the model's rates in a class. It is the mean of a Gamma posterior. Its prior has
+  /// mean 1 and the weight of two frames, summed over all classes.
   [[nodiscard]] double factor(std::size_t k) const {
     return (kPrior + static_cast<double>(classes[k].met)) / weight(k);
   }

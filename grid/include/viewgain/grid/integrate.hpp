@@ -23,27 +23,29 @@ struct VIEWGAIN_EXPORT IntegrationConfig {
   /// Which voxels a pixel crosses.
   enum class Carve : std::uint8_t {
     cones,  ///< those whose centre lies in the pixel's pyramid, before the reading
-    /// Those that the ray of the pixel's centre intersects, as in the paper. If several rays cross
-    /// a voxel, the strongest evidence counts.
+    /// Those that the ray through the pixel's centre intersects, as in Foix et al. (2012). If
+    /// several rays cross a voxel, the strongest evidence counts.
     lines,
   };
 
   /// How crossings and hits change a voxel's state.
   enum class Occupancy : std::uint8_t {
     probabilistic,  ///< log-odds, once per voxel and frame
-    literal,        ///< crossed: free; contains a reading: occupied, as in the paper
+    literal,        ///< crossed: free; contains a reading: occupied (Foix et al. 2012)
   };
 
   Carve carve = Carve::cones;                      ///< how pixels mark free space
   Occupancy occupancy = Occupancy::probabilistic;  ///< how states change
   /// Height z [m] of the table under the object, world frame. Readings (measured depths) below it,
-  /// or less than 3 σ above it (is_of_plane()), show the table: they mark free space but hit no
-  /// voxel.
+  /// or less than 3 standard deviations above it (is_of_plane()), show the table. They mark free
+  /// space but hit no voxel.
   std::optional<double> support_plane{};
-  /// Largest scale of a leaf, 0 to 3. Above 0, a leaf gets the scale whose cells are about as large
-  /// as a pixel's footprint and sigma_ax at its range, and nearer views refine it (after Funk et
-  /// al. 2021, supereight2). Free space is then stored in blocks of 8³ voxels, with the log-odds of
-  /// their least certain voxel.
+  /// Largest scale of a leaf, 0 to 3. A leaf is a block of 8³ voxels; at scale s it stores cells
+  /// that are 2^s voxels wide (apps/docs/guide/scales.md). If the value is above 0, the first frame
+  /// that measures surface in a leaf determines the leaf's scale. Cells are then about as wide as a
+  /// pixel's footprint or as sigma_ax at the leaf's range, whichever is larger. Nearer views refine
+  /// the leaf. Free space is stored in blocks of 8³ voxels, with the log-odds of their least
+  /// certain voxel. The method follows Funk et al. 2021 (supereight2).
   int coarsest = 0;
   std::vector<Box> fine{};  ///< leaves that touch one of these keep scale 0; grid frame [m]
   int finest = 0;           ///< smallest scale of all other leaves, at most `coarsest`
@@ -52,7 +54,8 @@ struct VIEWGAIN_EXPORT IntegrationConfig {
 /// Counts of one integrated frame.
 struct VIEWGAIN_EXPORT IntegrationReport {
   std::uint64_t readings = 0;  ///< pixels with a range in [min_range, max_range]
-  /// Pixels that show the support plane or a known depth of the frame; not in `readings`.
+  /// Pixels that show the support plane or a known object (DepthFrame::known_depth). They are not
+  /// counted in `readings`.
   std::uint64_t plane_readings = 0;
   std::uint64_t out_of_range = 0;     ///< pixels that are free up to max_range
   std::uint64_t invalid = 0;          ///< pixels without information
@@ -77,15 +80,15 @@ struct VIEWGAIN_EXPORT IntegrationReport {
 /// number of threads and each instruction set.
 ///
 /// A pixel is a reading if its range lies in [min_range, max_range]; nearer ones are invalid,
-/// farther ones out of range. The cosine of incidence is amplitude · range², at most 1. If the
-/// amplitude is missing or saturated, the cosine comes from the normal of the 3×3 neighbourhood (1
-/// without a normal). Readings of known objects (DepthFrame::known_depth) mark free space but hit
-/// no voxel.
+/// farther ones out of range. The noise model needs the cosine of the angle of incidence. It is
+/// DepthFrame::amplitude · range², at most 1. If the amplitude is missing or saturated, the cosine
+/// comes from the normal of the 3×3 neighbourhood (1 without a normal). Readings of known objects
+/// (DepthFrame::known_depth) mark free space but hit no voxel.
 ///
 /// A reading hits the voxel that contains it. If sigma_ax is at least half a voxel, it instead hits
 /// the voxel on its ray with the most support, so that noise does not thicken walls
-/// (grid/README.md, "Frames and clouds"). IntegrationConfig::Occupancy::literal disables this (eq.
-/// 4 of the paper).
+/// (grid/README.md, "Frames and clouds"). IntegrationConfig::Occupancy::literal disables this, as
+/// in eq. 4 of Foix et al. (2012).
 ///
 /// Thread safety: one call at a time on one integrator and on one grid.
 class VIEWGAIN_EXPORT FrameIntegrator {
@@ -100,11 +103,13 @@ class VIEWGAIN_EXPORT FrameIntegrator {
   FrameIntegrator& operator=(FrameIntegrator&&) noexcept;
 
   /// Updates states, log-odds and beliefs; appends the pose to the grid's views; and records sensor
-  /// and frame (BeliefGrid::notes()). `pose_sigma` [m], [rad] is the uncertainty of this pose in
-  /// addition to the sensor's, such as what a registration leaves. Throws Error(invalid_argument)
-  /// without a change for a wrong size, an invalid identity, a pose that is not rigid (1e-3;
-  /// smaller deviations are orthonormalised), or an invalid sigma. After std::bad_alloc the grid is
-  /// valid but can contain part of the frame. Cost: grows with the crossed voxels.
+  /// and frame (BeliefGrid::notes()). `pose_sigma` [m], [rad] is the uncertainty of this pose, for
+  /// example after a registration. It is combined with Sensor::pose_sigma.
+  ///
+  /// Throws Error(invalid_argument), and leaves the grid unchanged, if the frame has a wrong size
+  /// or an invalid DepthFrame::identity, pose_sigma is invalid, or the pose is not rigid within
+  /// 1e-3. Smaller deviations are orthonormalised. After std::bad_alloc the grid is valid but can
+  /// contain part of the frame. Cost: grows with the crossed voxels.
   IntegrationReport integrate(BeliefGrid& grid, const DepthFrame& frame, const Pose& T_world_camera,
                               const PoseSigma& pose_sigma = {});
 
@@ -113,9 +118,9 @@ class VIEWGAIN_EXPORT FrameIntegrator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The box in the frame of T_world_grid [m] that contains all readings of the frame, except those
-/// of the support plane and of known depths; empty if there are none. support_plane [m] as in
-/// IntegrationConfig. For choosing a workspace. Throws Error(invalid_argument) like
+/// The box in the frame of T_world_grid [m] that contains all readings of the frame, for choosing a
+/// workspace. Readings of the support plane and of known objects are left out. Empty if there are
+/// no readings. support_plane [m]: as in IntegrationConfig. Throws Error(invalid_argument) like
 /// FrameIntegrator. Cost: removes the lens distortion, and one pass over the pixels.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(
     const Sensor& sensor, const DepthFrame& frame, const Pose& T_world_camera,
@@ -125,12 +130,12 @@ class VIEWGAIN_EXPORT FrameIntegrator {
 /// of a camera.
 ///
 /// Each point is a reading along the line from the sensor's origin. It marks the voxels on the line
-/// as free (IntegrationConfig::Carve::lines) and hits the voxel that contains it, with the sensor's
-/// covariance at that range and direction and frontal incidence. All points of a call are one
-/// frame: a voxel is updated once, and a hit overrides crossings. Points nearer than min_range, at
-/// the origin or not finite are invalid; points beyond max_range mark free space up to it. Uses
-/// only noise, fx and range limits of the sensor. The map is bit-identical for any number of
-/// threads; the order of points only affects rounding of beliefs.
+/// as free (IntegrationConfig::Carve::lines) and hits the voxel that contains it. Its covariance is
+/// the sensor's for its range and direction, assuming frontal incidence. All points of a call are
+/// one frame: a voxel is updated once, and a hit overrides crossings. Points nearer than min_range,
+/// at the origin or not finite are invalid; points beyond max_range mark free space up to it. Of
+/// the sensor, only the noise, fx and the range limits are used. The map is bit-identical for any
+/// number of threads; the order of points only affects rounding of beliefs.
 ///
 /// Thread safety: one call at a time on one integrator and on one grid. Cost: grows with the
 /// crossed voxels.
@@ -144,10 +149,11 @@ class VIEWGAIN_EXPORT CloudIntegrator {
   CloudIntegrator(CloudIntegrator&&) noexcept;
   CloudIntegrator& operator=(CloudIntegrator&&) noexcept;
 
-  /// Integrates points in the world [m]. The origin is the pose's translation. Its rotation is only
-  /// recorded, because the pose is appended to the grid's views. Throws without a change:
-  /// Error(invalid_argument) if the pose is not rigid (1e-3; smaller deviations are
-  /// orthonormalised), Error(capacity) for 2^32 points or more.
+  /// Integrates points in the world [m]. The lines start at the pose's translation. The pose's
+  /// rotation does not affect the voxels; it is only stored with the pose in the grid's views.
+  /// Throws Error(invalid_argument) if the pose is not rigid within 1e-3; smaller deviations are
+  /// orthonormalised. Throws Error(capacity) for 2^32 points or more. After an error the grid is
+  /// unchanged.
   IntegrationReport integrate(BeliefGrid& grid, std::span<const std::array<double, 3>> points,
                               const Pose& T_world_sensor);
 
@@ -156,9 +162,9 @@ class VIEWGAIN_EXPORT CloudIntegrator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The box in the frame of T_world_grid [m] that contains all readings of the cloud, except those
-/// of the support plane; empty if there are none. `points` [m] are in the world, in any order;
-/// support_plane [m] as in IntegrationConfig. For choosing a workspace. Throws
+/// The box in the frame of T_world_grid [m] that contains all readings of the cloud, for choosing a
+/// workspace. Readings of the support plane are left out. Empty if there are no readings. `points`
+/// [m] are in the world, in any order. support_plane [m]: as in IntegrationConfig. Throws
 /// Error(invalid_argument) like CloudIntegrator. Cost: O(points).
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(
     const Sensor& sensor, std::span<const std::array<double, 3>> points, const Pose& T_world_sensor,

@@ -16,15 +16,16 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT VdbWriteConfig {
   /// Adds covariance_diagonal, covariance_offdiagonal and mean_offset, for viewers.
   bool with_covariance = false;
-  /// Replaces the map's notes, for writers with additional ones.
+  /// Notes to write instead of the map's, for writers that add notes.
   std::optional<MapNotes> notes{};
 };
 
-/// Writes the map as an OpenVDB file (active = known; layout: apps/docs/reference/formats.md) with
-/// types that OpenVDB's Python module reads. Notes go into the metadata as note_<name>. Atomic:
-/// renames a temporary file; if memory runs out (std::bad_alloc), an existing file remains. Throws
-/// Error(io). Throws Error(invalid_argument) if the name of a regular file does not end in .vdb,
-/// and like BeliefGrid::set_notes(). Cost: grows with leaves and beliefs.
+/// Writes the map as an OpenVDB file with types that OpenVDB's Python module reads. Active voxels
+/// are the known ones; apps/docs/reference/formats.md describes the layout. Notes go into the
+/// metadata as note_<name>. Atomic: writes a temporary file and renames it. If memory runs out
+/// (std::bad_alloc), an existing file remains. Throws Error(io). Throws Error(invalid_argument) if
+/// the name of a regular file does not end in .vdb, and like BeliefGrid::set_notes(). Cost: grows
+/// with leaves and beliefs.
 VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
                               const VdbWriteConfig& config = {});
 
@@ -38,10 +39,11 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 
 /// Reads hazard rates for HazardConfig::volume from a .vdb of any program: the float grid [1/m]
 /// named "hazard", or the only one, with any linear transform to the world [m]. Each voxel of the
-/// map gets the nearest voxel's value, and the background where the file has no active voxels.
-/// Throws like load_vdb(); Error(format) for a rate that is negative or not finite, several float
-/// grids of other names, or a transform that is not linear; Error(invalid_argument) if voxel sizes
-/// differ by a factor of 50 or no active voxel lies in the map. Cost: 4 bytes and 50 ns per voxel.
+/// map gets the value of the nearest voxel in the file. Where the file has no active voxels, it
+/// gets the file's background value. Throws like load_vdb(); Error(format) for a rate that is
+/// negative or not finite, several float grids of other names, or a transform that is not linear;
+/// Error(invalid_argument) if voxel sizes differ by a factor of 50 or no active voxel lies in the
+/// map. Cost: 4 bytes and 50 ns per voxel.
 [[nodiscard]] VIEWGAIN_EXPORT HazardConfig::Volume load_hazard_vdb(
     const std::filesystem::path& path, const BeliefGrid& grid);
 

@@ -15,7 +15,7 @@ namespace viewgain {
 /// Voxel state; dense arrays use these numbers in all languages.
 enum class VoxelState : std::uint8_t { unknown = 0, free = 1, occupied = 2 };
 
-/// Index of a voxel on the grid's lattice, whose origin is that of the grid frame.
+/// Index of a voxel on the grid's lattice. The lattice starts at the origin of the grid frame.
 struct VIEWGAIN_EXPORT Index3 {
   std::int32_t x = 0, y = 0, z = 0;  ///< of the voxel [x, x+1) × [y, y+1) × [z, z+1), in voxels
   bool operator==(const Index3&) const = default;
@@ -64,8 +64,8 @@ struct VIEWGAIN_EXPORT VoxelBox {
   bool operator==(const VoxelBox&) const = default;
 };
 
-/// Centre of a voxel in the grid frame [m], with edge voxel_size [m]; with a scale, the centre of
-/// the cell of 2^scale voxels per edge that starts at the voxel. Checks nothing.
+/// Centre of a voxel in the grid frame [m]; its edge is voxel_size [m]. If a scale is given, the
+/// centre of the cell that starts at the voxel and has 2^scale voxels per edge. Checks nothing.
 [[nodiscard]] inline Eigen::Vector3d voxel_center(Index3 voxel, double voxel_size, int scale = 0) {
   return (Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5 * (1 << scale)) * voxel_size;
 }

@@ -17,8 +17,8 @@
 
 namespace viewgain {
 
-/// A closed chain of border edges. Consecutive vertices follow the face's halfedges: seen from
-/// outside, the surface lies to the left of the direction of travel, and t × n points away from it.
+/// A closed chain of border edges. Seen from outside, the surface lies to the left of the direction
+/// of travel t. If n is the normal of an edge's face, t × n points away from the surface.
 struct VIEWGAIN_EXPORT BoundaryLoop {
   std::vector<std::uint32_t> vertices;   ///< edge i goes from vertex i to vertex i + 1 (cyclic)
   std::vector<std::uint32_t> triangles;  ///< the face of edge i
@@ -41,27 +41,30 @@ struct VIEWGAIN_EXPORT BoundaryRun {
 struct VIEWGAIN_EXPORT BoundaryConfig {
   /// Largest angle between face normal and line of sight [rad].
   double max_view_angle = 80.0 * std::numbers::pi / 180;
-  /// Shorter runs join the longer neighbour in their loop [m]; use several point spacings,
-  /// otherwise each tooth of a jagged border is a run.
+  /// Minimum length of a run [m]. A shorter run joins the longer of its neighbours in the loop. Use
+  /// several point spacings; otherwise each tooth of a jagged border is a run.
   double min_run_length = 0;
   double min_loop_length = 0;  ///< shorter loops are omitted: small holes [m]
 };
 
 /// The border of the surface: every border edge is in exactly one loop. Loops that touch at a
-/// vertex are separated by following the faces around it. Loops start at the edge with the lowest
-/// triangle and are sorted by it. Throws Error(invalid_argument) for an index out of range, a
-/// number that is not finite, a wrong number of normals, or an edge that is a self-loop, has more
-/// than two faces or has two of inconsistent orientation; Error(capacity) above 2^32 / 3 triangles.
+/// vertex are separated by following the faces around it. A loop starts at its edge with the lowest
+/// triangle index, and loops are sorted by this index. Throws Error(invalid_argument) for an index
+/// out of range, a number that is not finite, a wrong number of normals, or an invalid edge. An
+/// edge is invalid if both of its ends are the same vertex, if it has more than two faces, or if
+/// its two faces have inconsistent orientation. Throws Error(capacity) above 2^32 / 3 triangles.
 /// O(n log n).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<BoundaryLoop> boundary_loops(const SurfaceMesh& surface);
 
-/// Cuts loops into runs of edges with one class. The class is the direction of the outward conormal
-/// t × n in the image of a view: left, right, top or bottom, whichever is nearest. Here t is the
-/// direction of the edge and n the normal of its face. The view is the last one that shows the
-/// edge's midpoint within range, at less than max_view_angle and, if `sees`(view, point) is given,
-/// unoccluded. If there is none, it is the last view in front of the face, or the last view.
-/// Conormals are first averaged over min_run_length of the loop, at most a quarter of it, to smooth
-/// jagged borders.
+/// Cuts loops into runs of edges with one class. Let t be the direction of an edge and n the normal
+/// of its face; t × n then points outward, across the edge. The edge's class is the direction of t
+/// × n in the image of a view: left, right, top or bottom, whichever is nearest. To smooth jagged
+/// borders, these vectors are first averaged along the loop, over min_run_length or a quarter of
+/// the loop, whichever is shorter.
+///
+/// The view is the last one that shows the edge's midpoint within range, at less than
+/// max_view_angle and, if `sees`(view, point) is given, unoccluded. If there is none, it is the
+/// last view in front of the face. If there is none of these either, it is the last view.
 ///
 /// Runs shorter than min_run_length join the longer neighbour, shortest first. Runs follow the
 /// order of the loops. Throws Error(invalid_argument) if there are no views, or a view, the sensor,

@@ -27,7 +27,7 @@ struct VIEWGAIN_EXPORT MeshRepairs {
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path,
                                                      MeshRepairs* repairs = nullptr);
 
-/// Bounding box of the vertices [m]; zero without any. Never throws. Cost: O(vertices).
+/// Bounding box of the vertices [m]; zero if there are none. Never throws. Cost: O(vertices).
 [[nodiscard]] VIEWGAIN_EXPORT Box bounds_of(const TriangleMesh& mesh);
 /// Longest side of a box [m]. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT double longest_side(const Box& box);

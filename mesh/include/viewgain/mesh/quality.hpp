@@ -29,12 +29,13 @@ struct VIEWGAIN_EXPORT ErrorStatistics {
   std::size_t points = 0;  ///< 0: the other members are NaN
 };
 
-/// Accuracy of points relative to their covariances Σ: z² = e² / (nᵀ Σ n), where e is the distance
-/// to the surface and n the direction to its nearest point (the surface normal if e is 0).
+/// Accuracy of points relative to their covariances Σ: z² = e² / (nᵀ Σ n). e is a point's distance
+/// to the surface, and n the direction to the nearest surface point. If e is 0, n is the surface
+/// normal.
 struct VIEWGAIN_EXPORT Consistency {
   double mean_clipped = 0;  ///< mean of min(z², 25) [1]; ideal 1
-  double median = 0;        ///< of z² [1]; ideal 0.455
-  double above_9 = 0;       ///< share of z² > 9; ideal 0.003
+  double median = 0;        ///< median of z² [1]; ideal 0.455
+  double above_9 = 0;       ///< fraction of points with z² > 9; ideal 0.003
   std::size_t points = 0;  ///< points within 10 mm, which are counted; 0: the other members are NaN
   std::size_t outliers = 0;  ///< points more than 10 mm away
 };
@@ -42,9 +43,9 @@ struct VIEWGAIN_EXPORT Consistency {
 /// A reference mesh for evaluation. Immutable. Thread safety: const members may run from many
 /// threads.
 ///
-/// Members that take points [m], in the mesh frame, throw Error(invalid_argument) for one that is
-/// not finite. They cost O(log n) of the triangles, or of the points, per point or sample. Results
-/// are bit-identical for any number of threads.
+/// Members that take points [m], in the mesh frame, throw Error(invalid_argument) if a point is not
+/// finite. Each point or sample costs O(log n), where n is the number of triangles or points that
+/// it is compared with. Results are bit-identical for any number of threads.
 class VIEWGAIN_EXPORT GroundTruth {
  public:
   /// Draws area-weighted samples, the same for the same seed. `exec` sets the number of threads of

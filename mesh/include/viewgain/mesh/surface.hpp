@@ -18,7 +18,7 @@ struct VIEWGAIN_EXPORT OrientedPoint {
   std::array<double, 3> position{};  ///< [m]
   /// Direction [1] towards free space, of any length and precision; zero: unknown.
   std::array<double, 3> toward_free{};
-  /// Distance of neighbouring points [m]; 0: SurfaceConfig::spacing.
+  /// Distance between neighbouring points [m]; 0: SurfaceConfig::spacing.
   double spacing = 0;
 };
 
@@ -33,21 +33,25 @@ struct VIEWGAIN_EXPORT SurfaceMesh {
 
 /// Settings of the surface reconstruction.
 struct VIEWGAIN_EXPORT SurfaceConfig {
-  /// Distance of neighbouring points where they are closest [m]; the voxel size.
+  /// Distance between neighbouring points where they are closest [m]; usually the voxel size.
   double spacing = 0;
-  /// Neighbours in the jet fit that smooths the points; 0: no smoothing.
+  /// Number of neighbours that smooth a point (jet fit); 0: no smoothing.
   unsigned smoothing_neighbors = 24;
   double max_edge = 4;       ///< longest edge of a triangle [spacings]
   double join_distance = 3;  ///< points within this distance belong to one component [spacings]
   std::size_t min_component = 40;  ///< components with fewer points are dropped as outliers
 };
 
-/// Reconstructs the surface through the points: drops duplicates and small components, smooths (jet
-/// fit), triangulates (advancing front, CGAL), drops components of the mesh with fewer than
-/// min_component vertices, and turns faces outward by the majority of hints per component. Points
-/// with opposed hints are not smoothed together. Lengths are relative to each point's own spacing.
-/// A vertex is at most 1.25 spacings from its point; points that smoothing would move further are
-/// dropped as outliers. Holes larger than max_edge stay open.
+/// Reconstructs the surface through the points:
+/// - drops duplicates and small components of the points
+/// - smooths the points (jet fit); points with opposed hints are not smoothed together
+/// - connects them into triangles (advancing front, CGAL)
+/// - drops components of the mesh with fewer than min_component vertices
+/// - turns the faces of each component outward, as most hints in the component say
+///
+/// Lengths are relative to each point's own spacing. A vertex is at most 1.25 spacings from its
+/// point; points that smoothing would move further are dropped as outliers. Holes larger than
+/// max_edge stay open.
 ///
 /// Empty input, or outliers only, give an empty mesh. Results are bit-identical for any number of
 /// threads. Throws Error(invalid_argument) for a position that is not finite, a point's spacing

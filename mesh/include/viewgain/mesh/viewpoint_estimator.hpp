@@ -22,7 +22,7 @@ struct VIEWGAIN_EXPORT EstimatorConfig {
   double patch_length = 0.06;  ///< longer runs are cut into parts of about this length [m]
   /// Inward extent of the surface region to which a patch is fitted [m].
   double region_depth = 0.05;
-  double overlap = 0.5;  ///< fraction of known surface in the next view, in (0, 1)
+  double overlap = 0.5;  ///< fraction of a view that known surface should fill, in (0, 1)
   double max_turn = 60.0 * std::numbers::pi / 180;  ///< largest turn of the extrapolation [rad]
   /// Candidates are made for all combinations of distances, tilts and rolls, with rolls varying
   /// fastest. Distances are multiples of the working distance. Tilts are in (-pi/2, pi/2). A tilt
@@ -44,7 +44,7 @@ struct VIEWGAIN_EXPORT BoundaryCandidate {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();    ///< point it looks at, world [m]
   double distance = 0;                                 ///< distance from the target [m]
   double tilt = 0, roll = 0;                           ///< tilt and roll of the variant [rad]
-  bool nominal = false;  ///< whether it is untilted, unrolled and at the first distance
+  bool nominal = false;  ///< whether tilt and roll are 0 and the distance is the first
 };
 
 /// Candidates with the runs and patches that they come from.
@@ -56,15 +56,16 @@ struct VIEWGAIN_EXPORT EstimatedViews {
   std::vector<BoundaryCandidate> candidates;        ///< ordered by run, patch and variant
 };
 
-/// The paper's viewpoint estimator, after Kriegel et al., ICRA 2011. Its details are unpublished,
-/// so this definition is ours (mesh/README.md). It fits a patch to a surface region at each
-/// boundary run, extrapolates the patch, and places views in front of it.
+/// Proposes views past the boundaries of a surface, after Kriegel et al., ICRA 2011. That paper
+/// leaves details open; the sizes and thresholds here are viewgain's. The estimator fits a patch to
+/// a surface region at each boundary run, extrapolates the patch, and places views in front of it.
 ///
-/// Runs longer than patch_length are cut into equal parts, closed ones into at least three. A patch
-/// is fitted to the vertices of grow_region() within a turn of 45°, with its origin at the mean of
-/// its edges. It is extrapolated outward until known surface fills the fraction `overlap` of the
-/// nominal view, at most by the depth of its region and a turn of max_turn. The camera stands at
-/// distance · working_distance along the normal at that point and looks back at it.
+/// Runs longer than patch_length are cut into equal parts; closed runs into at least three. For
+/// each part, a patch is fitted to the vertices of grow_region() within a turn of 45°. Its origin
+/// is the mean of the part's edges. The target of a view lies on the extrapolated patch, where
+/// known surface fills the fraction `overlap` of the nominal view. The extrapolation ends at the
+/// depth of the region or at a turn of max_turn. The camera stands at distance · working_distance
+/// from the target, along the patch's normal there, and looks at the target.
 ///
 /// `views` are T_world_camera in the order taken, working_distance [m]; `sees` as in boundary_runs.
 /// Throws Error(invalid_argument) for an overlap outside (0, 1), an empty list of variants, lengths

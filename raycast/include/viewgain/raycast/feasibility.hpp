@@ -52,19 +52,21 @@ struct VIEWGAIN_EXPORT FeasibilityConfig {
   double clearance = 0;                      ///< margin around the body on each side [m]
   ReachRegion reach{};                       ///< reachable camera poses
   ReachRegion::Tolerance taken_tolerance{};  ///< tolerance for two poses to be the same
-  /// If given, rays are traced: a view is too near if, of its rays that end in the map, more than
-  /// max_near_share end within the sensor's min_range.
+  /// If given, rays are traced to find views that are too near. Only rays that end in the map
+  /// count. A view is too near if more than max_near_share of these rays end within the sensor's
+  /// min_range.
   std::optional<Sensor> sensor{};
   double max_near_share = 0.2;  ///< share of the rays that end in the map
 };
 
-/// Checks which camera poses are possible in a scene. The body must not overlap voxels that are not
-/// free, or the surroundings. The pose must be within reach, and differ from the views taken. Space
-/// outside the workspace counts as free. Boxes and closed meshes are solid; an open mesh is a
-/// sheet. Overlaps below a nanometre count as touching.
+/// Checks which camera poses are possible in a scene. The body must overlap neither voxels that are
+/// not free, nor obstacles, nor the support plane. The pose must be within reach, and differ from
+/// the views taken. Space outside the workspace counts as free. Boxes and closed meshes are solid;
+/// an open mesh is a sheet. Overlaps below a nanometre count as touching.
 ///
-/// Cost: 0.5-1 µs per pose and thread. With a sensor, rays are traced if a voxel is within
-/// min_range, until the answer is clear: 10-50 µs for an SR4000, and more for larger images.
+/// Cost: 0.5-1 µs per pose and thread. With FeasibilityConfig::sensor, rays are traced if a voxel
+/// is within min_range of the camera, and only until the result is certain. This takes 10-50 µs for
+/// an SR4000, and more for larger images.
 ///
 /// Thread safety: all const members may run from many threads at once on one checker.
 /// @code
@@ -84,14 +86,15 @@ class VIEWGAIN_EXPORT FeasibilityChecker {
   FeasibilityChecker(FeasibilityChecker&&) noexcept;
   FeasibilityChecker& operator=(FeasibilityChecker&&) noexcept;
 
-  /// A checker with the same settings for another scene, for a map that grows. This checker does
-  /// not change. Shares rays and threads with it, and the obstacles if VoxelScene::update() made
-  /// the scene from this one's. Cost: microseconds. Throws Error(invalid_argument) for a null
-  /// scene.
+  /// Returns a checker with the same settings for another scene of a growing map; this checker does
+  /// not change. The new checker shares rays and threads with this one. It also shares the
+  /// obstacles if VoxelScene::update() made the new scene from this checker's scene. Cost:
+  /// microseconds. Throws Error(invalid_argument) for a null scene.
   [[nodiscard]] FeasibilityChecker with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
-  /// Checks a pose. `taken`: T_world_camera of the views so far. Touching faces do not overlap. For
-  /// an invalid pose the result is bad_pose. Passes on exceptions of the reach region's predicate.
+  /// Checks a pose. `taken`: T_world_camera of the views so far. Faces that only touch do not
+  /// overlap. For an invalid pose the result is bad_pose. Passes on exceptions of the reach
+  /// region's predicate.
   [[nodiscard]] Infeasibility check(const Pose& T_world_camera,
                                     std::span<const Pose> taken = {}) const;
 
@@ -118,7 +121,7 @@ class VIEWGAIN_EXPORT FeasibilityChecker {
 struct VIEWGAIN_EXPORT FeasiblePoses {
   std::vector<Pose> poses;                     ///< T_world_camera, in the order of the list
   std::vector<std::size_t> numbers;            ///< index of each in the list
-  std::map<std::string, std::size_t> dropped;  ///< number of dropped poses by infeasibility_name()
+  std::map<std::string, std::size_t> dropped;  ///< number of dropped poses per infeasibility_name()
 };
 
 /// Checks a list of T_world_camera. `taken`: views so far. Errors and cost: see

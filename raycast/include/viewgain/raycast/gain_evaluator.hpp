@@ -32,12 +32,12 @@ struct EvaluatorAccess;
 
 /// What a view's gain measures (apps/docs/guide/equations.md).
 enum class GainModel : std::uint8_t {
-  paper,     ///< the paper's: entropy removed in the first voxel on each ray that is not free [nat]
+  paper,     ///< Foix et al. (2012): entropy removed in each ray's first non-free voxel [nat]
   surface,   ///< expected new surface, where rays continue through unknown voxels [m²]
   combined,  ///< expected new surface in nats, and refinement of known surface [nat]
 };
-/// Default model of the library, the planner, the program and all bindings. Of the models it needs
-/// the fewest views to find the surface.
+/// Default model of the library, the planner, the program and all bindings. Of the three models, it
+/// needs the fewest views to find the surface.
 inline constexpr GainModel kDefaultGain = GainModel::combined;
 /// Names of the models, in enumeration order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& gain_model_names();
@@ -52,10 +52,10 @@ inline constexpr GainModel kDefaultGain = GainModel::combined;
 
 /// Settings that affect the gain.
 struct VIEWGAIN_EXPORT GainConfig {
-  /// Task weight of a part of the workspace: the paper's "selected parts".
+  /// Task weight of a part of the workspace ("selected parts" in Foix et al. 2012).
   struct WeightRegion {
     Box box;            ///< grid frame [m]; applies to voxels whose centre lies in it
-    double weight = 1;  ///< w_v >= 0; the last region that contains a voxel counts, 1 outside all
+    double weight = 1;  ///< w_v >= 0; the last region with the voxel counts; 1 outside all regions
   };
 
   GainModel model = kDefaultGain;  ///< what the gain measures
@@ -64,8 +64,8 @@ struct VIEWGAIN_EXPORT GainConfig {
   Criterion criterion = Criterion::log_diagonal;
   int pixel_stride = 1;  ///< traces every s-th pixel of every s-th row, from pixel (0,0)
   std::optional<double> prior_sigma{};  ///< sigma_0 [m]; defaults to the map's
-  /// Along the ray [m]; defaults to the sensor's. Voxels nearer than that have no gain. Known
-  /// surface and obstacles nearer than that block the ray.
+  /// Minimum range along the ray [m]; defaults to the sensor's. Voxels nearer than this have no
+  /// gain. Known surface and obstacles nearer than this block the ray.
   std::optional<double> min_range{};
   std::optional<double> max_range{};  ///< along the ray [m]; defaults to the sensor's
   /// Task weights; where regions overlap, the last one counts.
@@ -86,9 +86,10 @@ struct VIEWGAIN_EXPORT ViewGain {
     camera_in_occupied,  ///< the camera centre lies in an occupied voxel: gain 0
   };
 
-  /// paper: exploration + refinement. surface: area. combined: area · ΔH_new / voxel² + w ·
-  /// refinement_saturated. NaN for an invalid pose, or for sensor sigmas outside the range of
-  /// double precision.
+  /// paper: exploration + refinement. surface: area. combined: area · ΔH_new / voxel_size² + w ·
+  /// refinement_saturated, where w is GainConfig::refinement_weight and ΔH_new the entropy that a
+  /// new surface point loses (apps/docs/guide/surface_gain.md). NaN for an invalid pose, or for
+  /// sensor sigmas outside the range of double precision.
   double gain = std::numeric_limits<double>::quiet_NaN();
   /// paper: the part of the gain from unknown voxels.
   double exploration = std::numeric_limits<double>::quiet_NaN();
@@ -99,8 +100,9 @@ struct VIEWGAIN_EXPORT ViewGain {
   /// combined: entropy removed from known surface [nat] (apps/docs/guide/surface_gain.md). Voxels
   /// without measured depths, such as labelled ones, add nothing.
   double refinement_saturated = std::numeric_limits<double>::quiet_NaN();
-  /// paper, if enabled in GainConfig: eq. (6), Σ_v Σ_k ln[(Λ_v + ΣΛ_r)⁻¹]_kk over the voxels that
-  /// the rays hit, lengths in metres.
+  /// paper, if enabled in GainConfig: eq. (6) of Foix et al. (2012), Σ_v Σ_k ln[(Λ_v + Σ_r
+  /// Λ_r)⁻¹]_kk. v are the voxels that the rays hit, r the rays that end in v, and k the three
+  /// axes. Lengths are in metres.
   double posterior_entropy = std::numeric_limits<double>::quiet_NaN();
   std::uint32_t rays = 0;             ///< rays of the view
   std::uint32_t hits = 0;             ///< rays that end in a voxel
@@ -167,8 +169,8 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// Removes the lens distortion once. With ExecConfig::tracer `embree`, the first evaluator of a
   /// scene builds its BVH (0.5 ms per 1,000 primitives) and throws Error(backend) on failure.
   /// Throws Error(invalid_argument) naming the value for a null scene or an invalid sensor or
-  /// setting. Sensor sigmas must be at least 1e-8 m and within a factor of 1e3 of each other, and a
-  /// prior within 1e-6..1e3 m.
+  /// setting. The sensor's standard deviations must be at least 1e-8 m and within a factor of 1e3
+  /// of each other. A prior must be within 1e-6..1e3 m.
   GainEvaluator(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
                 const GainConfig& config = {}, const ExecConfig& exec = {});
   ~GainEvaluator();
@@ -176,10 +178,11 @@ class VIEWGAIN_EXPORT GainEvaluator {
   GainEvaluator& operator=(GainEvaluator&&) noexcept;
 
   /// An evaluator with the same sensor and configuration for another scene, to follow a growing
-  /// map. Shares rays, threads and buffers, and takes microseconds, or some milliseconds if the
-  /// scene's hazard is computed first. Results are bit-identical to those of a new evaluator. Both
-  /// evaluators may be used, moved and destroyed concurrently; while one uses the threads, a call
-  /// of the other runs on its calling thread. Throws like the constructor and VoxelScene::build().
+  /// map. The new evaluator shares rays, threads and buffers with this one. The call takes
+  /// microseconds, or some milliseconds if the scene's hazard must be computed first. Results are
+  /// bit-identical to those of a new evaluator. Both evaluators may be used, moved and destroyed
+  /// concurrently; while one uses the threads, a call of the other runs on its calling thread.
+  /// Throws like the constructor and VoxelScene::build().
   [[nodiscard]] GainEvaluator with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
   /// Expected gain of one pose. The paper's gain uses all threads of the evaluator, other gains the
@@ -196,26 +199,26 @@ class VIEWGAIN_EXPORT GainEvaluator {
   [[nodiscard]] std::vector<ViewGain> evaluate(std::span<const Pose> T_world_camera) const;
 
   /// A custom gain of a batch, result i for pose i, in the unit of `measure`. All threads of the
-  /// evaluator call `measure` concurrently, except for invalid poses (NaN) and cameras in an
-  /// occupied voxel (0). Returns the number of measured poses, as above; the remaining results are
-  /// NaN. An exception of `measure` ends the batch and is rethrown; results are then unspecified.
-  /// Throws Error(invalid_argument) if the sizes differ. Cost: 1.4 times evaluate(), plus
-  /// `measure`.
+  /// evaluator call `measure` concurrently. Invalid poses get NaN, and cameras in an occupied voxel
+  /// get 0, without a call. Returns the number of measured poses, as above; the remaining results
+  /// are NaN. An exception of `measure` ends the batch and is rethrown; results are then
+  /// unspecified. Throws Error(invalid_argument) if the sizes differ. Cost: 1.4 times evaluate(),
+  /// plus `measure`.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                        const ViewMeasure& measure, const BatchControl& control = {}) const;
 
   /// As above for a measure that sees all unknown voxels that rays pass, whatever the evaluator's
   /// model. Each thread needs 80 bytes per voxel that a ray passes, up to 200 MB at full
-  /// resolution; a pixel stride reduces this. Also throws Error(capacity) and Error(backend). Cost:
-  /// several times evaluate() with the surface gain.
+  /// resolution. A pixel stride reduces the memory. Also throws Error(capacity) and Error(backend).
+  /// Cost: several times evaluate() with the surface gain.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                        const RunMeasure& measure, const BatchControl& control = {}) const;
 
   /// Explains a gain: one entry per voxel in which rays of the pose end, largest gain first, ties
   /// by the voxel's x, y, z. For surface and combined: one entry per unknown voxel that rays reach.
-  /// The gains add up to that of evaluate() to 1e-9 relative (surface, combined: 1e-5). Empty,
-  /// without an exception, for an invalid pose and for a camera in an occupied voxel. Runs on the
-  /// calling thread; takes three times as long as evaluate().
+  /// The sum of the gains equals the gain of evaluate(), up to a relative error of 1e-9 (surface,
+  /// combined: 1e-5). Empty, without an exception, for an invalid pose and for a camera in an
+  /// occupied voxel. Runs on the calling thread; takes three times as long as evaluate().
   [[nodiscard]] std::vector<VoxelContribution> contributions(const Pose& T_world_camera) const;
 
   /// Ends of the rays that evaluate() uses, in pixel order (row-major, strided). Empty for an
@@ -237,15 +240,17 @@ class VIEWGAIN_EXPORT GainEvaluator {
                                const BatchControl& control = {}) const;
 
   /// The k best poses with high probability, in two stages. The first scores all poses with about
-  /// 400 rays each, like approximate(). The second scores the best of them in full: max(24, 4 k, 5
-  /// %), or 1.6 % except with the paper's gain. Reported gains are exact; ties go to the lower
-  /// index. perf/results/choosing.md has the probability that the best pose is missed.
+  /// 400 rays each, like approximate(). The second scores the best of them in full: at least 24
+  /// poses, at least 4 k, and at least 1.6 % of all poses (5 % with the paper's gain). Reported
+  /// gains are exact; ties go to the lower index. perf/results/choosing.md has the probability that
+  /// the best pose is missed.
   ///
   /// Images of fewer than 900 rays are scored in full. Without a deadline, results are
   /// deterministic for a seed and any number of threads. With a deadline, `estimated` and
   /// `scored_indices` report how far each stage came. control.progress counts poses that are
-  /// eliminated or scored in full. After a stop `complete` is false; the result is empty in the
-  /// first stage, and the best so far in the second. Throws like best().
+  /// eliminated or scored in full. After a stop, `complete` is false. If the call was stopped in
+  /// the first stage, the result is empty; in the second stage, it is the best so far. Throws like
+  /// best().
   [[nodiscard]] BestViews race(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BestConfig& config = {},
                                const BatchControl& control = {}) const;
@@ -255,18 +260,20 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// views") defines the gain of a set. Ties go to the lower index; invalid poses are never chosen;
   /// k is clamped. A stop returns the poses chosen so far; control.progress counts them.
   ///
-  /// In later rounds poses that cannot win by their earlier gain are skipped, except for
-  /// log_diagonal and trace. This is exact for surface and log_determinant, which are submodular.
-  /// With combined the best pose can, rarely, be missed. Cost: with the paper's gain up to k
-  /// batches of about twice evaluate(); otherwise one batch, and about ten times evaluate() per
-  /// pose that is scored again for the first time; up to 256 MB.
+  /// In later rounds, a pose is skipped if its gain in an earlier round shows that it cannot win.
+  /// This is exact for surface and log_determinant, which are submodular. With combined, the best
+  /// pose can, rarely, be missed. With log_diagonal and trace, no pose is skipped. Cost with the
+  /// paper's gain: up to k batches, each about twice evaluate(). Cost otherwise: one batch, and
+  /// about ten times evaluate() when a pose is scored again for the first time. Memory: up to 256
+  /// MB.
   [[nodiscard]] ViewSet best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                  const BatchControl& control = {}) const;
 
   /// Estimates gains and standard errors from some of each view's rays, result i for pose i. Traces
-  /// a regular lattice of pixels: at most `share` of the rays, but at least 100 if there are as
-  /// many. At a share of 1 the result is the exact gain with standard error 0. raycast/README.md
-  /// ("Choosing views") describes the estimator, perf/results/choosing.md its accuracy.
+  /// a regular lattice of pixels: at most `share` of the rays, but at least 100 rays, or all if
+  /// there are fewer. At a share of 1 the result is the exact gain with standard error 0.
+  /// raycast/README.md ("Choosing views") describes the estimator, perf/results/choosing.md its
+  /// accuracy.
   ///
   /// The estimate of a pose does not depend on other poses or on the number of threads. Invalid
   /// poses: NaN. Returns the number of estimated poses, which is less than all after a stop. Throws
@@ -302,10 +309,10 @@ class VIEWGAIN_EXPORT GainEvaluator {
     std::span<const ViewGain> results, std::size_t k);
 
 /// Depths along the optical axis [m] at which the rays of evaluate() end, row-major, to show where
-/// a gain comes from. For a pixel stride s it has every s-th pixel of every s-th row.
-/// DepthFrame::kOutOfRange where a ray hits nothing. `labels`, if given, receives what each ray
-/// hits. Thread safe. Throws Error(invalid_argument) for a pose that is not finite or not rigid
-/// within 1e-3. Cost: one trace of the pose and, with distortion, its removal per pixel.
+/// a gain comes from. With a pixel stride s, the image has every s-th pixel of every s-th row.
+/// Pixels whose ray hits nothing have DepthFrame::kOutOfRange. `labels`, if given, receives what
+/// each ray hits. Thread safe. Throws Error(invalid_argument) for a pose that is not finite or not
+/// rigid within 1e-3. Cost: one trace of the pose and, with distortion, its removal per pixel.
 [[nodiscard]] VIEWGAIN_EXPORT DepthFrame depth_image(const GainEvaluator& evaluator,
                                                      const Pose& T_world_camera,
                                                      std::vector<RayHit::Kind>* labels = nullptr);

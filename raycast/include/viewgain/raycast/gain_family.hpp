@@ -28,9 +28,9 @@ namespace viewgain {
 class VIEWGAIN_EXPORT FamilyEvaluator {
  public:
   virtual ~FamilyEvaluator() = default;
-  /// results[i * gains + g] for pose i and gain g, from every s-th pixel of every s-th row; NaN for
-  /// an invalid pose. `statuses` is empty or has one element per pose. Throws
-  /// Error(invalid_argument) if the sizes do not match.
+  /// Writes results[i * gains + g] for pose i and gain g; NaN for an invalid pose. Rays go through
+  /// every s-th pixel of every s-th row, where s is pixel_stride. `statuses` is empty or has one
+  /// element per pose. Throws Error(invalid_argument) if the sizes do not match.
   virtual void evaluate(std::span<const Pose> T_world_camera, int pixel_stride,
                         std::span<double> results, std::span<ViewGain::Status> statuses,
                         const BatchControl& control) = 0;
@@ -47,8 +47,8 @@ class VIEWGAIN_EXPORT GainFamily {
   [[nodiscard]] virtual const std::vector<std::string>& names() const = 0;
   /// Unit of the named gain, such as "nat" or "voxels".
   [[nodiscard]] virtual std::string_view unit(std::string_view name) const = 0;
-  /// Evaluator for views of `sensor` on the current map, which `sensor` must have measured. Throws
-  /// Error(invalid_argument) for an unknown name, and like the evaluator of these gains.
+  /// Evaluator for views of `sensor` on the current map. The map must be from the same sensor.
+  /// Throws Error(invalid_argument) for an unknown name, and like the evaluator of these gains.
   [[nodiscard]] virtual std::unique_ptr<FamilyEvaluator> evaluator(
       std::shared_ptr<const VoxelScene> scene, const BeliefGrid& grid, const Sensor& sensor,
       std::span<const std::string> names, const ExecConfig& exec) const = 0;
@@ -59,7 +59,7 @@ class VIEWGAIN_EXPORT GainFamily {
 VIEWGAIN_EXPORT void register_gains(std::shared_ptr<const GainFamily> family);
 /// The registered family, or a family without names if none is registered.
 [[nodiscard]] VIEWGAIN_EXPORT const GainFamily& registered_gains() noexcept;
-/// Whether it is the name of a registered gain.
+/// Whether `name` is the name of a registered gain.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_registered_gain(std::string_view name);
 
 }  // namespace viewgain

@@ -19,8 +19,8 @@ namespace viewgain {
 /// Error(invalid_argument) like VoxelScene::build(). Cost: a copy of the meshes.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh mesh_of(const Obstacles& obstacles);
 
-/// Finds where a camera's pixels hit known obstacles, so that these, such as the walls of a bin,
-/// stay out of the map.
+/// Finds where a camera's pixels hit known obstacles, such as the walls of a bin, so that these
+/// obstacles stay out of the map.
 ///
 /// Thread safety: one call at a time.
 class VIEWGAIN_EXPORT ObstacleView {
@@ -33,9 +33,9 @@ class VIEWGAIN_EXPORT ObstacleView {
   ObstacleView& operator=(ObstacleView&&) noexcept;
 
   /// Sets DepthFrame::known_depth for a frame from T_world_camera: the depth of the first obstacle
-  /// on each pixel's ray, minus a margin of kKnownSigmas along the obstacle's normal. Empty if
-  /// there are no obstacles. Throws Error(invalid_argument) like check_frame_size(), and for a pose
-  /// that is not rigid (1e-3). Cost: about 0.2 µs per pixel and thread.
+  /// on each pixel's ray, minus a margin of kKnownSigmas along the obstacle's normal. The depths
+  /// are empty if there are no obstacles. Throws Error(invalid_argument) like check_frame_size(),
+  /// and for a pose that is not rigid (1e-3). Cost: about 0.2 µs per pixel and thread.
   void mark(DepthFrame& frame, const Pose& T_world_camera) const;
 
  private:

@@ -28,15 +28,16 @@ struct VIEWGAIN_EXPORT SimulationConfig {
   /// returns of a pixel mix as complex phasors, which creates flying pixels at depth edges. Other
   /// sensors use the centre ray only.
   int sub_rays = 1;
-  /// Shifts the rays of a pixel together, in both directions across the ray, by a Gaussian with the
-  /// model's lateral sigma. The reading (measured depth) is reported on the unshifted ray.
-  /// Independent of `noise`.
+  /// Shifts all rays of a pixel by one random offset across the ray. The offset is Gaussian in both
+  /// directions, with the noise model's lateral standard deviation. The reading (measured depth) is
+  /// reported on the unshifted ray. Independent of `noise`.
   bool lateral_noise = false;
   /// Relative error of all ranges in all frames, like an error of the camera's calibration:
   /// measured ranges are 1 + scale_error times the true ones. In (-1, 1).
   double scale_error = 0;
-  /// Wraps ranges to [0, c / (2 modulation_frequency)) if a pixel has a single ray. Mixed returns
-  /// always wrap, because their sum only has a phase.
+  /// Wraps ranges to [0, c / (2 modulation_frequency)) if a pixel has a single ray; c is the speed
+  /// of light. If a pixel has several rays, ranges always wrap, because the sum of the returns only
+  /// has a phase.
   bool ambiguity = false;
   std::optional<double> support_plane{};  ///< height z of an infinite diffuse table [m], world
   /// Other diffuse objects, such as known obstacles; null: none.

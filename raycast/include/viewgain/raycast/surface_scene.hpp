@@ -28,10 +28,10 @@ class VIEWGAIN_EXPORT SurfaceScene {
   };
   /// Intersection of a ray with the mesh.
   struct Hit {
-    /// Along the unit direction [m]; infinity: miss.
+    /// Distance along the ray [m]; infinity: miss.
     double range = std::numeric_limits<double>::infinity();
     std::uint32_t triangle = 0;  ///< index of the triangle; 0 for a miss
-    /// Unit, mesh frame, right-hand rule of the vertices.
+    /// Unit normal of the triangle, mesh frame, by the right-hand rule of its vertices.
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
 
@@ -43,8 +43,8 @@ class VIEWGAIN_EXPORT SurfaceScene {
   SurfaceScene& operator=(SurfaceScene&&) noexcept;
 
   /// First hits in (0, max_range], hit i for ray i. A ray with NaN, or from more than 1e18 m away,
-  /// hits nothing; rays are otherwise unchecked. Traces 4 to 16 rays together, so it is fastest if
-  /// consecutive rays are similar. Cost: O(log n) of the triangles per ray.
+  /// hits nothing; rays are otherwise unchecked. Traces 4 to 16 rays together; consecutive rays
+  /// should therefore be similar. Cost: O(log n) of the triangles per ray.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
   /// First hit of one ray.
   [[nodiscard]] Hit intersect(const Ray& ray) const;

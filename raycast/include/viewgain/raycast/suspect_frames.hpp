@@ -26,18 +26,18 @@ struct VIEWGAIN_EXPORT Suspicion {
 };
 
 /// Checks whether frames of one scene agree better under another convention for poses, images or
-/// depths. Compares the surfaces of the frames, as given and as they would be under common
-/// mistakes. Suspects the mistake under which they agree best, or several that fit equally. Ignores
-/// frames without overlap. `T_world_camera`: one per frame. Throws Error(invalid_argument) like
-/// check_frame_size(), and for a wrong number of poses. Thread safe. Cost: one pass over the pixels
-/// and 50 ms for a dozen frames, 0.5 s if they disagree.
+/// depths. Compares the surfaces of the frames, first as given and then with each common mistake
+/// corrected. Suspects the mistake whose correction makes the frames agree best, or several
+/// mistakes if they fit equally. Ignores frames without overlap. `T_world_camera`: one per frame.
+/// Throws Error(invalid_argument) like check_frame_size(), and for a wrong number of poses. Thread
+/// safe. Cost: one pass over the pixels and 50 ms for a dozen frames, 0.5 s if they disagree.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_frames(const Sensor& sensor,
                                                        std::span<const DepthFrame> frames,
                                                        std::span<const Pose> T_world_camera);
 
-/// Checks whether candidate poses look at the map. If most of a hundred of them see no voxel of the
-/// map, names the mistake in the poses that explains it, or no_voxel if none does. Thread safe.
-/// Cost: some milliseconds. Throws like GainEvaluator().
+/// Checks whether candidate poses look at the map. Tries up to a hundred of the poses. If most of
+/// them see no voxel of the map, names the mistake in the poses that explains this, or no_voxel if
+/// no mistake does. Thread safe. Cost: some milliseconds. Throws like GainEvaluator().
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion
 suspect_poses(const std::shared_ptr<const VoxelScene>& scene, const Sensor& sensor,
               std::span<const Pose> T_world_camera);

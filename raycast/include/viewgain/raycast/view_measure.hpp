@@ -32,10 +32,10 @@ class VIEWGAIN_EXPORT ViewMeasure {
 
   virtual ~ViewMeasure();
 
-  /// `hits`: the rays that end in an unknown or occupied voxel, by tiles of 4x4 pixels, in the same
-  /// order for any number of threads; valid during the call. Rays that hit nothing, or an obstacle,
-  /// are omitted. Returns the view's gain in any unit. An exception ends the batch and reaches the
-  /// caller.
+  /// `hits`: the rays that end in an unknown or occupied voxel; valid during the call. Rays that
+  /// hit nothing, or an obstacle, are omitted. Rays are ordered by tiles of 4x4 pixels, in the same
+  /// order for any number of threads. Returns the view's gain in any unit. An exception ends the
+  /// batch and reaches the caller.
   [[nodiscard]] virtual double measure(const Pose& T_world_camera,
                                        std::span<const Hit> hits) const = 0;
 };
@@ -61,10 +61,10 @@ class VIEWGAIN_EXPORT RunMeasure {
 
   virtual ~RunMeasure();
 
-  /// `runs`: for each ray the unknown voxels that it passes, by range, and the occupied voxel that
-  /// ends it, if any. Rays are ordered by tiles of 4x4 pixels, in the same order for any number of
-  /// threads. Valid during the call. Returns the view's gain in any unit. An exception ends the
-  /// batch and reaches the caller.
+  /// `runs`: for each ray, the unknown voxels that it passes, nearest first, and then the occupied
+  /// voxel in which it ends, if any; valid during the call. Rays are ordered by tiles of 4x4
+  /// pixels, in the same order for any number of threads. Returns the view's gain in any unit. An
+  /// exception ends the batch and reaches the caller.
   [[nodiscard]] virtual double measure(const Pose& T_world_camera,
                                        std::span<const Run> runs) const = 0;
 };

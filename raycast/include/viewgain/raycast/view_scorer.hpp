@@ -33,8 +33,8 @@ namespace viewgain {
 /// Settings of a ViewScorer. Defaults suit an object at the origin.
 struct VIEWGAIN_EXPORT ScorerConfig {
   double voxel_size = GridConfig{}.voxel_size;  ///< [m]
-  /// The mapped part of the world, in the grid frame [m]; extended to whole voxels. Let it start at
-  /// the table; otherwise the paper's gain counts unknown space below the table.
+  /// The mapped part of the world, in the grid frame [m]; extended to whole voxels. The workspace
+  /// should start at the table; otherwise the paper's gain counts unknown space below the table.
   Box workspace = GridConfig{}.workspace;
   Pose T_world_grid{};  ///< pose of the grid frame
   /// Standard deviation of the surface in an unknown voxel [m]. Unset: default_prior_sigma().
@@ -53,8 +53,8 @@ struct VIEWGAIN_EXPORT ScorerConfig {
   std::vector<Box> fine{};  ///< leaves that touch one of these boxes keep scale 0; grid's frame [m]
   bool refine = true;       ///< false: ignores readings in voxels that already have one
   HazardConfig hazard{};    ///< rate at which rays meet the surface in unknown space
-  /// Whether each frame updates the hazard, and MapUpdate::new_area is measured. Costs some
-  /// milliseconds per frame. Unset: false for the paper's gain, which needs neither, otherwise
+  /// Whether each frame updates the hazard and measures MapUpdate::new_area. This costs some
+  /// milliseconds per frame. Unset: false for the paper's gain, which needs neither; otherwise
   /// true.
   std::optional<bool> learn_hazard{};
   GainConfig gain{};     ///< settings of the gain
@@ -77,9 +77,9 @@ struct VIEWGAIN_EXPORT MapUpdate {
   FrameVerdict verdict = FrameVerdict::used;  ///< the map is unchanged unless is_in_map()
   IntegrationReport counts{};                 ///< of all frames together
   std::size_t flying_pixels = 0;              ///< removed by the jump-edge filter
-  /// Area of new surface in the first frame, perpendicular to the rays [m²], to compare with
-  /// ViewGain::area (apps/docs/guide/surface_gain.md). Counts measured depths in unknown voxels
-  /// away from known surface. NaN without ScorerConfig::learn_hazard.
+  /// Area of new surface in the first frame, measured perpendicular to the rays [m²], to compare
+  /// with ViewGain::area (apps/docs/guide/surface_gain.md). Measured depths count if they lie in
+  /// unknown voxels away from known surface. NaN without ScorerConfig::learn_hazard.
   double new_area = std::numeric_limits<double>::quiet_NaN();
   StageSeconds seconds{};  ///< "integrate": filters and map; "snapshot": data for scenes
 };
@@ -146,9 +146,9 @@ class VIEWGAIN_EXPORT ViewScorer {
 
   /// The k best poses with high probability: GainEvaluator::race(). Indices refer to
   /// T_world_camera, best first. If Sensor::body_size is set, omits poses where the body has no
-  /// room, or where over 20 % of the rays that end in the map end within min_range. The deadline
-  /// includes that check. A gain of 0 means that nothing new would be seen. Throws like race() and
-  /// scene(). Cost: race(), and FeasibilityChecker::check().
+  /// room or surface is too near (FeasibilityConfig::sensor). The deadline includes this check. A
+  /// gain of 0 means that nothing new would be seen. Throws like race() and scene(). Cost: race(),
+  /// and FeasibilityChecker::check().
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BestConfig& config = {},
                                const BatchControl& control = {}) const;

@@ -18,11 +18,11 @@ class RunMeasure;
 
 /// Settings of GainEvaluator::best() and race().
 struct VIEWGAIN_EXPORT BestConfig {
-  /// Cost of each pose, subtracted from its gain, in the gain's unit; for example for the path
-  /// there. Empty: none.
+  /// Cost of each pose, for example of the path to it. Subtracted from the pose's gain, in the
+  /// gain's unit. Empty: none.
   std::span<const double> costs{};
   const ViewMeasure* measure = nullptr;  ///< custom gain that replaces the evaluator's, or null
-  /// Custom gain that sees all voxels that rays pass, or null. Only one of both measures may be
+  /// Custom gain that sees all voxels that rays pass, or null. Only one of the two measures may be
   /// set.
   const RunMeasure* run_measure = nullptr;
   /// Time limit [s] from the start of the call. The call then finishes its current views and
@@ -36,7 +36,7 @@ struct VIEWGAIN_EXPORT BestConfig {
 struct VIEWGAIN_EXPORT BestViews {
   std::vector<std::size_t> indices;  ///< into the poses, best first; only poses scored in full
   std::vector<ViewGain> gains;  ///< results of evaluate() for these poses; empty with a measure
-  /// Gain or measure of each of these poses minus its cost, in the gain's unit.
+  /// Gain (or measure) minus cost of each of these poses, in the gain's unit.
   std::vector<double> worth;
   /// False: a stop or the deadline ended the call early.
   bool complete = true;
@@ -52,8 +52,9 @@ struct VIEWGAIN_EXPORT ViewSet {
   std::vector<std::size_t> indices;  ///< into the poses, in the order chosen
   std::vector<ViewGain> marginal;    ///< marginal gains: the increase over the earlier views
   double gain = 0;                   ///< gain of the set, in the gain's unit
-  /// Lower bound of `gain`: each hazard cell (HazardField) counts for its best view only, because
-  /// the same unknown object can hide it from several views. Equal to `gain` for the paper's gain.
+  /// Lower bound of `gain`. Each hazard cell (HazardField) counts only for the view that gains most
+  /// from it, because one unknown object can hide the cell from several views. Equal to `gain` for
+  /// the paper's gain.
   double gain_by_best_alone = 0;
   std::size_t evaluations = 0;  ///< number of evaluations of single poses
   bool complete = true;         ///< false: a stop was requested before the last choice

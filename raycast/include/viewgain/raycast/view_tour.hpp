@@ -20,8 +20,8 @@ namespace viewgain {
 /// Settings of plan_tour().
 struct VIEWGAIN_EXPORT TourConfig {
   std::size_t max_stops = std::numeric_limits<std::size_t>::max();  ///< maximum number of views
-  /// This pose is chosen first, whatever its gain and cost, unless it is invalid or its path has
-  /// infinite cost.
+  /// Index of the pose that is chosen first, whatever its gain and cost, unless it is invalid or
+  /// its path has infinite cost.
   std::optional<std::size_t> first{};
   /// Cost of the path between two poses by their indices, in a unit of your choice; kTourStart
   /// stands for the current pose. Use a motion planner's cost, or infinity to forbid a path. Empty:
@@ -30,13 +30,14 @@ struct VIEWGAIN_EXPORT TourConfig {
   double cost_per_way = 0;  ///< cost per unit of `way`, in the gain's unit
   /// Limit of the total path cost, in the unit of `way`; stops beyond it are not chosen.
   double budget = std::numeric_limits<double>::infinity();
-  /// Chooses the view with the largest increase per path cost, instead of increase minus cost. Use
-  /// it with a budget of metres or seconds.
+  /// Chooses the view with the largest increase of the gain per path cost, instead of the largest
+  /// increase minus cost. Use it with a budget of metres or seconds.
   bool per_way = false;
   std::span<const double> costs{};  ///< as BestConfig::costs: cost of each pose itself
-  /// Number of candidate poses to evaluate; fewer are faster. Takes poses with the largest gains,
-  /// estimated from few rays, and avoids similar poses: first those closer than three tenths of the
-  /// working distance and 30 degrees, then those closer than a tenth and 15 degrees.
+  /// Number of candidate poses to evaluate; fewer are faster. The poses with the largest gains are
+  /// taken; the gains are estimated from few rays. Poses similar to a taken pose are skipped: those
+  /// closer than 0.3 working distances and 30 degrees. If too few poses remain, only those closer
+  /// than 0.1 working distances and 15 degrees are skipped.
   std::size_t max_candidates = std::numeric_limits<std::size_t>::max();
   /// Fraction of rays to trace, in (0, 1]. Values below 1 are faster and less exact, and
   /// underestimate refinement. Must be 1 with the paper's gain.
@@ -56,10 +57,10 @@ struct VIEWGAIN_EXPORT ViewTour {
 
 /// Chooses a set greedily like best_set(), by the increase of the gain minus costs, then orders it
 /// with order_stops(). A view's path cost is that of the cheapest insertion into the current tour.
-/// Views with no gain are omitted, and later ones also if they cost more than they gain. Ignores
-/// obstacles and reach. Deterministic for any number of threads. Passes on exceptions of `way`.
-/// Throws Error(invalid_argument) naming the setting that is out of range. Cost: best_set(), and
-/// two calls of `way` per pose and stop on the calling thread.
+/// Views with no gain are omitted. After the first view, views that cost more than they gain are
+/// omitted as well. Ignores obstacles and reach. Deterministic for any number of threads. Passes on
+/// exceptions of `way`. Throws Error(invalid_argument) naming the setting that is out of range.
+/// Cost: best_set(), and two calls of `way` per pose and stop on the calling thread.
 [[nodiscard]] VIEWGAIN_EXPORT ViewTour plan_tour(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  const TourConfig& config,

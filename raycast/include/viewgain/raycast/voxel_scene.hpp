@@ -33,8 +33,8 @@ struct VIEWGAIN_EXPORT Obstacles {
 /// Surroundings of the map, world frame.
 struct VIEWGAIN_EXPORT Surroundings {
   Obstacles obstacles{};  ///< known obstacles
-  /// Height z of an infinite table [m]. Bodies stay above it. It ends descending rays, except with
-  /// the paper's gain.
+  /// Height z of an infinite table [m]. Bodies must stay above the table. Descending rays end at
+  /// the table, except with the paper's gain.
   std::optional<double> support_plane{};
 };
 
@@ -57,13 +57,13 @@ class VIEWGAIN_EXPORT VoxelScene {
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(
       const BeliefGrid& grid, const Surroundings& surroundings = {}, const ExecConfig& exec = {},
       const HazardConfig& hazard = {});
-  /// As above, from a result of BeliefGrid::snapshot(), whose lists are unchecked.
+  /// As above, from a result of BeliefGrid::snapshot(). Its lists are not checked.
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(
       GridSnapshot snapshot, const Surroundings& surroundings = {}, const ExecConfig& exec = {},
       const HazardConfig& hazard = {});
   /// The scene of the current `grid` with the surroundings and hazard settings of `before`, which
-  /// does not change. Faster than build(): copies the parts of the map that have not changed, if
-  /// `before` is a scene of the same grid (perf/README.md). Throws Error(invalid_argument) for a
+  /// does not change. If `before` is a scene of the same grid, this is faster than build(), because
+  /// unchanged parts of the map are copied (perf/README.md). Throws Error(invalid_argument) for a
   /// null scene, and like build().
   [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
       const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
@@ -79,7 +79,7 @@ class VIEWGAIN_EXPORT VoxelScene {
 
   /// The snapshot of the scene.
   [[nodiscard]] const GridSnapshot& snapshot() const noexcept;
-  /// The surroundings; the same object in all scenes that update() made from one.
+  /// The surroundings. All scenes that update() made from one scene share this object.
   [[nodiscard]] const Surroundings& surroundings() const noexcept;
 
   /// Hazard of unknown voxels and their distance to known surface; computed on the first call, in

@@ -22,17 +22,17 @@ namespace viewgain {
 /// Alternatively, aligns one frame with a map. apps/planner/src/registration/align_frames.cpp
 /// describes the method.
 ///
-/// Only the workspace counts; flying pixels, known obstacles and the support plane are ignored. A
-/// frame is refused if it contradicts the others at its best fit and at all likely poses: it shows
-/// surface in their free space, or sees past their surface.
+/// Only readings in the workspace count; flying pixels, known obstacles and the support plane are
+/// ignored. A frame contradicts the others if it shows surface in their free space, or sees past
+/// their surface. It is refused if it does so at its best fit and at all likely poses.
 ///
 /// Thread safety: no other member may run during add(); const members may run from many threads at
 /// once. Bit-identical for any number of threads.
 class VIEWGAIN_EXPORT FrameAlignment {
  public:
-  /// `map`: settings of the map that frames go into, or are compared with. Removes the lens
-  /// distortion once. Throws Error(invalid_argument) naming the value if the sensor, an obstacle or
-  /// the filter is invalid.
+  /// `map`: settings of the map that frames go into, or are compared with. The constructor removes
+  /// the lens distortion once. Throws Error(invalid_argument) naming the value if the sensor, an
+  /// obstacle or the filter is invalid.
   FrameAlignment(const Sensor& sensor, const ScorerConfig& map, const ExecConfig& exec = {});
   ~FrameAlignment();
   FrameAlignment(FrameAlignment&&) noexcept;
@@ -41,13 +41,14 @@ class VIEWGAIN_EXPORT FrameAlignment {
   /// Adds a frame; the result is valid until the next call. A refused frame moves no other frame; a
   /// frame with too little overlap stays as reported until other frames show the same surface.
   /// Covariances are relative to the first frame, whose covariance is zero. `sigma`: uncertainty of
-  /// the reported pose. Throws Error(invalid_argument) without a change for a wrong size, a pose
-  /// that is not rigid (1e-3), a sigma that is not positive and finite, or an invalid map.grid.
-  /// Cost: 100 bytes per measured depth; time grows with the square of the number of frames.
+  /// the reported pose. Throws Error(invalid_argument), and changes nothing, for a frame of a wrong
+  /// size, a pose that is not rigid (1e-3), a sigma that is not positive and finite, or an invalid
+  /// map.grid. Cost: 100 bytes per measured depth; time grows with the square of the number of
+  /// frames.
   const FrameRegistration& add(DepthFrame frame, const Pose& T_reported,
                                const PoseSigma& sigma = kUsualPoseSigma);
 
-  /// Current results for all frames, in order; the first frame, which defines the world, is
+  /// Current results for all frames, in order. The first frame defines the world and counts as
   /// registered. Valid until the next add().
   [[nodiscard]] const std::vector<FrameRegistration>& registrations() const;
 

@@ -19,11 +19,12 @@ inline constexpr std::string_view kHazardViews = "hazard";
 /// Views (T_world_camera) of the places where most new surface is expected behind known free space.
 /// Returns at most `most` views: five per place, best place first.
 ///
-/// For each face between a free and an unknown hazard cell (HazardField), the expected area is the
-/// face times 1 - exp(-∫ h ds). The integral runs straight into unknown space as far as surface
-/// there counts as new. A place is the mean of the faces in a cube of `spacing` [m], weighted by
-/// expected area. One view is at `distance` [m] in front of the place, four are 30° to the side;
-/// image up is near +z.
+/// Surface is expected behind the faces between free and unknown hazard cells (HazardField). The
+/// expected area of a face is its own area times 1 - exp(-∫ h ds), with the hazard h. The integral
+/// starts at the face and runs straight into unknown space, as long as surface there counts as new.
+/// Faces in one cube with an edge of `spacing` [m] form a place; its position is their mean,
+/// weighted by expected area. One view is at `distance` [m] in front of the place, and four are 30°
+/// to the side. Image up is near +z.
 ///
 /// A map without known surface has no places. Throws Error(invalid_argument) unless both lengths
 /// are positive and finite. Deterministic, thread safe. Cost: 10 ms for 112³ hazard cells.
@@ -35,10 +36,10 @@ inline constexpr std::string_view kHazardViews = "hazard";
 inline constexpr std::string_view kReachViews = "reach_hazard";
 
 /// At most `count` views (T_world_camera) of the same places from poses within `reach`, at 1, 1.6
-/// or 2.5 times `distance` [m] and up to 75° to the side. A third of the views looks at its place,
-/// a third at the mean of all places, a third in between. Omits a view if 16 attempts find no
-/// reachable pose. Deterministic; thread safe if the reach's predicate is. Errors and cost: see
-/// hazard_views(), plus up to 16 `count` calls of ReachRegion::contains().
+/// or 2.5 times `distance` [m] and up to 75° to the side. A third of the views looks at their
+/// places, a third at the mean of all places, and a third in between. A view is omitted if 16
+/// attempts find no reachable pose. Deterministic; thread safe if the reach's predicate is. Errors
+/// and cost: those of hazard_views(), plus up to 16 · count calls of ReachRegion::contains().
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Pose> reachable_hazard_views(const VoxelScene& scene,
                                                                        const ReachRegion& reach,
                                                                        double distance,

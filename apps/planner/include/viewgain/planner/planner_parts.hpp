@@ -13,9 +13,9 @@
 
 namespace viewgain {
 
-/// A ViewPlanner as the parts of Algorithm 1. active_view_planning(start, camera, parts, parts,
-/// parts, planner.planning()) takes the same views as add(), propose() and rank() in turn. Thread
-/// safety and cost are those of these calls.
+/// A ViewPlanner as the parts of Algorithm 1 in Foix et al. (2012). active_view_planning(start,
+/// camera, parts, parts, parts, planner.planning()) takes the same views as a loop of add(),
+/// propose() and rank(). Thread safety and cost are those of these calls.
 /// @code
 /// ViewPlanner planner(ViewScorer(sensor, {.voxel_size = 0.01, .workspace = box}));
 /// planner.add_poses({"sphere", poses});

@@ -18,7 +18,7 @@
 
 namespace viewgain {
 
-/// A named set of fixed poses: sphere, dome, rings, sequence, file.
+/// A named set of fixed poses, from make_pose_set() or from a file.
 struct VIEWGAIN_EXPORT PoseSet {
   std::string generator;    ///< name of the generator
   std::vector<Pose> poses;  ///< T_world_camera, in the generator's order
@@ -35,11 +35,13 @@ struct VIEWGAIN_EXPORT PoseSetRequest {
   std::optional<std::size_t> count{};
   std::uint64_t seed = 1;       ///< seed of the shell
   std::optional<Pose> start{};  ///< T_world_camera of the previous view (sequence, spread_out)
-  /// Orders the poses so that the first ones are spread evenly, whatever their number: each is as
-  /// far as possible from the start and from all earlier poses, by direction. Ties go to the lower
-  /// index.
+  /// Orders the poses so that the first n are spread evenly, for every n. The next pose is always
+  /// the one whose direction from the centre differs most from the directions of the start and of
+  /// all earlier poses. Ties go to the lower index.
   bool spread_out = false;
-  ReachRegion reach{};  ///< reach of the robot (shell); lists of poses in it have no effect here
+  /// Reach of the robot. Only the generator shell uses the reach, and not if it has a list of
+  /// poses.
+  ReachRegion reach{};
 };
 
 /// Centre of the workspace, and the distance from which an object as large as the workspace fills
@@ -47,11 +49,16 @@ struct VIEWGAIN_EXPORT PoseSetRequest {
 [[nodiscard]] VIEWGAIN_EXPORT PoseSetRequest around_workspace(const BeliefGrid& grid,
                                                               const Sensor& sensor);
 
-/// The set of a generator other than boundary. Shell: random poses that look at the centre, between
-/// 0.8 and 1.25 times the distance, or within the reach's shells or boxes if it has any. It has
-/// fewer poses than requested if few random poses are within reach. Sequence: eight views on the
-/// start's circle of latitude in steps of 45°, then one from above. Throws Error(invalid_argument)
-/// for an unknown name, an unsupported count, and more than 20,000 poses to spread out.
+/// The set of a generator other than boundary. The sets sphere, dome and rings are those of
+/// viewgain/core/generators.hpp. The other sets are:
+/// - shell: random poses that look at the centre. If `reach` has shells or boxes, the poses lie
+///   within reach; otherwise they are at 0.8 to 1.25 times `distance` from the centre. The set is
+///   smaller than requested if few random poses are within reach.
+/// - sequence: eight views in steps of 45°, on a horizontal circle through the start, then one from
+///   above.
+///
+/// Throws Error(invalid_argument) for an unknown name, an unsupported count, and more than 20,000
+/// poses to spread out.
 [[nodiscard]] VIEWGAIN_EXPORT PoseSet make_pose_set(std::string_view generator,
                                                     const PoseSetRequest& request);
 

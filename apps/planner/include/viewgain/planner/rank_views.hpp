@@ -24,9 +24,9 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT RankConfig {
   /// Cost of each pose, subtracted from its gain, in the gain's unit. Empty: none.
   std::span<const double> costs{};
-  /// Cost per metre of straight path from `current_pose`, subtracted likewise. The combined gain
-  /// for a square metre of new surface is proportional to 1 / voxel², so the cost should be as
-  /// well.
+  /// Cost per metre of the straight path from `current_pose`, also subtracted from the gain. The
+  /// combined gain of a square metre of new surface is proportional to 1 / voxel_size². Scale this
+  /// cost with 1 / voxel_size² as well.
   double cost_per_metre = 0;
   /// Current camera pose, T_world_camera; only its centre is used. If it is empty,
   /// ViewPlanner::rank() uses the planner's last pose, and the functions of this file ignore paths.
@@ -37,8 +37,8 @@ struct VIEWGAIN_EXPORT RankConfig {
   /// same surface twice. Cannot be used with measures.
   bool together = false;
   /// True: scores all poses in full. False: uses two stages (GainEvaluator::race()), except with
-  /// the paper's gain. With `together` and false, views after the first are chosen from at least 32
-  /// poses with a quarter of the rays, and their marginal gains are estimates.
+  /// the paper's gain. If `together` is set and `exact` is not, each view after the first is chosen
+  /// from at least 32 poses, by tracing a quarter of their rays. Its marginal gain is an estimate.
   bool exact = false;
 };
 
@@ -59,7 +59,7 @@ struct VIEWGAIN_EXPORT PlanAhead {
   void check() const;
 };
 
-/// Generator name of the remaining views of a plan.
+/// Generator name of candidates that remain from an earlier plan.
 inline constexpr std::string_view kPlanned = "plan";
 
 /// One of the best views.
@@ -74,35 +74,36 @@ struct VIEWGAIN_EXPORT RankedView {
 struct VIEWGAIN_EXPORT Ranking {
   std::vector<RankedView> views;  ///< best first
   bool complete = true;           ///< false: stopped early
-  /// Indices of the views scored in full: all views, or those of the second stage. Empty with a
-  /// measure.
+  /// Indices of the views that were scored in full: all views or, with two stages, those of the
+  /// second stage. Empty with a measure.
   std::vector<std::size_t> scored_indices{};
   std::vector<ViewGain> scored_gains{};  ///< their gains, in the same order
   double way = 0;                        ///< straight-line path through the views of a plan [m]
-  /// Gain minus costs of the first view or of a whole new plan, in the gain's unit. NaN without
-  /// costs, and for the rest of a plan.
+  /// Gain minus costs, in the gain's unit. It refers to the first view or, for a new plan, to all
+  /// of its views. NaN if there are no costs, or if the views remain from an earlier plan
+  /// (rank_in_turn()).
   double worth = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Cost of each pose under `config`, including the path from current_pose; empty: none. Throws
-/// Error(invalid_argument) for a cost_per_metre that is negative or not finite, and for a
-/// current_pose that is not rigid (1e-3).
+/// Cost of each pose under `config`, including the path from current_pose. Empty if there are no
+/// costs. Throws Error(invalid_argument) for a cost_per_metre that is negative or not finite, and
+/// for a current_pose that is not rigid (1e-3).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<double> view_costs(std::span<const Pose> T_world_camera,
                                                              const RankConfig& config);
 
-/// The k best of the poses, k >= 1; ignores feasibility. Ties go to the earlier pose; omits invalid
-/// poses and, with `together`, poses without marginal gain. Throws Error(invalid_argument) like
-/// view_costs() and GainEvaluator::best().
+/// The k best poses, k >= 1. Feasibility is not checked. Ties go to the earlier pose. Invalid poses
+/// are omitted and, if config.together is set, poses without marginal gain as well. Throws
+/// Error(invalid_argument) like view_costs() and GainEvaluator::best().
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  std::size_t k, const RankConfig& config,
                                                  const BatchControl& control = {});
 
-/// At most `ahead.plan` poses with a large gain together, in the order of a short straight-line
-/// path from config.current_pose (empty: any start). Paths cost config.cost_per_metre; see
-/// plan_tour(). `surface_area` [m²] is the surface so far, for PlanAhead::least_share. Poses must
-/// be finite. Throws Error(invalid_argument) like PlanAhead::check(), view_costs() and plan_tour(),
-/// and if a measure is set.
+/// Chooses at most `ahead.plan` poses whose joint gain is large. They are ordered along a short
+/// path of straight lines. The path starts at config.current_pose or, if that is empty, anywhere.
+/// Paths cost config.cost_per_metre; see plan_tour(). `surface_area` [m²] is the surface so far,
+/// for PlanAhead::least_share. Poses must be finite. Throws Error(invalid_argument) like
+/// PlanAhead::check(), view_costs() and plan_tour(), and if a measure is set.
 [[nodiscard]] VIEWGAIN_EXPORT Ranking plan_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  const PlanAhead& ahead, double surface_area,
@@ -114,14 +115,15 @@ struct VIEWGAIN_EXPORT Ranking {
 VIEWGAIN_EXPORT void keep_worth(const GainEvaluator& evaluator, const PlanAhead& ahead,
                                 double surface_area, Proposal& planned);
 
-/// The rest of a plan, in order, with the individual gain of each view. Throws like plan_views().
+/// Scores the views that remain from an earlier plan, each on its own, and keeps their order.
+/// Throws like plan_views().
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_in_turn(const GainEvaluator& evaluator,
                                                    std::span<const Pose> T_world_camera,
                                                    RankConfig config,
                                                    const BatchControl& control = {});
 
-/// The values of a ranking for the stopping rules: gain and area of its first view alone. Empty if
-/// no view has a gain.
+/// The values of a ranking that the stopping rules use, such as gain and area of its first view
+/// alone. Empty if the ranking has no views.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<DecisionMaking::Decision> decision_of(
     const Ranking& ranking, GainModel model);
 

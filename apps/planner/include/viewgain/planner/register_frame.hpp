@@ -29,7 +29,7 @@ enum class RegistrationStatus : std::uint8_t {
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view registration_status_name(RegistrationStatus status);
 
 /// A motion of the camera that does not change how well the frame fits, such as along a plane or
-/// around a sphere's centre. Its length is one sigma of the reported pose.
+/// around a sphere's centre. Its length is one standard deviation of the reported pose.
 struct VIEWGAIN_EXPORT FreeDirection {
   Eigen::Vector3d translation;  ///< of the camera's centre, world axes [m]
   Eigen::Vector3d rotation;     ///< about the camera's centre, world axes [rad]
@@ -45,27 +45,29 @@ struct VIEWGAIN_EXPORT FrameRegistration {
   /// and `rotation` describe the last attempt.
   double translation = 0;
   double rotation = 0;  ///< angle of the correction [rad]
-  /// RMS distance of this frame's readings (measured depths) from the others' surface, along its
-  /// normal, at the reported pose [m]. 0 without pairs.
+  /// RMS distance of this frame's readings (measured depths) from the others' surface, along the
+  /// surface normal, at the reported pose [m]. 0 without pairs.
   double residual_before = 0;
   double residual_after = 0;  ///< the same at the corrected pose [m]
   std::size_t readings = 0;   ///< readings used: those in the workspace with a surface normal
-  std::size_t pairs = 0;  ///< of these, those that lie on the others' surface after the alignment
-  double overlap = 0;     ///< pairs / readings
-  /// The larger of two fractions: of the frame's readings that lie in free space of the others, and
-  /// of the others' surface that the frame sees past.
+  std::size_t pairs = 0;      ///< number of these on the others' surface after the alignment
+  double overlap = 0;         ///< pairs / readings
+  /// The larger of two fractions. One is the fraction of the frame's readings that lie in free
+  /// space of the others. The other is the fraction of the others' surface that the frame sees
+  /// past.
   double contradiction = 0;
   int iterations = 0;  ///< iterations of the last alignment
   /// Covariance of the pose relative to the others, row-major: translation of the camera centre
   /// [m], then rotation about it [rad], world axes. An error that all frames share is not included.
-  /// For a frame that is not registered, the covariance of the reported pose; zero for a first
-  /// frame, which defines the world.
+  /// If the frame is not registered, this is the covariance of the reported pose. For the first
+  /// frame, which defines the world, it is zero.
   std::array<double, 36> covariance{};
   /// Pose uncertainty from the covariance, for integrating the frame: roots of the mean variances
   /// of translation [m] and rotation [rad].
   [[nodiscard]] PoseSigma pose_sigma() const;
   /// How well the others determine the pose: the smallest information over all motions, divided by
-  /// that of the reported pose. Below 1 the reported pose is more accurate for that motion.
+  /// the reported pose's information about the same motion. If it is below 1, the reported pose is
+  /// more accurate along that motion.
   double smallest_information = 0;
   /// Motions along which the pose stays as reported.
   std::vector<FreeDirection> free_directions{};

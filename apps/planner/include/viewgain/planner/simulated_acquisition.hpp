@@ -15,9 +15,10 @@
 
 namespace viewgain {
 
-/// DATAACQUISITION of Algorithm 1 with a simulated camera: takes `frames_per_view` frames from each
-/// pose. Frames are numbered consecutively, and the number determines the noise. Thread safety: one
-/// call at a time. Errors and cost per frame: see SimulatedSensor::acquire().
+/// DATAACQUISITION of Algorithm 1 (Foix et al. 2012) with a simulated camera: takes
+/// `frames_per_view` frames from each pose. Frames are numbered consecutively, and the number
+/// determines the noise. Thread safety: one call at a time. Errors and cost per frame: see
+/// SimulatedSensor::acquire().
 class VIEWGAIN_EXPORT SimulatedAcquisition : public DataAcquisition {
  public:
   /// `stop` ends a view after the current frame. `frames_per_view` must be at least 1 (unchecked).
@@ -36,10 +37,10 @@ class VIEWGAIN_EXPORT SimulatedAcquisition : public DataAcquisition {
   DepthFrame last_frame_;
 };
 
-/// The pose that an inexact robot reports for a camera at T_world_camera: with independent Gaussian
-/// errors `sigma`, which seed and view determine. View 0 is exact, because it defines the world
-/// frame. Thread safe. Throws Error(invalid_argument) naming the value if a sigma is negative or
-/// not finite.
+/// The pose that an inexact robot reports for a camera at T_world_camera. Its errors are
+/// independent and Gaussian, with standard deviations `sigma`; `seed` and `view` determine them.
+/// View 0 is exact, because it defines the world frame. Thread safe. Throws Error(invalid_argument)
+/// naming the value if a sigma is negative or not finite.
 [[nodiscard]] VIEWGAIN_EXPORT Pose reported_pose(const Pose& T_world_camera, std::size_t view,
                                                  const PoseSigma& sigma, std::uint64_t seed);
 

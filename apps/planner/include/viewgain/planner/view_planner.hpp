@@ -33,8 +33,8 @@ struct VIEWGAIN_EXPORT PlannerConfig {
   double max_near_share = FeasibilityConfig{}.max_near_share;  ///< as in FeasibilityConfig
   /// False: ignores body, obstacles and reach. Poses taken or tried are still omitted.
   bool check_feasibility = true;
-  /// If PlanAhead::is_on(), rank() of a proposal plans several views, and propose() then returns
-  /// the rest of the plan.
+  /// Settings for planning several views. If PlanAhead::is_on(), rank() of a proposal plans several
+  /// views, and later calls of propose() return the views that are left.
   PlanAhead ahead{};
   std::size_t max_views = PlanningConfig{}.max_views;    ///< as in PlanningConfig
   std::size_t idle_views = PlanningConfig{}.idle_views;  ///< as in PlanningConfig
@@ -56,8 +56,9 @@ struct VIEWGAIN_EXPORT AddedView {
   double entropy_removed = 0;  ///< increase of the removed entropy [nat, or m² for trace]
 };
 
-/// Next-best views step by step: runs Algorithm 1 with one call per step. Adds candidates, reach,
-/// stopping rules and a record of tried poses to a ViewScorer.
+/// Plans next-best views step by step. Each call is one step of Algorithm 1 in Foix et al. (2012).
+/// A ViewPlanner consists of a ViewScorer, candidates, a reach, stopping rules and a record of
+/// tried poses.
 ///
 /// One cycle: add() a frame, propose() candidates, rank() them and ask should_stop(). Then move the
 /// camera, report the result with tried(), and add() the next frame. If reported poses are inexact,
@@ -99,12 +100,12 @@ class VIEWGAIN_EXPORT ViewPlanner {
   [[nodiscard]] FrameRegistration register_frame(const DepthFrame& frame, const Pose& T_reported,
                                                  const PoseSigma& sigma = kUsualPoseSigma) const;
 
-  /// Integrates a frame and updates the scene; invalidates the last proposal. A frame that cannot
-  /// be used, according to its verdict in AddedView::update, leaves the map unchanged; it counts as
-  /// a failed view, and its pose as tried. Obstacles replace DepthFrame::known_depth. `pose_sigma`
-  /// [m], [rad] is the pose's uncertainty in addition to the sensor's; after register_frame() use
-  /// FrameRegistration::pose_sigma(). Throws Error(invalid_argument) for an invalid pose_sigma, and
-  /// like VoxelScene::build().
+  /// Integrates a frame and updates the scene; invalidates the last proposal. If a frame cannot be
+  /// used, the verdict in AddedView::update gives the reason. The map then stays unchanged; the
+  /// frame counts as a failed view, and its pose as tried. DepthFrame::known_depth is computed anew
+  /// from the obstacles. `pose_sigma` [m], [rad] is the pose's uncertainty in addition to the
+  /// sensor's; after register_frame() use FrameRegistration::pose_sigma(). Throws
+  /// Error(invalid_argument) for an invalid pose_sigma, and like VoxelScene::build().
   AddedView add(const DepthFrame& frame, const Pose& T_world_camera,
                 const PoseSigma& pose_sigma = {});
   /// As above, for one or more frames from one pose.
@@ -112,17 +113,18 @@ class VIEWGAIN_EXPORT ViewPlanner {
                 const PoseSigma& pose_sigma = {});
 
   /// Records a view without a usable frame, like add() with a frame that cannot be used.
-  /// `T_world_camera`: its pose, if known. Throws Error(invalid_argument) for the verdict of a
-  /// frame in the map.
+  /// `T_world_camera`: its pose, if known. Throws Error(invalid_argument) if `verdict` means that
+  /// the frame is in the map.
   AddedView drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera = {});
   /// Verdicts of the frames so far.
   [[nodiscard]] const FrameCounts& frames() const noexcept;
 
-  /// Possible candidates from the reach region's poses, the sets and the generations, in this order
-  /// (see ViewProposer), and the number of dropped ones by reason. While a plan has views left that
-  /// are still good, returns only these (generator kPlanned). Valid until the next add() or
-  /// propose(). Invalidates earlier rankings since the last view. Throws Error(invalid_argument),
-  /// like rank(), if no frame so far could be used, because the set-up is then probably wrong.
+  /// The possible candidates from the reach region's poses, the sets and the generations, in this
+  /// order (see ViewProposer). Also gives the number of dropped candidates per reason. If an
+  /// earlier plan has views left that are still good, only these are returned; their generator is
+  /// kPlanned. Valid until the next add() or propose(). Earlier rankings become invalid. Throws
+  /// Error(invalid_argument), like rank(), if no frame so far could be used, because the set-up is
+  /// then probably wrong.
   const Proposal& propose();
   /// Dropped candidates of the last proposal, in order; valid as long as the proposal.
   [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept;
@@ -130,10 +132,11 @@ class VIEWGAIN_EXPORT ViewPlanner {
   [[nodiscard]] std::size_t candidate_count() const noexcept;
 
   /// The k best of the proposal, or fewer. Views with no gain are omitted unless a measure ranks
-  /// them, so the result may be empty. Ties go to the earlier candidate. With a plan: its next k
-  /// views, in its order. Paths start at RankConfig::current_pose, by default the pose of the last
-  /// frame or of a later tried() that was reached. Throws Error(invalid_argument) without a
-  /// proposal since the last view, and like rank_views().
+  /// them, so the result may be empty. Ties go to the earlier candidate. If views of a plan are
+  /// left, the result is the plan's next k views, in the plan's order. Paths start at
+  /// RankConfig::current_pose; by default this is the pose of the last frame, or of a later tried()
+  /// that was reached. Throws Error(invalid_argument) if propose() was not called since the last
+  /// view, and like rank_views().
   [[nodiscard]] Ranking rank(std::size_t k = 1, const RankConfig& config = {},
                              const BatchControl& control = {});
   /// Ranks any poses, `T_world_camera`, without a check of feasibility. Omits invalid ones. Does
@@ -141,8 +144,8 @@ class VIEWGAIN_EXPORT ViewPlanner {
   [[nodiscard]] Ranking rank(std::span<const Pose> T_world_camera, std::size_t k = 1,
                              const RankConfig& config = {}, const BatchControl& control = {});
 
-  /// Reports whether a commanded pose was `reached`. It is not proposed again, and is removed from
-  /// the current proposal, so that the indices of later candidates decrease. Throws
+  /// Reports whether a commanded pose was `reached`. The pose is not proposed again. It is also
+  /// removed from the current proposal, so the indices of later candidates decrease. Throws
   /// Error(invalid_argument) for a pose that is not rigid (1e-3).
   void tried(const Pose& T_world_camera, bool reached);
 
@@ -151,13 +154,13 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// called several times, the last ranking counts.
   [[nodiscard]] std::optional<StopReason> should_stop() const noexcept;
 
-  /// Saves the state in one file, a map that other programs can read, whose note "planner" has the
-  /// rest. Omits the constructor's arguments, sets, generations and the last proposal. Atomic.
-  /// Throws Error(io).
+  /// Saves the state in one file. The file is a map that other programs can read; its note
+  /// "planner" contains the rest of the state. Not saved are the constructor's arguments, sets,
+  /// generations and the last proposal. Atomic. Throws Error(io).
   void save(const std::filesystem::path& path) const;
   /// Continues after save(). With the same settings, sets and generations, all later results are
   /// bit-identical. Throws like the constructors and load_vdb(); Error(invalid_argument) if the
-  /// map's layout differs from scorer.grid(), or the map was changed by other means than add();
+  /// map's layout differs from scorer.grid(), or the map was changed by other functions than add();
   /// Error(format) for another kind of file.
   [[nodiscard]] static ViewPlanner load(const std::filesystem::path& path, const Sensor& sensor,
                                         const ScorerConfig& scorer, const PlannerConfig& config,
@@ -170,8 +173,8 @@ class VIEWGAIN_EXPORT ViewPlanner {
   [[nodiscard]] const PlanningConfig& planning() const noexcept;
   /// The map with its scene and evaluator. Moving the planner does not change its address.
   [[nodiscard]] const ViewScorer& scorer() const noexcept;
-  /// Duration of the steps since the last add(), including it: integrate, snapshot, candidates,
-  /// score.
+  /// Duration of the steps since the last add(), including that call: integrate, snapshot,
+  /// candidates, score.
   [[nodiscard]] const StageSeconds& seconds() const noexcept;
 
  private:

@@ -48,8 +48,8 @@ struct VIEWGAIN_EXPORT ProposerConfig {
   double distance_in_reach = 0;
 };
 
-/// Collects candidates of sets and generations and checks which are possible. In a room, where all
-/// views of the map lie inside its workspace, candidates of generations must lie inside too,
+/// Collects candidates of sets and generations and checks which are possible. If all views of the
+/// map lie inside its workspace, as in a room, candidates of generations must lie inside as well,
 /// because obstacles outside are not mapped. This rule does not apply if the reach is limited. Not
 /// thread safe.
 class VIEWGAIN_EXPORT ViewProposer {
@@ -64,10 +64,10 @@ class VIEWGAIN_EXPORT ViewProposer {
   /// Adds candidates that are recomputed for each proposal.
   void add_generation(std::shared_ptr<ViewpointGeneration> generation);
 
-  /// The possible candidates of the sets, then of the generations, in order, and the number of
-  /// dropped ones by reason. `scene` must show the current map. Poses in `reached` and `missed`
-  /// were tried and are dropped. Generations receive the current camera pose `T_world_camera`.
-  /// Cost: the generations, and FeasibilityChecker::check().
+  /// The possible candidates of the sets, then of the generations, in order. Also gives the number
+  /// of dropped candidates per reason. `scene` must show the current map. Poses in `reached` and
+  /// `missed` were tried and are dropped. Generations receive the current camera pose
+  /// `T_world_camera`. Cost: the generations, and FeasibilityChecker::check().
   [[nodiscard]] Proposal propose(const BeliefGrid& grid, std::shared_ptr<const VoxelScene> scene,
                                  const Pose& T_world_camera, std::span<const Pose> reached = {},
                                  std::span<const Pose> missed = {});
@@ -81,7 +81,8 @@ class VIEWGAIN_EXPORT ViewProposer {
   /// Details of the last proposal, in the order of the candidates.
   [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept { return dropped_; }
 
-  /// Reports a tried pose: moves the same views from `proposal` to the dropped ones, with `reason`.
+  /// Reports a tried pose. Candidates at this pose are removed from `proposal` and added to
+  /// dropped(), with `reason`.
   void drop(const Pose& tried, std::string_view reason, Proposal& proposal);
 
  private:

@@ -27,9 +27,9 @@ class VIEWGAIN_EXPORT ViewSight {
             std::span<const Pose> views, const ExecConfig& exec);
 
   /// Whether the view sees the point [m, world] unoccluded, in the pixel that shows it or one of
-  /// its eight neighbours. Only what is nearer than the point by more than two voxels and three
-  /// sigmas occludes it, so that the point's noise does not hide it. False outside the image.
-  /// `view` is unchecked.
+  /// its eight neighbours. Something occludes the point only if it is nearer by more than two
+  /// voxels plus three standard deviations, so that noise does not hide the point. False outside
+  /// the image. `view` is unchecked.
   [[nodiscard]] bool sees(std::size_t view, const Eigen::Vector3d& point);
 
  private:
