@@ -162,7 +162,7 @@ TEST(SavedPlanner, RefusesAMapThatHasGrownWithoutIt) {
   BeliefGrid grid = load_vdb(path);
   FrameIntegrator(scene.sensor).integrate(grid, scene.see(scene.views[1]), scene.views[1]);
   save_vdb(grid, path);
-  expect_error(ErrorCode::invalid_argument, "has 2 views, but its planner added 1",
+  expect_error(ErrorCode::invalid_argument, "has 2 views, but its planner added only 1",
                [&] { (void)scene.config().load(path, scene.sensor); });
 }
 

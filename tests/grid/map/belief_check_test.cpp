@@ -30,7 +30,7 @@ TEST(BeliefCheck, RefusesWhatNoReadingsMake) {
        {std::pair<const char*, Belief>{"nan", {{1, 1, 1, nan, 0, 0}, {}, 1}},
         {"nan", {{1, 1, 1, 0, 0, 0}, {0, nan, 0}, 1}},
         {"-1", {{1, 1, -1, 0, 0, 0}, {}, 1}},
-        {"hits", {{1, 1, 1, 0, 0, 0}, {}, 1U << 31U}},
+        {"measured points", {{1, 1, 1, 0, 0, 0}, {}, 1U << 31U}},
         // entropy_removed would be NaN
         {"semidefinite", {{1, 1, 1, 1e8F, 0, 0}, {}, 1}},
         {"semidefinite", {{1, 1, 1, 1e8F, 0, 0}, {}, 2147483647}},
