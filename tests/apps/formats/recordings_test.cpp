@@ -295,8 +295,9 @@ TEST_F(Recordings, MasksTakePixelsAway) {
   EXPECT_EQ(load_frame(frames, 1).depth[100], 0.0F);
   EXPECT_GT(load_frame(frames, 1).depth[101], 0.0F);
   EXPECT_GT(load_frame(frames, 0).depth[100], 0.0F);
-  EXPECT_NE(run_well(call({"--mask", "masks"})).find("1 frames have a mask; masks removed 2 pixels"),
-            std::string::npos);
+  EXPECT_NE(
+      run_well(call({"--mask", "masks"})).find("1 frames have a mask; masks removed 2 pixels"),
+      std::string::npos);
 
   // So do confidences under the least: of 0, 1 and 255 the first, or the first two.
   result = import_json({"--confidence", "masks"});

@@ -28,8 +28,8 @@ void add_model_options(App& app, ModelOptions& o) {
                  "With --watch:\n"
                  "  After each frame the program writes state.vdb, next.txt and next.json to OUT.\n"
                  "  next.json says when to stop (--max-views, --stop). If the program was killed,\n"
-                 "  the same command continues. --watch cannot be used with --pictures,\n"
-                 "  --save-maps or --report.\n");
+                 "  the same command continues.\n"
+                 "  --watch cannot be used with --pictures, --save-maps or --report.\n");
   app.add_option("--max-views", o.max_views,
                  "view budget; after that many views, the stop_reason in next.json is max_views "
                  "(requires --watch)")

@@ -173,7 +173,7 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithFileAndLine) {
       {"[gain]\nmodel = 1\n", "line 4: key \"gain\" must be"},
       {"top = 1\ntop = 2\n", "c.toml: line 5"},
       {"dome = \"20,0.6\"\n",
-       "key \"dome\" is of a removed flag: --dome was removed; use --poses dome:N,RADIUS"}};
+       "key \"dome\" is the key of a removed flag: --dome was removed; use --poses dome:N,RADIUS"}};
   for (const auto& [text, word] : files) {
     write("c.toml", head + text);
     expect_refused({"score", "--config", "c.toml", "--out", "s.csv"}, word);
