@@ -107,7 +107,7 @@ def test_what_the_camera_returns_is_checked(camera, sensor, start):
     for answer, text in [(depth[1:], r"\(143, 176\)"), ((depth, moved, amplitude, 1), "tuple of 4"), ((depth, amplitude, moved), "T_world_camera"),
                          (None, "depth"), ((1000 * depth).astype(np.uint16), "dtype uint16"),
                          (1000 * depth, "metres"), ((depth, 0 * moved, amplitude), "T_world_camera"),
-                         (np.zeros_like(depth), "no reading")]:
+                         (np.zeros_like(depth), "shows nothing in the workspace")]:
         with pytest.raises(ValueError, match=text):
             reconstruct(camera, sensor, start, acquire=lambda pose: answer)
 
