@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What each voxel or each run of a view contributes to its gain, in double precision.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>

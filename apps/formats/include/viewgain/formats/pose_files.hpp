@@ -28,7 +28,7 @@ VIEWGAIN_EXPORT void save_poses(const std::filesystem::path& path, std::span<con
 VIEWGAIN_EXPORT void save_poses(const std::filesystem::path& path, std::span<const Pose> poses,
                                 std::span<const double> timestamps);
 
-/// What is wrong with the name's ending for save_poses(); empty if it is valid. Never throws.
+/// Explains why save_poses() rejects the name's ending; empty if it is valid. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::string fault_of_poses_name(const std::filesystem::path& path);
 
 }  // namespace viewgain

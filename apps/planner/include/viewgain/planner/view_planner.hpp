@@ -102,7 +102,7 @@ class VIEWGAIN_EXPORT ViewPlanner {
 
   /// Integrates a frame and updates the scene; invalidates the last proposal. If a frame cannot be
   /// used, the verdict in AddedView::update gives the reason. The map then stays unchanged; the
-  /// frame counts as a failed view, and its pose as tried. DepthFrame::known_depth is computed anew
+  /// frame counts as a failed view, and its pose as tried. DepthFrame::known_depth is recomputed
   /// from the obstacles. `pose_sigma` [m], [rad] is the pose's uncertainty in addition to the
   /// sensor's; after register_frame() use FrameRegistration::pose_sigma(). Throws
   /// Error(invalid_argument) for an invalid pose_sigma, and like VoxelScene::build().
