@@ -6,9 +6,10 @@
     clutter.py DIR [--jobs N] [--program PATH] [--tables] [--unseen]
 
 Runs every policy on the scenes of scenes.toml with use = "report": with an SR4000 from three start
-poses, which are the seeds, then with a D435 in two scenes from one. If it is stopped, the same call
-goes on with the runs that are in DIR. About an hour on two idle cores. Needs the program viewgain,
-apps/install_dependencies.sh --perf, and PYTHONPATH=build/release/python.
+poses, which are the seeds, and with a D435 in two scenes from one. The default and the counts come
+first. If it is stopped, the same call goes on with the runs that are in DIR. About an hour on two
+idle cores. Needs the program viewgain, apps/install_dependencies.sh --perf, and
+PYTHONPATH=build/release/python.
 
 The visible surface, of which shares are stated, is what 2,562 poses see that look at the middle of the
 scene. --unseen samples other poses in reach and prints what share of the surface none of them sees.
@@ -34,7 +35,7 @@ MAX_VIEWS = 10
 OURS = "gain:combined"
 COUNTS = ("gain:surface_frontier_count", "gain:unknown_count", "frontier")
 RANDOM = {"name": "random", "command": "viewgain reconstruct --policy random --generator shell"}
-POLICIES = [OURS, *COUNTS], ["oracle", RANDOM, "gain:surface", "gain:paper"]  # the first of all scenes, then the others
+POLICIES = [OURS, *COUNTS], ["oracle", RANDOM, "gain:surface", "gain:paper"]  # the first ones in all scenes and seeds, then the others
 SEEDS = (1, 2, 3)
 AROUND = .6                               # of the scene, where --unseen looks for poses [m]
 CLEAR = .1                                # between such a pose and the surface [m]
@@ -71,8 +72,9 @@ def specs(out, program):
     for name in reported:
         if not is_made(out / "scenes" / name):
             scenes.write_listed([name], out / "scenes")
-    for sensor, names, seeds in (("sr4000", reported, SEEDS), ("d435", D435_SCENES, D435_SEEDS)):
-        for seed, (part, policies) in itertools.product(seeds, enumerate(POLICIES, 1)):
+    sensors = ("sr4000", reported, SEEDS), ("d435", D435_SCENES, D435_SEEDS)
+    for (part, policies), (sensor, names, seeds) in itertools.product(enumerate(POLICIES, 1), sensors):
+        for seed in seeds:
             keys = {"objects": [scene_object((out / "scenes" / name).resolve(), seed) for name in names], "policies": policies,
                     "seeds": [seed], "sensors": [sensor], "voxels": [.005], "max_views": MAX_VIEWS}
             path = out / f"{sensor}-{seed}-{part}.toml"

@@ -83,12 +83,18 @@ def room_around(body, handle):
                      box((-1.9, -1.4, 0), (-1.5, -0.4, 1.8)), box((1.2, 0.9, 0), (1.9, 1.4, 0.9)), body, handle])
 
 
-def frames_of(camera):
-    """Poses and depth images: first the room, then the mug from the side away from its handle."""
+def room_poses():
+    """24 poses that look around the room."""
     poses = []
     for angle in np.radians(np.arange(0, 360, 15)):
         eye = np.array([1.1 * np.cos(angle), 1.1 * np.sin(angle), 1.5])
         poses.append(viewgain.look_at(eye, eye + [np.cos(angle + 1), np.sin(angle + 1), -0.45]))
+    return poses
+
+
+def frames_of(camera):
+    """Poses and depth images: first the room, then the mug from the side away from its handle."""
+    poses = room_poses()
     for k in range(16):
         angle, up = AWAY + np.radians(70 * np.sin(k)), np.radians(20 + 25 * (k % 3))
         eye = [0.65 * np.cos(angle) * np.cos(up), 0.65 * np.sin(angle) * np.cos(up), TABLE_Z + HEIGHT / 2 + 0.65 * np.sin(up)]
