@@ -28,7 +28,7 @@ inline void add_common_options(App& program, CommonOptions& options) {
   program
       .add_option("--trace", options.trace,
                   "algorithm that traces rays: embree (a bounding volume hierarchy), sweep (cell "
-                  "by cell) or automatic (the same as sweep); it changes only the speed")
+                  "by cell) or automatic (chosen per map); it changes only the speed")
       ->check(one_of(tracer_names(), "tracer"));
   program.add_option("--save-config", options.save_config,
                      "TOML file to write with the flags of this call, to be read by --config");
