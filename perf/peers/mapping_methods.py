@@ -70,7 +70,7 @@ class VoxelBlocks:
         core = self.core = o3d.core
         self.o3d, self.max_range = o3d, scene["max_range"]
         self.intrinsic = core.Tensor([[scene["fx"], 0, scene["cx"]], [0, scene["fy"], scene["cy"]], [0, 0, 1]], core.float64)
-        self.blocks = o3d.t.geometry.VoxelBlockGrid(("tsdf", "weight"), (core.float32, core.float32), ((1), (1)), scene["voxel"], 16, 50000)
+        self.blocks = o3d.t.geometry.VoxelBlockGrid(("tsdf", "weight"), (core.float32, core.float32), ((1), (1)), scene["voxel"], 16, 10000)
 
     def prepared(self, depth, T_world_camera):
         return self.o3d.t.geometry.Image(self.core.Tensor(depth)), self.core.Tensor(np.linalg.inv(T_world_camera))
@@ -101,7 +101,10 @@ def main(method, folder, threads):
     os.environ["OMP_NUM_THREADS"] = threads
     folder = pathlib.Path(folder)
     scene = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
+    __import__("viewgain.mesh" if method == "viewgain" else "open3d")
+    before = memory("VmRSS")
     mapper = METHODS[method](scene, int(threads))
+    allocated = memory("VmRSS") - before
     depth, poses = np.load(folder / ("depth.npy" if method == "viewgain" else "cropped.npy")), np.load(folder / "poses.npy")
     frames = [mapper.prepared(*frame) for frame in zip(depth, poses)]
     pathlib.Path("/proc/self/clear_refs").write_text("5", encoding="utf-8")  # peak = now
@@ -109,7 +112,7 @@ def main(method, folder, threads):
     for frame in frames:
         mapper.add(*frame)
     seconds = (time.perf_counter() - start) / len(frames)
-    megabytes = memory("VmHWM") - before
+    megabytes = allocated + memory("VmHWM") - before
     vertices, triangles = mapper.surface()
     np.savez(folder / "surface.npz", vertices=vertices, triangles=triangles)
     print(json.dumps({"seconds": seconds, "megabytes": megabytes}))
