@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
-# Installs the Debian packages, those that are missing only, that are needed
-#   apps/install_dependencies.sh          to build and run the program, and for the demo's mesh
-#   apps/install_dependencies.sh --tests    for what tests/run.sh builds and runs as well
-#   apps/install_dependencies.sh --perf     for all that, the benchmarks and 820 meshes of furniture
-#   apps/install_dependencies.sh --browser  for all that and the test of the report in a browser
-#   apps/install_dependencies.sh --docs     for all that and the documentation site (target `docs`)
-#   apps/install_dependencies.sh --fuzz     for all that --tests is for and libFuzzer
-#   apps/install_dependencies.sh --packages for all that --tests is for and Debian packages
-#   apps/install_dependencies.sh --furniture for all that --tests is for and the furniture
-#   apps/install_dependencies.sh --all      for all of it
+# Installs the missing Debian packages.
+#   apps/install_dependencies.sh [OPTION...]
+# Without options: those that are needed to build and run the program, and for the demo's mesh.
+# Every option adds those that tests/run.sh needs, and:
+#   --tests      nothing else
+#   --perf       benchmarks and 820 meshes of furniture
+#   --browser    the test of the report in a browser
+#   --docs       the documentation site (target `docs`)
+#   --fuzz       libFuzzer
+#   --packages   Debian packages
+#   --furniture  the furniture
+#   --all        all of these
 # Asks nothing; uses sudo only if not root.
 set -euo pipefail
 
@@ -30,18 +32,20 @@ perf=(libbenchmark-dev libnanovdb-dev sweethome3d-furniture)
 browser=(chromium-headless-shell)
 fuzz=(clang-19 libclang-rt-19-dev)
 docs=(doxygen doxygen-awesome-css python3-sphinx python3-myst-parser furo libjs-mathjax)
-case "${1:-}" in
-  "") ;;
-  --tests) packages+=("${tests[@]}") ;;
-  --perf) packages+=("${tests[@]}" "${perf[@]}") ;;
-  --browser) packages+=("${tests[@]}" "${browser[@]}") ;;
-  --docs) packages+=("${tests[@]}" "${docs[@]}") ;;
-  --fuzz) packages+=("${tests[@]}" "${fuzz[@]}") ;;
-  --packages) packages+=("${tests[@]}" dpkg-dev) ;;
-  --furniture) packages+=("${tests[@]}" sweethome3d-furniture) ;;
-  --all) packages+=("${tests[@]}" "${perf[@]}" "${browser[@]}" "${fuzz[@]}" "${docs[@]}" dpkg-dev) ;;
-  *) echo "$0: no option $1; there are --tests, --perf, --browser, --docs, --fuzz, --packages, --furniture and --all" >&2; exit 2 ;;
-esac
+for option in "$@"; do
+  case "$option" in
+    --tests) ;;
+    --perf) packages+=("${perf[@]}") ;;
+    --browser) packages+=("${browser[@]}") ;;
+    --docs) packages+=("${docs[@]}") ;;
+    --fuzz) packages+=("${fuzz[@]}") ;;
+    --packages) packages+=(dpkg-dev) ;;
+    --furniture) packages+=(sweethome3d-furniture) ;;
+    --all) packages+=("${perf[@]}" "${browser[@]}" "${fuzz[@]}" "${docs[@]}" dpkg-dev) ;;
+    *) echo "$0: $option: expected --tests, --perf, --browser, --docs, --fuzz, --packages, --furniture or --all" >&2; exit 2 ;;
+  esac
+done
+[ $# -eq 0 ] || packages+=("${tests[@]}")
 
 missing=()
 for package in "${packages[@]}"; do

@@ -22,6 +22,8 @@ def packaged(path):
     if library == "cgal":
         with tarfile.open(CGAL) as archive:
             return f"{name}.off", archive.extractfile(f"data/meshes/{name}.off").read()
+    if not FURNITURE.is_dir():
+        sys.exit(f"{path}: the meshes of furniture are not installed; run apps/install_dependencies.sh --furniture")
     with zipfile.ZipFile(FURNITURE / f"{library}.sh3f") as archive:
         wanted = re.compile(rf"[^/]+/{re.escape(name)}/{re.escape(name)}\.obj", re.IGNORECASE)
         found = next((one for one in sorted(archive.namelist()) if wanted.fullmatch(one)), f"{name}.obj")

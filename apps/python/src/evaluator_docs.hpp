@@ -39,9 +39,9 @@ posterior_entropy : bool
     Also compute the field posterior_entropy in ``evaluate_detailed``; only with "paper"; about 4 %
     slower.
 tracer : {"automatic", "embree", "sweep"}
-    How to find the voxels that rays hit. "sweep" visits cells from near to far; "automatic" is the
-    same. "embree" uses a BVH and is faster for images of under 100 rays in a map that does not
-    change. Does not affect results.
+    How to find the voxels that rays hit. "sweep" visits cells from near to far. "embree" uses a
+    BVH, which must be built first. "automatic" builds it for scenes that get many views of under
+    100 rays. Does not affect results.
 num_threads : int
     0: all hardware threads.
 

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
+#include <utility>
 
+#include "free_share.hpp"
 #include "nearest_cells.hpp"
 #include "open_directions.hpp"
 #include "viewgain/core/error.hpp"
@@ -169,7 +172,8 @@ HazardConfig constant_hazard(double rate, const BeliefGrid& grid,
   return config;
 }
 
-HazardField::HazardField(const GridSnapshot& snapshot, const HazardConfig& config)
+HazardField::HazardField(const GridSnapshot& snapshot, const HazardConfig& config,
+                         const ExecConfig& exec)
     : volume_(config.volume), pooling_(pooling_of(snapshot)), voxel_size_(snapshot.voxel_size) {
   config.validate();
   const std::vector<Index3> evidence = evidence_in(snapshot, pooling_.shift);
@@ -184,11 +188,12 @@ HazardField::HazardField(const GridSnapshot& snapshot, const HazardConfig& confi
     factors_ = monotone_factors(model_, snapshot.hazard);
   }
   far_rate_ = volume_ ? volume_->outside : static_cast<float>(model_.rate(kFar) * factors_.back());
-  find_distances(snapshot, evidence);
+  ThreadPool pool(exec.num_threads);
+  find_distances(snapshot, evidence, pool);
 }
 
-void HazardField::find_distances(const GridSnapshot& snapshot,
-                                 const std::vector<Index3>& evidence) {
+void HazardField::find_distances(const GridSnapshot& snapshot, const std::vector<Index3>& evidence,
+                                 ThreadPool& pool) {
   if (evidence.empty()) return;
   const int edge = 1 << shift_;
   const double cell = voxel_size_ * edge;
@@ -212,13 +217,21 @@ void HazardField::find_distances(const GridSnapshot& snapshot,
                                          " cells; the maximum is " + std::to_string(kMostCells));
   }
   squared_.assign(cells.volume(), detail::kNoDistance);
-  for (const Index3& v : evidence) squared_[cell_of(v)] = 0;
+  std::vector<std::uint32_t> sources;  // cells with evidence
+  for (const Index3& v : evidence) {
+    const std::size_t at = cell_of(v);
+    if (std::exchange(squared_[at], std::uint16_t{0}) != 0) {
+      sources.push_back(static_cast<std::uint32_t>(at));
+    }
+  }
   static_assert(kNoDistance == detail::kNoDistance);
-  const detail::NearestCells nearest(squared_, size_, reach);
-  const detail::FreeShare free(snapshot, cells, shift_);
+  const detail::NearestCells nearest(squared_, size_, reach, pool);
+  const detail::FreeShare free(snapshot, cells, shift_, pool);
   const int open_reach = static_cast<int>(
       std::clamp(HazardConfig::Model::kOpenReach * model_.decay_length / cell, 1.0, 63.0));
-  find_shapes(nearest, free, detail::OpenDirections(snapshot, cells, shift_, free, open_reach));
+  find_shapes(nearest, free,
+              detail::OpenDirections(snapshot, cells, shift_, free, open_reach, pool), sources,
+              pool);
   find_rates(reach);
   // [cells]; at least the neighbours of a cell with evidence
   const double known = std::max(kKnownDistance * pooling_.length / cell, 1.0);
@@ -226,32 +239,56 @@ void HazardField::find_distances(const GridSnapshot& snapshot,
 }
 
 void HazardField::find_shapes(const detail::NearestCells& nearest, const detail::FreeShare& free,
-                              const detail::OpenDirections& open) {
+                              const detail::OpenDirections& open,
+                              const std::vector<std::uint32_t>& sources, ThreadPool& pool) {
   using Model = HazardConfig::Model;
-  shapes_.assign(squared_.size(), static_cast<std::uint16_t>(kShapeUnit));
+  const std::size_t nx = size_[0], ny = size_[1], nz = size_[2];
+  // Direction towards free space at each cell with evidence.
+  struct Normal {
+    Eigen::Vector3d direction;
+    double norm;
+  };
+  std::vector<Normal> normals(sources.size());
+  const auto number = std::make_unique_for_overwrite<std::uint32_t[]>(squared_.size());
+  pool.for_each_chunk(sources.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t at = sources[i];
+      const Eigen::Vector3d n =
+          free.gradient(static_cast<int>(at / nz / ny), static_cast<int>(at / nz % ny),
+                        static_cast<int>(at % nz));
+      normals[i] = {n, n.norm()};
+      number[at] = static_cast<std::uint32_t>(i);
+    }
+  });
   std::array<double, detail::OpenDirections::kDirections + 1> openness{};
   for (std::size_t k = 0; k < openness.size(); ++k) {
     openness[k] = Model::openness(static_cast<double>(k) / detail::OpenDirections::kDirections);
   }
-  std::size_t i = 0;
-  for (std::size_t x = 0; x < size_[0]; ++x) {
-    for (std::size_t y = 0; y < size_[1]; ++y) {
-      for (std::size_t z = 0; z < size_[2]; ++z, ++i) {
-        if (squared_[i] == kNoDistance || free.is_free(i)) continue;
-        const auto [dx, dy, dz] = nearest.offset(x, y, z);
-        const auto at = [](std::size_t from, int by) { return static_cast<int>(from) + by; };
-        // Direction towards free space at the nearest cell with evidence, and direction from there
-        // to here.
-        const Eigen::Vector3d n = free.gradient(at(x, dx), at(y, dy), at(z, dz));
-        const Eigen::Vector3d away(-dx, -dy, -dz);
-        const double product = n.norm() * away.norm();
-        const double sine = product > 0 ? n.dot(away) / product : 0.0;
-        const double shape =
-            Model::continuation(sine) * openness[static_cast<std::size_t>(open.count(x, y, z))];
-        shapes_[i] = static_cast<std::uint16_t>(std::lround(kShapeUnit * shape));
+  shapes_.resize(squared_.size());
+  const auto shape_at = [&](std::size_t x, std::size_t y, std::size_t z, std::size_t i) {
+    const auto [dx, dy, dz] = nearest.offset(x, y, z);
+    const auto source = static_cast<std::size_t>(
+        static_cast<std::ptrdiff_t>(i) +
+        (std::ptrdiff_t{dx} * std::ptrdiff_t(ny) + dy) * std::ptrdiff_t(nz) + dz);
+    const Normal& normal = normals[number[source]];
+    const Eigen::Vector3d away(-dx, -dy, -dz);  // from there to here
+    const double product = normal.norm * away.norm();
+    const double sine = product > 0 ? normal.direction.dot(away) / product : 0.0;
+    return Model::continuation(sine) * openness[static_cast<std::size_t>(open.count(x, y, z))];
+  };
+  pool.for_each_chunk(nx, 1, [&](std::size_t x, std::size_t) {
+    std::size_t i = x * ny * nz;
+    for (std::size_t y = 0; y < ny; ++y) {
+      for (std::size_t z = 0; z < nz; ++z, ++i) {
+        const bool is_asked = squared_[i] != kNoDistance && free.is_free()[i] == 0;
+        if (is_asked) {
+          shapes_[i] = static_cast<std::uint16_t>(kShapeUnit * shape_at(x, y, z, i) + 0.5);
+        } else {
+          shapes_[i] = static_cast<std::uint16_t>(kShapeUnit);
+        }
       }
     }
-  }
+  });
 }
 
 void HazardField::find_rates(int reach) {

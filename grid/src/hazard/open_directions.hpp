@@ -2,38 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "cell_kernels.hpp"
+#include "free_share.hpp"
 #include "viewgain/grid/grid_snapshot.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
-
-/// Share of free voxels in the 7³ cells around each cell, in a box of cells of 2^shift voxels per
-/// edge in the workspace; cells cut by the workspace count by their part inside. Values continue
-/// beyond the faces of the box. 5 bytes per cell.
-class FreeShare {
- public:
-  FreeShare(const GridSnapshot& snapshot, const VoxelBox& cells, int shift);
-
-  /// Whether a cell is entirely free, by its index in a dense array [x][y][z], z fastest.
-  [[nodiscard]] bool is_free(std::size_t cell) const { return is_free_[cell] != 0; }
-  /// Gradient of free space at a cell, relative to the box's lowest cell; not normalised.
-  [[nodiscard]] Eigen::Vector3d gradient(int x, int y, int z) const;
-
- private:
-  void count(const GridSnapshot& snapshot, int shift);
-  void settle(const VoxelBox& workspace, int shift);
-  void add_up(std::size_t stride, std::size_t count);
-
-  VoxelBox cells_;
-  std::array<int, 3> size_;
-  std::vector<std::int32_t> sums_;  // free voxels of a cell, then of 7³ cells
-  std::vector<std::uint8_t> is_free_;
-};
 
 /// Number of the 26 directions along which free space comes within a reach, before any occupied
 /// cell, in a box of cells of 2^shift voxels per edge. A cell is free if all of it is, occupied if
@@ -46,7 +25,7 @@ class OpenDirections {
   /// steps as its length allows, at least one. Cost: about 130 passes over the cells, 64 cells at
   /// once, and 2 bytes per cell.
   OpenDirections(const GridSnapshot& snapshot, const VoxelBox& cells, int shift,
-                 const FreeShare& free, int reach);
+                 const FreeShare& free, int reach, ThreadPool& pool);
 
   /// Result at a cell relative to the box's lowest; 0 to 26. Also for free and occupied cells.
   [[nodiscard]] int count(std::size_t x, std::size_t y, std::size_t z) const {
@@ -70,17 +49,23 @@ class OpenDirections {
     Bits free, unknown;
   };
   using Direction = std::array<int, 3>;
+  using Counts = std::array<Bits, kPlanes>;  // bit k of the counts
 
   [[nodiscard]] std::size_t word_of(std::size_t row, std::size_t z) const {
     return 1 + row * words_ + z / 64;
   }
-  [[nodiscard]] Steps joined(const Steps& first, const Steps& then, const Direction& by,
-                             int steps) const;
-  void add(const Bits& bits);
+  [[nodiscard]] Steps cells_of(const GridSnapshot& snapshot, const VoxelBox& cells, int shift,
+                               const FreeShare& free, ThreadPool& pool) const;
+  void go(const Steps& here, const Direction& by, unsigned wanted, std::array<Steps, 3>& buffers,
+          Counts& counts) const;
+  void join(const Steps* first, const Steps& then, const Direction& by, int steps,
+            Steps& result) const;
+  void add(const Bits& bits, std::size_t plane, Counts& counts) const;
 
   std::array<std::size_t, 3> size_;
-  std::size_t words_;                 // words of a row
-  std::array<Bits, kPlanes> counts_;  // bit k of the counts
+  std::size_t words_;  // words of a row
+  const CellKernels& kernels_;
+  Counts counts_;
 };
 
 }  // namespace viewgain::detail

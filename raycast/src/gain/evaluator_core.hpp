@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -124,6 +125,14 @@ class OccupiedSums {
   std::vector<VoxelSum> sums_;
 };
 
+/// A ray that ends in an occupied voxel.
+struct RefiningEnd {
+  float dx, dy, dz;
+  float range;   ///< [voxels]
+  float passed;  ///< T
+  Index3 voxel;
+};
+
 /// Rays that end in occupied voxels, on their way into the sums.
 struct RefiningHits {
   HitBatch batch;
@@ -136,18 +145,27 @@ struct RefiningHits {
   std::vector<MatrixHalf> known_a, known_b;
   std::vector<double> each;
 
-  /// Keeps those of so many places whose voxels have a reading: what has none, as in a map of
-  /// labels, is not refined. Returns how many there are.
-  std::uint32_t keep_measured(std::uint32_t count) {
-    std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      if (known_b[i].value[2] == 0) continue;
-      members[kept] = i;
-      known_a[kept] = known_a[i];
-      known_b[kept] = known_b[i];
-      ++kept;
+  /// The voxels are gone through in parts, each with room of its own in the arrays by place.
+  static constexpr std::size_t kMostParts = 2;
+  struct Part {
+    std::uint32_t begin = 0, end = 0;  ///< places
+    std::size_t at = 0;                ///< of the first in the arrays
+    std::uint32_t measured = 0;        ///< how many have a reading
+  };
+  std::array<Part, kMostParts> parts;
+
+  /// Keeps those of a part's voxels that have a reading: what has none, as in a map of labels, is
+  /// not refined.
+  void keep_measured(Part& part) {
+    part.measured = 0;
+    for (std::uint32_t place = part.begin; place < part.end; ++place) {
+      const std::size_t from = part.at + (place - part.begin), to = part.at + part.measured;
+      if (known_b[from].value[2] == 0) continue;
+      members[to] = place;
+      known_a[to] = known_a[from];
+      known_b[to] = known_b[from];
+      ++part.measured;
     }
-    return kept;
   }
 };
 
@@ -249,14 +267,16 @@ struct Workspace {
   std::uint64_t bound_to = 0;                  ///< number of the driver whose scene it sums for
 };
 
-/// A view's strips, which any thread may trace; their hits are added up in order.
+/// A view's strips, which any thread may trace; what they meet is added up in order.
 struct ViewStrips {
-  struct Hits {
-    std::vector<HitList> lists;
-    std::size_t count = 0;  ///< of lists that are in use
+  struct Strip {
+    std::vector<HitList> lists;  ///< by the paper's gain
+    std::size_t list_count = 0;  ///< of lists that are in use
+    std::vector<double> areas;  ///< by the other gains, of each tile that meets anything [voxels²]
+    std::vector<RefiningEnd> ends;
   };
-  explicit ViewStrips(std::size_t strips) : hits(strips), is_traced(strips) {}
-  std::vector<Hits> hits;  ///< of each strip
+  explicit ViewStrips(std::size_t count) : strips(count), is_traced(count) {}
+  std::vector<Strip> strips;
   std::vector<std::atomic<bool>> is_traced;
   std::atomic<std::size_t> next{0};  ///< to be traced
 };

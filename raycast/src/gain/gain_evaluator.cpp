@@ -83,8 +83,9 @@ GainEvaluator GainEvaluator::with_scene(std::shared_ptr<const VoxelScene> scene)
 }
 
 ViewGain GainEvaluator::evaluate(const Pose& T_world_camera) const {
-  if (num_threads() > 1 && impl_->driver.surface() == nullptr)
+  if (num_threads() > 1 && impl_->driver.may_share_views()) {
     return detail::evaluate_together(impl_->driver, T_world_camera);
+  }
   ViewDriver::Lease lease(impl_->driver);
   return impl_->driver.evaluate(T_world_camera, lease);
 }

@@ -119,42 +119,20 @@ struct SurfaceView::WaitingTiles {
   std::size_t count = 0;
 };
 
-template <typename Met>
-double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, const float* missed,
-                          std::uint32_t& hits, double* by_lane, Met&& met) const {
-  const double V = scene_.snapshot.voxel_size;
-  tracer_.prepare(frame, workspace.sweep);
-  workspace.occupied.begin();
-  workspace.refining.batch.count = 0;
-  if (!core_.config.weights.empty()) {
-    return trace_shares(frame, workspace, hits, by_lane, met);
-  }
-  double sum = 0;  // [voxels²]
+template <typename Trace, typename Walked>
+void SurfaceView::walk(const PoseFrame& frame, const float* missed, Trace&& trace,
+                       Walked&& walked) const {
   const WalkLimits limits = walk_limits(scene_, frame);
   WaitingTiles waiting;
   const auto walk = [&] {
     walk_.area(bricks_, limits, std::span(waiting.tasks).first(waiting.count), worth_, missed,
                waiting.walked.data());
     for (std::size_t i = 0; i < waiting.count; ++i) {
-      const RayTile& rays = waiting.rays[i];
-      WalkedTile& walked = waiting.walked[i];
-      sum += area_of(rays, walked);
-      if (by_lane != nullptr) {
-        for_each_lane(rays.hit, [&](int lane) {
-          by_lane[lane] += static_cast<double>(walked.area[lane]) * V * V;
-        });
-      }
-      hits += static_cast<std::uint32_t>(std::popcount(walked.occupied));
-      if (core_.config.model != GainModel::combined) continue;
-      for_each_lane(walked.occupied, [&](int lane) {
-        const std::uint32_t place = add_refining(rays, walked, lane, workspace);
-        met(waiting.numbers[i], rays, lane, walked.range[lane], place);
-      });
-      if (workspace.refining.batch.count >= kBatchSize) sum_refining(workspace);
+      walked(waiting.numbers[i], waiting.rays[i], waiting.walked[i]);
     }
     waiting.count = 0;
   };
-  trace_rays(frame, workspace, [&](std::size_t number, const RayTile& rays) {
+  trace([&](std::size_t number, const RayTile& rays) {
     if (rays.hit == 0) return;
     set_up(tracer_.table(), number, frame, rays, waiting.tasks[waiting.count]);
     waiting.rays[waiting.count] = rays;
@@ -162,8 +140,66 @@ double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, const fl
     if (++waiting.count == WaitingTiles::kMost) walk();
   });
   walk();
+}
+
+template <typename Met>
+double SurfaceView::trace(const PoseFrame& frame, Workspace& workspace, const float* missed,
+                          std::uint32_t& hits, double* by_lane, Met&& met) const {
+  const double V = scene_.snapshot.voxel_size;
+  tracer_.prepare(frame, workspace.sweep);
+  begin(workspace);
+  if (!core_.config.weights.empty()) {
+    return trace_shares(frame, workspace, hits, by_lane, met);
+  }
+  double sum = 0;  // [voxels²]
+  walk(
+      frame, missed, [&](auto&& visit) { trace_rays(frame, workspace, visit); },
+      [&](std::size_t number, const RayTile& rays, WalkedTile& walked) {
+        sum += area_of(rays, walked);
+        if (by_lane != nullptr) {
+          for_each_lane(rays.hit, [&](int lane) {
+            by_lane[lane] += static_cast<double>(walked.area[lane]) * V * V;
+          });
+        }
+        hits += static_cast<std::uint32_t>(std::popcount(walked.occupied));
+        if (core_.config.model != GainModel::combined) return;
+        for_each_lane(walked.occupied, [&](int lane) {
+          const std::uint32_t place = add_refining(end_of(rays, walked, lane), workspace);
+          met(number, rays, lane, walked.range[lane], place);
+        });
+        if (workspace.refining.batch.count >= kBatchSize) sum_refining(workspace);
+      });
   sum_refining(workspace);
-  return sum * V * V;
+  return square_metres(sum);
+}
+
+void SurfaceView::walk_strip(const PoseFrame& frame, TileRows strip, ViewSweep& sweep,
+                             std::vector<double>& areas, std::vector<RefiningEnd>& ends) const {
+  areas.clear();
+  ends.clear();
+  walk(
+      frame, nullptr,
+      [&](auto&& visit) {
+        tracer_.trace_strip<ViewTracer::Asked::along_rays>(frame, strip, sweep, visit);
+      },
+      [&](std::size_t, const RayTile& rays, WalkedTile& walked) {
+        areas.push_back(area_of(rays, walked));
+        for_each_lane(walked.occupied,
+                      [&](int lane) { ends.push_back(end_of(rays, walked, lane)); });
+      });
+}
+
+void SurfaceView::begin(Workspace& workspace) const {
+  workspace.occupied.begin();
+  workspace.refining.batch.count = 0;
+}
+
+void SurfaceView::add(const std::vector<RefiningEnd>& ends, Workspace& workspace) const {
+  if (core_.config.model != GainModel::combined) return;
+  for (const RefiningEnd& end : ends) {
+    (void)add_refining(end, workspace);
+    if (workspace.refining.batch.count >= kBatchSize) sum_refining(workspace);
+  }
 }
 
 // The same with task weights, share by share.
@@ -184,18 +220,22 @@ double SurfaceView::trace_shares(const PoseFrame& frame, Workspace& workspace, s
   return area;
 }
 
+RefiningEnd SurfaceView::end_of(const RayTile& rays, const WalkedTile& walked, int lane) const {
+  return {rays.dx[lane],       rays.dy[lane],
+          rays.dz[lane],       walked.range[lane],
+          walked.passed[lane], voxel_at(walked.x[lane], walked.y[lane], walked.z[lane])};
+}
+
 // Has a hit wait for sum_refining(). Returns the place of its voxel.
-std::uint32_t SurfaceView::add_refining(const RayTile& rays, const WalkedTile& walked, int lane,
-                                        Workspace& workspace) const {
+std::uint32_t SurfaceView::add_refining(const RefiningEnd& end, Workspace& workspace) {
   RefiningHits& refining = workspace.refining;
   HitBatch& batch = refining.batch;
   const std::size_t i = batch.count++;
-  batch.dx[i] = rays.dx[lane], batch.dy[i] = rays.dy[lane], batch.dz[i] = rays.dz[lane];
-  batch.range[i] = walked.range[lane];
-  refining.passed[i] = walked.passed[lane];
+  batch.dx[i] = end.dx, batch.dy[i] = end.dy, batch.dz[i] = end.dz;
+  batch.range[i] = end.range;
+  refining.passed[i] = end.passed;
   bool is_new = false;
-  refining.places[i] =
-      workspace.occupied.place_of(voxel_at(walked.x[lane], walked.y[lane], walked.z[lane]), is_new);
+  refining.places[i] = workspace.occupied.place_of(end.voxel, is_new);
   refining.keep[i] = is_new ? 0 : ~std::uint64_t{0};
   return refining.places[i];
 }
@@ -214,45 +254,75 @@ void SurfaceView::sum_refining(Workspace& workspace) const {
   batch.count = 0;
 }
 
-double SurfaceView::saturated_gain(Workspace& workspace) const {
-  OccupiedSums& occupied = workspace.occupied;
+void SurfaceView::close(Workspace& workspace, std::size_t parts) const {
+  if (core_.config.model != GainModel::combined) return;
+  sum_refining(workspace);
   RefiningHits& refining = workspace.refining;
-  const std::uint32_t count = occupied.count();
-  const std::size_t room = std::size_t{count} + VoxelSums::kOverhang;
+  const std::uint32_t count = workspace.occupied.count();
+  const std::size_t room = std::size_t{count} + parts * VoxelSums::kOverhang;
   if (refining.blocks.size() < room) {
     refining.blocks.resize(room), refining.offsets.resize(room), refining.members.resize(room);
     refining.known_a.resize(room), refining.known_b.resize(room), refining.each.resize(room);
   }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Index3 voxel = occupied.voxel(i);
+  const auto of = static_cast<std::uint32_t>(parts);
+  for (std::uint32_t i = 0; i < of; ++i) {
+    RefiningHits::Part& part = refining.parts[i];
+    part.begin = count / of * i;
+    part.end = i + 1 < of ? count / of * (i + 1) : count;
+    part.at = part.begin + i * VoxelSums::kOverhang;
+  }
+}
+
+void SurfaceView::finish(Workspace& workspace, std::size_t number) const {
+  if (core_.config.model != GainModel::combined) return;
+  OccupiedSums& occupied = workspace.occupied;
+  RefiningHits& refining = workspace.refining;
+  RefiningHits::Part& part = refining.parts[number];
+  for (std::uint32_t place = part.begin; place < part.end; ++place) {
+    const Index3 voxel = occupied.voxel(place);
+    const std::size_t i = part.at + (place - part.begin);
     refining.blocks[i] = &pooled_->block(bricks_.leaf_of(voxel));
     refining.offsets[i] = block_offset(voxel);
   }
-  gain_kernels_.look_up(refining.blocks.data(), refining.offsets.data(), count,
-                        refining.known_a.data(), refining.known_b.data());
-  const std::uint32_t measured = refining.keep_measured(count);
+  const std::size_t at = part.at;
+  gain_kernels_.look_up(&refining.blocks[at], &refining.offsets[at], part.end - part.begin,
+                        &refining.known_a[at], &refining.known_b[at]);
+  refining.keep_measured(part);
   gain_kernels_.finish_with_floor(prior_information_, floor_variance_,
-                                  {occupied.sums(), refining.members.data(),
-                                   refining.known_a.data(), refining.known_b.data(), measured},
-                                  refining.each.data());
-  double sum = 0;
-  for (std::uint32_t i = 0; i < measured; ++i) {
-    sum += weight_of(occupied.voxel(refining.members[i])) *
-           PooledSurface::chance(refining.known_b[i].value[2]) * 0.5 * std::log(refining.each[i]);
+                                  {occupied.sums(), &refining.members[at], &refining.known_a[at],
+                                   &refining.known_b[at], part.measured},
+                                  &refining.each[at]);
+  for (std::size_t i = at; i < at + part.measured; ++i) {
+    refining.each[i] = weight_of(occupied.voxel(refining.members[i])) *
+                       PooledSurface::chance(refining.known_b[i].value[2]) * 0.5 *
+                       std::log(refining.each[i]);
   }
-  return sum;
+}
+
+void SurfaceView::end(const Workspace& workspace, std::size_t parts, double area,
+                      std::uint32_t hits, ViewGain& result) const {
+  result.hits = hits;
+  result.area = result.gain = area;
+  if (core_.config.model != GainModel::combined) return;
+  const RefiningHits& refining = workspace.refining;
+  double saturated = 0;
+  for (std::size_t k = 0; k < parts; ++k) {
+    const RefiningHits::Part& part = refining.parts[k];
+    for (std::size_t i = part.at; i < part.at + part.measured; ++i) saturated += refining.each[i];
+  }
+  result.occupied_voxels = workspace.occupied.count();
+  result.refinement_saturated = saturated;
+  result.gain = nats_per_area_ * result.area + core_.config.refinement_weight * saturated;
 }
 
 void SurfaceView::evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result,
                            const float* missed) const {
-  result.hits = 0;
-  result.area = result.gain = trace(frame, workspace, missed, result.hits, nullptr,
-                                    [](std::size_t, const RayTile&, int, float, std::uint32_t) {});
-  if (core_.config.model != GainModel::combined) return;
-  result.occupied_voxels = workspace.occupied.count();
-  result.refinement_saturated = saturated_gain(workspace);
-  result.gain =
-      nats_per_area_ * result.area + core_.config.refinement_weight * result.refinement_saturated;
+  std::uint32_t hits = 0;
+  const double area = trace(frame, workspace, missed, hits, nullptr,
+                            [](std::size_t, const RayTile&, int, float, std::uint32_t) {});
+  close(workspace, 1);
+  finish(workspace, 0);
+  end(workspace, 1, area, hits, result);
 }
 
 double SurfaceView::expected_hits(std::size_t number, const RayTile& rays, int lane, float range,

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "evaluator_core.hpp"
 #include "reading_worth.hpp"
@@ -73,6 +74,25 @@ class SurfaceView {
   void evaluate(const PoseFrame& frame, Workspace& workspace, ViewGain& result,
                 const float* missed = nullptr) const;
 
+  /// The same in steps, for views whose strips are walked by many threads: walk_strip() by any;
+  /// then begin(), add() for each strip in order, close(), finish() of each of some parts, which
+  /// may run at once, and end(). Not with weights.
+  ///
+  /// `sweep` is prepared for the view. Fills the area of each tile that meets anything [voxels²]
+  /// and the rays that end in occupied voxels.
+  void walk_strip(const PoseFrame& frame, TileRows strip, ViewSweep& sweep,
+                  std::vector<double>& areas, std::vector<RefiningEnd>& ends) const;
+  void begin(Workspace& workspace) const;
+  void add(const std::vector<RefiningEnd>& ends, Workspace& workspace) const;
+  void close(Workspace& workspace, std::size_t parts) const;
+  void finish(Workspace& workspace, std::size_t part) const;
+  /// `area` [m²].
+  void end(const Workspace& workspace, std::size_t parts, double area, std::uint32_t hits,
+           ViewGain& result) const;
+  [[nodiscard]] double square_metres(double square_voxels) const {
+    return square_voxels * scene_.snapshot.voxel_size * scene_.snapshot.voxel_size;
+  }
+
   /// The gain of a view of which the tracer's rays are a sample; each stands for `rays_each`, and
   /// counts in `tally` by itself.
   void sample(const PoseFrame& frame, Workspace& workspace, double rays_each,
@@ -131,14 +151,16 @@ class SurfaceView {
   template <typename Met>
   double trace_shares(const PoseFrame& frame, Workspace& workspace, std::uint32_t& hits,
                       double* by_lane, Met&& met) const;
-  std::uint32_t add_refining(const RayTile& rays, const WalkedTile& walked, int lane,
-                             Workspace& workspace) const;
+  /// Calls trace(visit) for tiles, and walked(tile number, rays, WalkedTile) for those that meet
+  /// anything, in order.
+  template <typename Trace, typename Walked>
+  void walk(const PoseFrame& frame, const float* missed, Trace&& trace, Walked&& walked) const;
+  [[nodiscard]] RefiningEnd end_of(const RayTile& rays, const WalkedTile& walked, int lane) const;
+  static std::uint32_t add_refining(const RefiningEnd& end, Workspace& workspace);
   /// How many of the tracer's rays would end in an occupied voxel if nothing stood before it.
   [[nodiscard]] double expected_hits(std::size_t number, const RayTile& rays, int lane, float range,
                                      Index3 voxel) const;
   void sum_refining(Workspace& workspace) const;
-  /// Σ of the same over the voxels of workspace.occupied.
-  [[nodiscard]] double saturated_gain(Workspace& workspace) const;
   void find_visits(const PoseFrame& frame, std::size_t number, const RayTile& rays,
                    Workspace& workspace) const;
   void find_shares(const PoseFrame& frame, std::size_t number, const RayTile& rays,

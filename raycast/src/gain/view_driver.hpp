@@ -91,6 +91,10 @@ class ViewDriver {
   [[nodiscard]] const SurfaceView* surface() const {
     return core_->config.model != GainModel::paper ? &ordered() : nullptr;
   }
+  /// Whether threads may share one view: not if task weights are given to all shares of its rays.
+  [[nodiscard]] bool may_share_views() const {
+    return surface() == nullptr || core_->config.weights.empty();
+  }
   /// Rays in order through unknown voxels, whatever the gain; made when first asked for. Thread
   /// safe. Throws as SurfaceView's constructor.
   [[nodiscard]] const SurfaceView& ordered() const;

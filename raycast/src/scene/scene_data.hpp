@@ -78,6 +78,7 @@ struct SceneData {
   std::vector<SceneRegion> regions;
   std::shared_ptr<const Surroundings> surroundings;  ///< never null; shared by the scenes of a map
   bool has_obstacles = false;
+  ExecConfig exec;                             ///< threads that compute the hazard
   std::shared_ptr<const HazardConfig> hazard;  ///< never null; shared by the scenes of a map
   std::optional<SceneCells> cells;             ///< for sweeping views
   /// Kernels and BVH, which the folder trace keeps with a scene; opaque here.
@@ -85,7 +86,7 @@ struct SceneData {
 
   /// The hazard of unknown voxels; computed on the first call. Thread safe.
   [[nodiscard]] const HazardField& hazard_field() const {
-    std::call_once(hazard_once_, [&] { hazard_field_.emplace(snapshot, *hazard); });
+    std::call_once(hazard_once_, [&] { hazard_field_.emplace(snapshot, *hazard, exec); });
     return *hazard_field_;
   }
 

@@ -15,7 +15,9 @@ namespace {
 using detail::SceneAccess;
 
 std::shared_ptr<const VoxelScene> make_traceable(std::unique_ptr<detail::SceneData> data,
-                                                 const detail::SceneData* before) {
+                                                 const detail::SceneData* before,
+                                                 const ExecConfig& exec) {
+  data->exec = exec;
   data->cells.emplace(*data);
   data->tracing = detail::make_tracing(*data, before);
   return SceneAccess::make(std::move(data));
@@ -45,7 +47,7 @@ std::shared_ptr<const VoxelScene> VoxelScene::build(GridSnapshot snapshot,
   return make_traceable(
       detail::gather_scene(std::move(snapshot), std::make_shared<const Surroundings>(surroundings),
                            std::make_shared<const HazardConfig>(hazard), nullptr),
-      nullptr);
+      nullptr, exec);
 }
 
 std::shared_ptr<const VoxelScene> VoxelScene::update(
@@ -62,7 +64,8 @@ std::shared_ptr<const VoxelScene> VoxelScene::update(
   (void)thread_count(exec.num_threads);
   const detail::SceneData& data = SceneAccess::data(*before);
   return make_traceable(
-      detail::gather_scene(std::move(snapshot), data.surroundings, data.hazard, &data), &data);
+      detail::gather_scene(std::move(snapshot), data.surroundings, data.hazard, &data), &data,
+      exec);
 }
 
 VoxelScene::VoxelScene(std::unique_ptr<const detail::SceneData> data) : data_(std::move(data)) {}

@@ -3,7 +3,9 @@
 #include "scene_tracing.hpp"
 
 #include <cmath>
+#include <exception>
 
+#include "tracer_rule.hpp"
 #include "voxel_bvh.hpp"
 
 namespace viewgain::detail {
@@ -29,8 +31,26 @@ SceneTracing::SceneTracing(const SceneData& data, const SceneData* before)
 
 RTCScene SceneTracing::bvh(int level) const {
   Bvh& bvh = bvhs_.at(static_cast<std::size_t>(level));
-  std::call_once(bvh.once, [&] { bvh.scene = build_bvh(data_, kernels.isa, margin_of(level)); });
+  std::call_once(bvh.once, [&] {
+    bvh.scene = build_bvh(data_, kernels.isa, margin_of(level));
+    bvh.is_built.store(true, std::memory_order_release);
+  });
   return bvh.scene.get();
+}
+
+bool SceneTracing::takes_bvh(std::size_t rays, int level) const {
+  if (!bvh_is_faster(rays, data_.boxes.size())) return false;
+  Bvh& bvh = bvhs_.at(static_cast<std::size_t>(level));
+  if (bvh.is_built.load(std::memory_order_acquire)) return true;
+  const std::uint64_t views = views_.fetch_add(1, std::memory_order_relaxed);
+  // One thread builds it; the others need not wait.
+  if (!bvh_pays(data_.boxes.size(), views) || bvh.is_wanted.exchange(true)) return false;
+  try {
+    (void)this->bvh(level);
+  } catch (const std::exception&) {  // no packets, or no memory: the sweep does without
+    return false;
+  }
+  return true;
 }
 
 const BrickTable& SceneTracing::bricks() const {

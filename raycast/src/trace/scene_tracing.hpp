@@ -3,6 +3,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -39,6 +42,10 @@ class SceneTracing {
   /// Error(backend).
   [[nodiscard]] RTCScene bvh(int level) const;
 
+  /// Counts a view of so many rays, and says whether to trace it by the BVH; builds that when it
+  /// pays. False if it cannot be built. Thread safe.
+  [[nodiscard]] bool takes_bvh(std::size_t rays, int level) const;
+
   /// For rays that go on through unknown voxels; built when first asked for. Thread safe. Throws
   /// Error(capacity).
   [[nodiscard]] const BrickTable& bricks() const;
@@ -53,9 +60,11 @@ class SceneTracing {
   struct Bvh {
     std::once_flag once;
     ScenePtr scene;
+    std::atomic<bool> is_built{false}, is_wanted{false};
   };
   const SceneData& data_;
   mutable std::array<Bvh, kMarginLevels> bvhs_;
+  mutable std::atomic<std::uint64_t> views_{0};  // that a BVH would have been faster for
   mutable std::once_flag bricks_once_;
   mutable std::optional<BrickTable> bricks_;
   mutable std::once_flag pooled_once_;

@@ -91,6 +91,7 @@ struct ViewSweep {
   ObstacleMarks obstacles;
   NearSurface near;
   StripRays strip;
+  bool by_bvh = false;  ///< Embree traces the view instead
 
   /// Finds the cells that a view sees. Allocates only while it grows.
   void see(const ImageBoundsKernels& kernels, const SceneCells& cells, const PoseFrame& frame,

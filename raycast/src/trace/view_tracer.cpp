@@ -20,8 +20,7 @@ ViewTracer::ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays>
     : scene_(scene),
       kernels_(scene.tracing->kernels),
       rays_(std::move(rays)),
-      // A BVH would have to pay for its making first (perf/results/tracers.md).
-      by_sweep_(tracer != ExecConfig::Tracer::embree),
+      tracer_(tracer),
       T_grid_world_(scene.snapshot.T_world_grid.inverse()) {
   const double voxel = scene.snapshot.voxel_size;
   const double nearest = min_range / voxel, farthest = std::min(max_range / voxel, kRayEnd);
@@ -31,7 +30,7 @@ ViewTracer::ViewTracer(const SceneData& scene, std::shared_ptr<const SensorRays>
   // A camera that sees anything is no farther than its range from the workspace.
   const Index3& dims = scene.snapshot.dims;
   margin_level_ = margin_level(farthest + std::max({dims.x, dims.y, dims.z}));
-  if (!by_sweep_) (void)scene.tracing->bvh(margin_level_);
+  if (tracer == ExecConfig::Tracer::embree) (void)scene.tracing->bvh(margin_level_);
 }
 
 std::optional<PoseFrame> ViewTracer::frame_of(const Pose& T_world_camera) const {
@@ -62,8 +61,11 @@ void ViewTracer::prepare(const PoseFrame& frame, ViewSweep& sweep, Asked asked) 
   sweep.near.clear();
   if (frame.sees_nothing) return;
   find_near(frame, sweep.near);
+  sweep.by_bvh = tracer_ == ExecConfig::Tracer::embree ||
+                 (tracer_ == ExecConfig::Tracer::automatic &&
+                  scene_.tracing->takes_bvh(table().ray_count(), margin_level_));
   const ObstacleScene* obstacles = scene_.tracing->obstacles.get();
-  if (by_sweep_) {
+  if (!sweep.by_bvh) {
     const ImageBoundsKernels& kernels = image_bounds_kernels(kernels_.isa);
     sweep.see(kernels, *scene_.cells, frame, rays_->projector.scale_for(frame, frame.min_range));
     if (obstacles == nullptr) return;
@@ -111,7 +113,7 @@ void ViewTracer::sweep_strip(const PoseFrame& frame, TileRows strip, Asked asked
   const SetUp maker(*this, frame, asked, sweep);
   StripRays& rays = sweep.strip;
   rays.begin(rays_->table, strip, maker);
-  if (!by_sweep_) return;
+  if (sweep.by_bvh) return;
   if (asked == Asked::everywhere) {
     for (std::size_t i = 0; i < rays.tile_count(); ++i) {
       const std::size_t tile = rays.first_tile() + i;
@@ -128,7 +130,7 @@ void ViewTracer::sweep_strip(const PoseFrame& frame, TileRows strip, Asked asked
 
 void ViewTracer::finish(const PoseFrame& frame, std::size_t tile, const ViewSweep& sweep,
                         RayTile& rays) const {
-  if (!by_sweep_) {
+  if (sweep.by_bvh) {
     begin(frame, tile, sweep.near, rays);
     if (scene_.has_obstacles) ask_first(frame, rays);
     packet_kernels(kernels_.isa).trace(scene_, scene_.tracing->bvh(margin_level_), frame, rays);

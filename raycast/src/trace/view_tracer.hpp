@@ -17,7 +17,7 @@
 namespace viewgain::detail {
 
 /// Traces the views of one sensor in one scene; the scene must outlive it. Which way is decided
-/// here and nowhere else, and the bits are the same:
+/// by prepare(), view by view, and the bits are the same:
 ///
 /// - by sweep: the scene's primitives from near to far, each with the rays that can meet it and
 ///   have not ended yet;
@@ -55,7 +55,7 @@ class ViewTracer {
     sweep_strip(frame, strip, kAsked, sweep);
     StripRays& strip_rays = sweep.strip;
     for (std::size_t i = 0; i < strip_rays.tile_count(); ++i) {
-      if (by_sweep_ && !strip_rays.is_met(i)) continue;
+      if (!sweep.by_bvh && !strip_rays.is_met(i)) continue;
       RayTile& rays = strip_rays.tile(i);
       finish(frame, strip_rays.first_tile() + i, sweep, rays);
       visit(strip_rays.first_tile() + i, std::as_const(rays));
@@ -118,7 +118,7 @@ class ViewTracer {
   const SceneData& scene_;
   const TileKernels& kernels_;
   std::shared_ptr<const SensorRays> rays_;
-  bool by_sweep_;
+  ExecConfig::Tracer tracer_;
   int margin_level_;
   Pose T_grid_world_;
   float min_range_, max_range_;  // [voxels]

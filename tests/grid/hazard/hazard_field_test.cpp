@@ -194,6 +194,36 @@ TEST(HazardField, ShapesAreThoseOfTheDefinition) {
   EXPECT_GT(varied, 100U);
 }
 
+TEST(HazardField, SameBitsForAnyNumberOfThreads) {
+  std::mt19937 random(41);
+  std::size_t near = 0, cells = 0;
+  for (const double decay_cells : {4.0, 8.0, 16.0}) {
+    BeliefGrid grid = grid_of({61, 33, 75});
+    for (int k = 0; k < 20000; ++k) grid.set(any_voxel(grid, random), -1.0F, {});
+    for (int k = 0; k < 40; ++k) put(grid, any_voxel(grid, random), 3);
+    const GridSnapshot snapshot = grid.snapshot();
+    const HazardConfig config{.model = HazardConfig::Model{30.0, decay_cells * kVoxel, 0.5}};
+    const HazardField alone(snapshot, config, {.num_threads = 1});
+    for (const int threads : {2, 3, 7}) {
+      const HazardField together(snapshot, config, {.num_threads = threads});
+      ASSERT_EQ(together.near_box(), alone.near_box());
+      const VoxelBox& box = alone.near_box();
+      for (int x = box.min.x; x < box.max.x; ++x) {
+        for (int y = box.min.y; y < box.max.y; ++y) {
+          for (int z = box.min.z; z < box.max.z; ++z, ++cells) {
+            const Index3 v{x, y, z};
+            ASSERT_EQ(alone.distance(v), together.distance(v));
+            ASSERT_EQ(alone.shape(v), together.shape(v));
+            near += std::isfinite(alone.distance(v)) ? 1 : 0;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(cells, 1'000'000U);
+  EXPECT_GT(near, cells / 2);
+}
+
 TEST(HazardField, ModelsHaveTheirFigures) {
   EXPECT_EQ(HazardConfig::Model::continuation(-0.4), 1.0);
   EXPECT_EQ(HazardConfig::Model::continuation(-1), 0.30);

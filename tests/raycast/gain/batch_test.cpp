@@ -238,8 +238,8 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsAndRunAfterRun) {
 }
 
 // Of a view large enough that all threads have a part in it, its end included.
-TEST(Determinism, OnePoseOnSeveralThreadsUnderEveryCriterionAndWeight) {
-  int both_classes = 0;
+TEST(Determinism, OnePoseOnSeveralThreadsUnderEveryGainCriterionAndWeight) {
+  int both_classes = 0, refining = 0;
   for (const test::MapFamily family : kFamilies) {
     test::RandomCase made = test::random_case(13, family, 6);
     PinholeCamera& camera = made.sensor.camera;
@@ -252,15 +252,19 @@ TEST(Determinism, OnePoseOnSeveralThreadsUnderEveryCriterionAndWeight) {
     const auto scene = VoxelScene::build(made.map.grid);
     Box half = made.map.grid.workspace();
     half.max[0] = 0.5 * (half.min[0] + half.max[0]);
+    std::vector<GainConfig> configs{{.model = GainModel::surface}, {.model = GainModel::combined}};
     for (const Criterion criterion :
          {Criterion::log_diagonal, Criterion::log_determinant, Criterion::trace}) {
+      configs.push_back(test::by_paper(criterion));
+    }
+    for (GainConfig config : configs) {
       for (const bool is_weighted : {false, true}) {
-        GainConfig config = test::by_paper(criterion);
         if (is_weighted) config.weights = {{half, 2.5}};
         const GainEvaluator alone(scene, made.sensor, config, {.num_threads = 1});
         const std::vector<ViewGain> expected = alone.evaluate(made.poses);
         for (const ViewGain& view : expected) {
           both_classes += view.unknown_voxels > 0 && view.occupied_voxels > 0 ? 1 : 0;
+          refining += view.area > 0 && view.refinement_saturated > 0 ? 1 : 0;
         }
         for (const int threads : {2, 5}) {
           const GainEvaluator together(scene, made.sensor, config, {.num_threads = threads});
@@ -274,6 +278,7 @@ TEST(Determinism, OnePoseOnSeveralThreadsUnderEveryCriterionAndWeight) {
     }
   }
   EXPECT_GT(both_classes, 60);
+  EXPECT_GT(refining, 20);
 }
 
 /// All that an evaluator says of poses, in bits.

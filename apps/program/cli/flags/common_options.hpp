@@ -28,7 +28,7 @@ inline void add_common_options(App& program, CommonOptions& options) {
   program
       .add_option("--trace", options.trace,
                   "ray tracer: embree (bounding volume hierarchy), sweep (cell by cell) or "
-                  "automatic (sweep); affects only the speed")
+                  "automatic (chosen per map); affects only the speed")
       ->check(one_of(tracer_names(), "tracer"));
   program.add_option("--save-config", options.save_config,
                      "TOML file to write with the flags of this call; --config reads it");

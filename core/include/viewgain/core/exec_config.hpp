@@ -18,8 +18,8 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT ExecConfig {
   /// How to find the first voxel on a ray that is not free. All tracers give bit-identical results.
   enum class Tracer : std::uint8_t {
-    automatic,  ///< the sweep, which is faster for full images and needs no BVH
-    embree,     ///< a BVH: faster for many views with few rays each (perf/results/tracers.md)
+    automatic,  ///< the sweep, or embree for scenes that get many views of few rays each
+    embree,     ///< a BVH: faster for such views once it is built (perf/results/tracers.md)
     sweep,  ///< visits cells from near to far and tests each against the rays that can end in it
   };
 

@@ -185,8 +185,9 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// Throws like the constructor and VoxelScene::build().
   [[nodiscard]] GainEvaluator with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
-  /// Expected gain of one pose. The paper's gain uses all threads of the evaluator, other gains the
-  /// calling thread. ViewGain::status reports an invalid pose; nothing is thrown.
+  /// Expected gain of one pose, on all threads of the evaluator; with task weights, `surface` and
+  /// `combined` use the calling thread alone. ViewGain::status reports an invalid pose; nothing is
+  /// thrown.
   [[nodiscard]] ViewGain evaluate(const Pose& T_world_camera) const;
 
   /// Expected gains of a batch, result i for pose i, on all threads of the evaluator. An invalid

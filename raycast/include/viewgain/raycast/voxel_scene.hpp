@@ -49,11 +49,12 @@ struct VIEWGAIN_EXPORT Surroundings {
 class VIEWGAIN_EXPORT VoxelScene {
  public:
   /// Takes a snapshot of the grid (about 0.2 ms per 1,000 leaves) and builds a BVH of the
-  /// obstacles, which update() keeps. The hazard and the known surface are computed when first
-  /// needed (some milliseconds). Runs on the calling thread; the BVH also uses the threads of TBB,
-  /// which exec does not limit. Throws Error(backend) if Embree fails; Error(capacity) above 2^23
-  /// leaves and tiles; Error(invalid_argument) for invalid obstacles, a support plane that is not
-  /// finite or an invalid number of threads, and like HazardConfig::validate().
+  /// obstacles, which update() keeps. The hazard, on the threads of `exec`, and the known surface
+  /// are computed when first needed (some milliseconds). The rest runs on the calling thread; the
+  /// BVH also uses the threads of TBB, which `exec` does not limit. Throws Error(backend) if Embree
+  /// fails; Error(capacity) above 2^23 leaves and tiles; Error(invalid_argument) for invalid
+  /// obstacles, a support plane that is not finite or an invalid number of threads, and like
+  /// HazardConfig::validate().
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(
       const BeliefGrid& grid, const Surroundings& surroundings = {}, const ExecConfig& exec = {},
       const HazardConfig& hazard = {});
