@@ -219,14 +219,14 @@ void NoiseCalibration::add(const DepthFrame& frame) {
   const PinholeCamera& camera = sensor_.camera;
   if (frame.width != camera.width || frame.height != camera.height ||
       frame.depth.size() != camera.ray_table().size()) {
-    fail("a frame differs in size from its sensor");
+    fail("a frame and its sensor have different image sizes");
   }
   depths_.push_back(frame.depth);
 }
 
 NoiseCalibrationResult NoiseCalibration::solve() const {
   if (depths_.size() < kLeastFrames) {
-    fail("it needs " + std::to_string(kLeastFrames) + " frames from one pose, not " +
+    fail(std::to_string(kLeastFrames) + " frames from one pose are required, not " +
          std::to_string(depths_.size()));
   }
   const std::vector<Eigen::Vector3d> rays = sensor_.camera.ray_table();
@@ -238,29 +238,30 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
     variances.push_back(pixel.variance);
     moving += pixel.moves ? 1 : 0;
   }
-  if (variances.size() < kLeastSmooth) fail("hardly any pixel has a depth in nine of ten frames");
+  if (variances.size() < kLeastSmooth) fail("too few pixels have a depth in 90 % of the frames");
   NoiseCalibrationResult result;
   const double readings = static_cast<double>(variances.size());
   const double sigma = std::sqrt(detail::median(std::move(variances)));
   result.moving_share = static_cast<double>(moving) / readings;
   if (result.moving_share > kMayMove) {
-    fail("the scene or the camera moves: " + percent(result.moving_share) +
-         " of the pixels change their depth with time");
+    fail("the depths of " + percent(result.moving_share) +
+         " of the pixels change with time. Does the scene or the camera move?");
   }
   if (!(sigma * sigma > unit_ * unit_ / 12)) {
-    fail("depths scatter by no more than their rounding step of " + short_text(unit_) +
-         " m. Are they filtered?");
+    fail("the noise of the depths is below their rounding step of " + short_text(unit_) +
+         " m. Are the depths filtered?");
   }
   const auto smooth = smooth_pixels(sensor_.camera, rays, pixels, sigma, unit_);
   if (smooth.size() < kLeastSmooth) {
-    fail("only " + std::to_string(smooth.size()) + " pixels lie on smooth surfaces seen at less " +
-         "than 30 degrees; " + std::to_string(kLeastSmooth) + " are needed");
+    fail("only " + std::to_string(smooth.size()) +
+         " pixels see a smooth surface at an angle of less than 30 degrees; " +
+         std::to_string(kLeastSmooth) + " are required");
   }
   const auto edges = detail::edge_scatter(sensor_.camera, depths_, rays, pixels, sigma);
   if (edges.length < kLeastEdge) {
-    fail("too few depth edges to measure the noise across the ray: " +
-         short_text(std::round(edges.length)) + " px of straight edges, but " +
-         short_text(kLeastEdge) + " px are required. Put a box in front of a wall");
+    fail("the straight depth edges in the images are " + short_text(std::round(edges.length)) +
+         " px long in total, but " + short_text(kLeastEdge) +
+         " px are required. Put a box in front of a wall");
   }
 
   result.sensor = sensor_;
@@ -273,7 +274,8 @@ NoiseCalibrationResult NoiseCalibration::solve() const {
   for (int turn = 0; turn < kTurns; ++turn) {
     result.steps = steps_of(smooth, result.sensor, depths_.size(), lateral);
     if (result.steps.empty() || factor_of(result.steps) < 1e-3) {
-      fail("depths of smooth surfaces hardly scatter along the ray. Are they filtered?");
+      fail(
+          "depths of smooth surfaces have almost no noise along the ray. Are the depths filtered?");
     }
     std::visit(AxialFit{result.steps}, result.sensor.noise);
   }

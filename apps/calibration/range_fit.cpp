@@ -41,7 +41,7 @@ RangeFit::RangeFit(const Sensor& sensor) : sensor_(sensor) {
 
 void RangeFit::add(const DepthFrame& frame, const Pose& T_world_camera, const std::string& name) {
   if (frame.depth.size() != rays_.size())
-    refuse(name + ": the image differs in size from the sensor");
+    refuse(name + ": the image and the sensor have different sizes");
   const auto saturated =
       std::count(frame.amplitude.begin(), frame.amplitude.end(), DepthFrame::kSaturated);
   if (static_cast<double>(saturated) > kMostSaturated * static_cast<double>(rays_.size())) {
@@ -85,7 +85,7 @@ void RangeFit::add(const DepthFrame& frame, const Pose& T_world_camera, const st
   if (cosine < kLeastCosine) {
     left_out_.push_back(name + ": the wall is seen at an angle of " +
                         short_text(std::round(std::acos(cosine) * 180 / std::numbers::pi)) +
-                        " deg; at most 45 deg can be used");
+                        " deg; the maximum is 45 deg");
     return;
   }
   const Eigen::Matrix3d R = T_world_camera.rotation();
@@ -141,7 +141,7 @@ RangeFitResult RangeFit::solve() const {
     last = distance;
   }
   if (result.distances < kLeastDistances) {
-    fail_range("frames at " + std::to_string(result.distances) + " distances; " +
+    fail_range("there are frames at " + std::to_string(result.distances) + " distances, but " +
                std::to_string(kLeastDistances) +
                " distances that differ by more than 2 % are required" + named);
   }
@@ -153,7 +153,8 @@ RangeFitResult RangeFit::solve() const {
   for (const Frame& frame : frames_) {
     const double turn = std::acos(std::min(1.0, wall.normal.dot(frame.normal_world)));
     if (turn * 180 / std::numbers::pi > kMostTurn) {
-      fail_range(frame.name + " shows another wall than the other frames, or its pose is wrong");
+      fail_range(frame.name +
+                 " shows a different wall than the other frames, or its pose is wrong");
     }
     offsets.push_back(frame.plane_offset);
   }
@@ -205,7 +206,8 @@ RangeFitResult RangeFit::solve() const {
     }
     const Eigen::VectorXd change = A.ldlt().solve(b);
     if (!change.allFinite())
-      fail_range("the frames do not determine where the wall is; take them from more directions");
+      fail_range(
+          "the frames do not determine the position of the wall; take frames from more directions");
     wall.errors += change.head(knots);
     wall.normal = (wall.normal + change[knots] * side + change[knots + 1] * up).normalized();
     wall.offset += change[knots + 2];
@@ -237,22 +239,20 @@ RangeFitResult RangeFit::solve() const {
   }
   const Eigen::Matrix<double, 6, 1> bend = B.ldlt().solve(c);
   const double sag = extent * bend.tail<3>().cwiseAbs().maxCoeff();
-  if (sag > kMostBend) fail_range("the wall is not flat: it is bent by about " + millimetres(sag));
+  if (sag > kMostBend) fail_range("the wall is not flat; it is bent by about " + millimetres(sag));
   Eigen::Index worst = 0;
   if (after.cwiseAbs().maxCoeff(&worst) > kMostFrameError) {
-    fail_range(
-        frames_[static_cast<std::size_t>(worst)].name + " is " + millimetres(after[worst]) +
-        " away from the wall that the other frames show: its pose is wrong, or the wall has moved");
+    fail_range(frames_[static_cast<std::size_t>(worst)].name + " is " + millimetres(after[worst]) +
+               " away from the wall of the other frames. Is its pose wrong? Did the wall move?");
   }
   Eigen::VectorXd all = Eigen::VectorXd::Zero(size);
   all.head(knots).setConstant(1.0 / static_cast<double>(knots));
   const double variance = squares / static_cast<double>(ranges.size());
   result.offset_sigma = std::sqrt(variance * std::max(0.0, all.dot(A.ldlt().solve(all))));
   if (!(result.offset_sigma < kMostOffsetSigma)) {
-    fail_range(
-        "a constant range error cannot be told from a shift of the wall; it is uncertain by " +
-        millimetres(result.offset_sigma) +
-        ". Turn the camera by 10 to 30 deg at more distances, or take more frames");
+    fail_range("the constant part of the range error is uncertain by " +
+               millimetres(result.offset_sigma) +
+               ". Turn the camera by 10 to 30 deg at more distances, or take more frames");
   }
   std::sort(result.steps.begin(), result.steps.end(),
             [](const RangeStep& a, const RangeStep& b2) { return a.range < b2.range; });

@@ -13,7 +13,7 @@ namespace viewgain {
 int thread_count(int num_threads) {
   constexpr int kMaxThreads = 1024;
   if (num_threads < 0 || num_threads > kMaxThreads) {
-    refuse("number of threads must be in 0.." + std::to_string(kMaxThreads) + ", not " +
+    refuse("the number of threads must be in 0.." + std::to_string(kMaxThreads) + ", not " +
            std::to_string(num_threads));
   }
   if (num_threads > 0) return num_threads;

@@ -54,7 +54,8 @@ Isa select_isa(std::span<const Isa> isas) {
   for (const Isa isa : {Isa::avx512, Isa::avx2, Isa::sse4}) {
     if (isa_name(isa) == wish) return std::min(isa, isas.front());
   }
-  refuse("VIEWGAIN_ISA is '" + std::string(wish) + "'; valid values: avx512, avx2, sse4");
+  refuse("the environment variable VIEWGAIN_ISA is '" + std::string(wish) +
+         "'; valid values: avx512, avx2, sse4");
 }
 
 }  // namespace viewgain

@@ -212,7 +212,7 @@ int ThreadPool::num_threads() const noexcept { return impl_->num_threads; }
 
 void ThreadPool::run(std::size_t count, std::size_t chunk, Task task) {
   if (count == 0) return;
-  if (chunk == 0) refuse("a loop's chunk must not be 0");
+  if (chunk == 0) refuse("the chunk of a loop must be at least 1, not 0");
   const std::size_t chunks = (count - 1) / chunk + 1;
   if (impl_->num_threads > 1 && chunks > 1) {
     Impl::Crew& crew = impl_->here();

@@ -238,7 +238,7 @@ TEST(PinholeCamera, ValidateNamesTheField) {
   expect_bad("width", [](PinholeCamera& c) { c.width = 16385; });
   expect_bad("height", [](PinholeCamera& c) { c.height = -3; });
   // A table of rays for the largest sides would take 6.4 GB.
-  expect_bad("16384 x 16384, more than 2^24 pixels",
+  expect_bad("16384 x 16384; the maximum is 2^24 pixels",
              [](PinholeCamera& c) { c.width = c.height = 16384; });
   expect_bad("2^24 pixels", [](PinholeCamera& c) { c.width = 4096, c.height = 4097; });
   PinholeCamera largest = small_camera();

@@ -242,7 +242,8 @@ TEST(ShellPoses, DependOnTheSeedAlone) {
 TEST(Generators, RefuseWhatMakesNoSense) {
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const ErrorCode code = ErrorCode::invalid_argument;
-  expect_error(code, "sphere: the number of poses is 0", [] { (void)sphere_poses(0, 1); });
+  expect_error(code, "sphere: the number of poses must be at least 1, not 0",
+               [] { (void)sphere_poses(0, 1); });
   expect_error(code, "dome: the radius", [] { (void)dome_poses(3, -1); });
   expect_error(code, "radius", [] { (void)sphere_poses(3, 0); });
   expect_error(code, "radius", [] { (void)orbit_poses(3, kNan, 0); });
@@ -252,11 +253,12 @@ TEST(Generators, RefuseWhatMakesNoSense) {
   expect_error(code, "angle", [] { (void)ring_poses(3, 1, 0, kNan); });
   expect_error(code, "height", [] { (void)ring_poses(3, 1, kNan, 0); });
   expect_error(code, "radius", [] { (void)ring_poses(3, 0, 1, 0); });
-  expect_error(code, "no set of 64 poses", [] { (void)literature_ring_poses(64, 1); });
+  expect_error(code, "48, 80, 288 or 864, not 64", [] { (void)literature_ring_poses(64, 1); });
   expect_error(code, "radius", [] { (void)literature_ring_poses(48, -1); });
   expect_error(code, "radius", [] { (void)shell_poses(3, 0, 1, 1); });
-  expect_error(code, "smaller radius", [] { (void)shell_poses(3, 2, 1, 1); });
-  expect_error(code, "number of poses is 0", [] { (void)shell_poses(0, 1, 2, 1); });
+  expect_error(code, "minimum radius", [] { (void)shell_poses(3, 2, 1, 1); });
+  expect_error(code, "number of poses must be at least 1, not 0",
+               [] { (void)shell_poses(0, 1, 2, 1); });
   expect_error(ErrorCode::capacity, "the maximum is", [] { (void)sphere_poses(200'000'000, 1); });
 }
 

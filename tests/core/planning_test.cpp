@@ -443,14 +443,14 @@ TEST(Planning, RefusesWhatMakesNoSense) {
       (void)script.run(config);
     });
   };
-  refuse("max_views is 0", [](PlanningConfig& c) { c.max_views = 0; });
+  refuse("max_views must be at least 1, not 0", [](PlanningConfig& c) { c.max_views = 0; });
   refuse("stop_gain must be finite", [](PlanningConfig& c) { c.stop_gain = kNan; });
   refuse("stop_area must be finite", [](PlanningConfig& c) { c.stop_area = INFINITY; });
   refuse("idle_fraction", [](PlanningConfig& c) { c.idle_fraction = INFINITY; });
   refuse("stop_coverage", [](PlanningConfig& c) { c.stop_coverage = kNan; });
   Script wrong;
   wrong.decisions = {Decision{2, 1, 1}};
-  expect_error(ErrorCode::invalid_argument, "candidate 2 of 2",
+  expect_error(ErrorCode::invalid_argument, "candidate 2, but there are only 2 candidates",
                [&wrong] { (void)wrong.run(never_idle()); });
 }
 

@@ -123,8 +123,8 @@ TEST(Tum, MalformedLinesAreNamed) {
       {"0 1 -inf 3 0 0 0 1", "'-inf' is not finite"},
       {"infinity 1 2 3 0 0 0 1", "'infinity' is not finite"},
       {"0 1e999 2 3 0 0 0 1", "'1e999' is out of range"},
-      {"0 1 2 3 0 0 0 0", "the quaternion's norm is 0, not 1"},
-      {"0 1 2 3 0 0 0 1.02", "the quaternion's norm is 1.02, not 1"},
+      {"0 1 2 3 0 0 0 0", "the quaternion has norm 0; expected 1"},
+      {"0 1 2 3 0 0 0 1.02", "the quaternion has norm 1.02; expected 1"},
       {"0 1 2 3 0.5 0.5 0.5 0.4", "not 1"},
       {"0 1 2 3 1e200 0 0 1e200", "not 1"},
       {"\x01\x02\xff", "'?\?\?' is not a number"},
@@ -148,7 +148,7 @@ TEST(Tum, FilesWithoutAPose) {
   const TemporaryFolder folder;
   for (const char* contents : {"", "\n\n", "# timestamp tx ty tz qx qy qz qw\n"}) {
     const auto path = folder.file("empty.txt", contents);
-    expect_error(ErrorCode::format, path.string() + ": contains no pose",
+    expect_error(ErrorCode::format, path.string() + ": the file contains no pose",
                  [&] { (void)read_tum(path); });
   }
 }
@@ -234,8 +234,8 @@ TEST(PoseMatrix, RefusesWhatIsNoPose) {
       {"1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0", "found 17"},
       {"1 0 0 0\n0 1 0 0\n0 0 x 0\n0 0 0 1", ":3: 'x' is not a number"},
       {"1 0 0 0\n0 1 0 nan\n0 0 1 0\n0 0 0 1", ":2: the number 'nan' is not finite"},
-      {"1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2", "last row is not 0 0 0 1"},
-      {"1 0 0 0\n0 1 0 0\n0 0 1 0\n1 0 0 1", "last row is not 0 0 0 1"},
+      {"1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2", "last row of the matrix must be 0 0 0 1"},
+      {"1 0 0 0\n0 1 0 0\n0 0 1 0\n1 0 0 1", "last row of the matrix must be 0 0 0 1"},
       {"1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1", "not a rigid transform"},
       {"1 0 0 0\n0 1.02 0 0\n0 0 1 0\n0 0 0 1", "not a rigid transform"},
       {"0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 1", "not a rigid transform"},

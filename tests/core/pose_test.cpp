@@ -182,10 +182,10 @@ TEST(LookAt, DoesNotMindTheScale) {
 TEST(LookAt, RefusesWhatHasNoAnswer) {
   const ErrorCode code = ErrorCode::invalid_argument;
   expect_error(code, "same point", [] { (void)look_at({1, 2, 3}, {1, 2, 3}); });
-  expect_error(code, "up is zero", [] { (void)look_at({1, 2, 3}, {0, 0, 0}, {0, 0, 0}); });
-  expect_error(code, "not finite", [] { (void)look_at({kNan, 2, 3}, {1, 2, 3}); });
-  expect_error(code, "not finite", [] { (void)look_at({1, 2, 3}, {1, kInfinity, 3}); });
-  expect_error(code, "not finite", [] { (void)look_at({1, 2, 3}, {0, 0, 0}, {0, 0, kNan}); });
+  expect_error(code, "up must not be zero", [] { (void)look_at({1, 2, 3}, {0, 0, 0}, {0, 0, 0}); });
+  expect_error(code, "must be finite", [] { (void)look_at({kNan, 2, 3}, {1, 2, 3}); });
+  expect_error(code, "must be finite", [] { (void)look_at({1, 2, 3}, {1, kInfinity, 3}); });
+  expect_error(code, "must be finite", [] { (void)look_at({1, 2, 3}, {0, 0, 0}, {0, 0, kNan}); });
   expect_error(code, "too far", [] { (void)look_at({1e308, 0, 0}, {-1e308, 0, 0}); });
 }
 

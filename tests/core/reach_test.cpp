@@ -144,15 +144,17 @@ TEST(Reach, RefusesWhatMakesNoSense) {
   refuse("box 1 is inside out", [&](ReachRegion& r) { r.boxes = {good, {{0, 2, 0}, {1, 1, 1}}}; });
   refuse("box 0 is not finite", [&](ReachRegion& r) { r.boxes = {{{0, nan, 0}, {1, 1, 1}}}; });
   refuse("shell 0 is inside out", [](ReachRegion& r) { r.shells = {{{0, 0, 0}, 2, 1}}; });
-  refuse("shell 0 has radius -", [](ReachRegion& r) { r.shells = {{{0, 0, 0}, -2, 1}}; });
+  refuse("shell 0 has the negative radius -", [](ReachRegion& r) {
+    r.shells = {{{0, 0, 0}, -2, 1}};
+  });
   refuse("shell 0 is not finite", [&](ReachRegion& r) { r.shells = {{{0, nan, 0}, 0, 1}}; });
-  refuse("half-space 0 has a normal of length 0", [](ReachRegion& r) {
+  refuse("half-space 0 has a normal with length 0", [](ReachRegion& r) {
     r.half_spaces = {{{0, 0, 0}, 1}};
   });
   refuse("half-space 0 is not finite", [&](ReachRegion& r) { r.half_spaces = {{{0, 0, 1}, nan}}; });
   refuse("pose 0", [&](ReachRegion& r) { r.poses = {at(nan, 0, 0)}; });
-  refuse("tolerance's distance", [](ReachRegion& r) { r.tolerance.distance = -1; });
-  refuse("tolerance's angle", [&](ReachRegion& r) { r.tolerance.angle = nan; });
+  refuse("distance tolerance", [](ReachRegion& r) { r.tolerance.distance = -1; });
+  refuse("angle tolerance", [&](ReachRegion& r) { r.tolerance.angle = nan; });
 }
 
 }  // namespace

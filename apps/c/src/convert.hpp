@@ -92,7 +92,7 @@ void set_scales(const Config& given, Settings& settings) {
   if (!is_inside(first[0], dims[0], workspace.min.x, workspace.max.x) ||
       !is_inside(first[1], dims[1], workspace.min.y, workspace.max.y) ||
       !is_inside(first[2], dims[2], workspace.min.z, workspace.max.z)) {
-    refuse("the box is not inside the workspace, voxels " + voxels_text(workspace));
+    refuse("the box must be inside the workspace, voxels " + voxels_text(workspace));
   }
   return VoxelBox::from_dims({first[0], first[1], first[2]}, {dims[0], dims[1], dims[2]});
 }

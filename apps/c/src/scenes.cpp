@@ -23,7 +23,7 @@ HazardConfig hazard_of(const vg_scene_config& config, const BeliefGrid& grid) {
   const auto rate = given(config.hazard_rate);
   const bool by_voxel = config.hazard_rates != nullptr, by_file = config.hazard_file != nullptr;
   if ((rate ? 1 : 0) + (by_voxel ? 1 : 0) + (by_file ? 1 : 0) > 1) {
-    refuse("give only one of hazard_rate, hazard_rates and hazard_file");
+    refuse("only one of hazard_rate, hazard_rates and hazard_file may be set");
   }
   if (by_file) {
     hazard.volume =

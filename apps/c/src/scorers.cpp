@@ -201,7 +201,7 @@ vg_status vg_scorer_consistency(const vg_scorer* scorer, vg_consistency* found,
     const FrameConsistency all = scorer->scorer.consistency();
     if (contradicts != nullptr) {
       if (capacity < all.frames.size()) {
-        refuse("capacity is too small: " + std::to_string(capacity) + " for " +
+        refuse("capacity is " + std::to_string(capacity) + ", but there are " +
                std::to_string(all.frames.size()) + " frames");
       }
       std::fill_n(contradicts, all.frames.size(), 0);

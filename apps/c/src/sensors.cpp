@@ -104,7 +104,7 @@ vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sensor, dou
 vg_status vg_range_calibration_create(const vg_sensor* sensor, const double* table, size_t rows,
                                       vg_range_calibration** calibration) {
   return make_handle(calibration, "calibration", {}, [&] {
-    if (rows == 0) refuse("rows is 0; a table of ranges needs at least one row");
+    if (rows == 0) refuse("rows must be at least 1, not 0");
     require("table", {table});
     Sensor calibrated = sensor_of(sensor);
     for (std::size_t i = 0; i < rows; ++i) {

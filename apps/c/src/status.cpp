@@ -45,11 +45,11 @@ vg_status status_of_exception() noexcept {
   } catch (const std::bad_alloc&) {
     return keep(VG_OUT_OF_MEMORY, "out of memory");
   } catch (const std::length_error&) {  // from a container, for an excessive count
-    return keep(VG_OUT_OF_MEMORY, "out of memory: a count is larger than any memory");
+    return keep(VG_OUT_OF_MEMORY, "out of memory: a count exceeds any possible memory");
   } catch (const std::exception& error) {
     return keep(VG_INTERNAL, error.what());
   } catch (...) {
-    return keep(VG_INTERNAL, "an exception of an unknown type");
+    return keep(VG_INTERNAL, "internal error: an exception of an unknown type");
   }
 }
 

@@ -65,8 +65,7 @@ template <typename Struct>
 void require_size(std::size_t size, const std::string& name) {
   if (size == sizeof(Struct)) return;
   refuse("the size of " + name + " is " + std::to_string(size) +
-         " bytes, but in this library " VIEWGAIN_VERSION ", it is " +
-         std::to_string(sizeof(Struct)));
+         " bytes, but in viewgain " VIEWGAIN_VERSION " it is " + std::to_string(sizeof(Struct)));
 }
 
 /// Throws Error(invalid_argument) for null, and like require_size().

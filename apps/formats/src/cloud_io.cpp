@@ -51,7 +51,7 @@ void read_kinds(const LineReader& line, std::vector<Field>& fields) {
     } else if (word == "U") {
       fields[i].type.kind = Kind::unsigned_integer;
     } else {
-      line.fail("TYPE " + quoted(word) + " is not F, I or U");
+      line.fail("TYPE must be F, I or U, not " + quoted(word));
     }
   }
 }
@@ -64,7 +64,7 @@ Pose read_viewpoint(const LineReader& line) {
   // Drivers without a rotation write zeros.
   if (q.squaredNorm() == 0) q.setIdentity();
   if (!(std::abs(q.norm() - 1) <= kMendableNorm)) {
-    line.fail("VIEWPOINT's quaternion must have norm 1, not " + short_text(q.norm()));
+    line.fail("the quaternion of VIEWPOINT has norm " + short_text(q.norm()) + "; expected 1");
   }
   return {q.normalized().toRotationMatrix(), Eigen::Vector3d(v[0], v[1], v[2])};
 }
@@ -73,7 +73,7 @@ Pose read_viewpoint(const LineReader& line) {
 void lay_out(const LineReader& line, Header& header) {
   for (Field& field : header.fields) {
     if (!field.type.is_known()) {
-      line.fail("field " + quoted(field.name) + " has a SIZE that its TYPE cannot have");
+      line.fail("the field " + quoted(field.name) + " has a SIZE that does not fit its TYPE");
     }
     field.begin = header.point_bytes;
     field.word = header.point_words;
@@ -88,7 +88,7 @@ void lay_out(const LineReader& line, Header& header) {
     if (std::any_of(found + 1, header.fields.end(), is_axis)) {
       line.fail("the field " + quoted(kNames[axis]) + " is declared twice");
     }
-    if (found->count != 1) line.fail("field " + quoted(kNames[axis]) + " must have COUNT 1");
+    if (found->count != 1) line.fail("the field " + quoted(kNames[axis]) + " must have COUNT 1");
     header.xyz[axis] = static_cast<std::size_t>(found - header.fields.begin());
   }
 }
@@ -101,13 +101,13 @@ Header read_header(LineReader& line) {
   constexpr std::size_t kMostFields = 1000;
   constexpr std::size_t kMostCount = 100000;
   while (header.data == Data::none) {
-    if (!line.next()) line.fail("the header is truncated: it has no line DATA");
+    if (!line.next()) line.fail("the header is truncated; it has no line DATA");
     const auto& words = line.words();
     if (words.empty() || words[0].front() == '#' || words[0] == "VERSION") continue;
     const auto each_field = [&](auto&& read) {
       if (header.fields.empty()) line.fail("FIELDS must come first");
       if (words.size() != header.fields.size() + 1) {
-        line.fail(std::string(words[0]) + " needs one word for each of the " +
+        line.fail(std::string(words[0]) + " must have one word for each of the " +
                   std::to_string(header.fields.size()) + " fields");
       }
       for (std::size_t i = 0; i < header.fields.size(); ++i) read(header.fields[i], i + 1);
@@ -139,8 +139,8 @@ Header read_header(LineReader& line) {
       const std::string_view data = words.size() > 1 ? words[1] : std::string_view();
       header.data = data == "ascii" ? Data::ascii : data == "binary" ? Data::binary : Data::none;
       if (header.data == Data::none) {
-        line.fail("DATA " + quoted(data) +
-                  " is not ascii or binary; convert the file with pcl_convert_pcd_ascii_binary");
+        line.fail("DATA must be ascii or binary, not " + quoted(data) +
+                  "; convert the file with pcl_convert_pcd_ascii_binary");
       }
     } else {
       line.fail("the header's keyword " + quoted(words[0]) + " is unknown");
@@ -148,7 +148,7 @@ Header read_header(LineReader& line) {
   }
   if (!has_sizes) line.fail("the header has no line SIZE");
   if (has_width != has_height) line.fail("the header has only one of WIDTH and HEIGHT");
-  if (!has_width && !has_points) line.fail("the header has no count of points");
+  if (!has_width && !has_points) line.fail("the header has neither POINTS nor WIDTH and HEIGHT");
   if (height != 0 && width > kMostPoints / height) line.fail("WIDTH x HEIGHT is too large");
   if (!has_points) header.points = width * height;
   if (has_width && header.points != width * height) {
@@ -167,7 +167,7 @@ void read_ascii(LineReader& line, const Header& header,
     }
     if (line.words().empty() || line.words()[0].front() == '#') continue;
     if (line.words().size() != header.point_words) {
-      line.fail("a point has " + std::to_string(header.point_words) + " words; found " +
+      line.fail("expected " + std::to_string(header.point_words) + " words for a point; found " +
                 std::to_string(line.words().size()));
     }
     auto& point = points.emplace_back();
@@ -184,10 +184,10 @@ void read_binary(const LineReader& line, const Header& header,
   // The product stays below 2^64: at most 2^32 points of 999 fields of 800,000 bytes.
   const std::string_view data = line.rest();
   if (header.points * header.point_bytes > data.size()) {
-    throw Error(ErrorCode::format, line.name() + ": " + std::to_string(header.points) +
-                                       " points of " + std::to_string(header.point_bytes) +
-                                       " bytes are declared, but " + std::to_string(data.size()) +
-                                       " bytes are present");
+    throw Error(ErrorCode::format,
+                line.name() + ": the header declares " + std::to_string(header.points) +
+                    " points of " + std::to_string(header.point_bytes) + " bytes each, but only " +
+                    std::to_string(data.size()) + " bytes follow");
   }
   points.resize(header.points);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -240,7 +240,8 @@ PointCloud load_cloud(const std::filesystem::path& path) {
   const std::string ending = path.extension().string();
   const bool is_pcd = ending == ".pcd" || ending == ".PCD";
   if (!is_pcd && ending != ".ply" && ending != ".PLY") {
-    throw Error(ErrorCode::format, path.string() + ": clouds are .pcd or .ply files");
+    throw Error(ErrorCode::format,
+                path.string() + ": a point cloud must have the ending .pcd or .ply");
   }
   const std::string bytes = file_bytes(path);
   return is_pcd ? parse_pcd(bytes, path.string()) : parse_ply(bytes, path.string());

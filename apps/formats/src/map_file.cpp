@@ -29,7 +29,8 @@ BeliefGrid load_map(const std::filesystem::path& file_or_run, const Sensor* sens
   const std::filesystem::path path = map_in(file_or_run);
   std::error_code ignored;
   if (path != file_or_run && !std::filesystem::exists(path, ignored)) {
-    throw Error(ErrorCode::io, file_or_run.string() + ": has no map.vdb or state.vdb");
+    throw Error(ErrorCode::io,
+                file_or_run.string() + ": the folder has no map.vdb and no state.vdb");
   }
   if (!is_octomap(path)) {
     BeliefGrid grid = load_vdb(path, exec);
@@ -56,9 +57,9 @@ std::optional<Sensor> map_sensor(const BeliefGrid& grid) {
 
 void check_map_name(const std::filesystem::path& path) {
   if (small_ending(path) == ".bt") {
-    refuse(path.string() + ": .bt files are read-only; write a .ot file instead");
+    refuse(path.string() + ": .bt files can only be read; write a .ot file instead");
   }
-  require_ending(path, "a map to write", {".vdb", ".ot"});
+  require_ending(path, "a map", {".vdb", ".ot"});
 }
 
 LostInTree save_map(const BeliefGrid& grid, const std::filesystem::path& path,

@@ -22,14 +22,15 @@ void append(std::string& bytes, Value value) {
 }  // namespace
 
 void write_ply(const std::filesystem::path& path, const PlyArrays& arrays) {
-  require_ending(path, "a surface or of points", {".ply"});
+  require_ending(path, "a PLY file", {".ply"});
   const auto& [points, normals, sigma, triangles] = arrays;
   const auto refuse = [&](const std::string& what) {
     viewgain::refuse(path.string() + ": " + what);
   };
   const auto check_count = [&](std::size_t count, const char* what) {
     if (count == 0 || count == points.size()) return;
-    refuse(std::to_string(points.size()) + " points, but " + std::to_string(count) + " " + what);
+    refuse("there are " + std::to_string(points.size()) + " points, but " + std::to_string(count) +
+           " " + what);
   };
   check_count(normals.size(), "normals");
   check_count(sigma.size(), "sigmas");
@@ -55,8 +56,8 @@ void write_ply(const std::filesystem::path& path, const PlyArrays& arrays) {
     append(bytes, std::uint8_t{3});
     for (const std::uint32_t v : triangle) {
       if (v >= points.size()) {
-        refuse("a triangle has vertex " + std::to_string(v) + " of " +
-               std::to_string(points.size()));
+        refuse("a triangle has vertex " + std::to_string(v) + ", but there are " +
+               std::to_string(points.size()) + " points");
       }
       append(bytes, static_cast<std::int32_t>(v));
     }

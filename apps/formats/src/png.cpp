@@ -128,7 +128,7 @@ std::string encoded(int width, int height, int color_type, const std::vector<Val
   constexpr int bit_depth = 8 * sizeof(Value);
   const std::size_t row = channels * static_cast<std::size_t>(std::max(width, 0));
   if (width <= 0 || height <= 0 || pixels.size() != row * static_cast<std::size_t>(height)) {
-    refuse("an image of " + std::to_string(width) + " x " + std::to_string(height) + " px with " +
+    refuse("the image has " + std::to_string(width) + " x " + std::to_string(height) + " px, but " +
            std::to_string(pixels.size()) + " values");
   }
   PngState state;
@@ -171,7 +171,8 @@ Image decoded(std::string bytes, const std::filesystem::path& name, const Wanted
   const bool ok = info != nullptr && decode(png, info, state, wanted, image);
   png_destroy_read_struct(&png, &info, nullptr);
   if (!ok) {
-    fail(ErrorCode::format, name, "not a usable image: " + std::string(state.message.c_str()));
+    fail(ErrorCode::format, name,
+         "the image cannot be read: " + std::string(state.message.c_str()));
   }
   return image;
 }
@@ -180,8 +181,8 @@ template <typename Image>
 Image read_image(const std::filesystem::path& path, const Wanted& wanted, Image image) {
   if (image.width <= 0 || image.height <= 0) {
     fail(ErrorCode::invalid_argument, path,
-         "asked for as " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-             " px");
+         "the image size must be positive, not " + std::to_string(image.width) + " x " +
+             std::to_string(image.height) + " px");
   }
   return decoded(folder_file_bytes(path), path, wanted, std::move(image));
 }
@@ -199,12 +200,12 @@ std::array<int, 2> size_in(const std::filesystem::path& path, std::string_view h
   constexpr std::uint32_t kMost = std::numeric_limits<std::int32_t>::max();
   if (head.size() < kSizeEnd || !head.starts_with(kBegin) || number(kBegin.size()) > kMost ||
       number(kBegin.size() + 4) > kMost) {
-    fail(ErrorCode::format, path, "not a usable image: not a PNG file");
+    fail(ErrorCode::format, path, "the image cannot be read: it is not a PNG file");
   }
   return {static_cast<int>(number(kBegin.size())), static_cast<int>(number(kBegin.size() + 4))};
 }
 
-constexpr Wanted kGray16{16, 16, "not a 16-bit grayscale image"};
+constexpr Wanted kGray16{16, 16, "it is not a 16-bit grayscale image"};
 
 }  // namespace
 
@@ -218,13 +219,14 @@ GrayImage gray_image_of_png(std::string_view bytes) {
   constexpr std::int64_t kMostPixels = std::int64_t{1} << 24U;
   if (width == 0 || height == 0 || std::int64_t{width} * height > kMostPixels) {
     fail(ErrorCode::format, name,
-         "an image of " + std::to_string(width) + " x " + std::to_string(height) + " px");
+         "the image has " + std::to_string(width) + " x " + std::to_string(height) +
+             " px; it must have 1 to 2^24 pixels");
   }
   return decoded<GrayImage>(std::string(bytes), name, kGray16, {width, height, {}});
 }
 
 Gray8Image read_gray8_png(const std::filesystem::path& path, int width, int height) {
-  constexpr Wanted kWanted{1, 8, "not a grayscale image of 1 to 8 bits"};
+  constexpr Wanted kWanted{1, 8, "it is not a grayscale image of 1 to 8 bits"};
   return read_image<Gray8Image>(path, kWanted, {width, height, {}});
 }
 

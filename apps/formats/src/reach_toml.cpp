@@ -88,7 +88,7 @@ ReachRegion read_reach_toml(const std::filesystem::path& path) {
   if (reader.find("poses") != nullptr) {
     region.poses = load_poses(path.parent_path() / reader.text("poses")).poses;
     // No poses at all would mean that every pose is in reach.
-    if (region.poses.empty()) reader.fail("poses", "refers to a file without poses");
+    if (region.poses.empty()) reader.fail("poses", "names a file without poses");
   }
   if (reader.find("tolerance") != nullptr) {
     region.tolerance = read_tolerance(reader.table("tolerance"));
@@ -104,17 +104,18 @@ ReachRegion read_reach_toml(const std::filesystem::path& path) {
 
 void write_reach_toml(const std::filesystem::path& path, const ReachRegion& region) {
   region.validate();
-  require_ending(path, "a file of a region", {".toml"});
-  if (region.predicate) refuse(path.string() + ": a region with a predicate cannot be written");
+  require_ending(path, "a reach file", {".toml"});
+  if (region.predicate)
+    refuse(path.string() + ": a reach region with a predicate cannot be written");
   const auto xyz = [](const auto& v) { return toml::array{v[0], v[1], v[2]}; };
   toml::table root{{"format", kTomlFormat}};
   std::filesystem::path poses = path;
   poses.replace_extension(".poses.txt");
   if (!region.poses.empty()) {
     if (is_special_file(path)) {
-      refuse(
-          path.string() +
-          ": a region with poses needs a regular file; its poses are written to a file next to it");
+      refuse(path.string() +
+             ": a reach region with poses must be written to a regular file, because its poses are "
+             "written to a second file next to it");
     }
     root.insert("poses", poses.filename().string());
   }

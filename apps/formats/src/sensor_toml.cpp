@@ -164,7 +164,7 @@ Sensor load_sensor(const std::string& preset_or_file) {
   if (is_sensor_file(preset_or_file)) return read_sensor_toml(preset_or_file);
   const std::vector<std::string>& names = sensor_preset_names();
   if (std::find(names.begin(), names.end(), preset_or_file) == names.end()) {
-    refuse("sensor \"" + preset_or_file + "\": neither a preset nor a .toml file" +
+    refuse("sensor \"" + preset_or_file + "\" is neither a preset nor a .toml file" +
            did_you_mean(preset_or_file, names) + " (presets: " + listed(names) + ")");
   }
   return sensor_preset(preset_or_file);

@@ -122,13 +122,13 @@ bool has_mark(const fs::path& file, const char* mark) {
 std::vector<fs::path> files_of_earlier_run(const fs::path& dir) {
   std::vector<fs::path> files = run_files(dir);
   if (is_there(dir / "state.vdb")) {
-    refuse(dir.string() + ": belongs to a call of model --watch; choose a new folder");
+    refuse(dir.string() + ": the folder belongs to model --watch; choose another folder");
   }
   if (files.empty()) return files;
   if (!has_mark(dir / "run.json", "\"map_hash\"") &&
       !has_mark(dir / kCheckpoint, "\"decisions\"")) {
-    refuse(dir.string() + ": holds " + files.front().string() +
-           " but no run.json, so that no run can have written it; choose another folder");
+    refuse(dir.string() + ": the folder has " + files.front().string() +
+           " but no run.json, so no run wrote this file; choose another folder");
   }
   return files;
 }

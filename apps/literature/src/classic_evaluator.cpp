@@ -82,7 +82,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 void check_gains(const std::vector<ClassicGain>& gains) {
-  if (gains.empty()) refuse("no classic gain is requested");
+  if (gains.empty()) refuse("the list of gains is empty");
   for (std::size_t i = 0; i < gains.size(); ++i) {
     if (std::find(gains.begin(), gains.begin() + static_cast<std::ptrdiff_t>(i), gains[i]) !=
         gains.begin() + static_cast<std::ptrdiff_t>(i)) {
@@ -96,14 +96,14 @@ const ClassicConfig& checked(const ClassicConfig& config) {
   check_gains(config.gains);
   const double prior = config.unknown_prior;
   if (!(prior >= 0 && prior <= 1)) {
-    refuse("the unknown voxels' prior is " + short_text(prior) + "; it must be in 0..1");
+    refuse("the prior probability of unknown voxels must be in 0..1, not " + short_text(prior));
   }
   return config;
 }
 
 std::shared_ptr<const ClassicMap> checked(std::shared_ptr<const ClassicMap> map,
                                           const ClassicConfig& config) {
-  if (!map) refuse("the classic gains need a map");
+  if (!map) refuse("the classic gains require a map");
   const OcclusionKnown known = ClassicAccess::data(*map).occlusion;
   for (const ClassicGain gain : config.gains) {
     if (!needs_occlusion(gain) || known == OcclusionKnown::yes) continue;
@@ -259,12 +259,12 @@ std::size_t ClassicGainEvaluator::evaluate(std::span<const Pose> T_world_camera,
                                            const BatchControl& control) const {
   const std::size_t poses = T_world_camera.size(), gains = config().gains.size();
   if (results.size() != poses * gains) {
-    refuse(std::to_string(poses) + " poses of " + std::to_string(gains) + " gains, but room for " +
-           std::to_string(results.size()) + " results");
+    refuse("there are " + std::to_string(poses) + " poses and " + std::to_string(gains) +
+           " gains, but the array has room for " + std::to_string(results.size()) + " results");
   }
   if (!statuses.empty() && statuses.size() != poses) {
-    refuse(std::to_string(poses) + " poses, but room for " + std::to_string(statuses.size()) +
-           " statuses");
+    refuse("there are " + std::to_string(poses) + " poses, but the array has room for " +
+           std::to_string(statuses.size()) + " statuses");
   }
   std::fill(results.begin(), results.end(), kNaN);
   std::fill(statuses.begin(), statuses.end(), ViewGain::Status::bad_pose);

@@ -22,7 +22,7 @@ constexpr double kMostDepth = 140;  // [voxels]
 
 void check(const VoxelScene* scene, const BeliefGrid& grid,
            const std::optional<Acquisition>& acquisition) {
-  if (scene == nullptr) refuse("the classic gains need a scene");
+  if (scene == nullptr) refuse("the classic gains require a scene");
   const GridSnapshot& snapshot = scene->snapshot();
   if (!(snapshot.min_index == grid.min_index() && snapshot.dims == grid.dims() &&
         snapshot.voxel_size == grid.voxel_size() && snapshot.T_world_grid == grid.T_world_grid())) {
@@ -33,8 +33,8 @@ void check(const VoxelScene* scene, const BeliefGrid& grid,
   const double depth = acquisition->occlusion_depth;
   if (!std::isfinite(depth) || depth < 0 || depth > kMostDepth * grid.voxel_size()) {
     refuse("the occlusion depth is " + short_text(depth) + " m; it must be in 0.." +
-           short_text(kMostDepth * grid.voxel_size()) + " m, " + short_text(kMostDepth) +
-           " voxels of this map");
+           short_text(kMostDepth * grid.voxel_size()) + " m (at most " + short_text(kMostDepth) +
+           " voxels)");
   }
 }
 

@@ -46,7 +46,7 @@ BoundaryViewsConfig default_boundary(const Sensor& sensor, double voxel_size) {
   BoundaryViewsConfig config;
   // Spacing of the surface's points.
   if (!(voxel_size > 0) || !std::isfinite(voxel_size)) {
-    refuse("voxel size " + short_text(voxel_size) + " m must be positive and finite");
+    refuse("the voxel size must be positive and finite, not " + short_text(voxel_size) + " m");
   }
   const double footprint = sigmas(sensor.noise, sensor.working_distance, sensor.camera.fx).lateral;
   config.estimator = default_estimator(std::max(voxel_size, footprint));

@@ -44,7 +44,7 @@ const double kLeastCosine = std::cos(72.0 * std::numbers::pi / 180);
 
 const KnownObject& checked(const KnownObject& object) {
   if (!object.mesh || !object.truth) {
-    refuse("policy \"oracle\" requires the object's mesh, which only a simulation has");
+    refuse("policy \"oracle\" requires the mesh of the object, so it works only in simulations");
   }
   return object;
 }

@@ -77,8 +77,8 @@ ModelProgress SurfaceModel::update(const Measurements& measurements) {
   const MapUpdate update = scorer_.add(measurements);
   if (first && update.counts.readings_inside == 0) {
     throw Error(ErrorCode::invalid_argument,
-                "the first view shows nothing in the workspace: the start pose looks away from it, "
-                "it is out of range, or a known obstacle hides it");
+                "the first view shows nothing in the workspace. Does the camera look away from the "
+                "workspace? Is the workspace out of range, or behind an obstacle?");
   }
   if (!is_in_map(update.verdict)) tried_.push_back(measurements.T_world_camera);
   return progress_after(update);
@@ -129,7 +129,7 @@ RegisteredModel::RegisteredModel(SurfaceModel& model, const PoseSigma& sigma,
       alignment_(model.scorer().sensor(), model.scorer().config(), exec) {}
 
 ModelProgress RegisteredModel::update(const Measurements& measurements) {
-  if (measurements.frames.empty()) refuse("a view without a frame cannot be registered");
+  if (measurements.frames.empty()) refuse("a view must have at least one frame to be registered");
   const Stopwatch watch;
   alignment_.add(measurements.frames.front(), measurements.T_world_camera, sigma_);
   views_.push_back(measurements);

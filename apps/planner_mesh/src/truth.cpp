@@ -86,13 +86,13 @@ std::vector<Pose> looking_poses(const VisibilityConfig& config, const Sensor& se
 
 Stage set_stage(const StageConfig& config, const ExecConfig& exec) {
   if (config.size && (!(*config.size > 0) || !std::isfinite(*config.size))) {
-    refuse("object size " + short_text(*config.size) + " m is not positive and finite");
+    refuse("the object size must be positive and finite, not " + short_text(*config.size) + " m");
   }
   Stage stage;
   TriangleMesh mesh =
       read_mesh(config.mesh, {config.up, true, config.size.value_or(0)}, &stage.repairs);
   stage.size = config.size ? *config.size : longest_side(bounds_of(mesh));
-  if (!(stage.size > 0)) refuse(config.mesh.string() + ": the mesh has no extent");
+  if (!(stage.size > 0)) refuse(config.mesh.string() + ": the mesh has the size 0");
   if (config.support_plane) {
     const double lowest = bounds_of(mesh).min[2];  // the box is centred at the origin
     for (auto& v : mesh.vertices) v[2] += *config.support_plane - lowest;
@@ -108,8 +108,8 @@ Stage set_stage(const StageConfig& config, const ExecConfig& exec) {
   if (config.support_plane) {
     stage.workspace.min[2] = std::max(stage.workspace.min[2], *config.support_plane);
     if (!(stage.workspace.min[2] < stage.workspace.max[2])) {
-      refuse("the workspace lies below the support plane at " + short_text(*config.support_plane) +
-             " m");
+      refuse("the whole workspace lies below the support plane, whose height is " +
+             short_text(*config.support_plane) + " m");
     }
   }
   stage.scene = std::make_shared<const SurfaceScene>(std::move(mesh), exec);
@@ -134,7 +134,7 @@ Pose default_start(const Stage& stage, double distance, std::uint64_t seed,
     const double d = (pose.translation() - wanted.translation()).norm();
     if (possible(pose) && (nearest == nullptr || d < least)) nearest = &pose, least = d;
   }
-  if (nearest == nullptr) refuse("no pose that looks at the object lies in the reachable region");
+  if (nearest == nullptr) refuse("no reachable pose looks at the object");
   return *nearest;
 }
 
@@ -188,8 +188,8 @@ QualityFigures quality_figures(const GroundTruth& truth, const SurfaceMesh& surf
                                std::span<const FusedPoint> points, double tolerance,
                                std::span<const std::uint8_t> visible) {
   if (visible.size() != truth.samples().size()) {
-    refuse(std::to_string(truth.samples().size()) + " samples, but " +
-           std::to_string(visible.size()) + " marks");
+    refuse("visible has " + std::to_string(visible.size()) + " entries, but there are " +
+           std::to_string(truth.samples().size()) + " samples");
   }
   const PointArrays arrays = arrays_of(points);
   const std::vector<double> distances = truth.distances_to(surface.vertices);

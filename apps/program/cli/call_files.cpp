@@ -192,7 +192,8 @@ void check_not_read(const NamedFile& output, const std::vector<NamedFile>& files
     const bool is_continued = other.option == "--map";
     if (&other == &output || is_continued || !have_a_common_file(output, other)) continue;
     refuse(output.option, output.path.string(),
-           (other.kind == Kind::folder ? "must not lie in " : "would overwrite a file of ") +
+           (other.kind == Kind::folder ? "the file must not lie in "
+                                       : "the file would overwrite a file of ") +
                other.option + " " + other.path.string());
   }
 }
@@ -223,7 +224,8 @@ void check_call(const App& subcommand) {
   for (const NamedFile& file : files) {
     if (!is_output(file.kind)) continue;
     if (file.path == "-") {
-      refuse(file.option, "-", "is not a file name; write to the standard output with /dev/stdout");
+      refuse(file.option, "-",
+             "this is not a file name; to write to the standard output, use /dev/stdout");
     }
     check_not_read(file, files);
     const std::string fault = fault_of_output(file, subcommand.get_name());

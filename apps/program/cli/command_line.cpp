@@ -38,13 +38,13 @@ std::string fault_of_flag(const App& called, const std::string& flag) {
   std::vector<std::string> flags;
   for (const Option* option : options_of_call(called)) {
     const std::string name = option->get_name();
-    if (flag == name) return flag + ": must follow the subcommand " + called.get_name();
+    if (flag == name) return flag + ": the flag must follow the subcommand " + called.get_name();
     if (option->nonpositional()) flags.push_back(name);
     if (flag == "--" + CLI::detail::to_lower(name)) {  // name of a positional
       return flag + ": " + name + " is a positional argument; give it without --";
     }
   }
-  return flag + ": unknown flag for " + called.get_name() + did_you_mean(flag, flags);
+  return flag + ": " + called.get_name() + " has no such flag" + did_you_mean(flag, flags);
 }
 
 bool is_flag(const std::string& word) {
@@ -73,7 +73,7 @@ std::string fault_of_extras(const App& program, const CLI::ParseError& error) {
   }
   const bool is_of_words = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
   if (extras.empty() || !is_of_words) return {};
-  return extras.front() + ": " + called.front()->get_name() + " takes no further arguments";
+  return extras.front() + ": " + called.front()->get_name() + " accepts no further arguments";
 }
 
 // Refuses a flag in place of a flag's value. A value that begins with -- must be given as
@@ -99,7 +99,7 @@ void check_have_values(const App& program, const std::vector<std::string>& words
     }
     const std::vector<std::string> choices = choices_of(**option);
     throw UsageError(ErrorCode::invalid_argument,
-                     words[i] + ": needs a value" +
+                     words[i] + ": the flag requires a value" +
                          (choices.empty() ? "" : "; valid values: " + listed(choices)));
   }
 }
@@ -117,7 +117,7 @@ std::string fault_of_folder(const App& called) {
       continue;
     }
     return path.string() +
-           ": the folder holds no map. To make one from frames, run viewgain model " +
+           ": the folder has no map. To make a map from frames, run viewgain model " +
            path.string() + " --voxel V --out RUN";
   }
   return {};

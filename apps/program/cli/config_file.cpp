@@ -76,7 +76,7 @@ std::string word_of(const TableReader& reader, const std::string& key, const tom
   if (kind == Kind::number) reader.fail(key, "must be a number");
   if (node.is_string()) {
     const std::string& text = node.as_string()->get();
-    if (text.find('\0') != std::string::npos) reader.fail(key, "must not hold a zero byte");
+    if (text.find('\0') != std::string::npos) reader.fail(key, "must not contain a zero byte");
     return text;
   }
   const toml::array* list = node.as_array();
@@ -203,7 +203,7 @@ std::vector<CLI::ConfigItem> FlagFile::from_config(std::istream& in) const {
     const std::string gone = successor_of("--" + std::string(key.str()));
     const Option* known = called.front()->get_option_no_throw("--" + std::string(key.str()));
     if (!gone.empty() && known == nullptr)
-      reader.fail(key.str(), "is the key of a removed flag: " + gone);
+      reader.fail(key.str(), "belongs to a removed flag: " + gone);
   }
   reader.refuse_unknown_keys();
   return given;

@@ -47,14 +47,14 @@ std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
     if (error != std::errc{} || end != word.data() + word.size()) {
       refuse(flag, text, std::string("\"").append(word).append("\" is not a number"));
     }
-    if (!std::isfinite(value)) refuse(flag, text, "numbers must be finite");
+    if (!std::isfinite(value)) refuse(flag, text, "the numbers must be finite");
     numbers.push_back(value);
   }
   if (numbers.size() < min_count || numbers.size() > max_count) {
     refuse(flag, text,
-           "needs " + std::to_string(min_count) +
+           "expected " + std::to_string(min_count) +
                (min_count == max_count ? "" : " to " + std::to_string(max_count)) +
-               " numbers separated by commas, found " + std::to_string(numbers.size()));
+               " numbers separated by commas; found " + std::to_string(numbers.size()));
   }
   return numbers;
 }
@@ -62,7 +62,7 @@ std::vector<double> parse_numbers(std::string_view flag, std::string_view text,
 std::size_t parse_count(std::string_view flag, double value) {
   constexpr double kMaxCount = 1e7;
   if (!(value >= 0 && value <= kMaxCount && value == std::floor(value))) {
-    refuse(flag, short_text(value), "must be a whole number from 0 to 10000000");
+    refuse(flag, short_text(value), "the value must be a whole number from 0 to 10000000");
   }
   return static_cast<std::size_t>(value);
 }
@@ -93,7 +93,8 @@ Pose parse_pose(std::string_view flag, std::string_view text) {
   const std::vector<double> n = parse_numbers(flag, text, 7, 7);
   const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
   if (!(std::abs(q.norm() - 1) < 1e-2)) {
-    refuse(flag, text, "the quaternion qx,qy,qz,qw must have norm 1, not " + short_text(q.norm()));
+    refuse(flag, text,
+           "the quaternion qx,qy,qz,qw has norm " + short_text(q.norm()) + "; expected 1");
   }
   return {q.normalized().toRotationMatrix(), Eigen::Vector3d(n[0], n[1], n[2])};
 }
@@ -108,7 +109,7 @@ std::string fault_of_name(const std::string& value, const std::vector<std::strin
   if (std::find(names.begin(), names.end(), value) != names.end()) return {};
   const std::string nearest = did_you_mean(value, names);
   return "unknown " + std::string(what) + " " + value +
-         (nearest.empty() ? "; valid: " : nearest + " Valid: ") + listed(names);
+         (nearest.empty() ? "; valid values: " : nearest + " Valid values: ") + listed(names);
 }
 
 std::vector<std::string> names_in(std::string_view text) {
@@ -185,27 +186,28 @@ std::string counts_text(const std::map<std::string, std::size_t>& counts) {
 
 void print_mended(std::size_t poses) {
   if (poses == 0) return;
-  std::printf("poses with a slightly inexact rotation matrix, now corrected: %zu\n", poses);
+  std::printf("poses whose slightly inexact rotation was corrected: %zu\n", poses);
 }
 
 void check_finite(std::string_view flag, double value) {
-  if (!std::isfinite(value)) refuse(flag, short_text(value), "must be finite");
+  if (!std::isfinite(value)) refuse(flag, short_text(value), "the value must be finite");
 }
 
 void check_positive(std::string_view flag, double value) {
   if (!(value > 0 && std::isfinite(value))) {
-    refuse(flag, short_text(value), "must be positive and finite");
+    refuse(flag, short_text(value), "the value must be positive and finite");
   }
 }
 
 void check_at_least_0(std::string_view flag, double value) {
   if (!(value >= 0 && std::isfinite(value))) {
-    refuse(flag, short_text(value), "must be at least 0 and finite");
+    refuse(flag, short_text(value), "the value must be at least 0 and finite");
   }
 }
 
 void check_inside_0_1(std::string_view flag, double value) {
-  if (!(value > 0 && value < 1)) refuse(flag, short_text(value), "must be between 0 and 1");
+  if (!(value > 0 && value < 1))
+    refuse(flag, short_text(value), "the value must be between 0 and 1");
 }
 
 }  // namespace viewgain::app

@@ -86,7 +86,7 @@ void calibrate_range(const Options& options) {
       counts);
   write_sensor_toml(options.out, result.sensor);
   for (const std::string& text : result.left_out) {
-    std::fprintf(stderr, "viewgain: warning: left out: %s\n", printable(text).c_str());
+    std::fprintf(stderr, "viewgain: warning: a frame is left out: %s\n", printable(text).c_str());
   }
   double largest = 1e-6;  // largest error [m]
   for (const RangeStep& step : result.steps) largest = std::max(largest, std::abs(step.error));
@@ -190,11 +190,10 @@ Command add_calibrate(App& program) {
                 "measure the standard deviations along and across the ray; the scene needs an "
                 "object in front of a wall, but the frames need no poses");
   app->add_flag("--range", options->range,
-                "measure the range error, range_calibration in the sensor file; turn the camera by "
-                "10 to 30 deg for some frames");
-  app->add_option(
-      "--sensor", options->sensor,
-      kSensorHelp + ", whose measured part is replaced (default: FRAMES_DIR/sensor.toml)");
+                "measure the range error (range_calibration in the sensor file); in some frames, "
+                "turn the camera by 10 to 30 deg");
+  app->add_option("--sensor", options->sensor,
+                  kSensorHelp + " to calibrate (default: FRAMES_DIR/sensor.toml)");
   app->add_option("--depth-scale", options->depth_scale,
                   "metres per unit of the depth images (default: from frames.toml; else 1e-4 for "
                   "folders with poses.txt, 1e-3 for others)");

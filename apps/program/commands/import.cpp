@@ -44,19 +44,21 @@ bool has_messages(RecordingFormat format) {
 void check(const Options& options, RecordingFormat format) {
   const std::string& found = kFormats.at(static_cast<std::size_t>(format));
   if (options.format != "auto" && options.format != found) {
-    refuse("--format", options.format, "SOURCE " + options.source + " has format " + found);
+    refuse("--format", options.format, options.source + " has the format " + found);
   }
   if (options.max_time_gap) check_at_least_0("--max-time-gap", *options.max_time_gap);
   if (options.depth_scale) check_positive("--depth-scale", *options.depth_scale);
   if (format == RecordingFormat::tum && options.intrinsics.empty() && options.sensor.empty()) {
-    refuse("a recording in TUM's layout does not state its camera; give --intrinsics or --sensor");
+    refuse(
+        "a recording in the TUM layout does not state its camera; give --intrinsics or --sensor");
   }
   for (const auto& [flag, value] :
        {std::pair("--world", options.world), std::pair("--depth-topic", options.depth_topic),
         std::pair("--camera-frame", options.camera_frame),
         std::pair("--pose-topic", options.pose_topic)}) {
     if (value.empty() || has_messages(format)) continue;
-    refuse(flag, value, "is only for recordings of messages; SOURCE has format " + found);
+    refuse(flag, value,
+           "this flag requires a recording of messages; SOURCE has the format " + found);
   }
 }
 
@@ -109,7 +111,7 @@ void print_summary(const Options& options, RecordingFormat format, const ImportR
   print_mended(report.orthonormalized);
   if (!sensor) {
     std::printf(
-        "no sensor.toml was written, because --sensor is missing: model needs --sensor with a file "
+        "no sensor.toml was written, because --sensor is missing; give model a --sensor "
         "for %dx%d px\n",
         camera.width, camera.height);
   }
@@ -163,10 +165,8 @@ Command add_import(App& program) {
   app->add_option("--format", options->format,
                   "format of the recording; auto: detect from its contents")
       ->check(one_of(formats, "format"));
-  app->add_option(
-      "--sensor", options->sensor,
-      kSensorHelp +
-          "; it states noise and range limits, and the intrinsics if the recording has none");
+  app->add_option("--sensor", options->sensor,
+                  kSensorHelp + "; also gives the intrinsics if the recording has none");
   app->add_option("--intrinsics", options->intrinsics,
                   "fx,fy,cx,cy [px] (default: from the recording, else from the sensor)");
   app->add_option("--depth-topic", options->depth_topic,
@@ -178,18 +178,18 @@ Command add_import(App& program) {
                   "FRAME[,tx,ty,tz,qx,qy,qz,qw]: tf frame to use instead of the images' frame_id, "
                   "and the camera's pose in FRAME");
   app->add_option("--pose-topic", options->pose_topic,
-                  "TOPIC[,tx,ty,tz,qx,qy,qz,qw]: PoseStamped or Odometry topic to use instead of "
-                  "tf, and the camera's pose on the body whose poses TOPIC holds");
+                  "TOPIC[,tx,ty,tz,qx,qy,qz,qw]: PoseStamped or Odometry topic of a body, used "
+                  "instead of tf, and the camera's pose on this body");
   app->add_option("--max-time-gap", options->max_time_gap,
-                  "longest time between an image and its pose [s] (default: 0.1; TUM's layout: "
-                  "0.02); the tf transforms before and after an image may be twice as far apart");
+                  "longest time between an image and its pose [s] (default: 0.1, or 0.02 for TUM); "
+                  "two tf transforms may be twice as far apart");
   app->add_option(
       "--depth-scale", options->depth_scale,
       "metres per unit of 16-bit depth images (default: from the recording, else 1e-3)");
   add_mask_options(*app, options->mask, options->confidence);
-  app->add_option("--out", options->out,
-                  "folder to write; frames of an earlier import are replaced, frames from "
-                  "elsewhere are an error")
+  app->add_option(
+         "--out", options->out,
+         "folder to write; replaces the frames of an earlier import, and refuses other frames")
       ->required();
   explain_values(
       *app,

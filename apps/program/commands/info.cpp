@@ -32,7 +32,7 @@ std::optional<Region> region_of(const Options& options, const BeliefGrid& grid,
   const Box box = parse_box("--workspace", options.region);
   const BeliefGrid::Statistics s = grid.statistics(box, criterion);
   if (s.unknown + s.free + s.occupied == 0) {
-    refuse("--workspace " + options.region + ": contains no voxel of the map");
+    refuse("--workspace " + options.region + ": the box contains no voxel of the map");
   }
   return Region{box, s, grid.mean_sigma(box)};
 }

@@ -57,7 +57,7 @@ BeliefGrid continued_map(const Sensor& sensor, const Options& options) {
   warn_of_other_sensor(options.map, grid, sensor);
   const auto conflict = [&options](const std::string& flag, const std::string& given,
                                    const std::string& stored) {
-    refuse(flag + " " + given + " conflicts with " + options.map + ", whose value is " + stored);
+    refuse(flag + " " + given + ": " + options.map + " has a different value, " + stored);
   };
   if (options.voxel && *options.voxel != grid.voxel_size()) {
     check_positive("--voxel", *options.voxel);
@@ -250,14 +250,15 @@ void refuse_empty(const Options& options, const ReadingSource& source, const Tot
   warn_if_out_of_range(options.clouds.front(), sum);
   if (!options.map.empty()) return;
   if (sum.readings_inside + sum.plane_readings + sum.voxels_crossed == 0) {
-    refuse(options.clouds.front() + ": none of " + with_commas(sum.readings) +
+    refuse(options.clouds.front() + ": none of the " + with_commas(sum.readings) +
            " points lies in the workspace");
   }
   if (sum.readings > 0 && sum.readings_inside + sum.plane_readings == 0) {
-    std::fprintf(stderr,
-                 "viewgain: warning: %s: none of %s points lies in the workspace; they only mark "
-                 "free space. Are --poses and --workspace right?\n",
-                 options.clouds.front().c_str(), with_commas(sum.readings).c_str());
+    std::fprintf(
+        stderr,
+        "viewgain: warning: %s: none of the %s points lies in the workspace, so the cloud only "
+        "marks free space. Are --poses and --workspace right?\n",
+        options.clouds.front().c_str(), with_commas(sum.readings).c_str());
   }
 }
 
@@ -303,8 +304,8 @@ Command add_integrate(App& program) {
          "point cloud (.pcd or .ply; x, y, z [m]) to integrate instead of frames; may be repeated")
       ->allow_extra_args(false);
   app->add_option("--origin", options->origin,
-                  "x,y,z: position of the sensor for clouds in the world frame [m]; viewpoint: use "
-                  "VIEWPOINT in each .pcd");
+                  "x,y,z: position of the sensor for clouds in the world frame [m]; viewpoint: "
+                  "from VIEWPOINT in each .pcd");
   app->add_option("--poses", options->poses,
                   "TUM file of sensor-to-world poses, line i for cloud i; clouds are then in the "
                   "sensor's frame, and VIEWPOINT is ignored");
@@ -330,8 +331,8 @@ Command add_integrate(App& program) {
   begin_group(*app, "Map");
   app->add_option("--out", options->out, "map to write (.vdb, or OctoMap .ot)")->required();
   app->add_option("--map", options->map,
-                  "map to extend (.vdb, .ot, .bt); voxel size, workspace and prior stay the same; "
-                  "frames that a .vdb already has are skipped");
+                  "map to extend (.vdb, .ot or .bt); keeps its voxel size, workspace and prior; "
+                  "skips frames that a .vdb already has");
   most_need(*app, {"--voxel", "--workspace", "--out", "--map", "--sensor", "--cloud",
                    "--support-plane", "--mask", "--register", "--on-contradiction"});
   explain_values(*app,

@@ -39,10 +39,11 @@ inline void print_map(const BeliefGrid& grid, const BeliefGrid::Statistics& stat
 /// Warns on stderr of contents that save_map() lost, because a tree cannot store them.
 inline void warn_of_lost_frame(const LostInTree& lost, const std::string& path) {
   if (!lost.T_world_grid) return;
-  std::fprintf(stderr,
-               "viewgain: warning: %s: the tree is in the map's own frame. T_world_grid is lost, "
-               "since it is not a shift by whole voxels within the space of a tree\n",
-               path.c_str());
+  std::fprintf(
+      stderr,
+      "viewgain: warning: %s: T_world_grid is lost, so the tree is in the map's grid frame; "
+      "a tree can only be shifted by whole voxels\n",
+      path.c_str());
 }
 
 }  // namespace viewgain::app

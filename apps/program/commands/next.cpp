@@ -61,7 +61,7 @@ void put_all(Json& json, const NextViews& views, const Proposal& proposal,
 std::optional<std::size_t> parse_top(const std::string& text) {
   if (text == "all") return std::nullopt;
   const std::size_t count = parse_count("--top", parse_numbers("--top", text, 1, 1)[0]);
-  if (count < 1) refuse("--top 0: expected a count of at least 1, or all");
+  if (count < 1) refuse("--top 0: the value must be at least 1, or all");
   return count;
 }
 
@@ -137,16 +137,15 @@ Command add_next(App& program) {
   app->add_option("MAP", o.map, kMapHelp)->required();
   app->add_option("--sensor", o.sensor, kMapSensorHelp);
   add_next_view_options(*app, o.proposal);
-  app->add_option(
-      "--top", o.top,
-      "maximum number of views, each with its marginal gain; all: every possible candidate, with "
-      "its gain alone (--json also prints why candidates were dropped)");
+  app->add_option("--top", o.top,
+                  "maximum number of views, each with its marginal gain; all: list all possible "
+                  "candidates, each with its own gain");
   app->add_option("--out", o.out,
-                  "file of camera-to-world poses to write (.txt or .tum: TUM text; .npy), best "
-                  "first or in the order of the plan");
+                  "file to write with the camera-to-world poses of the views (.txt, .tum or .npy), "
+                  "best first or in the order of the plan");
   app->add_flag("--explain", o.explain,
-                "print for each view where its rays end; if no view has a gain, print a sum over "
-                "up to 32 candidates (cannot be used with --top all)");
+                "print where the rays of each view end, or of up to 32 candidates if no view has a "
+                "gain (cannot be used with --top all)");
   most_need(*app, {"--top", "--out", "--sensor", "--generator", "--poses", "--gain", "--reach",
                    "--obstacle", "--plan", "--explain"});
   add_help(*app, kViewsGroup, "next map.vdb --sensor sr4000 --top 3 --out next.txt");

@@ -34,7 +34,7 @@ Viewer viewer_of(const Options& options) {
   const std::vector<double> n = parse_numbers("--viewer", options.viewer, 2, 3);
   const std::size_t width = n.size() > 2 ? parse_count("--viewer", n[2]) : 1280;
   if (width < 64 || width > 8192)
-    refuse("--viewer " + options.viewer + ": WIDTH is not in 64..8192");
+    refuse("--viewer " + options.viewer + ": WIDTH must be in 64..8192");
   return {kDegree * n[0], kDegree * n[1], static_cast<int>(width) / 4 * 4};
 }
 
@@ -107,10 +107,9 @@ Command add_render(App& program) {
                                "coloured by its standard deviation)")
                    ->required();
   what->check(one_of({"map", "surface", "sigma"}, "kind of picture"));
-  app->add_option(
-      "--viewer", o.viewer,
-      "AZIMUTH,ELEVATION[,WIDTH]: direction from the map to the viewer [deg], with azimuth 0 at +x "
-      "and 90 at +y, and width of the picture [px], 64..8192 (default: 1280)");
+  app->add_option("--viewer", o.viewer,
+                  "AZIMUTH,ELEVATION[,WIDTH]: direction to the viewer [deg] (azimuth 0: +x, 90: "
+                  "+y) and picture width [px] (64..8192; default: 1280)");
   app->add_option("--out", o.out, "PNG file to write")->required();
   add_help(*app, kLookGroup, "render run sigma --out sigma.png");
   return command_of(app, options, [](const Options& given) { render(given); });

@@ -95,7 +95,7 @@ void check_view(const Options& options, const SurfaceScene& scene, const Sensor&
   const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
   if (std::none_of(poses.begin(), poses.end(),
                    [&](const Pose& pose) { return sees_mesh(scene, sensor, rays, pose); })) {
-    refuse(options.mesh + ": the mesh is not in view and in range from any pose; it lies in " +
+    refuse(options.mesh + ": no pose sees the mesh within the sensor's range; the mesh lies in " +
            describe(bounds_of(scene.mesh())) + " m (--size, --place)");
   }
 }
@@ -112,10 +112,11 @@ void warn_of_place(const Options& options, const Box& box, const Sensor& sensor)
   }
   const std::optional<double>& plane = options.sensing.support_plane;
   if (!plane || !(box.max[2] - *plane <= 0.501 * (box.max[2] - box.min[2]))) return;
-  std::fprintf(stderr,
-               "viewgain: warning: %s lies in %s m, half of it or more below the support plane at "
-               "%s m (--place)\n",
-               options.mesh.c_str(), describe(box).c_str(), short_text(*plane).c_str());
+  std::fprintf(
+      stderr,
+      "viewgain: warning: %s lies in %s m; at least half of it is below the support plane, "
+      "whose height is %s m (--place)\n",
+      options.mesh.c_str(), describe(box).c_str(), short_text(*plane).c_str());
 }
 
 void simulate(const Options& options) {
@@ -213,25 +214,23 @@ Command add_simulate(App& program) {
                   "length of the mesh's longest side after scaling [m] (default: no scaling)");
   app->add_option("--up", options->up, "axis of the mesh file that points up")
       ->check(one_of({"x", "y", "z"}, "axis"));
-  app->add_option(
-      "--place", options->place,
-      "where to put the mesh in the world, after --size and --up: center, x,y,z[,YAW_DEG], "
-      "tx,ty,tz,qx,qy,qz,qw or center,x,y,z (default: do not move; see below)");
-  explain_values(
-      *app,
-      "Values of --place [m]:\n"
-      "  center                move the centre of the bounding box to the origin\n"
-      "  x,y,z[,YAW_DEG]       rotate around +z, then shift\n"
-      "  tx,ty,tz,qx,qy,qz,qw  rotate by the quaternion, then shift\n"
-      "  center,...            first center, then one of the others, as in center,x,y,z\n");
+  app->add_option("--place", options->place,
+                  "place of the mesh in the world: center, x,y,z[,YAW_DEG] or tx,ty,tz,qx,qy,qz,qw "
+                  "(default: do not move; see below)");
+  explain_values(*app,
+                 "Values of --place [m], applied after --size and --up:\n"
+                 "  center                move the centre of the bounding box to the origin\n"
+                 "  x,y,z[,YAW_DEG]       rotate around +z, then shift\n"
+                 "  tx,ty,tz,qx,qy,qz,qw  rotate by the quaternion, then shift\n"
+                 "  center,...            first center, then another value, as in center,x,y,z\n");
   add_sensing_options(*app, options->sensing);
   begin_group(*app, "Output");
   app->add_option("--frames-per-view", options->frames_per_view,
                   "number of frames from each pose; poses.txt has one line per frame")
       ->check(counted(1, 1000));
-  app->add_option("--out", options->out,
-                  "folder to write; frames of an earlier simulate are replaced, frames from "
-                  "elsewhere are an error")
+  app->add_option(
+         "--out", options->out,
+         "folder to write; replaces the frames of an earlier simulate, and refuses other frames")
       ->required();
   most_need(*app, {"--sensor", "--out", "--size", "--place", "--up", "--noise", "--support-plane",
                    "--background"});

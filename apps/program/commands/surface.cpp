@@ -121,10 +121,11 @@ void warn_of_place(const Options& options, const TriangleMesh& truth, const Beli
     is_inside = is_inside && middle >= map.min[a] && middle <= map.max[a];
   }
   if (is_inside) return;
-  std::fprintf(stderr,
-               "viewgain: warning: %s lies in %s m, the map in %s m. Is it placed where the object "
-               "was, in metres? (--size, --place, --up)\n",
-               options.truth.c_str(), describe(box).c_str(), describe(map).c_str());
+  std::fprintf(
+      stderr,
+      "viewgain: warning: %s lies in %s m, but the map lies in %s m. Is the mesh in metres, and "
+      "at the place of the object? (--size, --place, --up)\n",
+      options.truth.c_str(), describe(box).c_str(), describe(map).c_str());
 }
 
 void surface(const Options& options, const App& app) {

@@ -106,7 +106,7 @@ Doubles doubles(const py::handle& value, const char* name) {
   const py::array any = any_array(value, std::string(name) + " must be an array of numbers");
   const char kind = any.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u') {
-    throw py::value_error(std::string(name) + " must hold real numbers, not dtype " +
+    throw py::value_error(std::string(name) + " must contain real numbers, not dtype " +
                           py::str(any.dtype()).cast<std::string>());
   }
   return Doubles(any);
@@ -208,7 +208,7 @@ TriangleMesh triangle_mesh(const py::handle& vertices, const py::handle& triangl
       if (!(number >= 0 && number < static_cast<double>(mesh.vertices.size())) ||
           number != std::floor(number)) {
         throw py::value_error("triangles has the index " + std::to_string(number) +
-                              " but there are " + std::to_string(mesh.vertices.size()) +
+                              ", but there are " + std::to_string(mesh.vertices.size()) +
                               " vertices");
       }
       corner = static_cast<std::uint32_t>(number);
@@ -281,12 +281,12 @@ void require_states(const py::array& labels) {
   const auto numpy = py::module_::import("numpy");
   const py::object values = numpy.attr("setdiff1d")(labels, py::make_tuple(0, 1, 2));
   const std::size_t count = py::len(values), named = std::min<std::size_t>(count, 5);
-  std::string text = "labels holds ";
+  std::string text = "labels contains ";
   for (std::size_t i = 0; i < named; ++i) {
     text.append(i > 0 ? ", " : "").append(py::str(values[py::int_(i)]).cast<std::string>());
   }
   if (named < count) text.append(" and ").append(std::to_string(count - named)).append(" more");
-  throw py::value_error(text + ": 0 is unknown, 1 free, 2 occupied");
+  throw py::value_error(text + "; valid values: 0 (unknown), 1 (free), 2 (occupied)");
 }
 
 }  // namespace viewgain::python

@@ -136,7 +136,7 @@ PinholeCamera camera_of_matrix(const py::object& matrix, int width, int height,
     throw py::value_error("K must have the last row 0 0 1");
   }
   if (is_off(m[1], 0) || is_off(m[3], 0)) {
-    throw py::value_error("K has skew: K[0, 1] is " + short_text(m[1]) + " and K[1, 0] " +
+    throw py::value_error("K has skew: K[0, 1] is " + short_text(m[1]) + " and K[1, 0] is " +
                           short_text(m[3]) + "; rectify the images first");
   }
   const PinholeCamera camera{width, height, m[0], m[4], m[2], m[5], distortion};

@@ -79,7 +79,8 @@ py::list suspicions(const Given<Sensor>& sensor, const py::sequence& frames) {
   const std::size_t step = std::max<std::size_t>(1, frames.size() / kFrames);
   for (std::size_t i = 0; i < frames.size() && images.size() < kFrames; i += step) {
     const py::sequence frame = frames[i];
-    if (frame.size() < 2) throw py::value_error("each of frames must be (depth, T_world_camera)");
+    if (frame.size() < 2)
+      throw py::value_error("each entry of frames must be a pair (depth, T_world_camera)");
     const Pose pose =
         pose_batch(doubles(frame[1], "T_world_camera", {4, 4}), "T_world_camera", false).poses[0];
     if (!rigid_pose(pose)) continue;  // the pose is lost

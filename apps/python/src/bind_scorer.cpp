@@ -75,7 +75,8 @@ std::unique_ptr<Scorer> make_scorer(
   config.voxel_size = voxel_size.value_or(config.voxel_size);
   if (!map.is_none() && (voxel_size || !workspace.is_none() || !T_world_grid.is_none())) {
     throw py::value_error(
-        "voxel_size, workspace and T_world_grid cannot be used with map, which has its own");
+        "voxel_size, workspace and T_world_grid cannot be used with map, because the map defines "
+        "them");
   }
   if (!workspace.is_none()) config.workspace = box(workspace, "workspace");
   config.T_world_grid = optional_pose(T_world_grid, "T_world_grid").value_or(Pose());
@@ -99,7 +100,7 @@ std::unique_ptr<Scorer> make_scorer(
       py::isinstance<SharedGrid>(map) ? &map.cast<const SharedGrid&>() : nullptr;
   const std::string file = map.is_none() || grid != nullptr ? "" : readable_file(map);
   if (prior_sigma && !map.is_none() && (grid != nullptr || !is_octomap(file))) {
-    throw py::value_error("prior_sigma cannot be used with map, which has its own");
+    throw py::value_error("prior_sigma cannot be used with map, because the map defines it");
   }
   std::optional<BeliefGrid> copy;
   if (grid != nullptr) copy = grid->read([](const BeliefGrid& g) { return g.clone(); });

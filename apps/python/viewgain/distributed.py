@@ -31,7 +31,7 @@ def _rows(poses: ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
     array = np.asarray(poses, np.float64)
     pose = array.shape[-1:] if array.shape[-1:] == (7,) else array.shape[-2:]
     if pose not in ((7,), (3, 4), (4, 4)):
-        raise ValueError(f"poses must be (..., 4, 4), (..., 3, 4) or (..., 7), not {array.shape}")
+        raise ValueError(f"poses must have the shape (..., 4, 4), (..., 3, 4) or (..., 7), not {array.shape}")
     lead = array.shape[:array.ndim - len(pose)]
     return np.ascontiguousarray(array.reshape(-1, *pose)), lead
 
@@ -114,5 +114,5 @@ def evaluate(client: distributed.Client, map: Union[BeliefGrid, str, os.PathLike
             if progress is not None:
                 progress(done, len(rows))
     if chunks:
-        raise Error(f"{len(rows) - done} of {len(rows)} poses have no gain: their workers were lost {_ROUNDS} times")
+        raise Error(f"{len(rows) - done} of {len(rows)} poses have no gain, because their workers were lost {_ROUNDS} times")
     return gains.reshape(lead)

@@ -49,10 +49,10 @@ def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (
     """
     poses, numbers = np.asarray(T_world_camera, float), np.asarray(values, float)
     if poses.ndim != 3 or poses.shape[1:] != (4, 4) or numbers.shape != poses.shape[:1]:
-        raise ValueError(f"values of the shape {numbers.shape} for poses of the shape {poses.shape}; expected one value per pose")
+        raise ValueError(f"values has the shape {numbers.shape} and poses the shape {poses.shape}; expected one value per pose")
     known = np.isfinite(numbers)
     if not known.any():
-        raise ValueError("no value is finite")
+        raise ValueError("none of the values is finite")
     x, y, z = (poses[known, :3, 3] - np.asarray(center, float)).T
     azimuth, elevation = np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
     axes = _axes_of(axes)
@@ -92,7 +92,7 @@ def contributions(evaluator: GainEvaluator, T_world_camera: ArrayLike, *, axes: 
     T_world_camera : array_like, (4, 4)
     """
     if evaluator.gain != "paper":
-        raise ValueError(f"contributions require the gain 'paper', not {evaluator.gain!r}: only its rays each end in one voxel")
+        raise ValueError(f"contributions require the gain 'paper', not {evaluator.gain!r}, because only its rays each end in one voxel")
     hits = evaluator.trace(T_world_camera)
     shares = {tuple(row["voxel"]): row["gain"] / row["rays"] for row in evaluator.contributions(T_world_camera)}
     kinds, voxels = hits["kind"].ravel(), hits["voxel"].reshape(-1, 3)

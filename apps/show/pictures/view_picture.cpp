@@ -134,7 +134,7 @@ double share_of(double sigma, const std::array<double, 2>& range) {
 
 RgbImage view_picture(const ViewPicture& picture, const ExecConfig& exec) {
   if (!is_rigid(picture.T_world_camera) || (picture.chosen && !is_rigid(*picture.chosen))) {
-    refuse("a view to draw is not a rigid transform");
+    refuse("the pose of a view to draw is not a rigid transform");
   }
   const GridSnapshot& snapshot = picture.evaluator.scene().snapshot();
   const auto workspace = workspace_corners(snapshot);

@@ -33,7 +33,7 @@ void check_report_page(std::string_view flag) {
   if (!built_page().empty()) return;
   refuse(std::string(flag) +
          ": this program was built without the report page, because npm or its registry was not "
-         "available; install nodejs and npm, configure and build again");
+         "available; install nodejs and npm, then configure and build again");
 }
 
 std::string report_page(const Json& data, std::string_view page) {

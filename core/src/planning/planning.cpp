@@ -64,8 +64,8 @@ class Planner {
     const std::optional<DecisionMaking::Decision> decision =
         timed(record, "score", [&] { return decision_.decide(record.T_world_camera, candidates); });
     if (decision && decision->candidate >= candidates.size()) {
-      refuse("planning: the decision is candidate " + std::to_string(decision->candidate) + " of " +
-             std::to_string(candidates.size()));
+      refuse("planning: decide() returned the candidate " + std::to_string(decision->candidate) +
+             ", but there are only " + std::to_string(candidates.size()) + " candidates");
     }
     record.decision = decision;
     if (interrupted()) return StopReason::interrupted;

@@ -18,7 +18,7 @@ void check(const PlanningConfig& config) {
       fail(std::string(name) + " must be finite, not " + short_text(value));
     }
   };
-  if (config.max_views == 0) fail("max_views is 0");
+  if (config.max_views == 0) fail("max_views must be at least 1, not 0");
   check_finite("stop_gain", config.stop_gain);
   check_finite("stop_area", config.stop_area);
   check_finite("idle_fraction", config.idle_fraction);

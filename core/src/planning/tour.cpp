@@ -26,8 +26,9 @@ class Costs {
         if (from == to) continue;
         const double value = cost(from == count ? kTourStart : from, to);
         if (!(value >= 0)) {
-          refuse("the path from " + (from == count ? "the start" : std::to_string(from)) + " to " +
-                 std::to_string(to) + " costs " + std::to_string(value));
+          refuse("the cost of the path from " +
+                 (from == count ? "the start" : std::to_string(from)) + " to " +
+                 std::to_string(to) + " is " + std::to_string(value) + "; it must be at least 0");
         }
         costs_[from * count + to] = value;
       }

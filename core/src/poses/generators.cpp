@@ -18,15 +18,16 @@ constexpr std::size_t kMaxPoses = 100'000'000;  // 9.6 GB
 
 void check(const char* what, std::size_t count, double radius, const Eigen::Vector3d& center) {
   const std::string name(what);
-  if (count == 0) refuse(name + ": the number of poses is 0");
+  if (count == 0) refuse(name + ": the number of poses must be at least 1, not 0");
   if (count > kMaxPoses) {
     throw Error(ErrorCode::capacity, name + ": " + std::to_string(count) +
-                                         " poses; the maximum is " + std::to_string(kMaxPoses));
+                                         " poses are too many; the maximum is " +
+                                         std::to_string(kMaxPoses));
   }
   if (!(std::isfinite(radius) && radius > 0)) {
     refuse(name + ": the radius must be positive and finite, not " + short_text(radius));
   }
-  if (!center.allFinite()) refuse(name + ": the centre is not finite");
+  if (!center.allFinite()) refuse(name + ": the centre must be finite");
 }
 
 /// `count` lattice points whose z_i run from 1 downwards in steps of 2 / steps.
@@ -48,7 +49,7 @@ std::vector<Pose> lattice(std::size_t count, double steps, double radius,
 
 void check_finite(const char* what, const char* name, double value) {
   if (std::isfinite(value)) return;
-  refuse(std::string(what) + ": the " + name + " is not finite");
+  refuse(std::string(what) + ": the " + name + " must be finite");
 }
 
 /// Adds the poses of one ring; its numbers are checked.
@@ -131,7 +132,7 @@ std::vector<Pose> orbit_poses(std::size_t count, double radius, double elevation
   check("orbit", count, radius, center);
   const double turn = step.value_or(2.0 * std::numbers::pi / static_cast<double>(count));
   if (!std::isfinite(elevation) || !std::isfinite(start) || !std::isfinite(turn)) {
-    refuse("orbit: an angle is not finite");
+    refuse("orbit: the angles must be finite");
   }
   std::vector<Pose> poses;
   poses.reserve(count);
@@ -148,8 +149,8 @@ std::vector<Pose> ring_poses(std::size_t count, double radius, double height, do
                              double start, const Eigen::Vector3d& center) {
   check("rings", count, radius, center);
   check_finite("rings", "height", height);
-  check_finite("rings", "tilt's angle", tilt);
-  check_finite("rings", "start's angle", start);
+  check_finite("rings", "tilt", tilt);
+  check_finite("rings", "start angle", start);
   std::vector<Pose> poses;
   poses.reserve(count);
   append_ring(count, radius, height, tilt, start, center, poses);
@@ -179,7 +180,7 @@ std::vector<Pose> literature_ring_poses(std::size_t total, double radius,
       for (const double r : {0.4, 0.6, 0.8}) append_pattern(of_288, r, radius / 0.5, center, poses);
       break;
     default:
-      refuse("rings: no set of " + std::to_string(total) + " poses; valid: 48, 80, 288 and 864");
+      refuse("rings: the number of poses must be 48, 80, 288 or 864, not " + std::to_string(total));
   }
   return poses;
 }
@@ -189,8 +190,8 @@ std::vector<Pose> shell_poses(std::size_t count, double min_radius, double max_r
   check("shell", count, min_radius, center);
   check("shell", count, max_radius, center);
   if (min_radius > max_radius) {
-    refuse("shell: the smaller radius " + short_text(min_radius) + " exceeds the larger one, " +
-           short_text(max_radius));
+    refuse("shell: the minimum radius, " + short_text(min_radius) +
+           ", exceeds the maximum radius, " + short_text(max_radius));
   }
   PortableRandom random(seed);
   std::vector<Pose> poses;

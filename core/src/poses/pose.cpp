@@ -47,12 +47,12 @@ std::optional<Pose> rigid_pose(const Pose& pose) {
 
 Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up) {
   if (!eye.allFinite() || !target.allFinite() || !up.allFinite()) {
-    refuse("look_at: a number is not finite");
+    refuse("look_at: eye, target and up must be finite");
   }
   const Eigen::Vector3d direction = target - eye;
   if (!direction.allFinite()) refuse("look_at: eye and target are too far apart");
   if (direction.isZero(0)) refuse("look_at: eye and target are the same point");
-  if (up.isZero(0)) refuse("look_at: up is zero");
+  if (up.isZero(0)) refuse("look_at: up must not be zero");
 
   const Eigen::Vector3d z = direction.stableNormalized();
   Eigen::Vector3d x = z.cross(up.stableNormalized());

@@ -41,7 +41,7 @@ Pose pose_of_numbers(std::span<const double> numbers, bool& mended,
     Eigen::Quaterniond q(numbers[6], numbers[3], numbers[4], numbers[5]);
     const double norm = q.norm();
     if (!(std::abs(norm - 1.0) <= kMendable)) {
-      fail("the quaternion's norm is " + short_text(norm) + ", not 1");
+      fail("the quaternion has norm " + short_text(norm) + "; expected 1");
     }
     mended = std::abs(norm - 1.0) > kTold;
     q.normalize();
@@ -49,7 +49,7 @@ Pose pose_of_numbers(std::span<const double> numbers, bool& mended,
   }
   for (std::size_t i = 0; i < 4; ++i) {
     if (std::abs(numbers[12 + i] - (i == 3 ? 1.0 : 0.0)) > kLastRow) {
-      fail("the matrix's last row is not 0 0 0 1");
+      fail("the last row of the matrix must be 0 0 0 1");
     }
   }
   Pose pose;
@@ -81,7 +81,8 @@ Pose tum_line_pose(const LineReader& line, bool* orthonormalized) {
 PoseList read_tum(const fs::path& path) {
   const std::string contents = file_bytes(path, kMaxFileSize);
   if (contents.starts_with("\x93NUMPY")) {
-    throw Error(ErrorCode::format, path.string() + ": is a numpy array; its name must end in .npy");
+    throw Error(ErrorCode::format,
+                path.string() + ": the file is a numpy array; rename it to end in .npy");
   }
   LineReader line(path.string(), contents);
   PoseList list;
@@ -92,7 +93,8 @@ PoseList read_tum(const fs::path& path) {
     list.timestamps.push_back(line.number(0));
     list.orthonormalized += mended ? 1 : 0;
   }
-  if (list.poses.empty()) throw Error(ErrorCode::format, path.string() + ": contains no pose");
+  if (list.poses.empty())
+    throw Error(ErrorCode::format, path.string() + ": the file contains no pose");
   return list;
 }
 
@@ -105,7 +107,7 @@ void write_tum(const fs::path& path, std::span<const Pose> poses) {
 void check_writable(const fs::path& path, std::span<const Pose> poses,
                     std::span<const double> timestamps) {
   if (timestamps.size() != poses.size()) {
-    refuse(path.string() + ": " + std::to_string(poses.size()) + " poses, but " +
+    refuse(path.string() + ": there are " + std::to_string(poses.size()) + " poses, but " +
            std::to_string(timestamps.size()) + " timestamps");
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {

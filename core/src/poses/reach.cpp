@@ -64,7 +64,9 @@ void ReachRegion::validate() const {
       const double low = boxes[i].min[k], high = boxes[i].max[k];
       if (!std::isfinite(low) || !std::isfinite(high)) fail("box", i, "is not finite");
       if (low > high) {
-        fail("box", i, "is inside out: " + short_text(low) + " > " + short_text(high));
+        fail("box", i,
+             "is inside out: its minimum, " + short_text(low) + ", exceeds its maximum, " +
+                 short_text(high));
       }
     }
   }
@@ -74,10 +76,12 @@ void ReachRegion::validate() const {
         !std::isfinite(shell.max_radius)) {
       fail("shell", i, "is not finite");
     }
-    if (shell.min_radius < 0) fail("shell", i, "has radius " + short_text(shell.min_radius));
+    if (shell.min_radius < 0)
+      fail("shell", i, "has the negative radius " + short_text(shell.min_radius));
     if (shell.min_radius > shell.max_radius) {
       fail("shell", i,
-           "is inside out: " + short_text(shell.min_radius) + " > " + short_text(shell.max_radius));
+           "is inside out: its minimum radius, " + short_text(shell.min_radius) +
+               ", exceeds its maximum radius, " + short_text(shell.max_radius));
     }
   }
   for (std::size_t i = 0; i < half_spaces.size(); ++i) {
@@ -85,7 +89,7 @@ void ReachRegion::validate() const {
     if (!half_space.normal.allFinite() || !std::isfinite(half_space.offset)) {
       fail("half-space", i, "is not finite");
     }
-    if (half_space.normal.isZero(0)) fail("half-space", i, "has a normal of length 0");
+    if (half_space.normal.isZero(0)) fail("half-space", i, "has a normal with length 0");
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!std::isfinite(orthonormality_error(poses[i]))) fail("pose", i, "is not a rigid transform");
@@ -93,8 +97,8 @@ void ReachRegion::validate() const {
   for (const auto& [name, value] :
        {std::pair("distance", tolerance.distance), std::pair("angle", tolerance.angle)}) {
     if (!(std::isfinite(value) && value >= 0)) {
-      refuse(std::string("reach: the tolerance's ") + name +
-             " must be finite and not negative, not " + short_text(value));
+      refuse(std::string("reach: the ") + name + " tolerance must be at least 0 and finite, not " +
+             short_text(value));
     }
   }
 }

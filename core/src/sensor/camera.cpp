@@ -98,7 +98,7 @@ void PinholeCamera::validate() const {
   check_size("height", height);
   if (width * height > kMaxPixels) {
     fail("width x height is " + std::to_string(width) + " x " + std::to_string(height) +
-         ", more than 2^24 pixels");
+         "; the maximum is 2^24 pixels");
   }
   const auto check_focal = [](const char* name, double value) {
     if (!(std::isfinite(value) && value > 0)) {
@@ -154,7 +154,8 @@ std::vector<Eigen::Vector3d> PinholeCamera::ray_table() const {
 std::vector<double> PinholeCamera::solid_angles(std::span<const Eigen::Vector3d> rays) const {
   std::vector<double> angles(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   if (rays.size() != angles.size()) {
-    fail(std::to_string(rays.size()) + " rays for " + std::to_string(angles.size()) + " pixels");
+    fail("there are " + std::to_string(rays.size()) + " rays, but " +
+         std::to_string(angles.size()) + " pixels");
   }
   const auto index = [this](int u, int v) {
     return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +

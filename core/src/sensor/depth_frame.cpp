@@ -15,17 +15,18 @@ void check_frame_size(const DepthFrame& frame, const PinholeCamera& camera) {
       static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   if (frame.width != camera.width || frame.height != camera.height ||
       frame.depth.size() != pixels) {
-    refuse("depth frame has " + std::to_string(frame.width) + " x " + std::to_string(frame.height) +
-           " px with " + std::to_string(frame.depth.size()) + " values, but the sensor has " +
-           std::to_string(camera.width) + " x " + std::to_string(camera.height));
+    refuse("the depth frame has " + std::to_string(frame.width) + " x " +
+           std::to_string(frame.height) + " px with " + std::to_string(frame.depth.size()) +
+           " values, but the sensor has " + std::to_string(camera.width) + " x " +
+           std::to_string(camera.height) + " px");
   }
   if (!frame.amplitude.empty() && frame.amplitude.size() != pixels) {
-    refuse("depth frame has " + std::to_string(frame.amplitude.size()) + " amplitudes for " +
+    refuse("the depth frame has " + std::to_string(frame.amplitude.size()) + " amplitudes for " +
            std::to_string(pixels) + " pixels");
   }
   if (!frame.known_depth.empty() && frame.known_depth.size() != pixels) {
-    refuse("depth frame has " + std::to_string(frame.known_depth.size()) + " known depths for " +
-           std::to_string(pixels) + " pixels");
+    refuse("the depth frame has " + std::to_string(frame.known_depth.size()) +
+           " known depths for " + std::to_string(pixels) + " pixels");
   }
 }
 
@@ -37,8 +38,8 @@ bool is_identity(const std::string& text) {
 
 void check_identity(const std::string& identity) {
   if (identity.empty() || is_identity(identity)) return;
-  refuse("the identity of a frame is " + quoted(identity) +
-         "; it must be 16 hexadecimal digits, a space and a name");
+  refuse("the identity of a frame must be 16 hexadecimal digits, a space and a name, not " +
+         quoted(identity));
 }
 
 }  // namespace viewgain

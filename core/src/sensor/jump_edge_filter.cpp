@@ -57,7 +57,8 @@ JumpEdgeFilter::JumpEdgeFilter(const PinholeCamera& camera, const JumpEdgeFilter
     : camera_(camera), config_(config) {
   camera_.validate();
   if (!(config_.angle >= kMinAngle - kAngleSlack && config_.angle <= kMaxAngle + kAngleSlack)) {
-    refuse("jump-edge angle must be in 1..10 degrees, not " + short_text(config_.angle / kDegree));
+    refuse("the jump-edge angle must be in 1..10 degrees, not " +
+           short_text(config_.angle / kDegree));
   }
   rays_ = camera_.ray_table();
   const double sin_angle = std::sin(config_.angle);

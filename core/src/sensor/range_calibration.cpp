@@ -19,7 +19,8 @@ void RangeCalibration::validate() const {
     const auto& [measured, error] = table[i];
     if (!std::isfinite(measured) || !std::isfinite(error)) {
       refuse("range calibration: entry " + std::to_string(i) +
-             " is not finite: " + short_text(measured) + ", " + short_text(error));
+             " has a number that is not finite: " + short_text(measured) + ", " +
+             short_text(error));
     }
     if (i > 0 && !(measured > table[i - 1][0])) {
       refuse("range calibration: measured ranges must increase, but " + short_text(measured) +
@@ -67,8 +68,8 @@ void RangeCorrector::correct(std::span<float> depth) const {
   const std::size_t pixels =
       static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
   if (depth.size() != pixels) {
-    refuse(std::to_string(depth.size()) + " depths for " + std::to_string(camera_.width) + " x " +
-           std::to_string(camera_.height) + " pixels");
+    refuse("there are " + std::to_string(depth.size()) + " depths, but the camera has " +
+           std::to_string(camera_.width) + " x " + std::to_string(camera_.height) + " pixels");
   }
   if (calibration_.table.empty()) return;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {

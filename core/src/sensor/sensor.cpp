@@ -66,28 +66,28 @@ void Sensor::validate() const {
   const auto fail = [](const std::string& what) { refuse("sensor: " + what); };
   camera.validate();
   if (!(std::isfinite(min_range) && min_range >= 0)) {
-    fail("min_range must be finite and not negative, not " + short_text(min_range));
+    fail("min_range must be at least 0 and finite, not " + short_text(min_range));
   }
   if (!(std::isfinite(max_range) && max_range > min_range)) {
-    fail("max_range must be finite and larger than min_range, " + short_text(min_range) +
-         " m, not " + short_text(max_range) + " (lengths are in metres)");
+    fail("max_range is " + short_text(max_range) +
+         " m; it must be finite and larger than min_range, " + short_text(min_range) +
+         " m (lengths are in metres)");
   }
   if (!(working_distance > 0 && working_distance >= min_range && working_distance <= max_range)) {
-    fail("working_distance must be positive and within min_range and max_range, " +
-         short_text(min_range) + " to " + short_text(max_range) + " m, not " +
-         short_text(working_distance) + " (lengths are in metres)");
+    fail("working_distance is " + short_text(working_distance) +
+         " m; it must be positive and between min_range and max_range, " + short_text(min_range) +
+         " to " + short_text(max_range) + " m (lengths are in metres)");
   }
   NoiseModel parameters = noise;
   for_each_parameter(parameters, [&](double value, const auto& field) {
     if (std::isfinite(value) && (field.may_be_0 ? value >= 0 : value > 0)) return;
     refuse(std::string("noise: ") + field.name + " must be " +
-           (field.may_be_0 ? "not negative" : "positive") + " and finite, not " +
-           short_text(value));
+           (field.may_be_0 ? "at least 0" : "positive") + " and finite, not " + short_text(value));
   });
   const double least = range_of_least_sigma(*this);
   if (!(noise_sigmas(least).axial > 0)) {
     refuse("noise: the standard deviation along the ray is 0 at a range of " + short_text(least) +
-           " m, as if a depth could be exact. offset, linear or quadratic must be positive");
+           " m; set offset, linear or quadratic to a positive number");
   }
   if (T_flange_camera && !rigid_pose(*T_flange_camera)) {
     fail("T_flange_camera is not a rigid transform");
@@ -101,11 +101,11 @@ void Sensor::validate() const {
   }
   for (const double sigma : {pose_sigma.translation, pose_sigma.rotation}) {
     if (!(std::isfinite(sigma) && sigma >= 0)) {
-      fail("pose_sigma must be finite and not negative, not " + short_text(sigma));
+      fail("pose_sigma must be at least 0 and finite, not " + short_text(sigma));
     }
   }
   if (!(std::isfinite(scale_sigma) && scale_sigma >= 0)) {
-    fail("scale_sigma must be finite and not negative, not " + short_text(scale_sigma));
+    fail("scale_sigma must be at least 0 and finite, not " + short_text(scale_sigma));
   }
   range_calibration.validate();
   for (const auto& [measured, error] : range_calibration.table) {

@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kPart = std::size_t{1} << 20U;  // [bytes]
 
 std::string too_many_bytes(std::uint64_t most) {
-  return "has more than " + std::to_string(most) + " bytes";
+  return "the file has more than " + std::to_string(most) + " bytes";
 }
 
 /// A regular file or a pipe, open for reading.
@@ -96,7 +96,7 @@ std::string bytes_of(Input& input, std::uint64_t most) {
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {
   }
-  input.fail_capacity("does not fit into memory");
+  input.fail_capacity("the file does not fit into memory");
 }
 
 std::string read_bytes(const std::filesystem::path& path, std::uint64_t most) {

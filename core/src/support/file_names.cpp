@@ -32,7 +32,7 @@ std::string fault_of_ending(const std::filesystem::path& path, std::string_view 
   if (std::find(endings.begin(), endings.end(), ending) != endings.end() || is_special_file(path)) {
     return "";
   }
-  std::string fault = "the name of " + std::string(what) + " must end in ";
+  std::string fault = std::string(what) + " must have the ending ";
   std::size_t left = endings.size();
   for (const std::string_view one : endings) {
     fault += one;

@@ -118,7 +118,7 @@ struct VdbContents {
     const SealCheck seal = check_seal(bytes);
     const VdbOutline outline = outline_of(bytes);
     if (!outline.fault.empty()) fail(outline.fault);
-    if (seal == SealCheck::broken) fail("is corrupt: its checksum does not match");
+    if (seal == SealCheck::broken) fail("the file is corrupt: its checksum does not match");
 
     initialize_openvdb();
     try {
@@ -127,11 +127,11 @@ struct VdbContents {
       check_room(outline.tree_bytes + threads * kBloscBytes);
       ImageReader().read(bytes, metadata, grids, pool);
     } catch (const std::ios_base::failure&) {
-      fail("is truncated or corrupt");
+      fail("the file is truncated or corrupt");
     } catch (const std::bad_alloc&) {
-      fail("does not fit into memory", ErrorCode::capacity);
+      fail("the file does not fit into memory", ErrorCode::capacity);
     } catch (const std::exception& error) {
-      fail(std::string("cannot be read by OpenVDB: ") + error.what());
+      fail(std::string("OpenVDB cannot read the file: ") + error.what());
     }
   }
   VdbContents(const VdbContents&) = delete;

@@ -161,7 +161,7 @@ inline constexpr const char* kScaleGridName = "scale";
         !is_by_cells(s, key, scale)) {
       std::ostringstream fault;
       fault << "the leaf of voxel " << box.min()
-            << " has a scale that differs from those of its states and beliefs";
+            << " has a scale that differs from the scale of its states and beliefs";
       return fault.str();
     }
     s.put_scale(key, scale);

@@ -24,7 +24,7 @@ struct Fault : std::exception {
   std::string of_file;
   explicit Fault(std::string what) : of_file(std::move(what)) {}
 };
-[[noreturn]] void corrupt(const std::string& what) { throw Fault("is corrupt: " + what); }
+[[noreturn]] void corrupt(const std::string& what) { throw Fault("the file is corrupt: " + what); }
 
 class Reader {
  public:
@@ -38,7 +38,7 @@ class Reader {
     return value;
   }
   std::string_view take(std::uint64_t count) {
-    if (count > file_.size() - position_) throw Fault("is truncated");
+    if (count > file_.size() - position_) throw Fault("the file is truncated");
     const std::string_view part = file_.substr(position_, count);
     position_ += part.size();
     return part;
@@ -122,7 +122,7 @@ void follow_map(Reader& reader) {
     type = reader.text();
   }
   const std::size_t size = size_in(kMaps, type);
-  if (size == 0) throw Fault("has a grid with an unknown transform");
+  if (size == 0) throw Fault("the file has a grid with an unknown transform");
   (void)reader.take(size);
 }
 
@@ -163,7 +163,7 @@ class TreeWalk {
       for (std::int32_t& at : origin) at = reader_.number<std::int32_t>();
       const bool is_place =
           std::all_of(origin.begin(), origin.end(), [](std::int32_t at) { return at % 4096 == 0; });
-      if (!is_place || !origins.insert(origin).second) corrupt("a node is out of place");
+      if (!is_place || !origins.insert(origin).second) corrupt("a node is in the wrong place");
       for (std::size_t lower = node(32 * 32 * 32); lower > 0; --lower) {
         const std::size_t own = node(16 * 16 * 16);
         (void)reader_.take(own * kLeafMask);
@@ -187,7 +187,8 @@ class TreeWalk {
   std::size_t node(std::size_t places) {
     const std::string_view children = reader_.take(places / 8), active = reader_.take(places / 8);
     for (std::size_t i = 0; i < children.size(); ++i) {
-      if ((children[i] & active[i]) != 0) corrupt("a child is also a tile");
+      if ((children[i] & active[i]) != 0)
+        corrupt("a node has a child and a tile at the same place");
     }
     values(places, count_on(active));
     bytes_ += places * ((value_size_ + 7) / 8 * 8) + places / 4 + kNodeHead;
@@ -258,12 +259,13 @@ std::uint64_t follow_file(std::string& image) {
   Reader reader(file, 0);
   if (!file.starts_with(kMagic) || reader.number<std::int64_t>() != 0x56444220) {
     if (file.starts_with("# Octomap OcTree")) {
-      throw Fault("is an OctoMap tree, not an OpenVDB file; give it the ending .ot or .bt");
+      throw Fault(
+          "the file is an OctoMap tree, not an OpenVDB file; rename it to end in .ot or .bt");
     }
-    throw Fault("is not an OpenVDB file; maps are .vdb, or OctoMap .ot and .bt");
+    throw Fault("the file is not an OpenVDB file; a map must be a .vdb, .ot or .bt file");
   }
   if (reader.number<std::uint32_t>() < kOldestVersion) {
-    throw Fault("has an OpenVDB format that is too old");
+    throw Fault("the file has an OpenVDB format that is too old");
   }
   (void)reader.take(2 * sizeof(std::uint32_t));  // library version
   const bool has_positions = reader.number<char>() != 0;
@@ -280,7 +282,8 @@ std::uint64_t follow_file(std::string& image) {
     const auto end = reader.number<std::int64_t>();
     const bool is_known = is_followed(without_half(type));
     if (!has_positions) {
-      if (!is_known) throw Fault("has a grid of type " + std::string(type) + " of unknown length");
+      if (!is_known)
+        throw Fault("the file has a grid of type " + std::string(type) + " of unknown length");
       bytes += follow_grid(reader, image, type, !parent.empty());
       continue;
     }

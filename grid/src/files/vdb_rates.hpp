@@ -23,7 +23,8 @@ class RateReader {
  public:
   RateReader(const std::filesystem::path& path, const VdbContents& contents)
       : path_(path), rates_(grid_of(contents)) {
-    if (!rates_->transform().isLinear()) fail("has a transform that is not linear");
+    if (!rates_->transform().isLinear())
+      fail("the hazard rates have a transform that is not linear");
   }
 
   [[nodiscard]] HazardConfig::Volume rates_in(const BeliefGrid& grid) const {
@@ -57,23 +58,23 @@ class RateReader {
     const double size = std::max({sides.x(), sides.y(), sides.z()});
     const double ratio = size / grid.voxel_size();
     if (ratio > kMost || ratio * kMost < 1) {
-      mismatch("has voxels of " + short_text(size) + " m, the map of " +
-               short_text(grid.voxel_size()) + " m");
+      mismatch("the hazard rates have voxels of " + short_text(size) +
+               " m, but the map has voxels of " + short_text(grid.voxel_size()) + " m");
     }
     if (box.volume() == 0) {
       const openvdb::Vec3d low = rates_->indexToWorld(active.min().asVec3d());
       const openvdb::Vec3d high = rates_->indexToWorld(active.max().asVec3d());
-      mismatch("its rates lie between " + text_of(low) + " and " + text_of(high) +
-               " m, but none lies in the map");
+      mismatch("all hazard rates lie outside the map, between " + text_of(low) + " and " +
+               text_of(high) + " m");
     }
   }
   [[nodiscard]] static std::string text_of(const openvdb::Vec3d& p) {
     return short_text(p.x()) + "," + short_text(p.y()) + "," + short_text(p.z());
   }
   [[noreturn]] void mismatch(const std::string& what) const {
-    throw Error(ErrorCode::invalid_argument,
-                path_.string() + ": " + what +
-                    ": hazard rates must have a transform to the map's world, in metres");
+    throw Error(
+        ErrorCode::invalid_argument,
+        path_.string() + ": " + what + ". Their transform must lead to the world frame, in metres");
   }
 
   [[nodiscard]] static bool is_index(const openvdb::Vec3d& at) {
@@ -94,14 +95,15 @@ class RateReader {
       if (floats) found = floats, ++count;
     }
     if (count != 1) {
-      fail("has " + std::to_string(count) + " float grids, but none is named 'hazard'");
+      fail("the file has " + std::to_string(count) +
+           " float grids; name the grid of rates 'hazard'");
     }
     return found;
   }
 
   [[nodiscard]] float checked(float rate) const {
     if (!(rate >= 0 && std::isfinite(rate))) {
-      fail("has the rate " + short_text(rate) + ", which is negative or not finite");
+      fail("a hazard rate is " + short_text(rate) + "; it must be at least 0 and finite");
     }
     return rate;
   }

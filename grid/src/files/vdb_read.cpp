@@ -64,7 +64,7 @@ class Loader {
       storage->notes = map_notes(contents.metadata, path_);
       return GridAccess::wrap(std::move(storage));
     } catch (const openvdb::Exception& error) {
-      fail(std::string("cannot be read by OpenVDB: ") + error.what());
+      fail(std::string("OpenVDB cannot read the file: ") + error.what());
     }
   }
 
@@ -77,8 +77,8 @@ class Loader {
   [[nodiscard]] auto value(const openvdb::MetaMap& metadata, const char* name) const {
     const auto found = metadata.getMetadata<Metadata>(name);
     if (!found) {
-      fail(std::string("has no metadata '") + name + "' of type " + Metadata::staticTypeName() +
-           ": it is not a viewgain map");
+      fail(std::string("the file is not a viewgain map: it has no metadata '") + name +
+           "' of type " + Metadata::staticTypeName());
     }
     return found->value();
   }
@@ -93,8 +93,9 @@ class Loader {
   [[nodiscard]] std::int32_t version_of(const openvdb::MetaMap& metadata) const {
     const auto found = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
     if (found != kVdbLayoutVersion && found != kVdbScaledVersion) {
-      fail("has viewgain_version " + std::to_string(found) + ", but this program reads " +
-           std::to_string(kVdbLayoutVersion) + " and " + std::to_string(kVdbScaledVersion));
+      fail("the file has viewgain_version " + std::to_string(found) +
+           "; this program reads versions " + std::to_string(kVdbLayoutVersion) + " and " +
+           std::to_string(kVdbScaledVersion));
     }
     return found;
   }
@@ -141,9 +142,9 @@ class Loader {
     for (const auto& grid : contents.grids) {
       if (grid->getName() != name) continue;
       found = openvdb::gridPtrCast<Grid>(grid);
-      if (!found) fail("grid '" + name + "' has values of type " + grid->valueType());
+      if (!found) fail("grid '" + name + "' has values of the wrong type, " + grid->valueType());
     }
-    if (!found) fail("has no grid '" + name + "': it is not a viewgain map");
+    if (!found) fail("the file is not a viewgain map: it has no grid '" + name + "'");
     CoordBBox box;
     if (found->tree().evalActiveVoxelBoundingBox(box) &&
         !(s.lattice.contains(to_index(box.min())) && s.lattice.contains(to_index(box.max())))) {
@@ -359,11 +360,11 @@ class Loader {
           double{trees.hits_rest != nullptr ? trees.hits_rest->getValue(at) : 0.0F};
       constexpr double kMost = std::numeric_limits<std::int32_t>::max();
       if (!(count >= 0 && count <= kMost && count == std::floor(count))) {
-        fail("grid 'hits' has the count " + short_text(count));
+        fail("grid 'hits' has the invalid count " + short_text(count));
       }
       belief.hits = static_cast<std::uint32_t>(count);
       const std::string fault = fault_of_belief(belief, s.voxel_size);
-      if (!fault.empty()) fail("belief" + where(at) + " " + fault);
+      if (!fault.empty()) fail("the belief" + where(at) + " " + fault);
       if (s.tree.getValue(at) == kUnknownCode) {
         fail("grid 'hits' has a voxel that is unknown in 'state'");
       }
@@ -389,7 +390,8 @@ HazardConfig::Volume load_hazard_vdb(const std::filesystem::path& path, const Be
   try {
     return RateReader(path, contents).rates_in(grid);
   } catch (const openvdb::Exception& error) {
-    throw Error(ErrorCode::format, path.string() + ": cannot be read by OpenVDB: " + error.what());
+    throw Error(ErrorCode::format,
+                path.string() + ": OpenVDB cannot read the file: " + error.what());
   }
 }
 

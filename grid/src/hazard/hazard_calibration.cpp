@@ -75,7 +75,7 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
   const std::optional<Pose> T_rigid = rigid_pose(T_world_camera);
   if (!T_rigid) refuse("the frame's pose is not a rigid transform");
   if (hazard.voxel_size() != grid.voxel_size()) {
-    refuse("the hazard has voxels of " + short_text(hazard.voxel_size()) +
+    refuse("the hazard field has voxels of " + short_text(hazard.voxel_size()) +
            " m, but the grid has voxels of " + short_text(grid.voxel_size()) + " m");
   }
   if (!hazard.follows_counters() || hazard.near_box().volume() == 0) return;

@@ -25,7 +25,7 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kKnownDistance = 1.2;
 
 void check(bool ok, const char* name, double value) {
-  if (!ok) refuse("hazard: " + std::string(name) + " " + short_text(value) + " is out of bounds");
+  if (!ok) refuse("hazard: the " + std::string(name) + ", not " + short_text(value));
 }
 
 // The voxels with evidence of surface; those of a cube of 2^shift voxels per edge count together.
@@ -137,25 +137,32 @@ double HazardConfig::Model::openness(double share_of_directions) {
 void HazardConfig::validate() const {
   const auto is_positive = [](double value) { return value > 0 && std::isfinite(value); };
   const auto is_rate = [](double value) { return value >= 0 && std::isfinite(value); };
-  if (object_size) check(is_positive(*object_size), "object size", *object_size);
+  if (object_size)
+    check(is_positive(*object_size), "object size must be positive and finite", *object_size);
   if (model) {
-    check(is_positive(model->decay_length), "decay length", model->decay_length);
-    check(is_rate(model->near_rate), "rate near the surface", model->near_rate);
-    check(is_rate(model->far_rate), "rate far from the surface", model->far_rate);
+    check(is_positive(model->decay_length), "decay length must be positive and finite",
+          model->decay_length);
+    check(is_rate(model->near_rate), "rate near the surface must be at least 0 and finite",
+          model->near_rate);
+    check(is_rate(model->far_rate), "rate far from the surface must be at least 0 and finite",
+          model->far_rate);
   }
   if (!volume) return;
   if (volume->rates.size() != volume->box.volume()) {
-    refuse("hazard: " + std::to_string(volume->rates.size()) + " rates for a box of " +
-           std::to_string(volume->box.volume()) + " voxels");
+    refuse("hazard: there are " + std::to_string(volume->rates.size()) +
+           " rates, but the box has " + std::to_string(volume->box.volume()) + " voxels");
   }
-  check(is_rate(double{volume->outside}), "rate outside the volume", double{volume->outside});
-  for (const float rate : volume->rates) check(is_rate(double{rate}), "rate", double{rate});
+  check(is_rate(double{volume->outside}), "rate outside the volume must be at least 0 and finite",
+        double{volume->outside});
+  for (const float rate : volume->rates)
+    check(is_rate(double{rate}), "rate must be at least 0 and finite", double{rate});
 }
 
 HazardConfig constant_hazard(double rate, const BeliefGrid& grid,
                              std::optional<double> object_size) {
   if (object_size) {
-    check(*object_size > 0 && std::isfinite(*object_size), "object size", *object_size);
+    check(*object_size > 0 && std::isfinite(*object_size),
+          "object size must be positive and finite", *object_size);
   }
   const Index3 dims = grid.dims();
   const double longest = std::max({dims.x, dims.y, dims.z}) * grid.voxel_size();
@@ -206,8 +213,8 @@ void HazardField::find_distances(const GridSnapshot& snapshot, const std::vector
   constexpr std::uint64_t kMostCells = std::uint64_t{1} << 31U;
   if (cells.volume() > kMostCells) {
     throw Error(ErrorCode::capacity, "hazard: the known surface extends over " +
-                                         std::to_string(cells.volume()) + " cells, " +
-                                         std::to_string(kMostCells) + " is the maximum");
+                                         std::to_string(cells.volume()) +
+                                         " cells; the maximum is " + std::to_string(kMostCells));
   }
   squared_.assign(cells.volume(), detail::kNoDistance);
   std::vector<std::uint32_t> sources;  // cells with evidence

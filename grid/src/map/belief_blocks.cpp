@@ -61,15 +61,16 @@ std::string fault_of_belief(const Belief& belief, double voxel_size) {
   for (std::size_t i = 0; i < 6; ++i) {
     const float value = belief.information[i];
     if (!std::isfinite(value) || (i < 3 && value < 0))
-      return has("an information of ", short_text(value));
+      return has("an information that is negative or not finite: ", short_text(value));
     is_clamped = is_clamped || std::abs(value) == kMost;
   }
   for (const float value : belief.information_vector) {
-    if (!std::isfinite(value)) return has("an information vector of ", short_text(value));
+    if (!std::isfinite(value))
+      return has("an information vector that is not finite: ", short_text(value));
     is_clamped = is_clamped || std::abs(value) == kMost;
   }
   if (belief.hits > static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max())) {
-    return has("a voxel with more than 2147483647 measured points: ", std::to_string(belief.hits));
+    return has("more than 2147483647 measured points: ", std::to_string(belief.hits));
   }
   // Sums that would overflow stay unchanged.
   if (is_clamped) return {};
@@ -82,7 +83,7 @@ std::string fault_of_belief(const Belief& belief, double voxel_size) {
   scaled.diagonal().array() += rounding(belief.hits);
   const Eigen::LLT<Eigen::Matrix3d> factors(scaled);
   if (factors.info() != Eigen::Success) {
-    return "has an information that is not positive semidefinite";
+    return "has an information matrix that is not positive semidefinite";
   }
   // The matrix-weighted mean of readings in a voxel is at most about twice as many voxels from its
   // centre as a sensor's sigmas differ by a factor. A position farther away, in voxels, would
@@ -94,7 +95,8 @@ std::string fault_of_belief(const Belief& belief, double voxel_size) {
       scale.cwiseProduct(factors.solve(scale.cwiseProduct(vector))) / voxel_size;
   const double farthest = offset.cwiseAbs().maxCoeff();
   if (!(farthest <= kFarthest))
-    return has("a point that is too many voxels away from its voxel: ", short_text(farthest));
+    return has("a point that is too far from its voxel; its distance in voxels: ",
+               short_text(farthest));
   return {};
 }
 

@@ -219,8 +219,9 @@ std::uint64_t BeliefGrid::forget(const Box& region) {
   GridStorage& s = *storage_;
   for (std::size_t a = 0; a < 3; ++a) {
     if (region.min[a] > region.max[a]) {
-      refuse(std::string("forget: the region is inside out along ") + "xyz"[a] + ", from " +
-             short_text(region.min[a]) + " to " + short_text(region.max[a]) + " m");
+      refuse(std::string("forget: the region is inside out along ") + "xyz"[a] +
+             ": it extends from " + short_text(region.min[a]) + " to " + short_text(region.max[a]) +
+             " m");
     }
   }
   VoxelBox range = voxels_in(*this, region);

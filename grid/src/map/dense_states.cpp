@@ -27,14 +27,14 @@ void check_states(std::span<const std::uint8_t> states) {
   const auto wrong =
       std::find_if(states.begin(), states.end(), [](std::uint8_t s) { return s > 2; });
   if (wrong != states.end()) {
-    refuse("state " + std::to_string(*wrong) + " at position " +
-           std::to_string(wrong - states.begin()) + "; valid values: 0, 1, 2");
+    refuse("the state at position " + std::to_string(wrong - states.begin()) + " is " +
+           std::to_string(*wrong) + "; valid values: 0, 1, 2");
   }
 }
 
 void check_size(const BeliefGrid& grid, std::size_t size) {
   if (size != grid.voxel_count()) {
-    refuse("array of " + std::to_string(size) + " states for a workspace of " +
+    refuse("the array has " + std::to_string(size) + " states, but the workspace has " +
            std::to_string(grid.voxel_count()) + " voxels");
   }
 }
@@ -93,11 +93,11 @@ BeliefGrid BeliefGrid::from_states(const GridConfig& config, std::span<const std
 std::uint64_t BeliefGrid::update_box(const VoxelBox& box, std::span<const std::uint8_t> states) {
   GridStorage& s = *storage_;
   if (box.intersection(s.lattice) != box) {
-    refuse("the box, voxels " + voxels_text(box) + ", is not inside the workspace, voxels " +
-           voxels_text(s.lattice));
+    refuse("the box (voxels " + voxels_text(box) + ") is not inside the workspace (voxels " +
+           voxels_text(s.lattice) + ")");
   }
   if (states.size() != box.volume()) {
-    refuse("array of " + std::to_string(states.size()) + " states for a box of " +
+    refuse("the array has " + std::to_string(states.size()) + " states, but the box has " +
            std::to_string(box.volume()) + " voxels");
   }
   check_states(states);

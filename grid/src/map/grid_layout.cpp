@@ -33,7 +33,7 @@ template <typename... Parts>
 
 void check_positive(const char* name, double value) {
   if (!(std::isfinite(value) && value > 0)) {
-    fail(ErrorCode::invalid_argument, name, " must be positive and finite, not ", value);
+    fail(ErrorCode::invalid_argument, "the ", name, " must be positive and finite, not ", value);
   }
 }
 
@@ -45,12 +45,12 @@ GridLayout layout_of(const GridConfig& config) {
   for (std::size_t a = 0; a < 3; ++a) {
     const double from = config.workspace.min[a], to = config.workspace.max[a];
     if (!std::isfinite(from) || !std::isfinite(to)) {
-      fail(ErrorCode::invalid_argument, "workspace must be finite, axis ", "xyz"[a], " is ", from,
-           " .. ", to);
+      fail(ErrorCode::invalid_argument, "the workspace must be finite, but along ", "xyz"[a],
+           " it extends from ", from, " to ", to);
     }
     if (!(from < to)) {
-      fail(ErrorCode::invalid_argument, "workspace is inside out or empty, axis ", "xyz"[a], " is ",
-           from, " .. ", to);
+      fail(ErrorCode::invalid_argument, "the workspace is inside out or empty: along ", "xyz"[a],
+           " it extends from ", from, " to ", to);
     }
     const auto snap = [&](double value, double outward) {
       const double nearest = std::round(value);
@@ -60,11 +60,11 @@ GridLayout layout_of(const GridConfig& config) {
     const double first = snap(a0, std::floor(a0));
     const double last = std::max(snap(a1, std::ceil(a1)), first + 1.0);
     if (!(last - first <= kMaxDim)) {
-      fail(ErrorCode::capacity, "workspace has ", last - first, " voxels along ", "xyz"[a],
+      fail(ErrorCode::capacity, "the workspace has ", last - first, " voxels along ", "xyz"[a],
            "; the maximum is ", kMaxDim);
     }
     if (!(std::abs(first) <= kMaxIndex && std::abs(last) <= kMaxIndex)) {
-      fail(ErrorCode::capacity, "workspace lies ", std::max(std::abs(first), std::abs(last)),
+      fail(ErrorCode::capacity, "the workspace lies ", std::max(std::abs(first), std::abs(last)),
            " voxels from the origin along ", "xyz"[a], "; the maximum is ", kMaxIndex);
     }
     low[a] = static_cast<std::int32_t>(first);
@@ -77,14 +77,14 @@ void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigm
                   const GridLayout& layout) {
   check_positive("voxel size", voxel_size);
   if (voxel_size < kMinVoxelSize) {
-    fail(ErrorCode::invalid_argument, "voxel size ", voxel_size, " m is below ", kMinVoxelSize,
-         " m and could not be saved");
+    fail(ErrorCode::invalid_argument, "the voxel size is ", voxel_size, " m; the minimum is ",
+         kMinVoxelSize, " m");
   }
   check_positive("prior sigma", prior_sigma);
   const double error = orthonormality_error(T_world_grid);
   if (!(error <= kRigidTolerance)) {
     fail(ErrorCode::invalid_argument,
-         "T_world_grid is not a rigid transform: its rotation deviates by ", error);
+         "T_world_grid is not a rigid transform: its matrix deviates from a rotation by ", error);
   }
   double voxels = 1;
   for (const auto& [low, count] :
@@ -92,14 +92,14 @@ void check_layout(double voxel_size, const Pose& T_world_grid, double prior_sigm
         std::pair{layout.min_index.z, layout.dims.z}}) {
     if (count < 1 || count > kMaxDim || std::abs(static_cast<double>(low)) > kMaxIndex ||
         std::abs(static_cast<double>(low) + count) > kMaxIndex) {
-      fail(ErrorCode::capacity, "workspace of ", count, " voxels from voxel ", low,
-           "; the limits are ", kMaxDim, " voxels along an axis and ", kMaxIndex,
-           " from the origin");
+      fail(ErrorCode::capacity, "the workspace has ", count,
+           " voxels along an axis, starting at voxel ", low, ". The limits are ", kMaxDim,
+           " voxels along an axis, and ", kMaxIndex, " voxels from the origin");
     }
     voxels *= count;
   }
   if (voxels > kMaxVoxels) {
-    fail(ErrorCode::capacity, "workspace has ", voxels, " voxels; the maximum is ", kMaxVoxels);
+    fail(ErrorCode::capacity, "the workspace has ", voxels, " voxels; the maximum is ", kMaxVoxels);
   }
 }
 
@@ -108,7 +108,7 @@ void check_counters(const HazardCounters& counters) {
   for (const HazardCounters::Class& c : counters.classes) {
     for (const std::int64_t count : {c.expected, c.met}) {
       if (count >= 0 && count <= kMost) continue;
-      refuse("hazard counter " + std::to_string(count) + " is negative or over 2^40");
+      refuse("a hazard counter is " + std::to_string(count) + "; it must be in 0..2^40");
     }
   }
 }
@@ -136,7 +136,7 @@ VoxelBox voxels_in(const BeliefGrid& grid, const Box& region) {
 Pose rigid_view(const Pose& T_world_camera) {
   const std::optional<Pose> rigid = rigid_pose(T_world_camera);
   if (!rigid) {
-    refuse("camera pose is not rigid: its rotation deviates by " +
+    refuse("the camera pose is not a rigid transform: its matrix deviates from a rotation by " +
            short_text(orthonormality_error(T_world_camera)));
   }
   return *rigid;

@@ -28,10 +28,10 @@ void check_value(const GridStorage& s, const BeliefGrid::VoxelValue& value) {
     refuse("voxel (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
            std::to_string(v.z) + ") lies outside the workspace");
   }
-  if (std::isnan(value.log_odds)) refuse("log-odds is NaN");
+  if (std::isnan(value.log_odds)) refuse("the log-odds must not be NaN");
   if (!value.belief) return;
   const std::string fault = fault_of_belief(*value.belief, s.voxel_size);
-  if (!fault.empty()) refuse("belief " + fault);
+  if (!fault.empty()) refuse("the belief " + fault);
 }
 
 /// A value and the key of its block.
@@ -256,7 +256,8 @@ std::uint64_t BeliefGrid::resample(const Box& region, int scale) {
   GridStorage& s = *storage_;
   const VoxelBox range = voxels_in(*this, region);
   if (scale < 0 || scale > kMaxScale) {
-    refuse("scale " + std::to_string(scale) + " must be in 0.." + std::to_string(kMaxScale));
+    refuse("the scale must be in 0.." + std::to_string(kMaxScale) + ", not " +
+           std::to_string(scale));
   }
   std::uint64_t changed = 0;
   for (const std::uint64_t key : held_blocks(s)) {

@@ -47,12 +47,14 @@ bool is_same_sensor(const std::string& a, const std::string& b) {
 
 void check_notes(const MapNotes& notes) {
   for (const std::string& frame : notes.frames) {
-    if (!is_identity(frame)) refuse("the note of the frames holds " + viewgain::quoted(frame));
+    if (!is_identity(frame))
+      refuse("the identity of a frame must be 16 hexadecimal digits, a space and a name, not " +
+             viewgain::quoted(frame));
   }
   for (const char* name : {kSensorNote, kFramesNote}) {
     if (!notes.others.contains(name)) continue;
-    refuse("a note has the name " + viewgain::quoted(name) +
-           ", which is reserved for a member of MapNotes");
+    refuse("the note name " + viewgain::quoted(name) +
+           " is reserved; set the member of MapNotes instead");
   }
 }
 

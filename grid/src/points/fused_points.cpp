@@ -35,7 +35,8 @@ constexpr double kOfSigma = 0.19, kOfScatter = 0.43, kOfVoxel = 0.02;
 void check(const FusedPointsConfig& config) {
   const auto need = [](bool ok, const char* name, double value) {
     if (!ok) {
-      refuse("fused points: " + std::string(name) + " " + short_text(value) + " is out of bounds");
+      refuse("fused points: " + std::string(name) + " is " + short_text(value) +
+             ", which is out of bounds");
     }
   };
   need(config.normal_radius >= 1 && config.normal_radius <= kMaxReach, "normal_radius",

@@ -254,7 +254,7 @@ class CloudPoints : public Readings {
   void load(std::span<const std::array<double, 3>> points, const Eigen::Vector3d& origin,
             bool tapered, std::optional<double> support_plane, ThreadPool& pool) {
     if (points.size() > std::numeric_limits<std::uint32_t>::max()) {
-      throw Error(ErrorCode::capacity, "cloud of " + std::to_string(points.size()) +
+      throw Error(ErrorCode::capacity, "the cloud has " + std::to_string(points.size()) +
                                            " points; the maximum is 4294967295");
     }
     origin_ = origin;

@@ -40,7 +40,7 @@ class MapUpdate {
 /// Throws Error(invalid_argument) unless the support plane, if any, is finite.
 inline void check_plane(std::optional<double> height) {
   if (height && !std::isfinite(*height)) {
-    refuse("support plane " + short_text(*height) + " m is not finite");
+    refuse("the height of the support plane must be finite, not " + short_text(*height) + " m");
   }
 }
 
@@ -48,7 +48,8 @@ inline void check_plane(std::optional<double> height) {
 inline void check_pose_sigma(const PoseSigma& pose_sigma) {
   for (const double sigma : {pose_sigma.translation, pose_sigma.rotation}) {
     if (std::isfinite(sigma) && sigma >= 0) continue;
-    refuse("the sigma " + short_text(sigma) + " of a pose is negative or not finite");
+    refuse("the standard deviations of a pose must be at least 0 and finite, not " +
+           short_text(sigma));
   }
 }
 

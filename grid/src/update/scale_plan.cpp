@@ -21,18 +21,18 @@ constexpr std::array<double, kMaxScale> kThresholds{1.5, 3, 6};
 ScalePlan::ScalePlan(const IntegrationConfig& config)
     : coarsest_(config.coarsest), finest_(config.finest), fine_(config.fine) {
   if (coarsest_ < 0 || coarsest_ > kMaxScale) {
-    refuse("coarsest scale " + std::to_string(coarsest_) + " must be in 0.." +
-           std::to_string(kMaxScale));
+    refuse("the coarsest scale must be in 0.." + std::to_string(kMaxScale) + ", not " +
+           std::to_string(coarsest_));
   }
   if (finest_ < 0 || finest_ > coarsest_) {
-    refuse("finest scale " + std::to_string(finest_) + " must be in 0 .. coarsest, " +
-           std::to_string(coarsest_));
+    refuse("the finest scale must be between 0 and the coarsest scale, " +
+           std::to_string(coarsest_) + ", not " + std::to_string(finest_));
   }
   for (const Box& box : fine_) {
     for (std::size_t a = 0; a < 3; ++a) {
       if (box.min[a] < box.max[a]) continue;
-      refuse(std::string("fine box is inside out or empty, axis ") + "xyz"[a] + " is " +
-             short_text(box.min[a]) + " .. " + short_text(box.max[a]));
+      refuse(std::string("a fine box is inside out or empty: along ") + "xyz"[a] +
+             " it extends from " + short_text(box.min[a]) + " to " + short_text(box.max[a]));
     }
   }
 }

@@ -16,16 +16,17 @@ std::vector<BoundaryEdge> boundary_edges(const SurfaceMesh& surface,
                                          std::span<const std::uint32_t> vertices,
                                          std::span<const std::uint32_t> triangles, bool closed) {
   if (vertices.size() != triangles.size() + (closed ? 0 : 1)) {
-    refuse("boundary: " + std::to_string(vertices.size()) + " vertices, but " +
+    refuse("boundary: there are " + std::to_string(vertices.size()) + " vertices, but " +
            std::to_string(triangles.size()) + " edges");
   }
   for (const std::uint32_t v : vertices) {
-    if (v >= surface.vertices.size()) refuse("boundary: invalid vertex " + std::to_string(v));
+    if (v >= surface.vertices.size())
+      refuse("boundary: vertex " + std::to_string(v) + " does not exist");
   }
   std::vector<BoundaryEdge> edges(triangles.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (triangles[i] >= surface.triangles.size()) {
-      refuse("boundary: invalid triangle " + std::to_string(triangles[i]));
+      refuse("boundary: triangle " + std::to_string(triangles[i]) + " does not exist");
     }
     const Eigen::Vector3d from = position(surface, vertices[i]);
     const Eigen::Vector3d to = position(surface, vertices[(i + 1) % vertices.size()]);
@@ -91,10 +92,10 @@ std::vector<std::uint32_t> opposites(const SurfaceMesh& surface) {
       const std::uint32_t b = edges[end - 1].half_edge;
       if (end - i > 2 || edges[i].upper == v ||
           (a != b && start_of(surface, a) == start_of(surface, b))) {
-        refuse("surface: the edge of vertices " + std::to_string(v) + " and " +
+        refuse("surface: the edge between vertices " + std::to_string(v) + " and " +
                std::to_string(edges[i].upper) +
-               " joins a vertex to itself, belongs to more than two faces, or to two faces of "
-               "opposite orientation");
+               " is invalid: it joins a vertex to itself, has more than two faces, or has two "
+               "faces of opposite orientation");
       }
       if (a != b) {
         opposite[a] = b;
@@ -112,7 +113,8 @@ std::vector<BoundaryLoop> boundary_loops(const SurfaceMesh& surface) {
   detail::check_surface(surface);
   if (surface.triangles.size() > kBorder / 3) {
     throw Error(ErrorCode::capacity, "surface: " + std::to_string(surface.triangles.size()) +
-                                         " triangles exceed the limit");
+                                         " triangles are too many; the maximum is " +
+                                         std::to_string(kBorder / 3));
   }
   const std::vector<std::uint32_t> opposite = opposites(surface);
   std::vector<bool> taken(opposite.size(), false);

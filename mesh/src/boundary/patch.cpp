@@ -210,7 +210,7 @@ QuadraticPatch fit_patch(std::span<const Eigen::Vector3d> points, const Eigen::V
   const bool finite =
       origin.allFinite() && outward.allFinite() && normal.allFinite() &&
       std::all_of(points.begin(), points.end(), [](const auto& p) { return p.allFinite(); });
-  if (!finite) refuse("fit_patch: a number is not finite");
+  if (!finite) refuse("fit_patch: all numbers must be finite");
   const Eigen::Vector3d w = normal.stableNormalized();
   const Eigen::Vector3d direction = outward.stableNormalized();
   const Eigen::Vector3d across = direction - w * w.dot(direction);
@@ -249,7 +249,7 @@ std::vector<std::uint32_t> grow_region(const SurfaceMesh& surface,
   detail::check_surface(surface);
   for (const std::uint32_t v : seeds) {
     if (v >= surface.vertices.size()) {
-      refuse("grow_region: invalid vertex " + std::to_string(v));
+      refuse("grow_region: vertex " + std::to_string(v) + " does not exist");
     }
   }
   return detail::RegionGrower(surface).grow(seeds, depth, max_turn);

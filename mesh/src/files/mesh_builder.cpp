@@ -21,8 +21,8 @@ void MeshBuilder::fail(std::size_t line, const std::string& what) const {
 void MeshBuilder::add_vertex(const std::array<double, 3>& p, std::size_t line) {
   for (const double x : p) {
     if (std::abs(x) < kBeyond) continue;
-    fail(line, "a coordinate of vertex " + std::to_string(vertices()) +
-                   " is not finite, or not below 1e30");
+    fail(line,
+         "a coordinate of vertex " + std::to_string(vertices()) + " must be finite and below 1e30");
   }
   mesh_.vertices.push_back(p);
 }
@@ -37,7 +37,7 @@ void MeshBuilder::add_corner(double index, std::size_t line) {
 TriangleMesh MeshBuilder::finish(MeshRepairs& repairs) && {
   split_faces();
   if (mesh_.triangles.empty() && repairs_.dropped_faces > 0) {
-    fail(0, "no face of the mesh has an area");
+    fail(0, "all faces of the mesh have the area 0");
   }
   if (mesh_.triangles.empty()) fail(0, "the mesh has no faces");
   drop_unused();

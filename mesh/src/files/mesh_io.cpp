@@ -30,7 +30,7 @@ TriangleMesh read_mesh(const std::filesystem::path& path, MeshRepairs* repairs) 
   const std::string name = path.string();
   const std::string extension = lower_case_extension(path);
   if (extension != ".off" && extension != ".obj" && extension != ".stl" && extension != ".ply") {
-    throw Error(ErrorCode::format, name + ": not a mesh file (.off, .obj, .stl, .ply)");
+    throw Error(ErrorCode::format, name + ": a mesh must have the ending .off, .obj, .stl or .ply");
   }
   std::string bytes = file_bytes(path);
   // Some editors write a byte order mark before text; no mesh format begins with one.
@@ -73,7 +73,7 @@ double longest_side(const Box& box) {
 
 TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement) {
   if (!std::isfinite(placement.longest_side) || placement.longest_side < 0) {
-    refuse("the longest side must be finite and not negative, not " +
+    refuse("the longest side must be at least 0 and finite, not " +
            short_text(placement.longest_side));
   }
   for (auto& v : mesh.vertices) {
@@ -84,7 +84,8 @@ TriangleMesh placed(TriangleMesh mesh, const MeshPlacement& placement) {
   if (placement.longest_side > 0) {
     const double extent = longest_side(bounds_of(mesh));
     const double scale = placement.longest_side / extent;
-    if (!(extent > 0) || !std::isfinite(scale)) refuse("the mesh has no extent to scale");
+    if (!(extent > 0) || !std::isfinite(scale))
+      refuse("the mesh cannot be scaled, because its extent is 0 or not finite");
     for (auto& v : mesh.vertices) {
       for (double& x : v) x *= scale;
     }

@@ -73,15 +73,14 @@ class ObjReader {
     std::array<double, 7> numbers{};
     const std::size_t count = words_.size() - 1;
     if (count < 3 || count == 5 || count > numbers.size()) {
-      lines_.fail("a vertex has 3 coordinates, then optionally a weight and a colour; found " +
+      lines_.fail("expected 3 coordinates, and optionally a weight and a colour; found " +
                   std::to_string(count) + " numbers");
     }
     for (std::size_t i = 0; i < count; ++i) numbers[i] = lines_.number_of(words_[i + 1]);
     // Seven numbers are x y z w r g b or x y z r g b a. The weight or alpha of 1 shows which.
     const bool has_weight = count == 4 || (count == 7 && numbers[6] != 1);
     if (has_weight && numbers[3] != 1) {
-      lines_.fail("the fourth of " + std::to_string(count) +
-                  " numbers is a weight; weights other than 1 are not supported");
+      lines_.fail("the fourth number of a vertex is a weight; only the weight 1 is supported");
     }
     mesh_.add_vertex({numbers[0], numbers[1], numbers[2]}, lines_.line());
   }
@@ -99,7 +98,7 @@ class ObjReader {
           lines_.fail(quoted(words_[i]) + " is not a corner of a face");
         }
         if (part > 0) continue;
-        if (index == 0) lines_.fail("index 0 is out of range");
+        if (index == 0) lines_.fail("index 0 is out of range; indices start at 1");
         const double before = index < 0 ? static_cast<double>(mesh_.vertices()) : -1;
         mesh_.add_corner(before + index, lines_.line());
       }

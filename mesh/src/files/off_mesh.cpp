@@ -52,7 +52,7 @@ class OffReader {
       lines_.fail("vertices must have 3 coordinates");
     }
     if (!takes("OFF") && !takes("off")) {
-      lines_.fail("is not an OFF file: it does not begin with \"OFF\"");
+      lines_.fail("the file is not an OFF file; it must begin with \"OFF\"");
     }
     (void)words_.next();
     if (!word.empty()) {

@@ -173,12 +173,14 @@ TriangleMesh stl_mesh(std::string_view bytes, const std::string& name, MeshRepai
   };
   if (bytes.size() < kStlBody)
     fail(
-        "is neither a text STL file, which begins with \"solid\", nor long enough for a binary "
-        "one");
+        "the file is not an STL file: it does not begin with \"solid\", and it is too short for a "
+        "binary STL file");
   // Fewer bytes than a triangle's may follow.
   const std::uint64_t held = (bytes.size() - kStlBody) / kStlTriangle;
   if (promised != held && !has_nul)
-    fail("is neither a text STL file, which begins with \"solid\", nor a binary one");
+    fail(
+        "the file is not an STL file: it does not begin with \"solid\", and it is not a binary STL "
+        "file");
   if (promised != held) {
     fail("the header declares " + std::to_string(promised) + " triangles, but the file holds " +
          std::to_string(held));

@@ -70,8 +70,8 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     for (const std::uint32_t v : mesh.triangles[f]) {
       if (v >= mesh.vertices.size()) {
-        refuse("triangle " + std::to_string(f) + " has vertex " + std::to_string(v) + " of " +
-               std::to_string(mesh.vertices.size()));
+        refuse("triangle " + std::to_string(f) + " refers to vertex " + std::to_string(v) +
+               ", but the mesh has " + std::to_string(mesh.vertices.size()) + " vertices");
       }
     }
     const auto corner = [&](std::size_t k) {
@@ -178,7 +178,7 @@ double quantile(std::vector<double>& values, double q) {
 
 std::vector<Triangle> with_area(const TriangleMesh& mesh) {
   std::vector<Triangle> triangles = triangles_of(mesh);
-  if (triangles.empty()) refuse("the mesh has no area");
+  if (triangles.empty()) refuse("the area of the mesh is 0");
   return triangles;
 }
 
@@ -288,8 +288,8 @@ ErrorStatistics GroundTruth::error(std::span<const std::array<double, 3>> points
 Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> points,
                                      std::span<const SymmetricMatrix3> covariances) const {
   if (points.size() != covariances.size()) {
-    refuse(std::to_string(points.size()) + " points, but " + std::to_string(covariances.size()) +
-           " covariances");
+    refuse("there are " + std::to_string(points.size()) + " points, but " +
+           std::to_string(covariances.size()) + " covariances");
   }
   Consistency result{kNaN, kNaN, kNaN, 0, 0};
   std::vector<double> z2;
@@ -306,7 +306,7 @@ Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> poin
     const double variance = n.dot(covariances[i] * n);
     if (!(variance > 0) || !std::isfinite(variance)) {
       refuse("the covariance of point " + std::to_string(i) + " has the variance " +
-             short_text(variance) + " along the normal");
+             short_text(variance) + " along the normal; it must be positive and finite");
     }
     z2.push_back(distance * distance / variance);
     clipped += std::min(z2.back(), kClip);
@@ -324,8 +324,8 @@ Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> poin
 double coverage(std::span<const double> distances, double radius,
                 std::span<const std::uint8_t> mask) {
   if (!mask.empty() && mask.size() != distances.size()) {
-    refuse(std::to_string(distances.size()) + " distances, but " + std::to_string(mask.size()) +
-           " mask values");
+    refuse("there are " + std::to_string(distances.size()) + " distances, but " +
+           std::to_string(mask.size()) + " mask values");
   }
   std::size_t counted = 0, covered = 0;
   for (std::size_t i = 0; i < distances.size(); ++i) {

@@ -25,7 +25,7 @@ namespace viewgain::detail {
 void check_surface(const SurfaceMesh& surface) {
   const std::size_t count = surface.vertices.size();
   if (surface.normals.size() != count) {
-    refuse("surface: " + std::to_string(count) + " vertices, but " +
+    refuse("surface: there are " + std::to_string(count) + " vertices, but " +
            std::to_string(surface.normals.size()) + " normals");
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -37,7 +37,7 @@ void check_surface(const SurfaceMesh& surface) {
     for (const std::uint32_t v : surface.triangles[i]) {
       if (v >= count) {
         refuse("surface: triangle " + std::to_string(i) + " refers to vertex " + std::to_string(v) +
-               " of " + std::to_string(count));
+               ", but there are " + std::to_string(count) + " vertices");
       }
     }
   }
@@ -175,7 +175,7 @@ void check(std::span<const OrientedPoint> points, const SurfaceConfig& config) {
     refuse("the join distance must be positive and finite", config.join_distance);
   }
   if (points.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw Error(ErrorCode::capacity, "2^32 points or more");
+    throw Error(ErrorCode::capacity, "there are 2^32 points or more; the maximum is 2^32 - 1");
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (const double x : points[i].position) {

@@ -30,17 +30,19 @@ void check(const Sensor& sensor, const SimulationConfig& config) {
   sensor.validate();
   const auto fail = [](const std::string& what) { refuse("simulated sensor: " + what); };
   if (!(config.background_radius >= 0) || !std::isfinite(config.background_radius)) {
-    fail("background radius " + short_text(config.background_radius) + " m must be >= 0");
+    fail("the background radius must be at least 0 and finite, not " +
+         short_text(config.background_radius) + " m");
   }
   if (config.sub_rays < 1 || config.sub_rays > kMaxSubRays) {
-    fail("sub-rays " + std::to_string(config.sub_rays) + " must be in 1.." +
-         std::to_string(kMaxSubRays));
+    fail("the number of sub-rays must be in 1.." + std::to_string(kMaxSubRays) + ", not " +
+         std::to_string(config.sub_rays));
   }
   if (!(std::abs(config.scale_error) < 1)) {
-    fail("scale error " + short_text(config.scale_error) + " must be in (-1, 1)");
+    fail("the scale error must be in (-1, 1), not " + short_text(config.scale_error));
   }
   if (config.support_plane && !std::isfinite(*config.support_plane)) {
-    fail("support plane " + short_text(*config.support_plane) + " m is not finite");
+    fail("the height of the support plane must be finite, not " +
+         short_text(*config.support_plane) + " m");
   }
 }
 

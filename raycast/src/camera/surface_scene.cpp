@@ -36,8 +36,8 @@ void check(const TriangleMesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t index : triangle) {
       if (index < mesh.vertices.size()) continue;
-      refuse("a triangle refers to vertex " + std::to_string(index) + " of " +
-             std::to_string(mesh.vertices.size()));
+      refuse("a triangle refers to vertex " + std::to_string(index) + ", but the mesh has " +
+             std::to_string(mesh.vertices.size()) + " vertices");
     }
   }
 }

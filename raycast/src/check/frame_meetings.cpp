@@ -61,11 +61,11 @@ std::vector<Convention> other_readings() {
       {"world_to_camera", "the poses are world to camera, not camera to world", 1, false,
        inverse_of},
       {"quaternion_order", "the quaternions have w first, not last", 1, false, w_first},
-      {"body_frame", "the poses are of a body frame (x forward, z up), not of the optical frame", 1,
-       false, optical_of_body},
-      {"upward_camera",
-       "the poses are of a camera that looks along -z with y up, not along z with y down", 1, false,
-       optical_of_upward},
+      {"body_frame",
+       "the poses are those of a body frame (x forward, z up), not of the optical frame", 1, false,
+       optical_of_body},
+      {"upward_camera", "the camera of the poses looks along -z with y up, not along z with y down",
+       1, false, optical_of_upward},
       {"pose_millimetres", "the poses are in millimetres", 1, false, in_metres},
       {"rolled_camera", "the camera is turned by 90 degrees about its optical axis", 1, false,
        rolled<1>, 1, 1, false, false, 0, true},
@@ -76,15 +76,13 @@ std::vector<Convention> other_readings() {
   };
   all.push_back({.kind = "mirrored", .what = "the images are mirrored", .flips_columns = true});
   all.push_back({.kind = "upside_down",
-                 .what = "the images are upside down (rows from the bottom to the top)",
+                 .what = "the images are upside down (their first row is at the bottom)",
                  .flips_rows = true});
   for (const int shift : {-3, -2, -1, 1, 2, 3}) {
-    const std::string frames =
-        std::to_string(std::abs(shift)) + (std::abs(shift) == 1 ? " frame" : " frames");
-    all.push_back(
-        {.kind = "numbering",
-         .what = "each image has the pose of " + frames + (shift > 0 ? " later" : " before"),
-         .pose_shift = static_cast<double>(shift)});
+    all.push_back({.kind = "numbering",
+                   .what = std::string("image N belongs to pose N") + (shift > 0 ? "+" : "") +
+                           std::to_string(shift),
+                   .pose_shift = static_cast<double>(shift)});
   }
   for (const double shift : {-0.75, -0.5, -0.25, 0.25, 0.5, 0.75}) {
     all.push_back({.kind = "time_offset",
@@ -95,14 +93,15 @@ std::vector<Convention> other_readings() {
   }
   // Cameras use units of 0.1, 0.2, 0.25, 0.5 and 1 mm.
   for (const double factor : {2.0, 2.5, 4.0, 5.0, 10.0, 1000.0}) {
-    const std::string times = "the depth scale is " + short_text(factor) + " times ";
+    const std::string times = "the correct depth scale is " + short_text(factor) + " times ";
     all.push_back({kScale, times + "larger", factor});
     all.push_back({kScale, times + "smaller", 1 / factor});
   }
   for (const double factor : {0.5, 0.67, 0.75, 0.8, 0.9, 1.1, 1.25, 1.33, 1.5, 2.0}) {
-    all.push_back({.kind = kFocalLength,
-                   .what = "the focal length is " + short_text(factor) + " times the stated one",
-                   .focal_factor = factor});
+    all.push_back(
+        {.kind = kFocalLength,
+         .what = "the correct focal length is " + short_text(factor) + " times the given one",
+         .focal_factor = factor});
   }
   return all;
 }

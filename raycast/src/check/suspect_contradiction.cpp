@@ -28,16 +28,15 @@ std::string contradiction_of(const FrameConsistency& found) {
            " of the points lie in space that other frames saw as free";
   }
   if (found.share_seen_past > kSeenPast && found.seen_past >= kEnoughContradictions) {
-    return "frames look through " + percent(found.share_seen_past) +
-           " of the points of earlier frames, as if there were free space";
+    return "later frames see free space at " + percent(found.share_seen_past) +
+           " of the points of earlier frames";
   }
   const bool is_one =
       std::any_of(found.frames.begin(), found.frames.end(),
                   [](const FrameContradiction& frame) { return contradicts(frame, kOfAFrame); });
   if (!is_one) return {};
   return "up to " + percent(largest_share(found)) +
-         " of a frame's points lie in space that other frames saw as free, or other frames look "
-         "through them";
+         " of a frame's points contradict other frames, which see free space there";
 }
 
 // Frames that are displaced, but by too little for their readings to contradict each other.
@@ -49,14 +48,14 @@ Suspicion suspect_displacement(const FrameConsistency& found, double voxel_size)
       !is_displaced(found.displacement, found.expected, voxel_size)) {
     return {};
   }
-  return {"displacement",
-          "surfaces lie " + millimetres(found.displacement) +
-              " from where earlier frames saw them; the declared errors of sensor and poses "
-              "explain only " +
-              millimetres(found.expected) +
-              ". Are the poses late? Is the hand-eye calibration or the focal length wrong? Do the "
-              "poses drift? Registration (--register on) corrects small errors. If the poses "
-              "cannot be improved, declare their errors (pose_sigma_rad in the sensor file)"};
+  return {
+      "displacement",
+      "surfaces are displaced by " + millimetres(found.displacement) +
+          " between frames; the declared errors of the sensor and the poses explain only " +
+          millimetres(found.expected) +
+          ". Are the poses late? Is the hand-eye calibration or the focal length wrong? Do the "
+          "poses drift? Registration (--register on) corrects small errors. If you cannot improve "
+          "the poses, declare their errors: pose_sigma_rad in the sensor file"};
 }
 
 }  // namespace
@@ -84,15 +83,17 @@ Suspicion suspect_contradiction(const FrameConsistency& found, double voxel_size
         return frame.same_image_as && contradicts(frame, kContradicting);
       });
   if (copies > 0) {
-    return {"same_image",
-            now + "; " + std::to_string(copies) + (copies == 1 ? " frame has" : " frames have") +
-                " the image of an earlier one at another pose. Does the camera repeat images?"};
+    return {"same_image", now + ". " + std::to_string(copies) +
+                              (copies == 1 ? " frame has" : " frames have") +
+                              " the same image as an earlier frame, but another pose. Does the "
+                              "camera repeat images?"};
   }
-  return {"contradiction",
-          now +
-              ". Are the poses those of a flange or body instead of the camera, late or early, or "
-              "numbered differently from the images? Are the images mirrored, or the intrinsics "
-              "those of another camera? Did an object move, or do the poses drift?"};
+  return {
+      "contradiction",
+      now +
+          ". Are the poses those of a flange or body, not of the camera? Are they late or early? "
+          "Are poses and images numbered differently? Are the images mirrored? Are the "
+          "intrinsics those of another camera? Did an object move? Do the poses drift?"};
 }
 
 }  // namespace viewgain::detail

@@ -32,22 +32,20 @@ Suspicion suspect_camera(const PinholeCamera& camera, const std::vector<Eigen::V
                                   [](const Eigen::Vector3d& ray) { return !ray.allFinite(); });
   if (const double share = static_cast<double>(lost) / static_cast<double>(rays.size());
       share > 0.5) {
-    return {"distortion", percent(share) +
-                              " of the image's pixels have no ray under the lens distortion. Do k1 "
-                              "k2 p1 p2 k3 belong to this camera?"};
+    return {"distortion", "the lens distortion gives no ray for " + percent(share) +
+                              " of the pixels. Do k1 k2 p1 p2 k3 belong to this camera?"};
   }
   if (std::max(camera.fx, camera.fy) > 1.1 * std::min(camera.fx, camera.fy)) {
     return {"focal_lengths",
-            "fx is " + short_text(camera.fx) + " px and fy " + short_text(camera.fy) +
-                " px, more than 10 % apart. Are the intrinsics in the right order?"};
+            "fx is " + short_text(camera.fx) + " px and fy is " + short_text(camera.fy) +
+                " px; they differ by more than 10 %. Are the intrinsics in the right order?"};
   }
   if (camera.width == 1 || camera.height == 1) return {};  // a line has no middle
   const double u = camera.cx / (camera.width - 1), v = camera.cy / (camera.height - 1);
   if (std::abs(u - 0.5) < kOffCentre && std::abs(v - 0.5) < kOffCentre) return {};
-  return {
-      "principal_point",
-      "the principal point lies at " + percent(u) + " of the image's width and " + percent(v) +
-          " of its height, far from the middle. Are the intrinsics those of another resolution?"};
+  return {"principal_point", "the principal point is far from the middle of the image, at " +
+                                 percent(u) + " of its width and " + percent(v) +
+                                 " of its height. Are the intrinsics those of another resolution?"};
 }
 
 // Fraction of the pixels with a depth that are within the sensor's range if depths are multiplied
@@ -175,7 +173,7 @@ std::vector<Fit> fits_of(const FrameMeetings& meeting, const Meetings& as_said) 
 // "A, or if B"
 std::string words_of(const std::vector<Fit>& fits) {
   std::string text;
-  for (const Fit& fit : fits) text += (text.empty() ? "" : ", or if ") + fit.reading.what;
+  for (const Fit& fit : fits) text += (text.empty() ? "" : ", or ") + fit.reading.what;
   return text;
 }
 
@@ -192,13 +190,13 @@ Suspicion suspect_range(const Sensor& sensor, std::span<const DepthFrame> frames
   }
   fits = best_of(std::move(fits), 0.01);
   if (fits.empty()) return {};
-  const std::string text = percent(1 - now) +
-                           " of the depths are out of the sensor's range; only " +
-                           percent(1 - fits[0].agreement) + " would be if ";
+  const std::string text =
+      percent(1 - now) + " of the depths are out of the sensor's range. Perhaps ";
+  const std::string then = "; the share would then be " + percent(1 - fits[0].agreement);
   std::vector<Convention> scales;
   for (const Fit& fit : fits) scales.push_back(fit.reading);
   if (auto met = fits_by_meetings(meeting, {}, scales); !met.empty()) fits = std::move(met);
-  return {kScale, text + words_of(fits)};
+  return {kScale, text + words_of(fits) + then};
 }
 
 // Checks for readings below the table, where nothing is visible.
@@ -218,7 +216,8 @@ Suspicion suspect_plane(std::span<const DepthFrame> frames, const FrameMeetings&
   if (10 * under <= all) return {};
   const double share = static_cast<double>(under) / static_cast<double>(all);
   return {"support_plane", percent(share) + " of the points lie more than " + short_text(kUnder) +
-                               " m below the support plane at " + short_text(plane) + " m"};
+                               " m below the support plane, whose height is " + short_text(plane) +
+                               " m. Are its height and the poses right?"};
 }
 
 // Detects depths along the ray by readings for which that makes a difference.
@@ -234,10 +233,9 @@ Suspicion suspect_along_ray(const FrameMeetings& meeting, const Meetings& as_sai
     return by_ray.close > fit.met.close && by_ray.share_close() > fit.met.share_close();
   });
   if (!fits_best) return {};
-  return {
-      "depth_along_ray",
-      "where it makes a difference, " + percent(*along_ray) +
-          " of the depths fit the other frames better if depths are along the ray, not along z"};
+  return {"depth_along_ray", "perhaps depths are measured along the ray, not along z: then " +
+                                 percent(*along_ray) +
+                                 " of the affected depths would fit the other frames better"};
 }
 
 // The mistake under which the frames fit each other.
@@ -250,20 +248,22 @@ Suspicion suspect_convention(const FrameMeetings& meeting, const Meetings& as_sa
   if (Suspicion ray = suspect_along_ray(meeting, as_said, fits); !ray.kind.empty()) return ray;
   if (fits.empty()) return {};
   const Meetings& best = fits[0].met;
-  const std::string what = " would if " + words_of(fits);
+  const std::string perhaps = ". Perhaps " + words_of(fits), then = "; the share would then be ";
   if (fits[0].reading.kind == kFocalLength) {
     return {kFocalLength, percent(as_said.share_close()) +
                               " of the points that several frames see lie close to where the other "
-                              "frames see them; " +
-                              percent(best.share_close()) + what};
+                              "frames see them" +
+                              perhaps + then + percent(best.share_close())};
   }
   const bool is_apart = as_said.met + as_said.seen_past < detail::kLeastMeetings;
-  const std::string now = is_apart ? "frames from different places have no surface in common; they"
-                                   : percent(as_said.share_past()) +
-                                         " of the points that several frames see lie in space that "
-                                         "another frame saw as free; " +
-                                         percent(best.share_past());
-  return {fits[0].reading.kind, now + what};
+  if (is_apart) {
+    return {fits[0].reading.kind, "frames from different places see no common surface" + perhaps +
+                                      "; they would then see common surface"};
+  }
+  return {fits[0].reading.kind, percent(as_said.share_past()) +
+                                    " of the points that several frames see lie in space that "
+                                    "another frame saw as free" +
+                                    perhaps + then + percent(best.share_past())};
 }
 
 }  // namespace
@@ -329,8 +329,8 @@ Suspicion suspect_poses(const std::shared_ptr<const VoxelScene>& scene, const Se
   }
   fits = best_of(std::move(fits), kAlike);
   if (fits.empty()) return {"no_voxel", text};
-  return {fits[0].reading.kind,
-          text + "; " + percent(1 - fits[0].agreement) + " would if " + words_of(fits)};
+  return {fits[0].reading.kind, text + ". Perhaps " + words_of(fits) +
+                                    "; the share would then be " + percent(1 - fits[0].agreement)};
 }
 
 }  // namespace viewgain

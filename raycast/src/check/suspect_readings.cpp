@@ -32,8 +32,8 @@ struct Taken {
 };
 
 constexpr const char* kMaskRule =
-    ". Pixels are ignored where a mask is nonzero or the confidence is below the least confidence. "
-    "If the object is white in the masks, invert them";
+    ". A pixel is ignored if its mask is nonzero or its confidence is too low. If the object is "
+    "white in the masks, invert the masks";
 
 // Whether a position is in the middle one of `parts` equal parts of a side.
 bool is_amid(std::size_t at, std::size_t size, std::size_t parts) {
@@ -127,9 +127,10 @@ Suspicion suspect_frame(const Sensor& sensor, const DepthFrame& frame, const Pos
     if (share > most) best = &other, most = share;
   }
   if (best == nullptr) return {};
-  return {best->kind, figure(std::round(100 * share_inside({}, middle))) +
-                          " % of the points in the middle of the image lie in the workspace; " +
-                          figure(std::round(100 * most)) + " % would if " + best->what};
+  return {best->kind,
+          figure(std::round(100 * share_inside({}, middle))) +
+              " % of the points in the middle of the image lie in the workspace. Perhaps " +
+              best->what + "; the share would then be " + figure(std::round(100 * most)) + " %"};
 }
 
 Suspicion suspect_masks(const Sensor& sensor, std::span<const DepthFrame> unmasked,

@@ -44,9 +44,9 @@ Suspicion suspect_view(const PinholeCamera& camera) {
     if (size <= kWidestView * focal) return {};
     const double angle = 360 / std::numbers::pi * std::atan(0.5 * size / focal);
     return {"field_of_view", std::string(name) + " = " + figure(focal) + " px for an image " +
-                                 std::to_string(size) + " px " + side + " is a field of view of " +
-                                 figure(angle) +
-                                 " degrees: focal lengths are in pixels, not in millimetres"};
+                                 std::to_string(size) + " px " + side +
+                                 " gives a field of view of " + figure(angle) +
+                                 " degrees. Focal lengths must be in pixels, not in millimetres"};
   };
   Suspicion suspicion = odd("fx", camera.fx, "wide", camera.width);
   return suspicion.kind.empty() ? odd("fy", camera.fy, "high", camera.height) : suspicion;
@@ -63,8 +63,9 @@ Suspicion suspect_ranges(const Sensor& sensor, const std::optional<double>& voxe
   if (is_coarse) {
     what += ", where a pixel is " + figure(footprint / *voxel_size) + " voxels wide";
   }
-  return {"range_unit",
-          what + ". min_range, max_range and working_distance are in metres, not in millimetres"};
+  return {
+      "range_unit",
+      what + ". min_range, max_range and working_distance must be in metres, not in millimetres"};
 }
 
 Suspicion suspect_times(const ShotNoise& noise) {
@@ -74,7 +75,7 @@ Suspicion suspect_times(const ShotNoise& noise) {
         std::pair("reference_integration_time", noise.reference_integration_time)}) {
     if (seconds < kLong) continue;
     return {"time_unit", "noise: " + std::string(name) + " = " + figure(seconds) +
-                             " s. Integration times are in seconds, not in milliseconds"};
+                             " s. Integration times must be in seconds, not in milliseconds"};
   }
   return {};
 }
@@ -83,7 +84,7 @@ Suspicion suspect_frequency(const ShotNoise& noise) {
   constexpr double kLow = 1e5;  // [Hz]: unambiguous to 1.5 km
   if (noise.modulation_frequency <= 0 || noise.modulation_frequency >= kLow) return {};
   return {"frequency_unit", "noise: modulation_frequency = " + figure(noise.modulation_frequency) +
-                                " Hz. Frequencies are in hertz, not in megahertz"};
+                                " Hz. Frequencies must be in hertz, not in megahertz"};
 }
 
 // Parameters that make readings seem more precise than they are, which no sigma shows.
@@ -92,7 +93,7 @@ struct OddParameter {
 
   static Suspicion length(const std::string& name, double value) {
     return {"noise_unit", "noise: " + name + " = " + figure(value) +
-                              " m. Lengths are in metres, not in millimetres"};
+                              " m. Lengths must be in metres, not in millimetres"};
   }
   Suspicion operator()(const ShotNoise& noise) const {
     if (Suspicion time = suspect_times(noise); !time.kind.empty()) return time;
@@ -102,7 +103,7 @@ struct OddParameter {
   Suspicion operator()(const StereoNoise& noise) const {
     if (noise.focal > 0 && noise.focal * kWidestView < sensor.camera.width) {
       return {"noise_unit", "noise: focal = " + figure(noise.focal) +
-                                " px. Focal lengths are in pixels, not in millimetres"};
+                                " px. Focal lengths must be in pixels, not in millimetres"};
     }
     if (noise.baseline <= std::max(2.0, sensor.working_distance)) return {};
     return length("baseline", noise.baseline);
@@ -146,10 +147,11 @@ Suspicion suspect_noise(const Sensor& sensor, const std::optional<double>& voxel
   const auto odd = [&](double sigma, const char* where, bool is_axial) -> Suspicion {
     const std::string names = std::visit(ParameterNames{is_axial}, sensor.noise);
     if (names.empty() || !is_much(sigma, at, kNoiseOfDistance, voxel_size)) return {};
-    return {"noise_unit",
-            "the standard deviation of depths " + std::string(where) + " is " + figure(sigma) +
-                " m, " + compared(sigma, at, kNoiseOfDistance, voxel_size) +
-                ". Noise parameters (" + names + ") are for lengths in metres, not in millimetres"};
+    return {"noise_unit", "the standard deviation of depths " + std::string(where) + " is " +
+                              figure(sigma) + " m, " +
+                              compared(sigma, at, kNoiseOfDistance, voxel_size) +
+                              ". Noise parameters (" + names +
+                              ") must be for lengths in metres, not in millimetres"};
   };
   Suspicion suspicion = odd(frontal.axial, "along the ray", true);
   if (suspicion.kind.empty()) suspicion = odd(frontal.lateral, "across the ray", false);
@@ -162,18 +164,19 @@ Suspicion suspect_noise(const Sensor& sensor, const std::optional<double>& voxel
 
 Suspicion suspect_scale_sigma(const Sensor& sensor) {
   if (sensor.scale_sigma < 0.1) return {};
-  return {"scale_sigma", "scale_sigma = " + figure(sensor.scale_sigma) + " means that ranges are " +
-                             figure(100 * sensor.scale_sigma) +
-                             " % off. scale_sigma is a factor, neither a percentage nor a length"};
+  return {"scale_sigma",
+          "scale_sigma = " + figure(sensor.scale_sigma) + " means that ranges are " +
+              figure(100 * sensor.scale_sigma) +
+              " % wrong. scale_sigma must be a factor, not a percentage or a length"};
 }
 
 Suspicion suspect_calibration(const Sensor& sensor) {
   const auto& table = sensor.range_calibration.table;
   for (const auto& [measured, error] : table) {
     if (table.front()[0] <= sensor.max_range && std::abs(error) <= 0.5 * measured) continue;
-    return {"calibration_unit", "range_calibration: an error of " + figure(error) +
+    return {"calibration_unit", "range_calibration has an error of " + figure(error) +
                                     " m at a measured range of " + figure(measured) +
-                                    " m. Both are in metres, not in millimetres"};
+                                    " m. Both must be in metres, not in millimetres"};
   }
   return {};
 }
@@ -183,7 +186,7 @@ Suspicion suspect_body(const Sensor& sensor) {
   const auto& size = *sensor.body_size;
   if (*std::max_element(size.begin(), size.end()) <= kLongestBody) return {};
   return {"body_unit", "the sensor's body is " + figure(size[0]) + " x " + figure(size[1]) + " x " +
-                           figure(size[2]) + " m; this size is in metres, not in millimetres"};
+                           figure(size[2]) + " m. This size must be in metres, not in millimetres"};
 }
 
 Suspicion suspect_mounting(const Sensor& sensor) {
@@ -192,7 +195,7 @@ Suspicion suspect_mounting(const Sensor& sensor) {
   if (distance <= kLongestBody) return {};
   return {"mounting_unit",
           "T_flange_camera puts the camera " + figure(distance) +
-              " m from the flange. Translations are in metres, not in millimetres"};
+              " m from the flange. Translations must be in metres, not in millimetres"};
 }
 
 }  // namespace
@@ -204,14 +207,14 @@ Suspicion suspect_pose_sigma(const PoseSigma& sigma, double working_distance,
     return {"pose_sigma_unit",
             "the declared standard deviation of poses is " + figure(sigma.translation) + " m, " +
                 compared(sigma.translation, working_distance, kPoseOfDistance, voxel_size) +
-                ". Translations are in metres, not in millimetres"};
+                ". Translations must be in metres, not in millimetres"};
   }
   if (sigma.rotation >= kPoseRotation || (voxel_size && turned > kNoiseOfVoxel * *voxel_size)) {
-    return {
-        "pose_sigma_unit",
-        "the declared standard deviation of rotations is " + figure(sigma.rotation) + " rad, " +
-            figure(sigma.rotation * 180 / std::numbers::pi) +
-            " degrees. pose_sigma_rad is in metres and radians, --register in metres and degrees"};
+    return {"pose_sigma_unit", "the declared standard deviation of rotations is " +
+                                   figure(sigma.rotation) + " rad, " +
+                                   figure(sigma.rotation * 180 / std::numbers::pi) +
+                                   " degrees. pose_sigma_rad must be in metres and radians, "
+                                   "--register in metres and degrees"};
   }
   return {};
 }

@@ -52,10 +52,10 @@ Suspicion suspect_workspace(const BeliefGrid& map, const Sensor& sensor) {
   constexpr double kHuge = 50;  // times the sensor's range
   const double side = longest(aligned(map.workspace()));
   if (side <= kHuge * sensor.max_range && map.voxel_size() <= 0.5 * sensor.max_range) return {};
-  return {"workspace_unit", "the workspace is " + figure(side) + " m long and its voxels " +
-                                figure(map.voxel_size()) + " m, but the sensor's range ends at " +
-                                figure(sensor.max_range) +
-                                " m. Lengths are in metres, not in millimetres"};
+  return {"workspace_unit",
+          "the workspace is " + figure(side) + " m long and its voxels are " +
+              figure(map.voxel_size()) + " m wide, but the sensor's range ends at " +
+              figure(sensor.max_range) + " m. Lengths must be in metres, not in millimetres"};
 }
 
 Suspicion suspect_obstacle(const Box& bounds, const BeliefGrid& map, const Sensor& sensor) {
@@ -130,7 +130,7 @@ Suspicion suspect_reach(const ReachRegion& reach, const BeliefGrid& map, const S
   return {"reach_unit", "the nearest reachable place is " + figure(distance) +
                             " m from the map, but the sensor's range ends at " +
                             figure(sensor.max_range) +
-                            " m. Lengths in the reach file are in metres, not in millimetres"};
+                            " m. Lengths in the reach file must be in metres, not in millimetres"};
 }
 
 Suspicion suspect_support_plane(double z, const BeliefGrid& map, const Sensor& sensor) {
@@ -140,24 +140,24 @@ Suspicion suspect_support_plane(double z, const BeliefGrid& map, const Sensor& s
   return {"plane_unit", "the support plane at z = " + figure(z) + " m is " + figure(distance) +
                             " m from the map, but the sensor's range ends at " +
                             figure(sensor.max_range) +
-                            " m. The plane's height is in metres, not in millimetres"};
+                            " m. The plane's height must be in metres, not in millimetres"};
 }
 
 Suspicion suspect_object_size(double size, const BeliefGrid& map) {
   constexpr double kHuge = 10;  // times the workspace
   const double side = longest(aligned(map.workspace()));
   if (size <= kHuge * side && size >= map.voxel_size()) return {};
-  return {"object_size_unit", "an object size of " + figure(size) + " m does not fit a map " +
-                                  figure(side) + " m long with voxels of " +
-                                  figure(map.voxel_size()) +
-                                  " m. The object's longest side is in metres, not in millimetres"};
+  return {"object_size_unit",
+          "an object size of " + figure(size) + " m does not fit a map " + figure(side) +
+              " m long with voxels of " + figure(map.voxel_size()) +
+              " m. The object's longest side must be in metres, not in millimetres"};
 }
 
 Suspicion suspect_clearance(double clearance) {
   if (clearance <= 2) return {};
   return {"clearance_unit", "a clearance of " + figure(clearance) +
                                 " m around the camera's housing leaves no room anywhere. "
-                                "Clearances are in metres, not in millimetres"};
+                                "Clearances must be in metres, not in millimetres"};
 }
 
 }  // namespace viewgain

@@ -42,10 +42,10 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 void check(const BestConfig& config, std::size_t poses) {
   detail::check_costs(config.costs, poses);
   if (config.measure != nullptr && config.run_measure != nullptr) {
-    refuse("views are chosen by one measure, but two are given");
+    refuse("measure and run_measure cannot be used together");
   }
   if (!(config.deadline >= 0)) {
-    refuse("the deadline is " + short_text(config.deadline) + " s; it must be >= 0");
+    refuse("the deadline is " + short_text(config.deadline) + " s; it must be at least 0");
   }
 }
 
@@ -275,9 +275,9 @@ std::size_t GainEvaluator::approximate(std::span<const Pose> T_world_camera,
                                        const ApproximateConfig& config,
                                        const BatchControl& control) const {
   if (!(config.share > 0 && config.share <= 1)) {
-    throw Error(
-        ErrorCode::invalid_argument,
-        std::string("share of the rays is ") + short_text(config.share) + "; it must be in (0, 1]");
+    throw Error(ErrorCode::invalid_argument, std::string("the share of the rays is ") +
+                                                 short_text(config.share) +
+                                                 "; it must be in (0, 1]");
   }
   detail::check_room(T_world_camera.size(), results.size());
   std::fill(results.begin(), results.end(), ApproximateGain{});

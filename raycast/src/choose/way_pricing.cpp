@@ -20,7 +20,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check_costs(std::span<const double> costs, std::size_t poses) {
   if (!costs.empty() && costs.size() != poses) {
-    refuse(std::to_string(costs.size()) + " costs for " + std::to_string(poses) + " poses");
+    refuse("there are " + std::to_string(costs.size()) + " costs, but " + std::to_string(poses) +
+           " poses");
   }
   for (const double cost : costs) {
     if (!std::isfinite(cost)) refuse("a cost is " + short_text(cost) + "; it must be finite");
@@ -30,18 +31,19 @@ void check_costs(std::span<const double> costs, std::size_t poses) {
 void check_tour(const TourConfig& config, std::size_t poses) {
   check_costs(config.costs, poses);
   if (config.first && *config.first >= poses) {
-    refuse("first is " + std::to_string(*config.first) + " of " + std::to_string(poses) + " poses");
+    refuse("first is pose " + std::to_string(*config.first) + ", but there are only " +
+           std::to_string(poses) + " poses");
   }
   if (!(config.cost_per_way >= 0 && std::isfinite(config.cost_per_way))) {
-    refuse("cost_per_way " + short_text(config.cost_per_way) + " must be at least 0 and finite");
+    refuse("cost_per_way must be at least 0 and finite, not " + short_text(config.cost_per_way));
   }
   if (!(config.budget >= 0))
-    refuse("the budget is " + short_text(config.budget) + "; it must be >= 0");
+    refuse("the budget must be at least 0, not " + short_text(config.budget));
   if (!(config.least_area >= 0)) {
-    refuse("least_area is " + short_text(config.least_area) + "; it must be >= 0");
+    refuse("least_area must be at least 0, not " + short_text(config.least_area));
   }
   if (!(config.share > 0 && config.share <= 1)) {
-    refuse("share is " + short_text(config.share) + "; it must be in (0, 1]");
+    refuse("share must be in (0, 1], not " + short_text(config.share));
   }
 }
 
@@ -56,8 +58,8 @@ WayPricing::WayPricing(const TourConfig& config, std::size_t poses)
 double WayPricing::way(std::size_t from, std::size_t to) const {
   const double value = config_.way(from, to);
   if (value >= 0) return value;
-  refuse("the path from " + (from == kTourStart ? "the start" : std::to_string(from)) + " to " +
-         std::to_string(to) + " costs " + short_text(value));
+  refuse("the cost of the path from " + (from == kTourStart ? "the start" : std::to_string(from)) +
+         " to " + std::to_string(to) + " is " + short_text(value) + "; it must be at least 0");
 }
 
 double WayPricing::worth(std::size_t i, double gain) const {

@@ -215,12 +215,12 @@ void check(const std::shared_ptr<const VoxelScene>& scene, const FeasibilityConf
     fail("T_flange_camera is not a rigid transform");
   }
   if (!(std::isfinite(config.clearance) && config.clearance >= 0)) {
-    fail("the clearance must be finite and not negative, not " + short_text(config.clearance));
+    fail("the clearance must be at least 0 and finite, not " + short_text(config.clearance));
   }
   const ReachRegion::Tolerance& taken = config.taken_tolerance;
   if (!(std::isfinite(taken.distance) && taken.distance >= 0 && std::isfinite(taken.angle) &&
         taken.angle >= 0)) {
-    fail("the tolerance around taken views must be finite and not negative");
+    fail("the tolerance around taken views must be at least 0 and finite");
   }
   config.reach.validate();
   if (config.sensor) config.sensor->validate();

@@ -25,7 +25,7 @@ constexpr double kMinSigma = 1e-8;
 
 void check_range(const char* name, double value) {
   if (!std::isfinite(value) || value < 0) {
-    refuse(std::string(name) + " is " + short_text(value) + " m; it must be >= 0 and finite");
+    refuse(std::string(name) + " is " + short_text(value) + " m; it must be at least 0 and finite");
   }
 }
 
@@ -33,41 +33,42 @@ void check(const GainConfig& config, const Sensor& sensor) {
   const double min_range = config.min_range.value_or(sensor.min_range);
   const double max_range = config.max_range.value_or(sensor.max_range);
   if (config.pixel_stride < 1) {
-    refuse("pixel stride is " + std::to_string(config.pixel_stride) + "; it must be >= 1");
+    refuse("the pixel stride must be at least 1, not " + std::to_string(config.pixel_stride));
   }
   check_range("min_range", min_range);
   check_range("max_range", max_range);
   if (min_range >= max_range) {
-    refuse("min_range " + short_text(min_range) + " m is not below max_range " +
+    refuse("min_range, " + short_text(min_range) + " m, must be below max_range, " +
            short_text(max_range) + " m");
   }
   if (config.model == GainModel::combined && config.criterion == Criterion::trace) {
-    refuse("criterion trace requires the gain paper: the combined gain is in nat");
+    refuse("the criterion trace requires the gain paper, because the combined gain is in nat");
   }
   if (!std::isfinite(config.refinement_weight) || config.refinement_weight < 0) {
-    refuse("refinement weight is " + short_text(config.refinement_weight) +
-           "; it must be >= 0 and finite");
+    refuse("the refinement weight must be at least 0 and finite, not " +
+           short_text(config.refinement_weight));
   }
   for (const double t : {min_range, sensor.working_distance, max_range}) {
     const MeasurementSigmas sigma = sensor.sigmas(t);
     const double ratio = sigma.axial / sigma.lateral;
     if (!(ratio <= kMaxSigmaRatio && ratio >= 1 / kMaxSigmaRatio)) {
-      refuse("the sensor's sigmas at " + short_text(t) + " m, " + short_text(sigma.axial) +
-             " m along the ray and " + short_text(sigma.lateral) +
-             " m across, differ by more than a factor of " + short_text(kMaxSigmaRatio));
+      refuse("the sensor's standard deviations at a range of " + short_text(t) + " m are " +
+             short_text(sigma.axial) + " m along the ray and " + short_text(sigma.lateral) +
+             " m across the ray; they may differ by at most a factor of " +
+             short_text(kMaxSigmaRatio));
     }
     if (const double least = std::min(sigma.axial, sigma.lateral); least < kMinSigma) {
-      refuse("the sensor's sigma at " + short_text(t) + " m is " + short_text(least) +
-             " m; the minimum is " + short_text(kMinSigma) + " m");
+      refuse("the sensor's standard deviation at a range of " + short_text(t) + " m is " +
+             short_text(least) + " m; the minimum is " + short_text(kMinSigma) + " m");
     }
   }
   for (const GainConfig::WeightRegion& region : config.weights) {
     if (!std::isfinite(region.weight) || region.weight < 0) {
-      refuse("task weight is " + short_text(region.weight) + "; it must be >= 0 and finite");
+      refuse("a task weight must be at least 0 and finite, not " + short_text(region.weight));
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!(region.box.min[axis] < region.box.max[axis]))
-        refuse("a task weight's box is inside out");
+        refuse("the box of a task weight is inside out or empty");
     }
   }
 }
@@ -166,7 +167,7 @@ EvaluatorCore::EvaluatorCore(const EvaluatorCore& full, const RayLattice& lattic
 double EvaluatorCore::prior_sigma_in(const VoxelScene& scene) const {
   const double prior_sigma = config.prior_sigma.value_or(scene.snapshot().prior_sigma);
   if (!(prior_sigma >= kMinPriorSigma && prior_sigma <= kMaxPriorSigma)) {
-    refuse("prior sigma is " + short_text(prior_sigma) + " m; it must be in " +
+    refuse("the prior sigma is " + short_text(prior_sigma) + " m; it must be in " +
            short_text(kMinPriorSigma) + ".." + short_text(kMaxPriorSigma) + " m");
   }
   return prior_sigma;

@@ -60,7 +60,8 @@ struct EvaluatorAccess {
 /// Throws Error(invalid_argument) if there is not one result for each pose.
 inline void check_room(std::size_t poses, std::size_t results) {
   if (poses == results) return;
-  refuse(std::to_string(poses) + " poses, but room for " + std::to_string(results) + " results");
+  refuse("there are " + std::to_string(poses) + " poses, but the array has room for " +
+         std::to_string(results) + " results");
 }
 
 /// Calls work(i, lease) for every i below count on all threads; ends early if a stop is requested

@@ -52,8 +52,8 @@ void check_obstacles(const Obstacles& obstacles) {
     for (const auto& triangle : mesh.triangles) {
       for (const std::uint32_t index : triangle) {
         if (index >= mesh.vertices.size()) {
-          refuse("an obstacle's triangle refers to vertex " + std::to_string(index) + " of " +
-                 std::to_string(mesh.vertices.size()));
+          refuse("an obstacle's triangle refers to vertex " + std::to_string(index) +
+                 ", but the mesh has " + std::to_string(mesh.vertices.size()) + " vertices");
         }
       }
     }
@@ -63,7 +63,7 @@ void check_obstacles(const Obstacles& obstacles) {
 void check_surroundings(const Surroundings& surroundings) {
   check_obstacles(surroundings.obstacles);
   if (surroundings.support_plane && !std::isfinite(*surroundings.support_plane)) {
-    refuse("the support plane's height is not finite");
+    refuse("the height of the support plane must be finite");
   }
 }
 

@@ -103,10 +103,9 @@ class Gatherer {
     data_.boxes.insert(data_.boxes.end(), larger_.begin(), larger_.end());
     data_.block_keys.insert(data_.block_keys.end(), block_keys_.begin(), block_keys_.end());
     if (data_.boxes.size() > kMaxPrimitives) {
-      throw Error(ErrorCode::capacity,
-                  "the map has " + std::to_string(data_.boxes.size()) +
-                      " leaves and tiles that are not free; the maximum of a scene is " +
-                      std::to_string(kMaxPrimitives));
+      throw Error(ErrorCode::capacity, "the map has " + std::to_string(data_.boxes.size()) +
+                                           " blocks of voxels that are not free; the maximum is " +
+                                           std::to_string(kMaxPrimitives));
     }
   }
 

@@ -39,7 +39,8 @@ FrameVerdict judged(const Measurements& measurements, const Sensor& sensor) {
   for (const double sigma :
        {measurements.pose_sigma.translation, measurements.pose_sigma.rotation}) {
     if (std::isfinite(sigma) && sigma >= 0) continue;
-    refuse("the sigma " + short_text(sigma) + " of a pose is negative or not finite");
+    refuse("the standard deviations of a pose must be at least 0 and finite, not " +
+           short_text(sigma));
   }
   for (const DepthFrame& frame : measurements.frames) check_identity(frame.identity);
   if (!rigid_pose(measurements.T_world_camera)) return FrameVerdict::lost_pose;

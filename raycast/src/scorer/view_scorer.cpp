@@ -29,9 +29,9 @@ BeliefGrid empty_grid(const GridConfig& config, const Sensor& sensor) {
   const auto& [min, max] = config.workspace;
   const double longest = std::max({max[0] - min[0], max[1] - min[1], max[2] - min[2]});
   if (config.voxel_size < longest && config.voxel_size <= sensor.max_range) return grid;
-  refuse("voxels of " + short_text(config.voxel_size) + " m in a workspace of " +
-         short_text(longest) + " m, but the sensor's range ends at " +
-         short_text(sensor.max_range) + " m; lengths are in metres");
+  refuse("the workspace is " + short_text(longest) + " m long and its voxels are " +
+         short_text(config.voxel_size) + " m wide, but the sensor's range ends at " +
+         short_text(sensor.max_range) + " m; lengths must be in metres");
 }
 
 // The feasible ones of some poses.
@@ -68,11 +68,11 @@ Possible possible_ones(const FeasibilityChecker& checker, std::span<const Pose> 
 void check_costs(std::span<const double> costs, std::size_t poses) {
   if (costs.empty()) return;
   if (costs.size() != poses) {
-    refuse("best: " + std::to_string(costs.size()) + " costs for " + std::to_string(poses) +
-           " poses");
+    refuse("best: there are " + std::to_string(costs.size()) + " costs, but " +
+           std::to_string(poses) + " poses");
   }
   for (const double cost : costs) {
-    if (!std::isfinite(cost)) refuse("best: the cost " + short_text(cost) + " is not finite");
+    if (!std::isfinite(cost)) refuse("best: a cost is " + short_text(cost) + "; it must be finite");
   }
 }
 
@@ -81,7 +81,8 @@ ScorerConfig with_layout(ScorerConfig config, const BeliefGrid& grid) {
   if (config.gain.prior_sigma)
     refuse("gain.prior_sigma cannot be used here; set ScorerConfig::prior_sigma");
   if (!(config.clearance >= 0) || !std::isfinite(config.clearance)) {
-    refuse("the clearance is " + short_text(config.clearance) + " m; it must be 0 or more");
+    refuse("the clearance is " + short_text(config.clearance) +
+           " m; it must be at least 0 and finite");
   }
   config.voxel_size = grid.voxel_size();
   config.workspace = grid.workspace();
@@ -352,7 +353,8 @@ BeliefGrid ViewScorer::grid_after(const Measurements& measurements) const {
   const Impl& m = *impl_;
   const FrameVerdict verdict = detail::judged(measurements, m.sensor);
   if (verdict != FrameVerdict::used) {
-    refuse("the frames cannot be used: " + std::string(frame_verdict_name(verdict)));
+    refuse("the frames cannot be used; their verdict is " +
+           std::string(frame_verdict_name(verdict)));
   }
   BeliefGrid after = m.grid.clone();
   FrameIntegrator integrator(m.sensor, m.config.integration(), m.exec);

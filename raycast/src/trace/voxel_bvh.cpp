@@ -66,7 +66,7 @@ ScenePtr build_bvh(const SceneData& data, Isa isa, float margin) {
   if (!has_packets(isa)) {
     throw Error(ErrorCode::backend, "this build of Embree has no ray packets for " +
                                         std::string(isa_name(isa)) +
-                                        "; the tracer sweep does not need them");
+                                        "; use the tracer sweep instead");
   }
   const PacketKernels& kernels = packet_kernels(isa);
   RTCDevice device = shared_device(isa);

@@ -33,7 +33,7 @@ static void of_sensors(void) {
   CHECK(bad.fx == -3);
   vg_sensor_init(&bad, sizeof bad + 8); /* of another header: zeros and its size */
   CHECK(bad.fx == 0 && bad.struct_size == sizeof bad + 8);
-  CHECK_REFUSED(vg_sensor_preset("sr4000", &bad), ", but in this library ");
+  CHECK_REFUSED(vg_sensor_preset("sr4000", &bad), ", but in viewgain ");
 }
 
 static void of_grids(const char* folder) {
@@ -176,7 +176,7 @@ static void of_scenes(vg_grid* map, vg_scene* scene) {
   config.vertex_count = 1;
   config.triangles = triangle;
   config.triangle_count = 1;
-  CHECK_REFUSED(vg_scene_build(map, &config, &other), "vertex 1 of 1");
+  CHECK_REFUSED(vg_scene_build(map, &config, &other), "vertex 1, but the mesh has 1 vertices");
   config.struct_size = 0;
   CHECK_REFUSED(vg_scene_build(map, &config, &other), "vg_scene_config");
   CHECK_REFUSED(vg_scene_update(NULL, map, 1, &other), "before is null");
@@ -224,7 +224,8 @@ static void of_evaluators(const vg_scene* scene) {
   CHECK_REFUSED(vg_evaluator_create(scene, &sensor, &config, &evaluator), "criterion is 3");
   config.criterion = VG_LOG_DETERMINANT;
   config.pixel_stride = 0;
-  CHECK_REFUSED(vg_evaluator_create(scene, &sensor, &config, &evaluator), "stride is 0");
+  CHECK_REFUSED(vg_evaluator_create(scene, &sensor, &config, &evaluator),
+                "stride must be at least 1, not 0");
   config.pixel_stride = 1;
   config.tracer = 3;
   CHECK_REFUSED(vg_evaluator_create(scene, &sensor, &config, &evaluator), "tracer is 3");
@@ -286,7 +287,7 @@ static void of_poses(void) {
   CHECK_REFUSED(vg_look_at(center, center, NULL, pose), "eye");
   CHECK_REFUSED(vg_look_at(NULL, center, NULL, pose), "eye is null");
   CHECK_REFUSED(vg_order_stops(NULL, 1, &stop, NULL), "costs is null");
-  CHECK_REFUSED(vg_order_stops(below, 1, &stop, NULL), "from the start to 0 costs -1");
+  CHECK_REFUSED(vg_order_stops(below, 1, &stop, NULL), "from the start to 0 is -1");
 }
 
 static void of_range_calibrations(void) {
@@ -297,8 +298,8 @@ static void of_range_calibrations(void) {
     const double* table;
     size_t rows;
     const char* part;
-  } bad[] = {{NULL, 0, "rows is 0"},
-             {good, 0, "rows is 0"},
+  } bad[] = {{NULL, 0, "rows must be at least 1, not 0"},
+             {good, 0, "rows must be at least 1, not 0"},
              {NULL, 2, "table is null"},
              {falling[0], 2, "must increase, but 1 m follows 2 m"}};
   vg_sensor other;

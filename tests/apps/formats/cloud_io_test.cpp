@@ -220,20 +220,21 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
   change("bad.pcd:7:", "WIDTH 50", "WIDTH -1");
   change("WIDTH x HEIGHT is too large", "WIDTH 50\nHEIGHT 1",
          "WIDTH 4294967295\nHEIGHT 4294967295");
-  change("are present", "WIDTH 50\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 50",
+  change("bytes follow", "WIDTH 50\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 50",
          "WIDTH 4294967295\nHEIGHT 1\nPOINTS 4294967295");
   change("only one of WIDTH and HEIGHT", "HEIGHT 1", "# none");
-  change("no count of points", "WIDTH 50\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 50", "# none");
+  change("neither POINTS nor WIDTH and HEIGHT",
+         "WIDTH 50\nHEIGHT 1\nVIEWPOINT 1 2 3 0 1 0 0\nPOINTS 50", "# none");
   change("missing field 'z'", "y z\n", "y w\n");
   change("'x' must have COUNT 1", "COUNT 1 1 3", "COUNT 1 2 3");
   change("the count '100001' is too large", "COUNT 1 1 3", "COUNT 1 1 100001");
-  change("are present", "COUNT 1 1 3", "COUNT 1 1 100000");
-  change("needs one word for each of the 5 fields", "SIZE 2 4 4 8 4", "SIZE 2 4 4 8");
-  change("needs one word for each", "TYPE U F F F I", "TYPE U F F F I I");
-  change("bad.pcd:5: TYPE 'D'", "TYPE U F", "TYPE U D");
-  change("SIZE that its TYPE", "SIZE 2 4", "SIZE 2 2");
-  change("SIZE that its TYPE", "SIZE 2 4", "SIZE 3 4");
-  change("SIZE that its TYPE", "SIZE 2 4", "SIZE 0 4");
+  change("bytes follow", "COUNT 1 1 3", "COUNT 1 1 100000");
+  change("must have one word for each of the 5 fields", "SIZE 2 4 4 8 4", "SIZE 2 4 4 8");
+  change("must have one word for each", "TYPE U F F F I", "TYPE U F F F I I");
+  change("bad.pcd:5: TYPE must be F, I or U, not 'D'", "TYPE U F", "TYPE U D");
+  change("SIZE that does not fit its TYPE", "SIZE 2 4", "SIZE 2 2");
+  change("SIZE that does not fit its TYPE", "SIZE 2 4", "SIZE 3 4");
+  change("SIZE that does not fit its TYPE", "SIZE 2 4", "SIZE 0 4");
   change("is too large", "SIZE 2 4", "SIZE 2 9");
   change("no line SIZE", "SIZE 2 4 4 8 4", "# none");
   change("the field 'x' is declared twice", "intensity x normal y z", "x x normal y z");
@@ -241,15 +242,16 @@ TEST_F(CloudFiles, ForgedPcdHeadersAreNamedByLine) {
   change("FIELDS is declared twice", "VERSION 0.7", "FIELDS x y z");
   change("FIELDS needs", "FIELDS intensity x normal y z", "FIELDS");
   change("VIEWPOINT needs 7", "VIEWPOINT 1 2 3 0 1 0 0", "VIEWPOINT 1 2 3");
-  change("bad.pcd:9: VIEWPOINT's quaternion", "0 1 0 0\n", "0 2 0 0\n");
+  change("bad.pcd:9: the quaternion of VIEWPOINT", "0 1 0 0\n", "0 2 0 0\n");
   change("the number 'nan' is not finite", "VIEWPOINT 1", "VIEWPOINT nan");
-  change("DATA 'bin'", "DATA binary", "DATA bin\n");
+  change("DATA must be ascii or binary, not 'bin'", "DATA binary", "DATA bin\n");
   change("pcl_convert_pcd_ascii_binary", "DATA binary", "DATA binary_compressed");
   change("no line DATA", good.substr(good.find("DATA")), "");
   change("the header's keyword 'ply' is unknown", "VERSION 0.7", "ply");
 
   const std::string ascii = pcd_ascii();
-  expect_refused("bad.pcd", "bad.pcd:12: a point has 7 words; found 6", with(ascii, "\n12 ", "\n"));
+  expect_refused("bad.pcd", "bad.pcd:12: expected 7 words for a point; found 6",
+                 with(ascii, "\n12 ", "\n"));
   expect_refused("bad.pcd", "the file continues after its last point", ascii + "1 2 3 4 5 6 7\n");
   expect_refused("bad.pcd", "bad.pcd:12: 'zero", with(ascii, " 0 0 1 ", " 0 0 1 zero"));
 }

@@ -77,7 +77,7 @@ TEST(Formats, WhatIsNotThereIsNoFrame) {
   writer.commit(sphere_poses(1, 0.6), sensor);
   const FrameSequence frames = open_frames(folder.path() / "frames");
   EXPECT_NEAR(load_frame(open_frames(folder.path() / "frames", "", 1e-3), 0).depth[1], 5.F, 1e-5);
-  test::expect_error(ErrorCode::invalid_argument, "no frame 1; there are 1 frames",
+  test::expect_error(ErrorCode::invalid_argument, "frame 1 does not exist; there are 1 frames",
                      [&] { (void)load_frame(frames, 1); });
   for (const double scale : {0.0, -1e-3, std::nan("")}) {
     test::expect_error(ErrorCode::invalid_argument, "depth scale",
@@ -118,7 +118,7 @@ TEST(Formats, FramesAreReadWithTheSensorsTable) {
   ASSERT_EQ(images.images, plain.images);
   EXPECT_TRUE(images.poses.empty());
   EXPECT_EQ(load_frame(images, 0), expected);
-  test::expect_error(ErrorCode::invalid_argument, "no frame 0; there are 0 frames",
+  test::expect_error(ErrorCode::invalid_argument, "frame 0 does not exist; there are 0 frames",
                      [&] { (void)frame_identity(images, 0); });
   std::filesystem::create_directory(folder.path() / "empty");
   test::expect_error(ErrorCode::io, "no frame-NNNNNN.depth.png",
@@ -188,10 +188,12 @@ TEST(Formats, FramesThatCannotBeAreRefusedAndNothingIsWritten) {
   refuses("5 amplitudes", [&] { writer.write_frame(1, {3, 2, six, five}); });
   refuses("0 x 2", [&] { writer.write_frame(1, {0, 2, {}, {}}); });
   refuses("-3 x -2", [&] { writer.write_frame(1, {-3, -2, six, {}}); });
-  refuses("frame 2: must be number 1", [&] { writer.write_frame(2, {3, 2, six, {}}); });
+  refuses("frame 2: frames must be written in order; expected frame 1", [&] {
+    writer.write_frame(2, {3, 2, six, {}});
+  });
   refuses("differs in size", [&] { writer.write_frame(1, {2, 3, six, {}}); });
   refuses("2 poses for 1 frames", [&] { writer.commit(sphere_poses(2, 1), sensor); });
-  refuses("3 x 2 px for a sensor", [&] { writer.commit(sphere_poses(1, 1), sensor); });
+  refuses("3 x 2 px, but the sensor has", [&] { writer.commit(sphere_poses(1, 1), sensor); });
   refuses("values", [&] { write_png(folder.path() / "a.png", GrayImage{3, 2, {1, 2, 3}}); });
   refuses("values", [&] { write_png(folder.path() / "a.png", RgbImage{1, 1, {1}}); });
   refuses("px", [&] { (void)read_gray_png(folder.file("b.png", ""), -1, 2); });
@@ -226,7 +228,7 @@ TEST(Formats, RegionsWithPosesNeedANameForThem) {
                      [&] { write_reach_toml(folder.path() / "none" / "cell.toml", region); });
   EXPECT_EQ(folder.entries(), 0);
   region.poses.clear();
-  test::expect_error(ErrorCode::invalid_argument, "must end in .toml",
+  test::expect_error(ErrorCode::invalid_argument, "must have the ending .toml",
                      [&] { write_reach_toml(folder.path() / "cell.txt", region); });
   write_reach_toml(folder.path() / "cell.toml", region);  // no second file
   EXPECT_EQ(folder.entries(), 1);

@@ -431,7 +431,7 @@ TEST_F(WatchedFolder, OfTwoImagesOfANumberOneCounts) {
   EXPECT_TRUE(complete_after(watched, 3s).empty());
   ASSERT_EQ(bad.size(), 3U);
   EXPECT_EQ(bad[2].fault.what.substr(dir.path().string().size() + 1),
-            "frame-99999999999999999999.depth.png: has a number of more than 64 bits");
+            "frame-99999999999999999999.depth.png: the number of the frame has more than 64 bits");
   std::filesystem::remove(dir.path() / "frame-99999999999999999999.depth.png");
 
   FrameWatch fresh = watch();

@@ -60,7 +60,7 @@ TEST_F(Ply, MeshComesBackExactly) {
 
 TEST_F(Ply, OtherEndingsAreRefused) {
   for (const std::string name : {"surface.stl", "surface.obj", "surface", "surface.ply.gz"}) {
-    test::expect_error(ErrorCode::invalid_argument, "must end in .ply",
+    test::expect_error(ErrorCode::invalid_argument, "must have the ending .ply",
                        [&] { write_ply(folder_ / name, arrays_of(tetrahedron(), {})); });
   }
   EXPECT_EQ(own_.entries(), 0);
@@ -121,7 +121,7 @@ TEST_F(Ply, BadInputIsRefusedAndLeavesNoFile) {
   };
   expect_refused("4 points, but 3 sigmas", three);
   mesh.triangles[3][1] = 4;
-  expect_refused("a triangle has vertex 4 of 4", {});
+  expect_refused("a triangle has vertex 4, but there are 4 points", {});
   mesh = tetrahedron();
   mesh.normals.pop_back();
   expect_refused("4 points, but 3 normals", {});

@@ -217,7 +217,7 @@ TEST_F(MatchedPoses, ClocksThatDoNotOverlapAreRefused) {
   put(images, times);
   expect_refused("do not overlap");
   expect_refused("1700000000.000 to 1700000002.000 s");
-  expect_refused("poses (100.000 if both begin at the same time)");
+  expect_refused("pose_time_offset = 100.000");
   EXPECT_EQ(watched(), (Lines{kNoPose, kNoPose, kNoPose}));
   put(images, times, "pose_time_offset = 100.0\n");
   expect(identity(3));

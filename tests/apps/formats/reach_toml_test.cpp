@@ -90,7 +90,7 @@ TEST_F(ReachFiles, ErrorsNameFileAndKey) {
       {"[[box]]\nmin = [0,0,0]\nmax = [1,-1,1]", "box 0 is inside out"},
       {"[[shell]]\ncenter = [0,0,0]\nmax_radius = 1", "\"shell[0].min_radius\" is missing"},
       {"[[shell]]\ncenter = [0,0,0]\nmin_radius = 2\nmax_radius = 1", "shell 0 is inside out"},
-      {"[[half_space]]\nnormal = [0,0,0]\noffset = 1", "half-space 0 has a normal of length 0"},
+      {"[[half_space]]\nnormal = [0,0,0]\noffset = 1", "half-space 0 has a normal with length 0"},
       {"[[half_space]]\nnormal = [0,0,1]\noffset = \"1\"", "\"half_space[0].offset\" must be a"},
       {"poses = 3", "\"poses\" must be a string"},
       {"tolerance = 3", "\"tolerance\" must be a table"},

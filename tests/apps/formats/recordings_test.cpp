@@ -196,7 +196,7 @@ TEST_F(Recordings, LinksOutOfARecordingAreRefusedWhereTheyAreRead) {
                                  std::pair{"rec/masks/0.png", dir / "elsewhere/0.png"}}) {
     if (fs::exists(dir / link)) fs::rename(dir / link, dir / "away");
     fs::create_symlink(to, dir / link);
-    expect_refused(masked, std::string(link) + ": is a link that leaves the recording");
+    expect_refused(masked, std::string(link) + ": the link leads out of the recording");
     fs::remove(dir / link);
     if (fs::exists(dir / "away")) fs::rename(dir / "away", dir / link);
     ++cases;

@@ -155,14 +155,14 @@ TEST(ClassicGains, RefuseWhatTheyCannotDo) {
   expect(refused(map, {.gains = {ClassicGain::proximity_count}}), "sensor");
   expect(refused(map, {.gains = {ClassicGain::proximity_count}}), "proximity_count");
   expect(refused(no_views, {.gains = {ClassicGain::area_factor}}), "records no views");
-  expect(refused(map, {}), "no classic gain");
+  expect(refused(map, {}), "the list of gains is empty");
   const ClassicGain one = ClassicGain::unknown_count;
   expect(refused(map, {.gains = {one, one}}), "twice");
-  expect(refused(nullptr, {.gains = {one}}), "need a map");
-  expect(refused(map, {.gains = {one}, .pixel_stride = 0}), "stride is 0");
+  expect(refused(nullptr, {.gains = {one}}), "require a map");
+  expect(refused(map, {.gains = {one}, .pixel_stride = 0}), "stride must be at least 1, not 0");
   expect(refused(map, {.gains = {one}, .min_range = 2, .max_range = 1}), "min_range 2 m");
   expect(refused(map, {.gains = {one}, .unknown_prior = 1.5}), "1.5");
-  expect(error_of([&] { (void)ClassicMap::build(nullptr, grid); }), "need a scene");
+  expect(error_of([&] { (void)ClassicMap::build(nullptr, grid); }), "require a scene");
   expect(error_of([&] {
            (void)ClassicMap::build(scene, row_map({}).clone(), Acquisition{one_ray(), 99});
          }),

@@ -162,7 +162,8 @@ TEST(SavedPlanner, RefusesAMapThatHasGrownWithoutIt) {
   BeliefGrid grid = load_vdb(path);
   FrameIntegrator(scene.sensor).integrate(grid, scene.see(scene.views[1]), scene.views[1]);
   save_vdb(grid, path);
-  expect_error(ErrorCode::invalid_argument, "has 2 views, but its planner added only 1",
+  expect_error(ErrorCode::invalid_argument,
+               "has 2 views, but the planner that saved it added only 1",
                [&] { (void)scene.config().load(path, scene.sensor); });
 }
 
@@ -179,7 +180,7 @@ TEST(SavedPlanner, RefusesWhatIsNone) {
   ViewPlanner planner = config.make(scene.sensor, {1});
   (void)planner.add(scene.see(scene.views[0]), scene.views[0]);
   save_vdb(planner.scorer().grid(), path);
-  refuses(ErrorCode::format, "without a planner's state", config);
+  refuses(ErrorCode::format, "the map has no planner state", config);
   planner.tried(scene.views[4], false);
   planner.save(path);
   PlannerSetUp other = config;

@@ -109,11 +109,13 @@ TEST_F(SuspectFrames, DepthsInOtherUnits) {
   for (const std::string factor : {"2", "2.5", "4", "5", "10", "1000"}) {
     const std::vector<DepthFrame> right = frames_;
     scale(std::stod(factor), 0);
-    EXPECT_NE(what().find("if the depth scale is " + factor + " times smaller"), std::string::npos)
+    EXPECT_NE(what().find("the correct depth scale is " + factor + " times smaller"),
+              std::string::npos)
         << factor << what();
     frames_ = right;
     scale(1 / std::stod(factor), 0);
-    EXPECT_NE(what().find("if the depth scale is " + factor + " times larger"), std::string::npos)
+    EXPECT_NE(what().find("the correct depth scale is " + factor + " times larger"),
+              std::string::npos)
         << factor << what();
     frames_ = right;
   }
@@ -124,7 +126,8 @@ TEST_F(SuspectFrames, WhatFitsAlikeIsNamed) {
   see(orbit_poses(1, 0.5, 0.6));
   scale(20, 0);
   for (const std::string factor : {"2", "4", "5", "10"}) {
-    EXPECT_NE(what().find("if the depth scale is " + factor + " times smaller"), std::string::npos)
+    EXPECT_NE(what().find("the correct depth scale is " + factor + " times smaller"),
+              std::string::npos)
         << factor << what();
   }
 }
@@ -189,11 +192,11 @@ TEST(SuspectFocalLengths, AreNamedAndRightOnesAreNot) {
           continue;
         }
         ++wrong;
-        const std::string words = std::string("the focal length is ") + factor + " times";
+        const std::string words = std::string("the correct focal length is ") + factor + " times";
         const bool is_named = found.what.find(words) != std::string::npos;
         told += found.kind == "focal_length" ? 1 : 0;
         named += is_named ? 1 : 0;
-        beside += is_named && found.what.find(", or if") != std::string::npos ? 1 : 0;
+        beside += is_named && found.what.find(", or ") != std::string::npos ? 1 : 0;
       }
     }
   }
@@ -233,7 +236,7 @@ TEST(SuspectFocalLengths, WhatFitsAsWellAsADepthScaleIsNamedBesideIt) {
     stated.camera.fx /= std::stod(factor);
     stated.camera.fy /= std::stod(factor);
     const Suspicion found = suspect_frames(stated, frames, poses);
-    EXPECT_NE(found.what.find(std::string("the focal length is ") + factor + " times"),
+    EXPECT_NE(found.what.find(std::string("the correct focal length is ") + factor + " times"),
               std::string::npos)
         << found.what;
     EXPECT_NE(found.what.find(std::string("the depth scale is ") + words), std::string::npos)

@@ -306,7 +306,7 @@ TEST_F(SuspectReadings, MasksThatTakeTheObject) {
   for (const BeliefGrid* of : {&map, &room}) {
     const Suspicion suspicion = masked(object, of);
     EXPECT_EQ(suspicion.kind, "masks");
-    EXPECT_NE(suspicion.what.find("invert them"), std::string::npos) << suspicion.what;
+    EXPECT_NE(suspicion.what.find("invert the masks"), std::string::npos) << suspicion.what;
   }
   EXPECT_EQ(masked([](auto, auto) { return true; }, &room).kind, "masks");
   EXPECT_EQ(masked([](auto, auto) { return true; }, nullptr).kind, "masks");

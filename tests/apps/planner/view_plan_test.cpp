@@ -61,7 +61,7 @@ TEST_F(ViewPlan, ViewsThatGoTogetherAreTheBestSets) {
     EXPECT_EQ(together.views[0].index,
               planner.rank(1, {.together = true, .exact = true}).views[0].index);
     const Height height;
-    expect_error(ErrorCode::invalid_argument, "not by a measure",
+    expect_error(ErrorCode::invalid_argument, "a set of views is chosen by the gain",
                  [&] { (void)planner.rank(2, {.measure = &height, .together = true}); });
   }
 }
@@ -174,10 +174,10 @@ TEST_F(ViewPlan, RefusesWhatCannotBe) {
   const auto refuses = [&](const PlanAhead& ahead, const char* part) {
     expect_error(ErrorCode::invalid_argument, part, [&] { (void)planner(ahead); });
   };
-  refuses({.plan = 0}, "plan is 0");
-  refuses({.plan = 1001, .take = 1}, "plan is 1001");
-  refuses({.plan = 3, .take = 4}, "take is 4");
-  refuses({.plan = 3, .take = 0}, "take is 0");
+  refuses({.plan = 0}, "plan must be in 1..1000, not 0");
+  refuses({.plan = 1001, .take = 1}, "plan must be in 1..1000, not 1001");
+  refuses({.plan = 3, .take = 4}, "(plan), not 4");
+  refuses({.plan = 3, .take = 0}, "(plan), not 0");
   refuses({.plan = 3, .take = 1, .least_share = 1}, "least_share 1");
 }
 

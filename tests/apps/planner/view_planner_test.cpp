@@ -331,11 +331,11 @@ TEST(ViewPlanner, VoxelsInMillimetresAreRefused) {
   PlannerSetUp config = scene.config();
   const auto make = [&] { (void)config.make(scene.sensor, {1}); };
   config.map.voxel_size = 0.5;  // the workspace is 0.3 m long
-  expect_error(ErrorCode::invalid_argument, "lengths are in metres", make);
+  expect_error(ErrorCode::invalid_argument, "lengths must be in metres", make);
   config.map.workspace = {{-20, -20, -20}, {20, 20, 20}};
   EXPECT_NO_THROW(make());
   config.map.voxel_size = 6;  // it sees to 5 m
-  expect_error(ErrorCode::invalid_argument, "lengths are in metres", make);
+  expect_error(ErrorCode::invalid_argument, "lengths must be in metres", make);
 }
 
 TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
@@ -353,11 +353,11 @@ TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
     ++cases;
   };
   const DepthFrame frame = scene.see(scene.views[0]);
-  refuses("call propose() after each view", [&] { (void)planner.rank(); });
+  refuses("After each view, call propose()", [&] { (void)planner.rank(); });
   (void)planner.propose();  // before any view: all is unknown
   EXPECT_FALSE(planner.rank().views.empty());
   planner.add(frame, scene.views[0]);
-  refuses("call propose() after each view", [&] { (void)planner.rank(); });
+  refuses("After each view, call propose()", [&] { (void)planner.rank(); });
   Pose nan = scene.views[0], bent = scene.views[0];
   nan.m[3] = kNan;
   bent.m[0] += 0.01;
@@ -413,7 +413,7 @@ TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
       EXPECT_FALSE(candidate.T_world_camera == scene.views[tried]);
     }
   }
-  expect_error(ErrorCode::invalid_argument, "into the map",
+  expect_error(ErrorCode::invalid_argument, "cannot have the verdict used or carved",
                [&] { planner.drop(FrameVerdict::carved); });
   ViewPlanner none = scene.config().make(scene.sensor, {1});
   none.add_poses({"dome", scene.views});
@@ -531,7 +531,7 @@ TEST(ViewPlanner, TheLoopOverItsPartsIsItsSteps) {
   ViewPlanner planner = scene.config().make(scene.sensor, {1});
   PlannerParts parts(planner);
   const std::vector<Candidate> others(3);
-  expect_error(ErrorCode::invalid_argument, "not those of the planner's last proposal",
+  expect_error(ErrorCode::invalid_argument, "differ from the last proposal of the planner",
                [&] { (void)parts.decide(Pose(), others); });
 }
 

@@ -124,12 +124,12 @@ def test_what_an_array_raises_passes_through(evaluator):
 
 def test_wrong_settings_are_named(grid, sensor, evaluator, poses):
     scene = viewgain.VoxelScene(grid)
-    cases = [({"criterion": "entropy"}, "entropy"), ({"pixel_stride": 0}, "stride is 0"),
+    cases = [({"criterion": "entropy"}, "entropy"), ({"pixel_stride": 0}, "stride must be at least 1, not 0"),
              ({"prior_sigma": -1.0}, "prior sigma"), ({"min_range": 9.0}, "min_range"),
              ({"max_range": np.nan}, "max_range"), ({"num_threads": -2}, "-2"),
              ({"weights": [(np.zeros((2, 2)), 1)]}, r"\(2, 2\)"),
              ({"weights": [(1, 2, 3)]}, "pair"),
-             ({"weights": [([[0, 0, 0], [1, 1, 1]], -1)]}, "weight is -1")]
+             ({"weights": [([[0, 0, 0], [1, 1, 1]], -1)]}, "weight must be at least 0 and finite, not -1")]
     for settings, text in cases:
         with pytest.raises(ValueError, match=text):
             viewgain.GainEvaluator(scene, sensor, **settings)
@@ -343,5 +343,5 @@ def test_stops_are_ordered():
     assert len(viewgain.order_stops(np.empty((1, 0)))[0]) == 0
     with pytest.raises(ValueError, match=r"\(k \+ 1, k\), not \(2, 2\)"):
         viewgain.order_stops(np.ones((2, 2)))
-    with pytest.raises(ValueError, match="from the start to 1 costs -1"):
+    with pytest.raises(ValueError, match="from the start to 1 is -1"):
         viewgain.order_stops([[1, 1], [1, 1], [1, -1]])

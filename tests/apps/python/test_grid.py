@@ -229,7 +229,7 @@ def test_a_box_follows_another_map(sensor):
     expected[2:5, 3:7, 4:9] = labels
     assert grid.update_box(grid.min_index + np.array([2, 3, 4]), labels) == 40
     assert np.array_equal(grid.states(), expected)
-    with pytest.raises(ValueError, match="labels holds 3"):
+    with pytest.raises(ValueError, match="labels contains 3"):
         grid.update_box(grid.min_index, np.full((2, 2, 2), 3))
     with pytest.raises(ValueError, match="workspace"):
         grid.update_box(grid.min_index, np.zeros((99, 2, 2), np.uint8))

@@ -209,9 +209,9 @@ def test_endings_say_the_format_or_are_refused(tmp_path, grid, sensor, poses):
                (lambda path: viewgain.write_poses(path, poses), ["p.csv", "p"], ".txt, .tum or .npy")]
     for write, names, text in writers:
         for name in names:
-            with pytest.raises(ValueError, match=f"{name}.*must end in {text}"):
+            with pytest.raises(ValueError, match=f"{name}.*must have the ending {text}"):
                 write(tmp_path / name)
-    with pytest.raises(ValueError, match="m.bt: .bt files are read-only; write a .ot file"):
+    with pytest.raises(ValueError, match="m.bt: .bt files can only be read; write a .ot file"):
         grid.save(tmp_path / "m.bt")
     assert os.listdir(tmp_path) == []
     for name in ("p.npy", "p.txt", "p.tum"):
@@ -229,7 +229,7 @@ def test_readers_of_maps_name_one_another(tmp_path, grid):
     grid.save(tmp_path / "map.ot")
     (tmp_path / "map.ot").rename(tmp_path / "map.bt")
     (tmp_path / "map.bt").rename(tmp_path / "map.vdb")
-    with pytest.raises(viewgain.Error, match="map.vdb.*OctoMap.*ending .ot or .bt"):
+    with pytest.raises(viewgain.Error, match="map.vdb.*OctoMap.*end in .ot or .bt"):
         viewgain.BeliefGrid.load(tmp_path / "map.vdb")
     grid.save(tmp_path / "map.vdb")
     for given in ({"prior_sigma": 0.01}, {"workspace": WORKSPACE}, {"occupied_from": 0.5}):

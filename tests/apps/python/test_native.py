@@ -232,7 +232,7 @@ def test_pictures_of_what_cannot_be_drawn_say_why(evaluator, poses, sensor):
     pytest.importorskip("matplotlib").use("agg")
     surface = viewgain.GainEvaluator(evaluator.scene, sensor, gain="surface", pixel_stride=8)
     cases = [(lambda: viewgain.plot.gains(poses, [1.0]), "one value per pose"),
-             (lambda: viewgain.plot.gains(poses[:2], [np.nan, np.nan]), "no value is finite"),
+             (lambda: viewgain.plot.gains(poses[:2], [np.nan, np.nan]), "none of the values is finite"),
              (lambda: viewgain.plot.gains(poses[0], 1.0), "one value per pose"),
              (lambda: viewgain.plot.depth([1.0]), "two dimensions"),
              (lambda: viewgain.plot.contributions(surface, poses[0]), "'surface'")]

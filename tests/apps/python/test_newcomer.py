@@ -58,11 +58,11 @@ def test_labels_that_are_no_states_are_named(labels, dtype):
             viewgain.BeliefGrid.from_labels(wrong, voxel_size=0.01, prior_sigma=0.01)
         return str(raised.value)
 
-    assert refusal(7) == "labels holds 7: 0 is unknown, 1 free, 2 occupied"
-    assert refusal(100, 3, 100) == "labels holds 3, 100: 0 is unknown, 1 free, 2 occupied"
+    assert refusal(7) == "labels contains 7; valid values: 0 (unknown), 1 (free), 2 (occupied)"
+    assert refusal(100, 3, 100) == "labels contains 3, 100; valid values: 0 (unknown), 1 (free), 2 (occupied)"
     assert refusal(*range(3, 12)).startswith("labels holds 3, 4, 5, 6, 7 and 4 more: ")
     if np.issubdtype(dtype, np.signedinteger):
-        assert refusal(-1) == "labels holds -1: 0 is unknown, 1 free, 2 occupied"
+        assert refusal(-1) == "labels contains -1; valid values: 0 (unknown), 1 (free), 2 (occupied)"
 
 
 def test_labels_that_are_no_integers_are_refused(labels):

@@ -216,8 +216,9 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::int32_t version : {0, 1, 4}) {
-    metadata("has viewgain_version " + std::to_string(version) + ", but this program reads 2 and 3",
-             "viewgain_version", openvdb::Int32Metadata(version));
+    metadata(
+        "has viewgain_version " + std::to_string(version) + "; this program reads versions 2 and 3",
+        "viewgain_version", openvdb::Int32Metadata(version));
   }
   metadata("voxel size", "voxel_size", openvdb::DoubleMetadata(-1));
   metadata("transform", "voxel_size", openvdb::DoubleMetadata(0.06));
@@ -231,7 +232,7 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
   metadata("views", "views", openvdb::StringMetadata("1 0 0 nan 0 1 0 0 0 0 1 0\n"));
   for (const char* note : {"frame-000000.depth.png\n", "0123456789abcdef\n", "0123456789abcdef \n",
                            "0123456789ABCDEF a.png\n", "0123456789abcdef0 a.png\n", "\n"}) {
-    metadata("the note of the frames holds", "note_frames", openvdb::StringMetadata(note));
+    metadata("the identity of a frame must be", "note_frames", openvdb::StringMetadata(note));
   }
 
   const openvdb::Coord wall(3, 4, 6), free(3, 4, 9), unknown(3, 4, 3);

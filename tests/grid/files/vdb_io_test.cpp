@@ -87,7 +87,7 @@ TEST(VdbIo, NotesThatCouldNotBeReadBackAreRefused) {
   const MapNotes before = grid.notes();
   for (const char* identity : {"", "0123456789abcdef", "0123456789abcdef ", "0123456789ABCDEF a",
                                "0123456789abcdef0 a", "0123456789abcdef a\nb"}) {
-    expect_error(ErrorCode::invalid_argument, "the note of the frames",
+    expect_error(ErrorCode::invalid_argument, "the identity of a frame must be",
                  [&] { grid.set_notes({.frames = {identity}}); });
   }
   for (const char* name : {"sensor", "frames"}) {

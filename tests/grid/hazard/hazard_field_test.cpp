@@ -308,17 +308,19 @@ TEST(HazardField, RefusesWhatIsOutOfBounds) {
     test::expect_error(ErrorCode::invalid_argument, what,
                        [&] { (void)HazardField(snapshot, config); });
   };
-  refuses("object size 0", {.object_size = 0.0});
-  refuses("object size nan", {.object_size = std::nan("")});
+  refuses("object size must be positive and finite, not 0", {.object_size = 0.0});
+  refuses("object size must be positive and finite, not nan", {.object_size = std::nan("")});
   refuses("decay length", {.model = HazardConfig::Model{1.0, 0.0, 1.0}});
-  refuses("rate near the surface -1", {.model = HazardConfig::Model{-1.0, 0.1, 1.0}});
-  refuses("rate far from the surface inf", {.model = HazardConfig::Model{1.0, 0.1, HUGE_VAL}});
+  refuses("rate near the surface must be at least 0 and finite, not -1",
+          {.model = HazardConfig::Model{-1.0, 0.1, 1.0}});
+  refuses("rate far from the surface must be at least 0 and finite, not inf",
+          {.model = HazardConfig::Model{1.0, 0.1, HUGE_VAL}});
   auto volume = std::make_shared<HazardConfig::Volume>();
   volume->box = VoxelBox::from_dims({0, 0, 0}, {2, 2, 2});
-  refuses("0 rates for a box of 8 voxels", {.volume = volume});
+  refuses("there are 0 rates, but the box has 8 voxels", {.volume = volume});
   auto negative = std::make_shared<HazardConfig::Volume>(*volume);
   negative->rates.assign(8, -1.0F);
-  refuses("rate -1", {.volume = negative});
+  refuses("rate must be at least 0 and finite, not -1", {.volume = negative});
 }
 
 }  // namespace

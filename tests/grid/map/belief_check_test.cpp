@@ -39,9 +39,9 @@ TEST(BeliefCheck, RefusesWhatNoReadingsMake) {
         {"semidefinite", {{1e12F, 1, 1, 0, 0, 1.001F}, {}, 1}},   // in its own scale
         {"semidefinite", {{0, 1, 1, 0.001F, 0, 0}, {}, 1}},
         // fused points would lie beyond all voxels
-        {"away from its voxel", {{1e-30F, 1e-30F, 1e-30F, 0, 0, 0}, {most, 0, 0}, 3}},
-        {"away from its voxel", {{1e8F, 1e8F, 1e-2F, 0, 0, 0}, {0, 0, 1e5F}, 3}},
-        {"away from its voxel", {{0, 0, 0, 0, 0, 0}, {0, 1, 0}, 0}}}) {
+        {"too far from its voxel", {{1e-30F, 1e-30F, 1e-30F, 0, 0, 0}, {most, 0, 0}, 3}},
+        {"too far from its voxel", {{1e8F, 1e8F, 1e-2F, 0, 0, 0}, {0, 0, 1e5F}, 3}},
+        {"too far from its voxel", {{0, 0, 0, 0, 0, 0}, {0, 1, 0}, 0}}}) {
     expect_error(ErrorCode::invalid_argument, part, [&] { grid.set({1, 2, 3}, 1.0F, belief); });
     EXPECT_EQ(grid.content_hash(), before) << part;
   }

@@ -57,7 +57,7 @@ TEST_F(MapNotesTest, AMapNotesTheFramesThatHaveAnIdentity) {
   add(sensor, "0123456789abcdef c.png");
   EXPECT_EQ(copy.notes().frames.size(), 2U);
   const std::string hash = grid.content_hash();
-  expect_error(ErrorCode::invalid_argument, "identity of a frame is 'a.png'",
+  expect_error(ErrorCode::invalid_argument, "a space and a name, not 'a.png'",
                [&] { add(sensor, "a.png"); });
   EXPECT_EQ(grid.content_hash(), hash);
 }

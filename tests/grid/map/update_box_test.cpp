@@ -108,7 +108,8 @@ TEST(UpdateBox, WrongArgumentsChangeNothing) {
   BeliefGrid grid(kConfig);
   const std::string hash = grid.content_hash();
   const VoxelBox box = VoxelBox::from_dims(grid.min_index(), {2, 3, 4});
-  test::expect_error(ErrorCode::invalid_argument, "array of 5 states for a box of 24 voxels",
+  test::expect_error(ErrorCode::invalid_argument,
+                     "the array has 5 states, but the box has 24 voxels",
                      [&] { (void)grid.update_box(box, std::vector<std::uint8_t>(5, 1)); });
   std::vector<std::uint8_t> states(24, 1);
   states[7] = 9;

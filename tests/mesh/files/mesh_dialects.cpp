@@ -103,20 +103,20 @@ Rows off_rows() {
       mesh("duplicates.off", off_of("6 2 0", triangle + triangle, "3 0 1 2\n3 3 5 4\n"), 6, 2, 1),
       mesh("no_area.off", off_of("3 3 0", triangle, "3 0 1 2\n3 0 0 1\n3 1 1 1\n"), 3, 1, 0.5),
       mesh("edges_and_points.off", off_of("3 3 0", triangle, "3 0 1 2\n2 0 1\n1 2\n"), 3, 1, 0.5),
-      refused("no_area_at_all.off", "no face of the mesh has an area",
+      refused("no_area_at_all.off", "all faces of the mesh have the area 0",
               off_of("3 2 0", triangle, "3 0 0 1\n3 1 1 1\n")),
       refused("only_edges.off", "no faces", off_of("2 1 0", "0 0 0\n1 0 0\n", "2 0 1\n")),
       refused("no_faces.off", "no faces", off_of("8 0 0", kVertices, "")),
       refused("four.off", "four.off:1: vertices must have 3", with(kOff, "OFF", "4OFF")),
-      refused("skel.off", "skel.off:1: is not an OFF file", with(kOff, "OFF", "SKEL")),
-      refused("png.off", "png.off:1: is not an OFF file", "\x89PNG\r\n\x1a\n"),
+      refused("skel.off", "skel.off:1: the file is not an OFF file", with(kOff, "OFF", "SKEL")),
+      refused("png.off", "png.off:1: the file is not an OFF file", "\x89PNG\r\n\x1a\n"),
       refused("empty.off", "the file is empty", ""),
       refused("comment.off", "the file is empty", "# OFF\n"),
       refused("name.off", "name.off:1: 'x' is not a number", with(kOff, "OFF\n", "OFFx\n")),
       refused("negative.off", ":2: the counts", with(kOff, "8 6 0", "8 -6 0")),
       refused("comma.off", ":4: '2,0' is not a number", with(kOff, "2 0 0", "2,0 0 0")),
       refused("nan.off", ":5: the number 'nan' is not finite", with(kOff, "2 3 0", "2 nan 0")),
-      refused("far.off", ":5: a coordinate of vertex 2 is not finite, or not below 1e30",
+      refused("far.off", ":5: a coordinate of vertex 2 must be finite and below 1e30",
               with(kOff, "2 3 0", "2 3e30 0")),
       refused("index.off", ":11: face 0 has an index out of range; the file has 8 vertices",
               with(kOff, "4 0 3 2 1", "4 0 3 2 8")),
@@ -209,10 +209,11 @@ Rows obj_rows() {
       refused("parts.obj", ":9: '1/1/1/1' is not a corner", change("f 1 4", "f 1/1/1/1 4")),
       refused("texture.obj", ":9: 'x' is not a number", change("f 1 4", "f 1/x 4")),
       refused("comma.obj", ":2: '2,0' is not a number", change("v 2 0 0", "v 2,0 0,0 0,0")),
-      refused("nan.obj", ":2: a coordinate of vertex 1 is not finite", change("v 2 0", "v nan 0")),
-      refused("two.obj", ":2: a vertex has 3 coordinates", change("v 2 0 0", "v 2 0")),
-      refused("weight.obj", ":2: the fourth of ", change("v 2 0 0", "v 2 0 0 2")),
-      refused("weight_and_colour.obj", ":2: the fourth of ",
+      refused("nan.obj", ":2: a coordinate of vertex 1 must be finite", change("v 2 0", "v nan 0")),
+      refused("two.obj", ":2: expected 3 coordinates", change("v 2 0 0", "v 2 0")),
+      refused("weight.obj", ":2: the fourth number of a vertex is a weight",
+              change("v 2 0 0", "v 2 0 0 2")),
+      refused("weight_and_colour.obj", ":2: the fourth number of a vertex is a weight",
               change("v 2 0 0", "v 2 0 0 0.5 0.5 0.5 0.7")),
       refused("call.obj", ":15: statements that include other files", v + f + "call other.obj\n"),
       refused("surface.obj", ":15: free-form surfaces", v + f + "surf 0 1 0 1 1 2 3 4\n"),
@@ -310,10 +311,10 @@ Rows stl_rows() {
       refused("cut_binary.stl", "declares 12 triangles, but the file holds 11",
               binary_stl("x", 12).substr(0, 683)),
       refused("no_faces.stl", "no faces", std::string(84, '\0')),
-      refused("nan.stl", "a coordinate of vertex 0 is not finite", nan),
+      refused("nan.stl", "a coordinate of vertex 0 must be finite", nan),
       refused("none.stl", "no faces", "solid x\nendsolid x\n"),
-      refused("png.stl", "neither a text STL file", "\x89PNG\r\n\x1a\n"),
-      refused("text.stl", "neither a text STL file, which begins with \"solid\", nor a binary one",
+      refused("png.stl", "the file is not an STL file", "\x89PNG\r\n\x1a\n"),
+      refused("text.stl", "it does not begin with \"solid\", and it is not a binary STL file",
               "box\n" + good),
       refused("inf.stl", ":4: the number 'inf' is not finite", change("0.000000", "inf")),
       refused("comma.stl", ":4: '0,0' is not a number", change("0.000000", "0,0")),
@@ -420,17 +421,20 @@ Rows ply_rows() {
               change("end_header", "element vertices 1\n" + kXyz + "end_header") + "0 0 0\n"),
       refused("floats.ply", "whole numbers", change("uchar int", "uchar float")),
       refused("half.ply", ":20: '1.5' is not a whole number", change("4 0 3 2 1", "4 0 3 2 1.5")),
-      refused("promise.ply", ":20: a list's count", change("4 0 3 2 1", "1000000000 0 3 2 1")),
+      refused("promise.ply", ":20: a list is longer than the rest of the file",
+              change("4 0 3 2 1", "1000000000 0 3 2 1")),
       refused("longer_row.ply", ":13: the header declares 3 numbers, this line has 4",
               change("2 0 0", "2 0 0 9")),
-      refused("shorter_row.ply", ":13: the header declares 3 numbers, which end within line 14",
+      refused("shorter_row.ply",
+              ":13: the header declares 3 numbers per element, but they end within line 14",
               change("2 0 0", "2 0")),
       refused("cut.ply", "the file ends before its last", change("4 3 0 4 7\n", "")),
       refused("more_bytes.ply", "bytes follow", with(binary_ply(true), "face 6", "face 5")),
       refused("index.ply", ":20: face 0 has an index out of range",
               change("4 0 3 2 1", "4 0 3 2 8")),
-      refused("nan.ply", ":14: a coordinate of vertex 2 is not finite", change("2 3 0", "2 nan 0")),
-      refused("binary_nan.ply", "a coordinate of vertex 0 is not finite", nan),
+      refused("nan.ply", ":14: a coordinate of vertex 2 must be finite",
+              change("2 3 0", "2 nan 0")),
+      refused("binary_nan.ply", "a coordinate of vertex 0 must be finite", nan),
       refused("no_z.ply", "no property 'z'", change("float z", "float w")),
       refused("twice.ply", "the property 'x' is declared twice", change("float y", "float x")),
       refused("quad.ply", "the type 'quad' is unknown", change("float x", "quad x")),
@@ -449,12 +453,13 @@ Rows other_rows() {
   Rows rows;
   for (const char* file :
        {"a.gltf", "a.glb", "a.dae", "a.fbx", "a.3mf", "a.stp", "a.off.gz", "off"}) {
-    rows.push_back(refused(file, "not a mesh file (.off, .obj, .stl, .ply)", kOff));
+    rows.push_back(refused(file, "a mesh must have the ending .off, .obj, .stl or .ply", kOff));
   }
   // One format's text under another's name.
   rows.push_back(refused("off.ply", "is not a PLY file", kOff));
   rows.push_back(refused("off.obj", "off.obj:1: ", kOff));
-  rows.push_back(refused("ply.off", "ply.off:1: is not an OFF file", "ply\nformat ascii 1.0\n"));
+  rows.push_back(
+      refused("ply.off", "ply.off:1: the file is not an OFF file", "ply\nformat ascii 1.0\n"));
   rows.push_back(refused("utf16.obj", "utf16.obj:1: ", std::string("\xff\xfev\0 \0000\0", 8)));
   return rows;
 }

@@ -169,7 +169,7 @@ TEST_F(MeshIo, Placement) {
   EXPECT_THROW((void)placed(box, {.longest_side = std::nan("")}), Error);
   expect_error(ErrorCode::invalid_argument, path.string() + ": the longest side must be",
                [&] { (void)read_mesh(path, {.longest_side = -1e-9}); });
-  expect_error(ErrorCode::invalid_argument, "the mesh has no extent to scale", [] {
+  expect_error(ErrorCode::invalid_argument, "the mesh cannot be scaled", [] {
     (void)placed({{{1, 1, 1}, {1, 1, 1}}, {{0, 0, 1}}}, {.longest_side = 1});
   });
 }

@@ -163,7 +163,7 @@ TEST(ObstacleView, RefusesWhatIsWrong) {
                      [&] { const ObstacleView never(wrong, sensor); });
   wrong.boxes.clear();
   wrong.meshes = {{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 3}}}, {{{0, 0, 1}}, {}}};
-  test::expect_error(ErrorCode::invalid_argument, "vertex 3 of 3",
+  test::expect_error(ErrorCode::invalid_argument, "vertex 3, but the mesh has 3 vertices",
                      [&] { const ObstacleView never(wrong, sensor); });
   const ObstacleView view({}, sensor);
   DepthFrame small_frame{2, 2, std::vector<float>(4)};

@@ -281,15 +281,15 @@ TEST(ViewTour, RefusesWhatCannotBe) {
                  [&] { (void)plan_tour(evaluator, made.poses, config); });
   };
   const std::vector<double> few(3, 1.0), bad(kPoses, std::nan(""));
-  refuses({.costs = few}, "3 costs for 14 poses");
+  refuses({.costs = few}, "3 costs, but 14 poses");
   refuses({.costs = bad}, "nan");
   refuses({.cost_per_way = -1}, "cost_per_way -1");
   refuses({.budget = -1}, "budget");
   refuses({.least_area = std::nan("")}, "least_area");
-  refuses({.first = kPoses}, "first is 14 of 14 poses");
-  refuses({.share = 0}, "share is 0");
+  refuses({.first = kPoses}, "first is pose 14, but there are only 14 poses");
+  refuses({.share = 0}, "share must be in (0, 1], not 0");
   refuses({.share = 1.5}, "share is 1.5");
-  refuses({.way = [](std::size_t, std::size_t) { return -1.0; }}, "from the start to 0 costs -1");
+  refuses({.way = [](std::size_t, std::size_t) { return -1.0; }}, "from the start to 0 is -1");
   // What the user's own callback throws comes through.
   const WayCost broken = [](std::size_t, std::size_t) -> double {
     throw std::runtime_error("arm");

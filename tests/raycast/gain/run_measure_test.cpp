@@ -220,7 +220,7 @@ TEST(RunMeasure, SameForAnyNumberOfThreadsAndErrorsReachTheCaller) {
     EXPECT_THROW(evaluator.evaluate(poses, results.back(), Failing()), std::out_of_range);
     EXPECT_EQ(evaluator.evaluate(poses, results.back(), own), poses.size());
     results.back().pop_back();
-    test::expect_error(ErrorCode::invalid_argument, "30 poses, but room for 29",
+    test::expect_error(ErrorCode::invalid_argument, "30 poses, but the array has room for 29",
                        [&] { evaluator.evaluate(poses, results.back(), own); });
     EXPECT_TRUE(std::isnan(results.back()[3]));
     results.back().erase(results.back().begin() + 3);

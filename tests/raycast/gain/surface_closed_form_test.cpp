@@ -270,7 +270,8 @@ TEST(SurfaceGain, RefusesWhatCannotBeMeant) {
   };
   refuses("criterion trace requires the gain paper",
           {.model = GainModel::combined, .criterion = Criterion::trace});
-  refuses("refinement weight is -1", {.model = GainModel::combined, .refinement_weight = -1});
+  refuses("refinement weight must be at least 0 and finite, not -1",
+          {.model = GainModel::combined, .refinement_weight = -1});
   test::expect_error(ErrorCode::invalid_argument, "support plane", [] {
     (void)VoxelScene::build(slab(1, 2), {{}, HUGE_VAL});
   });

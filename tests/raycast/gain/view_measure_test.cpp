@@ -146,7 +146,7 @@ TEST_F(Own, StopsEarlyAndSizesMustAgree) {
   EXPECT_LT(done, poses_.size());
   EXPECT_TRUE(std::isnan(results.back()));
   results.pop_back();
-  test::expect_error(ErrorCode::invalid_argument, "60 poses, but room for 59",
+  test::expect_error(ErrorCode::invalid_argument, "60 poses, but the array has room for 59",
                      [&] { evaluator.evaluate(poses_, results, own); });
 }
 

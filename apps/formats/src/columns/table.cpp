@@ -89,11 +89,11 @@ class NpyFile {
     try {
       read_layout();
     } catch (const json::exception&) {
-      fail(".npy header: is not supported");
+      fail("the .npy header is not supported");
     }
-    if (rows_ == 0) fail("contains no pose");
+    if (rows_ == 0) fail("the file contains no pose");
     if (rows_ > (bytes_.size() - begin_) / row_bytes_) {
-      fail("is truncated: " + std::to_string(rows_) + " rows do not fit");
+      fail("the file is truncated: its header declares " + std::to_string(rows_) + " rows");
     }
   }
 
@@ -106,7 +106,7 @@ class NpyFile {
     std::vector<double> numbers;
     for (const Place& place : places_) {
       numbers.push_back(number_at(row, place));
-      if (!std::isfinite(numbers.back())) fail_row("contains a number that is not finite");
+      if (!std::isfinite(numbers.back())) fail_row("a number is not finite");
     }
     return pose_of_numbers(numbers, mended, fail_row);
   }
@@ -115,7 +115,7 @@ class NpyFile {
   [[nodiscard]] double time(std::size_t row) const {
     const double time = time_ ? number_at(row, *time_) : static_cast<double>(row);
     if (!std::isfinite(time)) {
-      fail("row " + std::to_string(row) + ": contains a number that is not finite");
+      fail("row " + std::to_string(row) + ": a number is not finite");
     }
     return time;
   }
@@ -141,11 +141,11 @@ class NpyFile {
     const auto byte = [this](std::size_t i) {
       return std::size_t{static_cast<unsigned char>(bytes_[i])};
     };
-    if (bytes_.size() < 12 || !bytes_.starts_with("\x93NUMPY")) fail("is not a .npy file");
+    if (bytes_.size() < 12 || !bytes_.starts_with("\x93NUMPY")) fail("the file is not a .npy file");
     const std::size_t first = byte(6) == 1 ? 10 : 12;
     begin_ = first + (byte(8) | byte(9) << 8U);
     if (byte(6) > 1) begin_ += byte(10) << 16U | byte(11) << 24U;
-    if (begin_ > bytes_.size()) fail("is truncated in its header");
+    if (begin_ > bytes_.size()) fail("the file is truncated within its header");
     std::string text;
     for (const char c : std::string_view(bytes_).substr(first, begin_ - first)) {
       if (c == ' ' || c == '\n') continue;
@@ -167,8 +167,9 @@ class NpyFile {
     } else if (is_real(type) && shape.size() == 3 && shape[1] == 4 && shape[2] == 4) {
       find_matrices(type == "<f4", is_fortran);
     } else {
-      fail("is " + shape.dump() + " of " + type.dump() +
-           "; expected rows with tx, ty, tz, qx, qy, qz, qw or (n, 4, 4) matrices of <f8 or <f4");
+      fail(
+          "the array has the shape " + shape.dump() + " and the type " + type.dump() +
+          "; expected the fields tx, ty, tz, qx, qy, qz, qw, or (n, 4, 4) matrices, of <f8 or <f4");
     }
   }
 
@@ -200,14 +201,15 @@ class NpyFile {
       if (type.find('U') == 1) bytes *= 4;  // numpy counts characters
       for (const json& count : field.size() > 2 ? field[2] : json(1U)) {
         bytes *= std::min(count_of(count), kMostFieldBytes);
-        if (bytes == 0 || bytes > kMostFieldBytes) fail(columns.back() + " is not supported");
+        if (bytes == 0 || bytes > kMostFieldBytes)
+          fail("the field " + columns.back() + " is not supported");
       }
       row_bytes_ += bytes;
     }
     step_ = row_bytes_;
     for (const std::string name : kPoseColumns) {
       const auto column = found.find(name);
-      if (column == found.end()) fail("has no column " + name + " of <f8 or <f4");
+      if (column == found.end()) fail("the array has no field " + name + " of <f8 or <f4");
       places_.push_back(column->second);
     }
     if (const auto time = found.find(kTimeColumn); time != found.end()) time_ = time->second;

@@ -37,7 +37,7 @@ TimedPoses read_pose_lines(const fs::path& path, PoseLineRules rules) {
       try {
         (void)line.number(0);
       } catch (const Error&) {
-        line.fail("is not a pose; a heading must begin with '#'");
+        line.fail("the line is not a pose; a heading must begin with '#'");
       }
     }
     read.times.push_back(std::numeric_limits<double>::quiet_NaN());
@@ -101,9 +101,9 @@ std::map<std::uint64_t, std::string> list_frames(const std::vector<std::string>&
       const std::optional<std::uint64_t> number = frame_index(*digits);
       if (number && frames.emplace(*number, frame).second) continue;
       if (left_out == nullptr) {
-        throw Error(ErrorCode::format,
-                    number ? frame + " and " + frames.at(*number) + " have the same number"
-                           : frame + " has a number of more than 64 bits");
+        throw Error(ErrorCode::format, number ? frame + " and " + frames.at(*number) +
+                                                    " have the same number; rename one of them"
+                                              : frame + " has a number of more than 64 bits");
       }
       left_out->emplace(frame, number);
     }

@@ -204,14 +204,14 @@ struct FrameWatch::Impl {
     listing.frames = list_frames(names, &others);
     std::set<std::string> left;
     for (const auto& [name, number] : others) {
-      std::string image = name + end, what = ": has a number of more than 64 bits";
+      std::string image = name + end, what = ": the number of the frame has more than 64 bits";
       if (number) {
         std::string& own = listing.frames.at(*number);
         if (taken.contains(image) && !taken.contains(own + end)) {
           image = own + end;
           own = name;
         }
-        what = ": has the same number as " + own + "; each frame needs a number of its own";
+        what = ": the frame has the same number as " + own + "; give each frame another number";
       }
       if (!twins.contains(image)) {
         found.bad.push_back({number.value_or(std::numeric_limits<std::uint64_t>::max()),
@@ -285,8 +285,8 @@ struct FrameWatch::Impl {
         if (entry.state == State::taken) continue;
         finding =
             fault(FrameVerdict::changed, finding.frame->image.string() +
-                                             ": its contents have changed since it was integrated; "
-                                             "each frame needs a number of its own");
+                                             ": the image has changed since it was integrated; "
+                                             "give each new frame a new number");
       }
       if (finding.fault.verdict == FrameVerdict::used || !is_stable) continue;
       found.bad.push_back(set_bad(number, entry, std::move(finding)));
@@ -325,7 +325,7 @@ std::vector<BadFrame> FrameWatch::give_up() {
         number, entry,
         has_pose ? fault(FrameVerdict::no_mask, entry.missing_mask.string() + ": no such mask")
                  : fault(FrameVerdict::no_pose, m.lines.misfit().empty()
-                                                    ? image.string() + ": has no pose"
+                                                    ? image.string() + ": the image has no pose"
                                                     : m.lines.misfit())));
   }
   if (m.listing.is_recorded) return given_up;

@@ -82,7 +82,7 @@ double depth_scale_for(const Sensor& sensor) {
 FramesWriter::FramesWriter(const fs::path& dir, double depth_scale)
     : earlier_(simulated_files(dir)), staged_(dir), depth_scale_(depth_scale) {
   if (!(depth_scale > 0 && depth_scale <= 1)) {
-    refuse("the depth scale " + short_text(depth_scale) + " must be within 0 and 1 m per unit");
+    refuse("the depth scale must be between 0 and 1 m per unit, not " + short_text(depth_scale));
   }
 }
 
@@ -96,13 +96,14 @@ void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
           : 0;
   if (pixels == 0 || frame.depth.size() != pixels ||
       (!frame.amplitude.empty() && frame.amplitude.size() != pixels)) {
-    refuse(std::to_string(frame.width) + " x " + std::to_string(frame.height) + " px with " +
-           std::to_string(frame.depth.size()) + " depths and " +
+    refuse("the frame has " + std::to_string(frame.width) + " x " + std::to_string(frame.height) +
+           " px, but " + std::to_string(frame.depth.size()) + " depths and " +
            std::to_string(frame.amplitude.size()) + " amplitudes");
   }
-  if (index != written_) refuse("must be number " + std::to_string(written_));
+  if (index != written_)
+    refuse("frames must be written in order; expected frame " + std::to_string(written_));
   if (written_ > 0 && (frame.width != width_ || frame.height != height_)) {
-    refuse("differs in size from the earlier ones");
+    refuse("the frame differs in size from earlier frames");
   }
   width_ = frame.width, height_ = frame.height;
   ++written_;
@@ -122,12 +123,13 @@ void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
 
 void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) {
   if (poses.size() != written_ || written_ == 0) {
-    refuse(std::to_string(poses.size()) + " poses for " + std::to_string(written_) + " frames");
+    refuse("there are " + std::to_string(poses.size()) + " poses, but " + std::to_string(written_) +
+           " frames");
   }
   const PinholeCamera& camera = sensor.camera;
   if (camera.width != width_ || camera.height != height_) {
-    refuse("frames of " + std::to_string(width_) + " x " + std::to_string(height_) +
-           " px for a sensor of " + std::to_string(camera.width) + " x " +
+    refuse("the frames have " + std::to_string(width_) + " x " + std::to_string(height_) +
+           " px, but the sensor has " + std::to_string(camera.width) + " x " +
            std::to_string(camera.height) + " px");
   }
   write_tum(staged_.path() / kPoses, poses);

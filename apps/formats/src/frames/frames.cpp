@@ -45,7 +45,8 @@ constexpr std::uint16_t kFullScale = 65535;
 
 void check_index(std::size_t index, std::size_t count) {
   if (index < count) return;
-  refuse("no frame " + std::to_string(index) + "; there are " + std::to_string(count) + " frames");
+  refuse("frame " + std::to_string(index) + " does not exist; there are " + std::to_string(count) +
+         " frames");
 }
 
 // Reads the numbers of a 3x3 matrix, on any lines.
@@ -59,10 +60,10 @@ void apply_intrinsics_file(const fs::path& path, PinholeCamera& camera) {
     for (std::size_t i = 0; i < line.words().size(); ++i) k.push_back(line.finite_number(i));
   }
   if (k.size() != 9) {
-    refuse("needs the nine numbers of a 3x3 matrix; found " + std::to_string(k.size()));
+    refuse("expected the nine numbers of a 3x3 matrix; found " + std::to_string(k.size()));
   }
   if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
-    refuse("must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew)");
+    refuse("the matrix must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew)");
   }
   camera.fx = k[0], camera.cx = k[2];
   camera.fy = k[4], camera.cy = k[5];
@@ -80,7 +81,7 @@ std::optional<double> said_scale(const fs::path& dir) {
   const std::string bytes = folder_file_bytes(path);
   LineReader line(path.string(), bytes);
   if (!line.next() || line.words().size() != 1) {
-    throw Error(ErrorCode::format, path.string() + ": needs one number, the metres per unit");
+    throw Error(ErrorCode::format, path.string() + ": expected one number, the metres per unit");
   }
   const double scale = line.finite_number(0);
   if (!(scale > 0)) line.fail("the scale " + short_text(scale) + " is not positive");
@@ -138,7 +139,7 @@ FrameFault size_fault(const fs::path& image, const PinholeCamera& camera) {
   };
   const auto [width, height] = png_size(image);
   if (width == camera.width && height == camera.height) return {};
-  return {FrameVerdict::wrong_size, image.string() + ": has " + size_text(width, height) +
+  return {FrameVerdict::wrong_size, image.string() + ": the image has " + size_text(width, height) +
                                         " pixels, but the sensor has " +
                                         size_text(camera.width, camera.height)};
 }
@@ -158,7 +159,7 @@ void MaskFolder::require_mask_of_any(const std::vector<std::filesystem::path>& i
                   [this](const auto& image) { return is_there(file_of(image)); })) {
     return;
   }
-  refuse(folder_.string() + ": no image has the name of a depth image" +
+  refuse(folder_.string() + ": no mask has the name of a depth image" +
          (images.empty() ? "" : ", as " + images.front().filename().string()));
 }
 
@@ -211,7 +212,7 @@ FrameSequence open_frame_folder(const fs::path& dir, const std::string& sensor,
                                        " is over 1 m per unit. Is it in units per metre?");
   }
   if (sensor.empty() && !has_sensor) {
-    refuse(dir.string() + ": has no sensor.toml; give a sensor");
+    refuse(dir.string() + ": the folder has no sensor.toml; give a sensor");
   }
   const fs::path own = dir / kSensor;
   frames.sensor = sensor.empty()
@@ -243,7 +244,8 @@ FrameSequence open_frames(const fs::path& dir, const std::string& sensor,
     list_own_layout(dir, frames);
   }
   if (frames.images.empty()) {
-    throw Error(ErrorCode::io, dir.string() + ": no poses.txt and no frame-NNNNNN.depth.png");
+    throw Error(ErrorCode::io,
+                dir.string() + ": the folder has no poses.txt and no frame-NNNNNN.depth.png");
   }
   return frames;
 }
@@ -255,7 +257,7 @@ FrameSequence open_depth_images(const fs::path& dir, const std::string& sensor,
     frames.images.push_back(dir / (name + std::string(kDepthSuffix)));
   }
   if (frames.images.empty()) {
-    throw Error(ErrorCode::io, dir.string() + ": no frame-NNNNNN.depth.png");
+    throw Error(ErrorCode::io, dir.string() + ": the folder has no frame-NNNNNN.depth.png");
   }
   return frames;
 }

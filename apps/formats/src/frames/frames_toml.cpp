@@ -21,7 +21,7 @@ std::optional<bool> is_second(TableReader& reader, std::string_view key, std::st
   if (reader.find(key) == nullptr) return std::nullopt;
   const std::string text = reader.text(key);
   if (text != first && text != second) {
-    reader.fail(key, "is " + toml_string(text) + ", not " + std::string(first) + " or " +
+    reader.fail(key, "is " + toml_string(text) + "; valid values: " + std::string(first) + ", " +
                          std::string(second));
   }
   return text == second;

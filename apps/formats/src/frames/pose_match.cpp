@@ -113,14 +113,12 @@ std::string stamps_misfit(const fs::path& dir, const TimedPoses& lines,
   const auto back = static_cast<double>(numbers.back());
   const double unit = unit_of(std::array{back});
   const double start = static_cast<double>(numbers.front()) * unit;
-  return (dir / kPoses).string() + ": the times of the poses, " + fixed_text(*first) + " to " +
-         fixed_text(*last) + " s, and the time stamps of the images, " + fixed_text(start) +
-         " to " + fixed_text(back * unit) + " s, do not overlap: no image has a pose within " +
-         short_text(kMostGap) +
-         " s. If their clocks differ, write pose_time_offset, the seconds to add to the times of "
-         "the poses (" +
-         fixed_text(said.pose_time_offset + start - *first) +
-         " if both begin at the same time), into " + in(dir);
+  return (dir / kPoses).string() + ": the times of the poses (" + fixed_text(*first) + " to " +
+         fixed_text(*last) + " s) and the time stamps of the images (" + fixed_text(start) +
+         " to " + fixed_text(back * unit) +
+         " s) do not overlap. If the clocks differ, add pose_time_offset = " +
+         fixed_text(said.pose_time_offset + start - *first) + " to " + in(dir) +
+         ". This value [s] is right if the first pose belongs to the first image";
 }
 
 std::string range_text(std::uint64_t first, std::uint64_t last) {
@@ -137,19 +135,20 @@ std::string numbers_misfit(const fs::path& dir, const TimedPoses& lines,
   }
   const std::string first_image = std::to_string(numbers.front());
   std::string cure =
-      "Begin each line with its image's number, or write first_frame = " + first_image +
-      " if the first line belongs to the first image";
+      "Begin each line with the number of its image. If the first line belongs to the first image, "
+      "you can instead add first_frame = " +
+      first_image;
   if (kind.are_whole) {
     cure =
-        "If the lines begin with the images' numbers, but images or lines are missing, write "
+        "If each line begins with the number of its image, but images or lines are missing, add "
         "first_frame = " +
         std::to_string(static_cast<std::uint64_t>(lines.times.front())) +
-        ". If the first line belongs to the first image, write first_frame = " + first_image;
+        ". If the first line belongs to the first image, add first_frame = " + first_image;
   }
-  return (dir / kPoses).string() + ": has " + poses + ", but there are " +
+  return (dir / kPoses).string() + ": the file has " + poses + ", but there are " +
          std::to_string(numbers.size()) + " images numbered " +
          range_text(numbers.front(), numbers.back()) +
-         ": it is not known which pose belongs to which image. " + cure + " into " + in(dir);
+         ". It is not known which pose belongs to which image. " + cure + " to " + in(dir);
 }
 
 bool has_all(const PoseMatch& match, std::span<const std::uint64_t> numbers) {
@@ -208,8 +207,8 @@ bool PoseMatch::may_change(std::uint64_t number) const {
 }
 
 std::string PoseMatch::no_pose_text(const std::string& image) const {
-  if (is_by_stamps()) return "has no pose within " + short_text(gap_) + " s of " + image;
-  return "has " + std::to_string(lines_) + " poses, but none for " + image;
+  if (is_by_stamps()) return "the file has no pose within " + short_text(gap_) + " s of " + image;
+  return "the file has " + std::to_string(lines_) + " poses, but none for " + image;
 }
 
 PoseMatch match_poses(const fs::path& dir, const TimedPoses& lines,

@@ -39,19 +39,21 @@ Header read_header(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with(kOctomapBinaryMark)) {
     header.binary = true;
   } else if (bytes.starts_with(" BDV")) {
-    throw Error(ErrorCode::format,
-                name +
-                    ": is an OpenVDB file, not an OctoMap file; read it with load_vdb (in Python "
-                    "BeliefGrid.load), or rename it to end in .vdb for the program");
+    throw Error(
+        ErrorCode::format,
+        name +
+            ": the file is an OpenVDB file, not an OctoMap file; read it with load_vdb (in Python "
+            "BeliefGrid.load), or rename it to end in .vdb for the program");
   } else if (!bytes.starts_with(kOctomapFullMark)) {
-    throw Error(ErrorCode::format, name + ":1: is not an OctoMap file: it does not begin with \"" +
-                                       std::string(kOctomapFullMark) + "\" or \"" +
-                                       std::string(kOctomapBinaryMark) + "\"");
+    throw Error(ErrorCode::format,
+                name + ":1: the file is not an OctoMap file; it must begin with \"" +
+                    std::string(kOctomapFullMark) + "\" or \"" + std::string(kOctomapBinaryMark) +
+                    "\"");
   }
   LineReader lines(name, bytes);
   bool has_type = false, has_size = false, has_resolution = false;
   for (;;) {
-    if (!lines.next()) lines.fail("the header is truncated: it has no line \"data\"");
+    if (!lines.next()) lines.fail("the header is truncated; it has no line \"data\"");
     const auto& words = lines.words();
     if (words.empty() || words[0].front() == '#') continue;
     if (words[0] == "data") break;
@@ -59,7 +61,7 @@ Header read_header(std::string_view bytes, const std::string& name) {
       const std::string_view type = words.size() > 1 ? words[1] : std::string_view();
       if (type != "OcTree" && type != "ColorOcTree") {
         lines.fail("trees of the type " + quoted(type) +
-                   " are not supported; OcTree and ColorOcTree are");
+                   " are not supported; supported types: OcTree, ColorOcTree");
       }
       header.extra_bytes = type == "ColorOcTree" && !header.binary ? 3 : 0;
       has_type = true;
@@ -109,7 +111,7 @@ class TreeWalk {
       }
     }
     if (nodes_ != header_.nodes) {
-      throw Error(ErrorCode::format, name_ + ": has " + std::to_string(nodes_) +
+      throw Error(ErrorCode::format, name_ + ": the file has " + std::to_string(nodes_) +
                                          " nodes, but the header declares " +
                                          std::to_string(header_.nodes));
     }
@@ -262,12 +264,12 @@ BeliefGrid empty_grid(const GridConfig& config, const std::string& name) {
 BeliefGrid grid_from_octomap_bytes(std::string_view bytes, const OctomapConfig& config,
                                    const std::string& name) {
   if (!std::isfinite(config.occupied_from)) {
-    refuse("the log-odds threshold of occupied voxels is " + short_text(config.occupied_from));
+    refuse("occupied_from must be finite, not " + short_text(config.occupied_from));
   }
   const Header header = read_header(bytes, name);
   const std::optional<Box> known = check_tree(bytes, header, name);
   if (!known && !config.workspace) {
-    throw Error(ErrorCode::format, name + ": has no known voxel; give a workspace");
+    throw Error(ErrorCode::format, name + ": the tree has no known voxel; give a workspace");
   }
   BeliefGrid grid = empty_grid({header.resolution,
                                 config.workspace ? *config.workspace : *known,

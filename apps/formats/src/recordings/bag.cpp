@@ -36,7 +36,7 @@ BagFields bag_fields(std::string_view header) {
 std::string_view bag_text(const BagFields& fields, std::string_view name) {
   const auto found = fields.find(name);
   if (found == fields.end()) {
-    throw Error(ErrorCode::format, "a header without the field " + std::string(name));
+    throw Error(ErrorCode::format, "the header of a record has no field " + std::string(name));
   }
   return found->second;
 }
@@ -59,13 +59,14 @@ class BagReader {
   void read() {
     read_records();
     warn_of_left_out(path_, without_connection_,
-                     "whose connection is missing, perhaps in a damaged chunk,", warnings_);
+                     "have no connection record, perhaps because a chunk is damaged", warnings_);
   }
 
  private:
   void read_records() {
     if (file_.left() < kBagMagic.size() || file_.read(kBagMagic.size()) != kBagMagic) {
-      file_.fail_at(0, "is not a ROS 1 bag of version 2.0; `rosbag fix` converts older ones");
+      file_.fail_at(
+          0, "the file is not a ROS 1 bag of version 2.0; convert an older bag with `rosbag fix`");
     }
     while (file_.left() > 0) {
       begin_ = file_.offset();
@@ -104,8 +105,8 @@ class BagReader {
     }
     if (checked([&] { return bag_number<std::uint64_t>(fields, "index_pos"); }) == 0) {
       warnings_.add(path_.string() +
-                    ": the bag has no index, because the recording was interrupted; reading it up "
-                    "to the interruption");
+                    ": the bag has no index, because the recording was interrupted; the part "
+                    "before the interruption is used");
     }
   }
 
@@ -121,7 +122,7 @@ class BagReader {
         header = records.text(), data = records.text();
       } catch (const Error&) {
         if (!why.empty()) return;
-        file_.fail_at(begin_, "a damaged chunk: its last record ends outside it");
+        file_.fail_at(begin_, "the chunk is damaged: its last record ends outside the chunk");
       }
       const BagFields inner = checked([&] { return bag_fields(header); });
       take(checked([&] { return BagRecord{bag_number<std::uint8_t>(inner, "op")}; }), inner, data);

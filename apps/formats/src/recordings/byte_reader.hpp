@@ -24,8 +24,9 @@ class ByteReader {
 
   std::string_view bytes(std::uint64_t count) {
     if (count > bytes_.size()) {
-      throw Error(ErrorCode::format, std::to_string(count) + " bytes should follow, but " +
-                                         std::to_string(bytes_.size()) + " are left");
+      throw Error(ErrorCode::format, "expected " + std::to_string(count) +
+                                         " more bytes, but only " + std::to_string(bytes_.size()) +
+                                         " are left");
     }
     const std::string_view taken = bytes_.substr(0, count);
     bytes_.remove_prefix(count);

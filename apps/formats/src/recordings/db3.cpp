@@ -29,7 +29,7 @@ class Db3Reader {
     const int code = sqlite3_open_v2(uri(path).c_str(), &opened,
                                      SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
     db_.reset(opened);
-    if (code != SQLITE_OK) fail(ErrorCode::io, "cannot be opened");
+    if (code != SQLITE_OK) fail(ErrorCode::io, "the file cannot be opened");
     // The file is untrusted: no functions in its schema, no huge values.
     sqlite3_limit(opened, SQLITE_LIMIT_LENGTH, static_cast<int>(most));
     sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
@@ -57,7 +57,8 @@ class Db3Reader {
       visit_({topic->second, bytes == nullptr ? std::string_view() : std::string_view(bytes, size),
               path_, static_cast<std::uint64_t>(sqlite3_column_int64(rows.get(), 0))});
     }
-    warn_of_left_out(path_, without_topic, "of topics that the file does not list", warnings_);
+    warn_of_left_out(path_, without_topic, "belong to topics that the file does not list",
+                     warnings_);
   }
 
  private:
@@ -86,7 +87,7 @@ class Db3Reader {
   Statement prepared(const char* sql) const {
     sqlite3_stmt* statement = nullptr;
     if (sqlite3_prepare_v2(db_.get(), sql, -1, &statement, nullptr) != SQLITE_OK) {
-      fail(ErrorCode::format, "is not an SQLite file of rosbag2");
+      fail(ErrorCode::format, "the file is not an SQLite file of rosbag2");
     }
     return {statement, &sqlite3_finalize};
   }
@@ -103,7 +104,7 @@ class Db3Reader {
     }
     if (code != SQLITE_DONE) {
       warnings_.add(path_.string() + ": " + sqlite3_errmsg(db_.get()) +
-                    ": the file is truncated or damaged; reading it up to the damage");
+                    ". The file is truncated or damaged; the part before the damage is used");
     }
     return false;
   }
@@ -131,9 +132,10 @@ class Db3Reader {
         std::filesystem::file_size(journal, ignored) == 0) {
       return;
     }
-    warnings_.add(journal.string() +
-                  ": is not read. The recorder was interrupted; add the messages to the .db3 file "
-                  "with `sqlite3 FILE.db3 vacuum`");
+    warnings_.add(
+        journal.string() +
+        ": the file is not read. The recorder was interrupted; add the messages to the .db3 file "
+        "with `sqlite3 FILE.db3 vacuum`");
   }
 
   const std::filesystem::path& path_;

@@ -73,15 +73,15 @@ DepthImage decode_depth(const DepthMessage& message, double unit) {
   const auto fail = [](const std::string& what) -> void { throw Error(ErrorCode::format, what); };
   if (depth_likelihood(message.encoding) == 0) {
     fail("the encoding " + viewgain::quoted(message.encoding) +
-         " is not a depth encoding (supported: 16UC1, 32FC1, mono16)");
+         " is not supported for depth; supported encodings: 16UC1, 32FC1, mono16");
   }
   if (message.is_compressed) return decode_png(message, unit);
   const std::size_t bytes = message.encoding == "32FC1" ? 4 : 2;
   const std::uint64_t width = message.width, height = message.height, step = message.step;
   if (width == 0 || height == 0 || width > kMostSide || height > kMostSide ||
       step < width * bytes || (height - 1) * step + width * bytes > message.data.size()) {
-    fail("an image of " + std::to_string(width) + "x" + std::to_string(height) +
-         " px with rows of " + std::to_string(step) + " bytes in " +
+    fail("the image is inconsistent: it has " + std::to_string(width) + "x" +
+         std::to_string(height) + " px, rows of " + std::to_string(step) + " bytes and " +
          std::to_string(message.data.size()) + " bytes");
   }
   DepthImage depth{static_cast<int>(width), static_cast<int>(height), {}};

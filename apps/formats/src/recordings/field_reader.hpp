@@ -32,7 +32,8 @@ class FieldReader {
     (void)reader_.number<std::uint16_t>();
     // CDR, and plain CDR 2, which aligns to at most 4 bytes, each in two byte orders.
     if (kind != 0 && kind != 1 && kind != 6 && kind != 7) {
-      throw Error(ErrorCode::format, "CDR of kind " + std::to_string(kind) + " is not supported");
+      throw Error(ErrorCode::format,
+                  "the CDR encoding of kind " + std::to_string(kind) + " is not supported");
     }
     is_big_endian_ = kind % 2 == 0;
     most_aligned_ = kind < 2 ? 8 : 4;

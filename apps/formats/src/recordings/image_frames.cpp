@@ -56,7 +56,7 @@ void refuse_link_out(const fs::path& source, const fs::path& file) {
     std::error_code code;  // also for a broken link
     const std::string to = (fs::canonical(path, code) / "").string();
     if (!code && to.starts_with(root.string())) continue;
-    throw Error(ErrorCode::format, path.string() + ": is a link that leaves the recording");
+    throw Error(ErrorCode::format, path.string() + ": the link leads out of the recording");
   }
 }
 

@@ -23,11 +23,11 @@ class InputFile {
   explicit InputFile(const std::filesystem::path& path) : path_(path) {
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code)) {
-      throw Error(ErrorCode::io, path.string() + ": not a regular file");
+      throw Error(ErrorCode::io, path.string() + ": the path is not a regular file");
     }
     size_ = std::filesystem::file_size(path, code);
     in_.open(path, std::ios::binary);
-    if (code || !in_) throw Error(ErrorCode::io, path.string() + ": cannot be opened");
+    if (code || !in_) throw Error(ErrorCode::io, path.string() + ": the file cannot be opened");
   }
 
   [[nodiscard]] std::uint64_t offset() const noexcept { return offset_; }
@@ -37,12 +37,12 @@ class InputFile {
   std::string_view read(std::uint64_t count) {
     if (count > left()) fail("the file ends early");
     if (count > kMostRecordBytes) {
-      fail("a record of " + std::to_string(count) + " bytes; the maximum is " +
+      fail("the record has " + std::to_string(count) + " bytes; the maximum is " +
            std::to_string(kMostRecordBytes));
     }
     buffer_.resize(count);
     in_.read(buffer_.data(), static_cast<std::streamsize>(count));
-    if (!in_) throw Error(ErrorCode::io, path_.string() + ": cannot be read");
+    if (!in_) throw Error(ErrorCode::io, path_.string() + ": the file cannot be read");
     offset_ += count;
     return buffer_;
   }
@@ -73,12 +73,12 @@ class InputFile {
   }
   void warn_of_cut(std::uint64_t begin, Warnings& warnings) const {
     warnings.add(at(begin,
-                    "the file ends here, within a record: the recording was interrupted or the "
-                    "file is truncated; reading it up to here"));
+                    "the file ends here, within a record. The recording was interrupted, or the "
+                    "file is truncated; the complete records are used"));
   }
   /// `why`: the reason why a chunk could not be unpacked completely.
   void warn_of_chunk(std::uint64_t begin, const std::string& why, Warnings& warnings) const {
-    warnings.add(at(begin, "a damaged chunk: " + why + "; reading it up to the damage"));
+    warnings.add(at(begin, "a chunk is damaged: " + why + "; the part before the damage is used"));
   }
   [[nodiscard]] std::string at(std::uint64_t offset, const std::string& what) const {
     return path_.string() + ": byte " + std::to_string(offset) + ": " + what;

@@ -37,13 +37,13 @@ class McapReader {
 
   void read() {
     if (file_.left() < kMcapMagic.size() || file_.read(kMcapMagic.size()) != kMcapMagic) {
-      file_.fail_at(0, "is not an MCAP file");
+      file_.fail_at(0, "the file is not an MCAP file");
     }
     read_summary();
     while (read_record()) {
     }
     warn_of_left_out(path_, without_channel_,
-                     "whose channel is missing, perhaps in a damaged chunk,", warnings_);
+                     "have no channel record, perhaps because a chunk is damaged", warnings_);
   }
 
  private:
@@ -122,11 +122,11 @@ class McapReader {
     const auto* data = reinterpret_cast<const Bytef*>(unpacked_.data());
     if (why.empty() && checksum != 0 &&
         crc32(0, data, static_cast<uInt>(unpacked_.size())) != checksum) {
-      warnings_.add(file_.at(begin_, "a chunk does not match its checksum and is left out"));
+      warnings_.add(file_.at(begin_, "a chunk is left out, because its checksum does not match"));
       return;
     }
     if (!why.empty() && !is_cut) {
-      warnings_.add(file_.at(begin_, "a damaged chunk: " + why + "; it is left out"));
+      warnings_.add(file_.at(begin_, "a damaged chunk is left out: " + why));
       return;
     }
     for (ByteReader records(unpacked_); records.left() >= kMcapHead;) {

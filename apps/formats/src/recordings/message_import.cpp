@@ -41,7 +41,7 @@ class MessageImport {
     read_all([this](const Message& message) { note(message); });
     if (bad_transforms_ > 0) {
       warnings_.add(std::to_string(bad_transforms_) +
-                    " transforms are damaged or not rigid and are left out");
+                    " transforms are left out, because they are damaged or not rigid");
     }
     report_.depth_topic = topics_.chosen_depth_topic(source_, config_.depth_topic);
     join_trees();
@@ -59,7 +59,7 @@ class MessageImport {
     say_what_has_no_pose();
     if (stamps_back_ > 0) {
       warnings_.add(std::to_string(stamps_back_) +
-                    " images have an earlier stamp than the image before. Either the clock was set "
+                    " images are older than the image before them. Either the clock was set "
                     "back, or the recording holds two runs");
     }
     if (report_.frames == 0) dropped_.fail_without_frames(source_);
@@ -102,8 +102,8 @@ class MessageImport {
     if (is_chosen && is_tf) {
       throw Error(ErrorCode::format,
                   source_.string() + ": " + message.topic.name + " (" + type +
-                      ") holds the transforms of all frames, not the poses of one body. Leave out "
-                      "--pose-topic and choose the world with --world");
+                      ") has the transforms of all frames, not the poses of one body. Omit "
+                      "--pose-topic, and choose the world frame with --world");
     }
     std::vector<TransformMessage> transforms;
     try {
@@ -119,10 +119,10 @@ class MessageImport {
       if (is_chosen && body_frame_.empty()) body_frame_ = child;
       if (is_chosen && body_frame_ != child) {
         throw Error(ErrorCode::format,
-                    of_message(message, "holds the poses of several bodies, " +
+                    of_message(message, "the topic has the poses of several bodies, " +
                                             viewgain::quoted(body_frame_) + " and " +
                                             viewgain::quoted(child) +
-                                            "; give a topic with one body (--pose-topic)"));
+                                            "; choose a topic with one body (--pose-topic)"));
       }
       const bool is_good = is_chosen
                                ? poses_.add(header.frame, kBody, header.stamp, numbers, false)
@@ -163,7 +163,7 @@ class MessageImport {
         report_.camera = camera_of(*info, is_rectified);
         check_recorded_camera(report_.camera);
         if (!std::isfinite(info->p[3]) || !std::isfinite(info->p[7])) {
-          throw Error(ErrorCode::format, "P must be finite");
+          throw Error(ErrorCode::format, "the matrix P must be finite");
         }
       } catch (const Error& error) {
         throw Error(ErrorCode::format, source_.string() + ": the camera_info of " +
@@ -178,7 +178,7 @@ class MessageImport {
     } else if (config_.sensor) {
       report_.camera = config_.sensor->camera;
       warnings_.add("no camera_info belongs to " + report_.depth_topic +
-                    "; the intrinsics of --sensor are used. To give others, use --intrinsics "
+                    "; the intrinsics of --sensor are used. To use others, give --intrinsics "
                     "(camera_info of other images: " +
                     topics_.listed_infos() + ")");
     } else {
@@ -209,14 +209,15 @@ class MessageImport {
     Way way;
     if (config_.pose_topic.empty()) {
       if (tree_.empty()) {
-        fail("has no transforms; record /tf and /tf_static, or give a topic of poses" +
-             topics_.listed_poses() + " with --pose-topic");
+        fail(
+            "the recording has no transforms; record /tf and /tf_static, or give a topic of poses" +
+            topics_.listed_poses() + " with --pose-topic");
       }
       way.moving = tree_.chain(report_.world, frame);
     } else {
       if (poses_.empty()) {
         fail(config_.pose_topic +
-             " holds no poses (PoseStamped, PoseWithCovarianceStamped, TransformStamped, "
+             " has no poses (PoseStamped, PoseWithCovarianceStamped, TransformStamped, "
              "Odometry); topics: " +
              topics_.listed());
       }
@@ -235,8 +236,8 @@ class MessageImport {
     }
     if (way.moving.empty()) {
       fail("the frame " + viewgain::quoted(frame) +
-           " of the images has no parent frame, and the camera would never move. Record the "
-           "transform to this frame, or choose the world with --world");
+           " of the images has no parent frame, so the camera would never move. Record the "
+           "transform to this frame, or choose the world frame with --world");
     }
     return ways_.emplace(frame, std::move(way)).first->second;
   } catch (const Error& error) {
@@ -246,11 +247,11 @@ class MessageImport {
   void warn_of_way(const std::string& frame, const Way& way) {
     if (TransformTree::span_of(way.moving)[0] == INT64_MIN) {
       warnings_.add(
-          "no transform between the world and the camera changes, therefore all images have the "
+          "the transforms between the world and the camera never change, so all images have the "
           "same pose");
       if (const std::string poses = topics_.listed_poses(); !poses.empty()) {
         warnings_.add("the recording also has topics of poses" + poses +
-                      ", which are not used (--pose-topic)");
+                      ". They are not used; to use one, give --pose-topic");
       }
     }
     const auto is_optical = [](const std::string& name) {
@@ -261,8 +262,9 @@ class MessageImport {
     for (const std::string& name : tree_.frames()) {
       if (!is_optical(name)) continue;
       warnings_.add("the images' frame " + viewgain::quoted(frame) +
-                    " is assumed to be an optical frame (x right, y down, z ahead). Should it be " +
-                    viewgain::quoted(name) + " (--camera-frame)?");
+                    " is assumed to be an optical frame (x right, y down, z forward). If the "
+                    "optical frame is " +
+                    viewgain::quoted(name) + ", give it with --camera-frame");
     }
   }
 
@@ -284,13 +286,13 @@ class MessageImport {
     Pose T_world_camera;
     if (!find_pose(image.header, T_world_camera)) {
       return drop(FrameVerdict::no_pose,
-                  "no transforms at " + seconds_text(image.header.stamp) + " s");
+                  "there are no transforms at " + seconds_text(image.header.stamp) + " s");
     }
     try {
       if (image.encoding != topic.encoding) {
-        throw Error(ErrorCode::format, "the encoding " + viewgain::quoted(image.encoding) +
+        throw Error(ErrorCode::format, "the encoding is " + viewgain::quoted(image.encoding) +
                                            ", not " + viewgain::quoted(topic.encoding) +
-                                           " as before");
+                                           " as in earlier images");
       }
       depth = decode_depth(image, scale_);
     } catch (const Error& error) {
@@ -303,16 +305,17 @@ class MessageImport {
     }
     if (camera.width != depth.width || camera.height != depth.height) {
       return drop(FrameVerdict::wrong_size,
-                  "the image has " + size_text(depth.width, depth.height) + " pixels, the camera " +
-                      size_text(camera.width, camera.height) +
+                  "the image has " + size_text(depth.width, depth.height) +
+                      " pixels, but the camera has " + size_text(camera.width, camera.height) +
                       (config_.camera.fx > 0 ? "" : "; give --intrinsics"));
     }
     if (!is_wrong_order_) is_wrong_order_ = is_wrong_byte_order(image);
     if (is_wrong_order_.value_or(false)) {
       is_wrong_order_ = false;  // reported once
-      warnings_.add(of_message(message,
-                               "the image would be much smoother if its bytes were in the other "
-                               "order. Is is_bigendian wrong?"));
+      warnings_.add(
+          of_message(message,
+                     "the bytes of the image seem to be in the wrong order. Is is_bigendian "
+                     "wrong?"));
     }
     const GrayImage pixels = gray_image(depth, scale_);
     report_.readings += static_cast<std::uint64_t>(
@@ -382,8 +385,8 @@ ImportReport import_messages(const fs::path& source, const std::vector<fs::path>
                              const ImportConfig& config) {
   if (!config.masks.empty() || !config.confidences.empty()) {
     refuse(
-        "a recording of messages has no image files that masks could belong to; give the masks to "
-        "the command that reads the imported frames");
+        "masks cannot be used with a recording of messages, which has no image files; give the "
+        "masks to the command that reads the imported frames");
   }
   return MessageImport(source, files, format, config).run(out);
 }

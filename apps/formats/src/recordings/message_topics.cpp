@@ -75,7 +75,8 @@ std::string MessageTopics::chosen_depth_topic(const std::filesystem::path& sourc
   };
   if (!wanted.empty()) {
     const auto found = topics_.find(wanted);
-    if (found == topics_.end()) fail("has no topic " + wanted + " (--depth-topic): " + listed());
+    if (found == topics_.end())
+      fail("the recording has no topic " + wanted + " (--depth-topic); topics: " + listed());
     if (depth_likelihood(found->second.encoding) == 0) {
       fail(topic_text(wanted, found->second) + " has no depth images (--depth-topic)");
     }
@@ -99,9 +100,10 @@ std::string MessageTopics::chosen_depth_topic(const std::filesystem::path& sourc
     if (names.size() == 1) return names.front();
   }
   for (const auto& [name, topic] : topics_) {
-    if (!topic.fault.empty() && is_image_type(topic.type)) fail("no depth images; " + topic.fault);
+    if (!topic.fault.empty() && is_image_type(topic.type))
+      fail("the recording has no depth images; " + topic.fault);
   }
-  fail(topics_.empty() ? "holds no message"
+  fail(topics_.empty() ? "the recording has no messages"
                        : "no topic has depth images (sensor_msgs/Image of 16UC1, 32FC1 or mono16, "
                          "or compressedDepth); topics: " +
                              listed());
@@ -122,8 +124,8 @@ const CameraInfoMessage* MessageTopics::info_of(const std::string& depth_topic,
                  ", the only camera_info with the images' frame");
   }
   if (chosen->second.others > 0) {
-    warnings.add(chosen->first + " changes: " + std::to_string(chosen->second.others) +
-                 " messages differ from the first one; the first one is used");
+    warnings.add(chosen->first + " changes; " + std::to_string(chosen->second.others) +
+                 " messages differ from the first message, which is used for all images");
   }
   return &chosen->second.first;
 }
@@ -156,9 +158,10 @@ bool MessageTopics::is_rectified(const std::string& depth_topic, const CameraInf
   const bool is_rectified =
       name.find("rect") != std::string::npos && (has_distortion || info.p[0] != 0);
   if (!is_rectified && has_distortion && name.find("raw") == std::string::npos) {
-    warnings.add("the name of " + depth_topic +
-                 " contains neither raw nor rect; its images are assumed to have the distortion in "
-                 "camera_info");
+    warnings.add(
+        "the name of " + depth_topic +
+        " contains neither raw nor rect. Its images are assumed to be distorted, as camera_info "
+        "states");
   }
   if (is_rectified && info.r != kIdentity && info.r != std::array<double, 9>{}) {
     warnings.add("the camera_info of " + depth_topic +

@@ -34,7 +34,7 @@ std::string MissingPoses::text(const TransformTree::Chain& chain, bool are_all) 
           " s, these images from " + seconds_text(from_) + " to " + seconds_text(to_) + " s";
   const bool is_apart = are_all && counts_[2] + counts_[3] == 0 &&
                         (from_ - 10 * kNanoseconds > span[1] || to_ + 10 * kNanoseconds < span[0]);
-  if (is_apart) text += ": the camera's clock differs from the robot's";
+  if (is_apart) text += ". The clocks of the camera and the robot differ";
   return text;
 }
 

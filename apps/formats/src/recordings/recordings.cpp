@@ -36,10 +36,11 @@ RecordingFormat file_format(const fs::path& file) {
   if (small_ending(file) == ".json") return RecordingFormat::transforms;
   if (head.starts_with("\x28\xb5\x2f\xfd")) {
     throw Error(ErrorCode::format,
-                file.string() + ": is compressed as a whole; unpack it with `unzstd`");
+                file.string() + ": the whole file is compressed; unpack it with `unzstd`");
   }
-  throw Error(ErrorCode::format,
-              file.string() + ": is not a recording (MCAP, rosbag2, bag, transforms.json)");
+  throw Error(
+      ErrorCode::format,
+      file.string() + ": the file is not a recording (MCAP, rosbag2, bag, transforms.json)");
 }
 
 // Files of one recording in order: NAME_2.mcap comes before NAME_10.mcap.
@@ -57,15 +58,16 @@ std::vector<fs::path> message_files(const fs::path& folder, const std::string& e
 
 void check(const fs::path& source, const ImportConfig& config) {
   if (config.max_time_gap && !(*config.max_time_gap >= 0)) {
-    refuse("the gap of time " + short_text(*config.max_time_gap) + " must not be negative");
+    refuse("the longest time gap is " + short_text(*config.max_time_gap) +
+           " s; it must not be negative");
   }
   if (config.depth_scale && !(*config.depth_scale > 0 && *config.depth_scale <= 1)) {
-    refuse("the depth scale " + short_text(*config.depth_scale) +
-           " must be within 0 and 1 m per unit");
+    refuse("the depth scale is " + short_text(*config.depth_scale) +
+           "; it must be between 0 and 1 m per unit");
   }
   if (config.T_body_camera && !config.camera_frame.empty()) {
-    refuse("the camera's pose is given twice: in a tf frame (--camera-frame) and on the body of " +
-           config.pose_topic);
+    refuse("the camera's pose is given twice: by --camera-frame, and for the body of " +
+           config.pose_topic + " (--pose-topic)");
   }
   if (config.camera == PinholeCamera{}) return;
   PinholeCamera camera = config.camera;
@@ -115,16 +117,18 @@ RecordingFormat recording_format(const fs::path& source) {
     if (!message_files(source, ending).empty()) found.emplace_back(ending, format);
   }
   if (found.size() > 1) {
-    throw Error(ErrorCode::format, source.string() + ": contains recordings of two kinds, " +
-                                       found[0].first + " and " + found[1].first + "; name a file");
+    throw Error(ErrorCode::format, source.string() + ": the folder has recordings of two kinds, " +
+                                       found[0].first + " and " + found[1].first +
+                                       "; give the file to read");
   }
   if (found.empty()) {
     for (const std::string& name : names_in(source)) {
       if (small_ending(name) == ".zstd") (void)file_format(source / name);
     }
-    throw Error(ErrorCode::format,
-                source.string() +
-                    ": contains no recording (depth.txt, transforms.json, .mcap, .db3 or .bag)");
+    throw Error(
+        ErrorCode::format,
+        source.string() +
+            ": the folder has no recording (depth.txt, transforms.json, .mcap, .db3 or .bag)");
   }
   return found[0].second;
 }
@@ -147,7 +151,8 @@ ImportReport import_recording(const fs::path& source, const fs::path& out,
     for (const fs::path& file : files) {
       refuse_link_out(source, file);
       if (file_format(file) != format) {
-        throw Error(ErrorCode::format, file.string() + ": its contents do not match its name");
+        throw Error(ErrorCode::format,
+                    file.string() + ": the contents of the file do not match its ending");
       }
     }
   }

@@ -31,9 +31,10 @@ void split_compressed(std::string_view bytes, DepthMessage& depth) {
   depth.inverse = reader.number<std::array<float, 2>>();
   depth.data = reader.bytes(reader.left());
   if (!depth.data.starts_with("\x89PNG")) {
-    throw Error(ErrorCode::format,
-                "compressedDepth is only supported as PNG, not as RVL or others. Record the raw "
-                "images, or convert with `ros2 run image_transport republish compressedDepth raw`");
+    throw Error(
+        ErrorCode::format,
+        "compressedDepth is only supported as PNG. Record the raw "
+        "images, or convert them with `ros2 run image_transport republish compressedDepth raw`");
   }
 }
 
@@ -137,8 +138,8 @@ PinholeCamera camera_of(const CameraInfoMessage& info, bool is_rectified) {
     if (!is_brown || !std::all_of(five, info.d.end(), is_zero)) {
       throw Error(ErrorCode::format, "the distortion model " + viewgain::quoted(info.model) +
                                          " with " + std::to_string(info.d.size()) +
-                                         " coefficients is not supported (supported: k1, k2, p1, "
-                                         "p2, k3); record rectified images");
+                                         " coefficients is not supported; record rectified "
+                                         "images (supported: k1, k2, p1, p2, k3)");
     }
     std::copy(info.d.begin(), five, camera.distortion.begin());
   }

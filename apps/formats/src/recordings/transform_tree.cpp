@@ -69,7 +69,7 @@ void TransformTree::finish(Warnings& warnings) {
     const auto is_earlier = [](const Stamped& a, const Stamped& b) { return a.stamp < b.stamp; };
     std::stable_sort(edge.poses.begin(), edge.poses.end(), is_earlier);
     if (edge.is_static || edge.went_back < kOutOfOrder) continue;
-    warnings.add("stamps of " + viewgain::quoted(edge.parent) + " to " +
+    warnings.add("the time stamps from " + viewgain::quoted(edge.parent) + " to " +
                  viewgain::quoted(edge.child) + " go back by " +
                  short_text(static_cast<double>(edge.went_back / 1'000'000) * 1e-3) +
                  " s. Either the clock was set back, or the recording holds two runs");
@@ -107,21 +107,22 @@ TransformTree::Chain TransformTree::chain(std::string& world, const std::string&
   if (edges == 0) {
     fail("no transform leads to the frame " + viewgain::quoted(frame) +
          "; existing frames: " + listed_frames(frames()) +
-         ". Record /tf_static too, or use --camera-frame to give a frame and the camera's pose in "
-         "it");
+         ". Record /tf_static, too, or give --camera-frame with one of these frames and the "
+         "camera's pose in this frame");
   }
   if (edges >= joined.size()) {
     fail("the transforms of " + listed_frames(joined) +
-         " form a loop: a frame has two parents, perhaps because two nodes publish it");
+         " form a loop: a frame has two parents. Perhaps two nodes publish this frame");
   }
   if (world.empty() && roots.size() > 1) {
-    fail("the frame " + viewgain::quoted(frame) +
-         " belongs to several worlds: " + listed_frames(roots) + "; choose one with --world");
+    fail("the frame " + viewgain::quoted(frame) + " belongs to several worlds: " +
+         listed_frames(roots) + "; choose one of them with --world");
   }
   if (world.empty()) world = *roots.begin();
   if (!joined.contains(world)) {
     fail("no transforms connect the world " + viewgain::quoted(world) + " and the frame " +
-         viewgain::quoted(frame) + ", which belongs to " + listed_frames(joined) + " (--world)");
+         viewgain::quoted(frame) +
+         "; choose a world that is connected to this frame with --world: " + listed_frames(joined));
   }
   Chain way;
   for (std::string at = world; at != frame;) {

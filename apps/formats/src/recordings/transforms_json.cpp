@@ -65,13 +65,13 @@ class JsonCamera {
       const double value = number(key).value_or(0);
       if (value < 0 || value > 16384) {
         throw Error(ErrorCode::format, file_.string() + ": " + key + " is " + short_text(value) +
-                                           " px, not within 1 and 16384");
+                                           " px; it must be in 1..16384");
       }
       *size = static_cast<int>(value);
     }
     if ((camera.width == 0) != (camera.height == 0)) {
       throw Error(ErrorCode::format,
-                  file_.string() + ": has only one of w and h; both are required");
+                  file_.string() + ": the file has only one of w and h; both are required");
     }
     if (camera.width == 0) camera.width = image_size[0], camera.height = image_size[1];
     // A frame's angle has priority over the file's focal length.
@@ -123,13 +123,14 @@ ReadPose json_pose(const Json& frame, const std::string& where) {
   };
   const auto matrix = frame.find("transform_matrix");
   if (matrix == frame.end()) {
-    return unknown_pose(FrameVerdict::no_pose, where + ": has no transform_matrix");
+    return unknown_pose(FrameVerdict::no_pose, where + ": the frame has no transform_matrix");
   }
   std::vector<double> numbers;
   for (const Json& row : *matrix) {
-    if (!row.is_array()) return lost("is not a matrix");
+    if (!row.is_array()) return lost("this is not a matrix");
     for (const Json& value : row) {
-      if (!value.is_number() || !std::isfinite(value.get<double>())) return lost("is not finite");
+      if (!value.is_number() || !std::isfinite(value.get<double>()))
+        return lost("a number is not finite");
       numbers.push_back(value.get<double>());
     }
   }
@@ -165,8 +166,9 @@ std::array<int, 2> size_of_images(const std::vector<RecordedFrame>& frames) {
 void scale_to_images(const std::array<int, 2>& size, PinholeCamera& camera,
                      std::vector<std::string>& warnings) {
   if (size == std::array{camera.width, camera.height}) return;
-  warnings.push_back("depth images of " + size_text(size[0], size[1]) + " px; the intrinsics of " +
-                     size_text(camera.width, camera.height) + " px are scaled to them");
+  warnings.push_back("the depth images have " + size_text(size[0], size[1]) +
+                     " px; the intrinsics, which are for " +
+                     size_text(camera.width, camera.height) + " px, are scaled accordingly");
   const double x = 1.0 * size[0] / camera.width, y = 1.0 * size[1] / camera.height;
   camera.fx *= x, camera.fy *= y;
   camera.cx = (camera.cx + 0.5) * x - 0.5, camera.cy = (camera.cy + 0.5) * y - 0.5;
@@ -191,7 +193,7 @@ PinholeCamera camera_of_frames(const fs::path& file, const Json& json,
   }
   if (!known && size[0] > 0) {
     throw Error(ErrorCode::format,
-                file.string() + ": has no focal length (fl_x); give --intrinsics");
+                file.string() + ": the file has no focal length (fl_x); give --intrinsics");
   }
   return known.value_or(PinholeCamera{});
 }
@@ -206,7 +208,7 @@ ImportReport import_transforms(const fs::path& file, const fs::path& out,
   };
   const Json json = app::parse_or_null(folder_file_bytes(file, kMostJsonBytes));
   if (!json.is_object() || !json.contains("frames") || !json["frames"].is_array()) {
-    fail("is not JSON with a list 'frames'");
+    fail("the file is not JSON with a list 'frames'");
   }
   const JsonCamera said(file, json, json);
   said.refuse_models();
@@ -225,7 +227,8 @@ ImportReport import_transforms(const fs::path& file, const fs::path& out,
     const fs::path inside = path_inside(image);
     ReadPose pose = json_pose(frame, where);
     if (image.empty()) {
-      dropped.add({FrameVerdict::unreadable, where + ": names no depth image (depth_file_path)"});
+      dropped.add(
+          {FrameVerdict::unreadable, where + ": the frame has no depth image (depth_file_path)"});
     } else if (inside.empty()) {
       fail("frame " + std::to_string(number) + ": the image " + viewgain::quoted(image) +
            " is outside the recording");
@@ -239,7 +242,7 @@ ImportReport import_transforms(const fs::path& file, const fs::path& out,
     }
     ++number;
   }
-  if (number == 0) fail("has no frames");
+  if (number == 0) fail("the file has no frames");
   if (config.camera.fx > 0) {
     report.camera = config.camera;
   } else {
@@ -259,7 +262,7 @@ ImportReport import_transforms(const fs::path& file, const fs::path& out,
       said.number("integer_depth_scale")
           .value_or(said.number("depth_unit_scale_factor").value_or(kRecordedDepthUnit)));
   if (!(scale > 0 && scale <= 1)) {
-    fail("the depth scale " + short_text(scale) + " is not within 0 and 1 m per unit");
+    fail("the depth scale " + short_text(scale) + " must be between 0 and 1 m per unit");
   }
   import_images(source, frames, scale, config, out, dropped, report);
   return report;

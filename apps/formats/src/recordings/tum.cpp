@@ -26,8 +26,9 @@ TimedPoses read_timed_poses(const fs::path& path) {
     return pose.fault.verdict == FrameVerdict::used;
   });
   if (!has_any) {
-    throw Error(ErrorCode::format, read.poses.empty() ? path.string() + ": contains no pose"
-                                                      : read.poses.front().fault.what);
+    throw Error(ErrorCode::format, read.poses.empty()
+                                       ? path.string() + ": the file contains no pose"
+                                       : read.poses.front().fault.what);
   }
   return read;
 }
@@ -81,7 +82,7 @@ std::vector<RecordedFrame> read_tum_frames(const fs::path& source, double max_ti
     }
     ++number;
   }
-  if (number == 0) throw Error(ErrorCode::format, list.string() + ": lists no image");
+  if (number == 0) throw Error(ErrorCode::format, list.string() + ": the file lists no image");
   return frames;
 }
 
@@ -90,7 +91,8 @@ std::vector<RecordedFrame> read_tum_frames(const fs::path& source, double max_ti
 ImportReport import_tum(const fs::path& source, const fs::path& out, const ImportConfig& config) {
   ImportReport report;
   if (!(config.camera.fx > 0) && !config.sensor) {
-    refuse(source.string() + ": a recording in TUM's layout does not state its camera; give one");
+    refuse(source.string() +
+           ": a recording in the TUM layout does not state its camera; give the camera");
   }
   report.camera = config.camera.fx > 0 ? config.camera : config.sensor->camera;
   Dropped dropped{report.bad};

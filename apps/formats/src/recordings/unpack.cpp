@@ -44,11 +44,11 @@ std::string unpack_by(StepFunction step, std::string_view packed, std::uint64_t 
     made += newly_made, used += newly_used;
     std::string why;
     if (made > size) {
-      why = "more bytes than it declares";
+      why = "it has more bytes than it declares";
     } else if (result == Step::damaged) {
       why = "the packed bytes are damaged";
     } else if (result == Step::end && used == packed.size()) {
-      if (made < size) why = "fewer bytes than it declares";
+      if (made < size) why = "it has fewer bytes than it declares";
     } else if (newly_made == 0 && newly_used == 0) {
       why = "the packed bytes end early";
     } else {
@@ -120,21 +120,21 @@ std::string unpack_bz2(std::string_view packed, std::uint64_t size, std::string&
 std::string unpack(std::string_view packing, std::string_view packed, std::uint64_t size,
                    std::string& out) {
   if (size > kMostRecordBytes) {
-    throw Error(ErrorCode::format, "a chunk of " + std::to_string(size) +
+    throw Error(ErrorCode::format, "the chunk has " + std::to_string(size) +
                                        " bytes; the maximum is " +
                                        std::to_string(kMostRecordBytes));
   }
   if (packing.empty() || packing == "none") {
     out.assign(packed);
-    return out.size() < size ? "fewer bytes than it declares" : "";
+    return out.size() < size ? "it has fewer bytes than it declares" : "";
   }
   out.clear();
   if (packing == "zstd") return unpack_zstd(packed, size, out);
   if (packing == "lz4") return unpack_lz4(packed, size, out);
   if (packing == "bz2") return unpack_bz2(packed, size, out);
-  throw Error(ErrorCode::format,
-              "chunks compressed with '" + std::string(packing.substr(0, 32)) +
-                  "' are not supported; zstd, lz4, bz2 and uncompressed ones are");
+  throw Error(ErrorCode::format, "the chunk has the unknown compression '" +
+                                     std::string(packing.substr(0, 32)) +
+                                     "'; supported compressions: zstd, lz4, bz2, none");
 }
 
 }  // namespace viewgain

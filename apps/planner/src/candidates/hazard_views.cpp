@@ -105,7 +105,8 @@ struct Target {
 std::vector<Target> targets_in(const VoxelScene& scene, double distance, double spacing) {
   for (const double length : {distance, spacing}) {
     if (length > 0 && std::isfinite(length)) continue;
-    refuse("hazard views: a length must not be " + short_text(length) + " m");
+    refuse("hazard views: distance and spacing must be positive and finite, not " +
+           short_text(length) + " m");
   }
   const HazardField& hazard = scene.hazard();
   const double edge = hazard.voxel_size() * (1 << hazard.cell_shift());

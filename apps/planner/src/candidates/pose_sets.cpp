@@ -37,7 +37,7 @@ Eigen::Vector3d direction_from(const Eigen::Vector3d& center, const Pose& pose) 
 // Orders poses so that each is the farthest, by angle, from the start's and all before it.
 std::vector<Pose> spread_out(const std::vector<Pose>& poses, const PoseSetRequest& request) {
   if (poses.size() > kMostSpreadOut) {
-    refuse("at most " + std::to_string(kMostSpreadOut) + " poses can be spread out; found " +
+    refuse("at most " + std::to_string(kMostSpreadOut) + " poses can be spread out, not " +
            std::to_string(poses.size()));
   }
   std::vector<double> nearest(poses.size(), -1);  // cosine of the angle to the nearest one taken
@@ -140,7 +140,7 @@ PoseSet make_pose_set(std::string_view generator, const PoseSetRequest& request)
   } else if (generator == "sequence") {
     set.poses = sequence_poses(request);
   } else {
-    refuse("generator \"" + std::string(generator) + "\": unknown set of poses");
+    refuse("the set of poses \"" + std::string(generator) + "\" is unknown");
   }
   if (request.spread_out) set.poses = spread_out(set.poses, request);
   return set;

@@ -16,7 +16,7 @@ Proposal PlannerParts::generate(const Pose&) { return planner_.propose(); }
 std::optional<DecisionMaking::Decision> PlannerParts::decide(
     const Pose& T_world_camera, std::span<const Candidate> candidates) {
   if (candidates.size() != planner_.candidate_count()) {
-    refuse("the candidates are not those of the planner's last proposal");
+    refuse("the candidates differ from the last proposal of the planner");
   }
   RankConfig config = config_;
   config.current_pose = T_world_camera;

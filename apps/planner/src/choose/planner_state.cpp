@@ -57,7 +57,7 @@ std::string line_of(std::string_view name, const Pose& pose) {
 Pose pose_of(const LineReader& reader) {
   Pose pose;
   for (std::size_t i = 0; i < pose.m.size(); ++i) pose.m[i] = reader.finite_number(1 + i);
-  if (!rigid_pose(pose)) reader.fail("the pose is not rigid");
+  if (!rigid_pose(pose)) reader.fail("the pose is not a rigid transform");
   return pose;
 }
 
@@ -122,16 +122,17 @@ PlannerState state_of(const std::string& name, std::string_view text) {
   LineReader reader(name, text);
   std::size_t needed = 0;  // of the first four entries
   while (reader.next()) {
-    if (reader.words().empty()) reader.fail("an empty line");
+    if (reader.words().empty()) reader.fail("the line is empty");
     const std::string_view key = reader.words()[0];
     std::size_t at = 0;
     while (at < kEntries.size() && kEntries[at].name != key) ++at;
     if (at == kEntries.size()) reader.fail("unknown entry " + quoted(key));
     if (reader.words().size() != kEntries[at].words) {
-      reader.fail("entry " + quoted(key) + " has " + std::to_string(reader.words().size() - 1) +
+      reader.fail("the entry " + quoted(key) + " has " + std::to_string(reader.words().size() - 1) +
                   " values, not " + std::to_string(kEntries[at].words - 1));
     }
-    if (at < 4 && at != needed++) reader.fail("entry " + quoted(key) + " is out of place");
+    if (at < 4 && at != needed++)
+      reader.fail("the entry " + quoted(key) + " is in the wrong place");
     if (key == "version") {
       const std::uint64_t version = reader.count(1, kMost);
       if (version >= kOldest && version <= kVersion) continue;
@@ -164,7 +165,7 @@ PlannerState state_of(const std::string& name, std::string_view text) {
       state.of_choice = reason_of(reader);
     }
   }
-  if (needed < 4) reader.fail("entry " + quoted(kEntries[needed].name) + " is missing");
+  if (needed < 4) reader.fail("the entry " + quoted(kEntries[needed].name) + " is missing");
   return state;
 }
 

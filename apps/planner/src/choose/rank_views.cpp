@@ -24,7 +24,7 @@ constexpr std::size_t kByStop = 3, kFewPoses = 32;
 
 void refuse_measures(const RankConfig& config) {
   if (config.measure == nullptr && config.run_measure == nullptr) return;
-  refuse("views of a set are chosen by the gain, not by a measure");
+  refuse("a set of views is chosen by the gain; measure and run_measure cannot be used");
 }
 
 double least_area_of(const PlanAhead& ahead, double surface_area) {
@@ -110,20 +110,20 @@ Ranking set_of(const GainEvaluator& evaluator, std::span<const Pose> T_world_cam
 
 void PlanAhead::check() const {
   if (plan < 1 || plan > kMostPlanned) {
-    refuse("plan is " + std::to_string(plan) + "; it must be 1 to " + std::to_string(kMostPlanned));
+    refuse("plan must be in 1.." + std::to_string(kMostPlanned) + ", not " + std::to_string(plan));
   }
   if (take < 1 || take > plan) {
-    refuse("take is " + std::to_string(take) + "; it must be 1 to plan, " + std::to_string(plan));
+    refuse("take must be in 1.." + std::to_string(plan) + " (plan), not " + std::to_string(take));
   }
   if (!(least_share >= 0 && least_share < 1)) {
-    refuse("least_share " + short_text(least_share) + " must be at least 0 and less than 1");
+    refuse("least_share must be at least 0 and less than 1, not " + short_text(least_share));
   }
 }
 
 std::vector<double> view_costs(std::span<const Pose> poses, const RankConfig& config) {
   if (!std::isfinite(config.cost_per_metre) || config.cost_per_metre < 0) {
-    refuse("cost_per_metre " + short_text(config.cost_per_metre) +
-           " must be at least 0 and finite");
+    refuse("cost_per_metre must be at least 0 and finite, not " +
+           short_text(config.cost_per_metre));
   }
   const std::optional<Eigen::Vector3d> here = begin_of_ways(config);
   std::vector<double> costs(config.costs.begin(), config.costs.end());

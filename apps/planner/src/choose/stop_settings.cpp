@@ -12,10 +12,10 @@ namespace viewgain {
 void set_stop_rules(PlanningConfig& planning, GainModel model, Criterion criterion,
                     std::optional<double> stop_gain, std::optional<double> stop_area) {
   if (stop_gain && !(*stop_gain >= 0 && std::isfinite(*stop_gain))) {
-    refuse("stop_gain " + short_text(*stop_gain) + " must be at least 0 and finite");
+    refuse("stop_gain must be at least 0 and finite, not " + short_text(*stop_gain));
   }
   if (stop_area && !(*stop_area >= 0 && *stop_area < 1)) {
-    refuse("stop_area " + short_text(*stop_area) + " must be at least 0 and less than 1");
+    refuse("stop_area must be at least 0 and less than 1, not " + short_text(*stop_area));
   }
   const bool by_paper = model == GainModel::paper;
   if (by_paper && stop_area.value_or(0) > 0) {
@@ -23,7 +23,7 @@ void set_stop_rules(PlanningConfig& planning, GainModel model, Criterion criteri
   }
   if (!by_paper && stop_gain.value_or(0) > 0) refuse("stop_gain requires the gain paper");
   if (model == GainModel::combined && criterion == Criterion::trace) {
-    refuse("criterion trace requires the gain paper, because the combined gain is in nat");
+    refuse("the criterion trace requires the gain paper, because the combined gain is in nat");
   }
   planning.stop_gain_is_relative = criterion == Criterion::trace && !stop_gain;
   planning.stop_gain =

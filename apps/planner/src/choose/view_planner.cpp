@@ -183,7 +183,7 @@ struct ViewPlanner::Impl {
       counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
     }
     refuse("no view can be proposed, because no frame could be used so far (" + counts +
-           "). Are the poses world to camera? Are units or workspace wrong?");
+           "). Are the poses camera to world? Are the units and the workspace right?");
   }
 
   // After a decision, which replaces an earlier one of the same view.
@@ -265,13 +265,13 @@ AddedView ViewPlanner::add(const DepthFrame& frame, const Pose& T_world_camera,
 AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_world_camera,
                            const PoseSigma& pose_sigma) {
   Impl& m = *impl_;
-  if (frames.empty()) refuse("a view needs at least one frame");
+  if (frames.empty()) refuse("a view must have at least one frame");
   return m.counted(m.scorer.add({T_world_camera, {frames.begin(), frames.end()}, pose_sigma}),
                    T_world_camera);
 }
 
 AddedView ViewPlanner::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera) {
-  if (is_in_map(verdict)) refuse("a dropped frame cannot have a verdict that puts it into the map");
+  if (is_in_map(verdict)) refuse("a dropped frame cannot have the verdict used or carved");
   MapUpdate nothing;
   nothing.verdict = verdict;
   return impl_->counted(std::move(nothing), T_world_camera);
@@ -310,7 +310,7 @@ std::size_t ViewPlanner::candidate_count() const noexcept {
 
 Ranking ViewPlanner::rank(std::size_t k, const RankConfig& config, const BatchControl& control) {
   if (!impl_->proposal) {
-    refuse("rank: there are no candidates; call propose() after each view, before rank()");
+    refuse("rank: there are no candidates. After each view, call propose() before rank()");
   }
   return impl_->rank(poses_of(impl_->proposal->candidates), k, config, control, &*impl_->proposal);
 }
@@ -349,22 +349,23 @@ ViewPlanner ViewPlanner::load(const std::filesystem::path& path, const Sensor& s
   const auto note = notes.others.extract(kNote);  // save() rewrites it
   grid.set_notes(std::move(notes));
   if (note.empty()) {
-    throw Error(ErrorCode::format, path.string() + ": is a map without a planner's state");
+    throw Error(ErrorCode::format,
+                path.string() + ": the map has no planner state, because no planner saved it");
   }
   const BeliefGrid expected(scorer.grid(), sensor);
   if (grid.voxel_size() != expected.voxel_size() || grid.dims() != expected.dims() ||
       grid.min_index() != expected.min_index() || grid.prior_sigma() != expected.prior_sigma() ||
       !(grid.T_world_grid() == expected.T_world_grid())) {
-    refuse(path.string() + ": its map (" + layout_text(grid) +
+    refuse(path.string() + ": the saved map (" + layout_text(grid) +
            ") differs from the configuration (" + layout_text(expected));
   }
   detail::PlannerState state = detail::state_of(path.string() + " (note planner)", note.mapped());
   std::size_t added = state.first_views;
   for (const auto& [verdict, count] : state.frames) added += is_in_map(verdict) ? count : 0;
   if (added != grid.views().size()) {
-    refuse(path.string() + ": its map has " + std::to_string(grid.views().size()) +
-           " views, but its planner added only " + std::to_string(added) +
-           ". Create a new planner for this map");
+    refuse(path.string() + ": the map has " + std::to_string(grid.views().size()) +
+           " views, but the planner that saved it added only " + std::to_string(added) +
+           "; create a new planner for this map");
   }
   auto impl = std::make_unique<Impl>(ViewScorer(std::move(grid), sensor, scorer, exec), config);
   impl->state = std::move(state);

@@ -22,8 +22,8 @@ void check_noise(const PoseSigma& sigma) {
   for (const auto& [name, value] : {std::pair("sigma_translation", sigma.translation),
                                     std::pair("sigma_rotation", sigma.rotation)}) {
     if (!(value >= 0) || !std::isfinite(value)) {
-      refuse("pose noise: " + std::string(name) + " " + short_text(value) +
-             " must be at least 0 and finite");
+      refuse("pose noise: " + std::string(name) + " must be at least 0 and finite, not " +
+             short_text(value));
     }
   }
 }
@@ -31,7 +31,7 @@ void check_noise(const PoseSigma& sigma) {
 }  // namespace
 
 Measurements SimulatedAcquisition::acquire(const Pose& T_world_camera, std::size_t view) {
-  if (frames_per_view_ == 0) refuse("frames per view must be at least 1, not 0");
+  if (frames_per_view_ == 0) refuse("the number of frames per view must be at least 1, not 0");
   Measurements measurements{T_world_camera, {}};
   for (std::size_t i = 0; i < frames_per_view_; ++i) {
     measurements.frames.push_back(camera_.acquire(T_world_camera, view * frames_per_view_ + i));

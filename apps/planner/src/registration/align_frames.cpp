@@ -209,7 +209,7 @@ void check(const Pose& T_reported, const PoseSigma& sigma) {
   for (const auto& [name, value] : {std::pair("sigma_translation", sigma.translation),
                                     std::pair("sigma_rotation", sigma.rotation)}) {
     if (value > 0 && std::isfinite(value)) continue;
-    fail(std::string(name) + " " + short_text(value) + " must be positive and finite");
+    fail(std::string(name) + " must be positive and finite, not " + short_text(value));
   }
 }
 

@@ -172,9 +172,9 @@ JointRegistration::Verdict JointRegistration::verdict_of(std::size_t index) cons
                     rounded(kMaxSigmas) + " standard deviations of the reported pose";
   } else if (found.readings.contradicts(readings)) {
     result.reason = rounded(100 * found.readings.contradiction()) +
-                    " % of the points lie in space that is free according to " + others_;
+                    " % of the points lie in free space of " + others_;
   } else if (found.surface.contradicts(by_map ? 0 : readings)) {
-    result.reason = "the frame looks through " + rounded(100 * found.surface.contradiction()) +
+    result.reason = "the frame sees free space at " + rounded(100 * found.surface.contradiction()) +
                     " % of the surface in " + others_;
   } else if (result.overlap < kMinOverlap || result.pairs < kMinPairs) {
     result.status = RegistrationStatus::too_little_overlap;

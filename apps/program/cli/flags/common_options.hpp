@@ -27,11 +27,11 @@ inline void add_common_options(App& program, CommonOptions& options) {
   program.add_option("--threads", options.threads, "number of threads (0: all cores)");
   program
       .add_option("--trace", options.trace,
-                  "algorithm that traces rays: embree (a bounding volume hierarchy), sweep (cell "
-                  "by cell) or automatic (chosen per map); it changes only the speed")
+                  "ray tracer: embree (bounding volume hierarchy), sweep (cell by cell) or "
+                  "automatic (chosen per map); affects only the speed")
       ->check(one_of(tracer_names(), "tracer"));
   program.add_option("--save-config", options.save_config,
-                     "TOML file to write with the flags of this call, to be read by --config");
+                     "TOML file to write with the flags of this call; --config reads it");
 }
 
 [[nodiscard]] inline ExecConfig exec_of(const CommonOptions& options) {
@@ -57,13 +57,13 @@ inline void add_help(App& app, const char* group, const char* example) {
 inline constexpr const char* kMapHelp = "map file (.vdb, or OctoMap .ot or .bt) or folder of a run";
 
 inline const std::string kSensorHelp =
-    "preset (" + listed(sensor_preset_names()) + ") or .toml file";
+    "sensor preset (" + listed(sensor_preset_names()) + ") or .toml file";
 
 inline const std::string kMapSensorHelp = kSensorHelp + " (default: the sensor that the map names)";
 
 inline constexpr const char* kBodyHelp =
-    "x,y,z: width, height and depth of the camera's housing [m] (default: from the sensor, else "
-    "those of an SR4000)";
+    "x,y,z: width, height and depth of the camera's housing [m] (default: from the sensor, else as "
+    "for the SR4000)";
 
 /// Adds --seed, with the same bounds in every subcommand.
 inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {

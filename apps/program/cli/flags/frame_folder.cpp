@@ -70,14 +70,13 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options) {
                  "metres per unit of the depth images (default: from frames.toml; else 1e-4 for "
                  "folders with poses.txt, 1e-3 for others)");
   app.add_option("--out-of-range", options.out_of_range,
-                 "meaning of depth 65535: carve (the ray is free up to max_range) or invalid "
-                 "(default: from frames.toml or the sensor; else carve for folders with poses.txt, "
-                 "invalid for others)")
+                 "meaning of depth 65535: carve (free up to max_range) or invalid (default: from "
+                 "frames.toml or sensor; else carve if poses.txt exists)")
       ->check(one_of({"carve", "invalid"}, "value"));
   add_mask_options(app, options.mask, options.confidence);
   app.add_option("--on-contradiction", options.on_contradiction,
-                 "what to do with frames that contradict others: skip (omit those that --register "
-                 "refuses; warn about the rest), keep (requires --register on) or error")
+                 "frames that contradict others: skip (omit those that --register refuses, warn "
+                 "about the rest), keep (requires --register on) or error")
       ->check(one_of({"skip", "keep", "error"}, "value"));
 }
 

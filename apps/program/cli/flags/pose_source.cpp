@@ -93,8 +93,8 @@ void add_cost_options(App& app, CostOptions& options, const std::string& of) {
                      ", in the gain's unit; each cost is subtracted from the gain of its pose");
   app.add_option("--cost-per-metre", options.per_metre, kCostPerMetreHelp);
   app.add_option("--from", options.from,
-                 "x,y,z: current position of the camera, world frame [m] (default: that of the "
-                 "last frame; for a map file, of its last view)");
+                 "x,y,z: current position of the camera, world frame [m] (default: position of the "
+                 "last frame or, for a map file, of its last view)");
 }
 
 void check(const CostOptions& options, bool has_way) {
@@ -117,8 +117,8 @@ std::vector<double> read_costs(const std::string& file, std::size_t poses) {
     if (costs.back() < 0) reader.fail("a cost must not be negative");
   }
   if (costs.size() == poses) return costs;
-  refuse(file + ": has " + std::to_string(costs.size()) + " costs for " + std::to_string(poses) +
-         " poses");
+  refuse(file + ": the file has " + std::to_string(costs.size()) + " costs, but there are " +
+         std::to_string(poses) + " poses");
 }
 
 PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {
@@ -159,14 +159,15 @@ std::optional<Pose> begin_of_ways(const CostOptions& options,
   if (last_pose) return last_pose;
   if (options.per_metre > 0) {
     refuse(
-        "--cost-per-metre: the map has no view at which the path could start; give --from x,y,z");
+        "--cost-per-metre: the map has no views, so the current position of the camera is unknown; "
+        "give --from x,y,z");
   }
   return std::nullopt;
 }
 
 std::vector<Pose> poses_in(const std::string& file) {
   if (const auto set = set_in(file)) {
-    refuse("--poses " + file + ": expected a file of poses; for a set, use --generator " +
+    refuse("--poses " + file + ": expected a file of poses; for a set of poses, use --generator " +
            std::string(set->kind) + " with --count and --distance");
   }
   PoseOptions options;

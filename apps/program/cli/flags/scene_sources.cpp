@@ -46,7 +46,8 @@ std::string rates_of(const std::string& hazard) {
   if (!hazard.starts_with("size=")) return hazard;
   const std::size_t comma = hazard.find(',');
   if (comma == std::string::npos) return "";
-  if (comma + 1 == hazard.size()) refuse("--hazard " + hazard + ": ends in a comma");
+  if (comma + 1 == hazard.size())
+    refuse("--hazard " + hazard + ": the value must not end in a comma");
   return hazard.substr(comma + 1);
 }
 
@@ -71,7 +72,7 @@ void add_hazard_option(App& app, std::string& text) {
       "Values of --hazard; size=L can precede one of the others, as in size=0.3,5:\n"
       "  RATE      one rate for all unknown voxels [1/m]\n"
       "  FILE.vdb  one rate per voxel\n"
-      "  size=L    longest side of the object [m] (default: that of its seen part)\n"
+      "  size=L    longest side of the object [m] (default: of the part seen so far)\n"
       "  By default, the rate is high near known surface and falls with the distance\n"
       "  from it. It is lower in front of the surface and behind it.\n");
   app.add_option("--hazard", text,
@@ -92,7 +93,7 @@ HazardConfig hazard_source(const std::string& text, const BeliefGrid& grid) {
   }
   if (!small_ending(hazard).empty() &&
       hazard.find_first_not_of("0123456789.+-eE") != std::string::npos) {
-    refuse("--hazard " + hazard + ": must be a number or the path of a .vdb file");
+    refuse("--hazard " + hazard + ": the value must be a number or a .vdb file");
   }
   const double rate = parse_numbers("--hazard", hazard, 1, 1)[0];
   check_at_least_0("--hazard", rate);
@@ -131,10 +132,11 @@ void warn_of_few_voxels(const BeliefGrid& grid) {
   const Index3 dims = grid.dims();
   const int longest = std::max({dims.x, dims.y, dims.z});
   if (longest >= kFew) return;
-  std::fprintf(stderr,
-               "viewgain: warning: --voxel %s m leaves %d voxel%s along the workspace's longest "
-               "side; --voxel is in metres, not millimetres\n",
-               short_text(grid.voxel_size()).c_str(), longest, longest == 1 ? "" : "s");
+  std::fprintf(
+      stderr,
+      "viewgain: warning: at --voxel %s m, the longest side of the workspace has only %d voxel%s; "
+      "--voxel must be in metres, not in millimetres\n",
+      short_text(grid.voxel_size()).c_str(), longest, longest == 1 ? "" : "s");
 }
 
 void warn_of_repairs(const std::string& file, const MeshRepairs& repairs) {
@@ -150,7 +152,7 @@ void warn_of_repairs(const std::string& file, const MeshRepairs& repairs) {
   if (repairs.dropped_faces > 0) {
     if (!text.empty()) text += "; ";
     text += faces(repairs.dropped_faces, " face without area was", " faces without area were") +
-            " left out";
+            " removed";
   }
   if (text.empty()) return;
   std::fprintf(stderr, "viewgain: warning: %s: %s\n", file.c_str(), text.c_str());
@@ -173,11 +175,10 @@ bool is_same_sensor(const Sensor& a, const Sensor& b) { return readings_of(a) ==
 bool warn_of_other_sensor(const std::string& path, const BeliefGrid& grid, const Sensor& sensor) {
   const std::optional<Sensor> noted = map_sensor(grid);
   if (!noted || is_same_sensor(*noted, sensor)) return false;
-  std::fprintf(
-      stderr,
-      "viewgain: warning: the frames in %s come from the sensor %s, but --sensor %s differs: %s\n",
-      path.c_str(), printable(noted->name).c_str(), printable(sensor.name).c_str(),
-      printable(difference(*noted, sensor)).c_str());
+  std::fprintf(stderr,
+               "viewgain: warning: %s was made with the sensor %s; --sensor %s differs: %s\n",
+               path.c_str(), printable(noted->name).c_str(), printable(sensor.name).c_str(),
+               printable(difference(*noted, sensor)).c_str());
   return true;
 }
 
@@ -200,10 +201,11 @@ SensedMap load_sensed_map(const std::string& path, const std::string& sensor_fla
     refuse(path + ": the map does not name its sensor; give --sensor");
   }
   if (is_octomap(path) || has_states_alone(grid)) {
-    std::fprintf(stderr,
-                 "viewgain: note: %s holds voxel states only. Known surface is treated as not yet "
-                 "measured (this does not affect --gain surface), and past views are unknown\n",
-                 path.c_str());
+    std::fprintf(
+        stderr,
+        "viewgain: note: %s has only voxel states. Its past views are unknown, and the accuracy "
+        "of its known surface is unknown; --gain surface is not affected\n",
+        path.c_str());
   }
   return {std::move(grid), *std::move(sensor)};
 }

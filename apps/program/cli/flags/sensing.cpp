@@ -36,11 +36,12 @@ SimulatedNoise parse_noise(const std::string& text, bool readings) {
     if (!fault.empty()) refuse("--noise: " + fault);
     const bool has_value = word == "scale" || word == "pose";
     if (has_value && equals == std::string::npos) {
-      refuse("--noise " + part + ": requires a value, as in scale=0.01 or pose=0.002/0.2");
+      refuse("--noise " + part + ": a value is required, for example scale=0.01 or pose=0.002/0.2");
     }
-    if (!has_value && equals != std::string::npos) refuse("--noise " + part + ": takes no value");
+    if (!has_value && equals != std::string::npos)
+      refuse("--noise " + part + ": only scale and pose have values");
     if (!words.insert(has_value ? word : "readings").second) {
-      refuse("--noise " + text + ": gives the same setting twice");
+      refuse("--noise " + text + ": a setting is given twice");
     }
     const std::string value = has_value ? part.substr(equals + 1) : "";
     if (word == "on" || word == "off") noise.readings = word == "on";
@@ -63,25 +64,26 @@ SimulatedNoise parse_noise(const std::string& text, bool readings) {
 void add_sensing_options(App& app, SensingOptions& o) {
   begin_group(app, "Simulated camera");
   app.add_option("--support-plane", o.support_plane,
-                 "height z of an infinite table that occludes [m] (default: none)");
+                 "height z of an infinite table, which hides what is below it [m] (default: none)");
   const std::string reference = explain_values_in(
       "simulate", app,
       "Values of --noise, separated by commas:\n"
       "  off       no noise\n"
       "  on        the sensor's Gaussian noise along and across the ray. Sensors with a\n"
-      "            modulation frequency also get flying pixels, each a mix of 3x3 rays\n"
+      "            modulation frequency also get flying pixels, which mix the depths of\n"
+      "            3x3 rays\n"
       "  plain     Gaussian noise without flying pixels\n"
       "  flying    flying pixels only\n"
       "  scale=E   measured ranges are 1 + E times the true ones\n"
       "  pose=SIGMA_M/SIGMA_DEG  standard deviations of errors in the reported poses,\n"
       "            per axis [m] and per component of the rotation vector [deg]. The\n"
-      "            first pose has no error: it defines the world\n");
+      "            first pose has no error, because it defines the world\n");
   app.add_option("--noise", o.noise,
                  "noise of depths and poses: off, on, plain, flying, scale=E, "
                  "pose=SIGMA_M/SIGMA_DEG, separated by commas (" +
                      reference + ")");
   app.add_option("--background", o.background,
-                 "radius of a sphere around the origin that represents the room [m]; 0: none");
+                 "radius of a sphere around the origin that stands for the room [m]; 0: no sphere");
   add_seed_option(app, o.seed, "seed for the noise of depths and poses");
 }
 
@@ -119,7 +121,7 @@ void add_registration_option(App& app, RegistrationOptions& options) {
       "  off       use the reported poses\n"
       "  on        align frames with one another and leave out frames that contradict\n"
       "            the rest. integrate and model --watch align each frame with the map\n"
-      "  SIGMA_M,SIGMA_DEG  on, with these standard deviations of the reported poses\n"
+      "  SIGMA_M,SIGMA_DEG  like on, with these standard deviations of the reported poses\n"
       "            (default: 0.005,0.5; for reconstruct, those of --noise if given)\n");
   app.add_option("--register", options.text,
                  "correct the reported poses by aligning frames: off, on or SIGMA_M,SIGMA_DEG (" +
@@ -154,7 +156,7 @@ std::array<std::size_t, 2> parse_scales(const std::string& text) {
   const std::size_t coarsest = parse_count("--scales", n[0]);
   const std::size_t finest = n.size() > 1 ? parse_count("--scales", n[1]) : 0;
   if (coarsest > 3 || finest > coarsest) {
-    refuse("--scales " + text + ": requires 0 <= FINEST <= COARSEST <= 3");
+    refuse("--scales " + text + ": expected 0 <= FINEST <= COARSEST <= 3");
   }
   return {coarsest, finest};
 }
@@ -178,8 +180,8 @@ Json ScaleOptions::settings() const {
 void add_scale_options(App& app, ScaleOptions& options) {
   begin_group(app, "Scales");
   app.add_option("--scales", options.scales,
-                 "COARSEST[,FINEST], each 0..3: merge voxels that one pixel covers into cells of "
-                 "up to 2^COARSEST voxels per edge; closer views split cells down to 2^FINEST");
+                 "COARSEST[,FINEST] (0..3): merge voxels that one pixel covers, up to 2^COARSEST "
+                 "per edge; closer views split them down to 2^FINEST");
   app.add_option(
          "--fine", options.fine,
          "box x0,y0,z0,x1,y1,z1 [m] without merged voxels (requires --scales); may be repeated")

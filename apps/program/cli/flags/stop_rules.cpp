@@ -12,7 +12,7 @@ namespace viewgain::app {
 void add_stop_option(App& app, std::string& text) {
   const std::string reference = explain_values_in(
       "reconstruct", app,
-      "Rules of --stop; LIMIT 0 disables any rule except coverage:\n"
+      "Rules of --stop (LIMIT 0 disables a rule, except coverage):\n"
       "  gain      the best view gains less than LIMIT per voxel that it sees\n"
       "            (--gain paper; default: 1.2 nat; trace: 0.01 of the first value)\n"
       "  area      the best view's expected new surface is below LIMIT times the\n"
@@ -22,7 +22,7 @@ void add_stop_option(App& app, std::string& text) {
       "            0.1 % (default: 3)\n"
       "  promises  LIMIT views in a row show less than a fifth of what was expected\n"
       "            (default: 3)\n"
-      "  coverage  a share LIMIT of the visible surface is covered (reconstruct only)\n");
+      "  coverage  the run covers a share LIMIT of the visible surface (reconstruct only)\n");
   app.add_option("--stop", text,
                  "RULE=LIMIT,...: rules that end the run: gain, area, idle, promises, coverage (" +
                      reference + "); may be repeated")
@@ -47,7 +47,7 @@ StopLimits stop_limits(const std::string& text) {
     const std::string fault =
         fault_of_name(rule, {"gain", "area", "idle", "promises", "coverage"}, "rule");
     if (!fault.empty()) refuse(fault);
-    if (equals == std::string::npos) refuse(part + ": requires a limit, as in idle=3");
+    if (equals == std::string::npos) refuse(part + ": a limit is required, for example idle=3");
     const std::string flag = rule;
     const double limit = parse_numbers(flag, part.substr(equals + 1), 1, 1)[0];
     check_at_least_0(flag, limit);
@@ -56,7 +56,7 @@ StopLimits stop_limits(const std::string& text) {
     if (rule == "idle") limits.idle = parse_count(flag, limit);
     if (rule == "promises") limits.promises = parse_count(flag, limit);
     if (rule != "coverage") continue;
-    if (limit > 1) refuse(flag + "=" + part.substr(equals + 1) + " must be in 0..1");
+    if (limit > 1) refuse(flag + "=" + part.substr(equals + 1) + ": the limit must be in 0..1");
     limits.coverage = limit;
   }
   return limits;

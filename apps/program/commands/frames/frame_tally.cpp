@@ -104,8 +104,8 @@ std::string text_of(const FrameConsistency& found, const std::vector<std::size_t
   std::string text = found.suspicion.what;
   if (text.empty() || found.contradicting.empty()) return text;
   const bool is_one = found.contradicting.size() == 1;
-  return text + " (" + (is_one ? "frame " : "frames ") +
-         ranges_text(numbers_of(found.contradicting, numbers)) + ")";
+  return text + (text.ends_with('?') ? " See frame" : ". See frame") + (is_one ? " " : "s ") +
+         ranges_text(numbers_of(found.contradicting, numbers));
 }
 
 std::string suspicion_of(const FrameFolder& folder) {
@@ -147,12 +147,13 @@ void FrameTally::add(const IntegrationReport& counts) {
 void FrameTally::name_left_out() const {
   if (quiet_) return;
   for (const std::string& fault : faults_) {
-    std::fprintf(stderr, "viewgain: %s; left out\n", fault.c_str());
+    std::fprintf(stderr, "viewgain: %s; the frame is left out\n", fault.c_str());
   }
 }
 
 std::string FrameTally::none_inside(const FrameFolder& folder) const {
-  return "none of " + with_commas(readings_) + " measured points lies in the workspace at " +
+  return "none of the " + with_commas(readings_) +
+         " measured points lies in the workspace; the depth scale is " +
          short_text(folder.frames().depth_scale) +
          " m per unit of the depth images (--depth-scale)";
 }
@@ -209,9 +210,9 @@ void FrameTally::require_any(const FrameFolder& folder, const BeliefGrid& map,
 void refuse_without_readings(const FrameFolder& folder, const FrameTally& bad) {
   if (const std::string why = mask_suspicion(folder); !why.empty())
     refuse(folder.name() + ": " + why);
-  std::string what = folder.name() + ": no frame has a depth in the sensor's range at " +
-                     short_text(folder.frames().depth_scale) +
-                     " m per unit of the depth images (--depth-scale)";
+  std::string what =
+      folder.name() + ": no frame has a depth in the sensor's range; the depth scale is " +
+      short_text(folder.frames().depth_scale) + " m per unit of the depth images (--depth-scale)";
   const auto reasons = bad_frames(bad.counts());
   if (!reasons.empty()) what += "; left out: " + counts_text(reasons) + "; " + bad.faults().front();
   const std::string suspicion = suspicion_of(folder);

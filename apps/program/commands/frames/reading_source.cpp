@@ -123,8 +123,8 @@ class CloudSource : public ReadingSource {
     }
     poses_ = load_poses(options.poses);
     if (poses_.poses.size() != files_.size()) {
-      refuse(options.poses + ": has " + std::to_string(poses_.poses.size()) + " poses for " +
-             std::to_string(files_.size()) + " clouds");
+      refuse(options.poses + ": the file has " + std::to_string(poses_.poses.size()) +
+             " poses, but there are " + std::to_string(files_.size()) + " clouds");
     }
   }
 
@@ -148,7 +148,7 @@ class CloudSource : public ReadingSource {
     } else if (cloud_.viewpoint) {
       T_world_sensor_ = *cloud_.viewpoint;
     } else {
-      refuse(files_[index] + ": has no VIEWPOINT; give --origin or --poses");
+      refuse(files_[index] + ": the file has no VIEWPOINT; give --origin or --poses");
     }
     return {};
   }

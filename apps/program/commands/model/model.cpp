@@ -20,18 +20,19 @@ void add_model_options(App& app, ModelOptions& o) {
       ->check(counted(1, 1'000'000));
   add_output_options(app, o.outputs);
   begin_group(app, "Watching a folder");
-  Option* watch = app.add_flag(
-      "--watch", o.watch,
-      "process frames as they appear, until a signal or until FRAMES_DIR/done exists (requires "
-      "--workspace; cannot be used with --costs, --from, --resume; see below)");
-  explain_values(app,
-                 "With --watch:\n"
-                 "  After each frame the program writes state.vdb, next.txt and next.json to OUT.\n"
-                 "  next.json says when to stop (--max-views, --stop). If the program was killed,\n"
-                 "  the same command continues.\n"
-                 "  --watch cannot be used with --pictures, --save-maps or --report.\n");
+  Option* watch =
+      app.add_flag("--watch", o.watch,
+                   "process new frames until a signal or the file FRAMES_DIR/done (requires "
+                   "--workspace; cannot be used with --costs, --from, --resume)");
+  explain_values(
+      app,
+      "With --watch:\n"
+      "  After each frame the program writes state.vdb, next.txt and next.json to OUT.\n"
+      "  next.json states when to stop (--max-views, --stop). If the program was killed,\n"
+      "  the same command continues.\n"
+      "  --watch cannot be used with --pictures, --save-maps or --report.\n");
   app.add_option("--max-views", o.max_views,
-                 "view budget; after that many views, the stop_reason in next.json is max_views "
+                 "maximum number of views; then the stop_reason in next.json is max_views "
                  "(requires --watch)")
       ->check(counted(1, 1'000'000))
       ->needs(watch);

@@ -145,7 +145,7 @@ class Recording {
       progress.update(i + 1, map_->folder().size());
     }
     if (views_->empty() && stop.stop_requested()) {
-      refuse(map_->folder().name() + ": interrupted before any frame was in the map");
+      refuse(map_->folder().name() + ": the call was interrupted before the map had any frame");
     }
     map_->require_frames();
   }

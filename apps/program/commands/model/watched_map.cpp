@@ -36,8 +36,8 @@ ViewPlanner planner_of(const Sensor& sensor, const ScorerConfig& map, const Plan
                        const fs::path& state, const std::optional<SavedFrames>& saved,
                        const ExecConfig& exec) {
   if (saved && saved->sensor && !is_same_sensor(*saved->sensor, sensor)) {
-    refuse(state.string() + ": its frames come from " + saved->sensor->name + ", not from " +
-           sensor.name + "; choose a new folder");
+    refuse(state.string() + ": the map was made with the sensor " + saved->sensor->name + ", not " +
+           sensor.name + "; choose another folder");
   }
   return saved ? ViewPlanner::load(state, sensor, map, config, exec)
                : ViewPlanner(ViewScorer(sensor, map, exec), config);
@@ -50,7 +50,8 @@ MaskFolder mask_folder(const char* flag, const fs::path& folder, const fs::path&
   if (fs::equivalent(folder, frames, ignored)) {
     refuse(
         std::string(flag) + " " + folder.string() +
-        ": is the folder of the depth images; masks have the same names and need another folder");
+        ": this is the folder of the depth images; masks must be in another folder, because they "
+        "have the same names");
   }
   return MaskFolder(folder, least_confidence);
 }
@@ -70,9 +71,7 @@ std::set<std::string> images_in(const fs::path& folder) {
 ScorerConfig map_config_of(const ModelOptions& options) {
   ScorerConfig config = scorer_config(options.frames, options.proposal);
   if (options.frames.workspace.empty()) {
-    refuse(
-        "--watch requires --workspace x0,y0,z0,x1,y1,z1, because the frames to come are not known "
-        "yet");
+    refuse("--watch requires --workspace x0,y0,z0,x1,y1,z1, because future frames are unknown");
   }
   config.workspace = parse_box("--workspace", options.frames.workspace);
   config.gain.model = parse_gain_model(options.proposal.gain);
@@ -85,7 +84,7 @@ PlannerConfig planner_config_of(const ModelOptions& options) {
   config.max_views = options.max_views;
   const StopLimits stop = stop_limits(options.stop);
   if (stop.coverage)
-    refuse("--stop coverage cannot be used with model: it requires the object's mesh");
+    refuse("--stop coverage cannot be used with model, because it requires the mesh of the object");
   config.idle_views = stop.idle;
   config.broken_promises = stop.promises;
   config.stop_gain = stop.gain;
@@ -121,11 +120,12 @@ FolderLock::FolderLock(const fs::path& folder) : folder_(folder) {
   if (!code) lock_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ < 0) {
     const std::string why = code ? code.message() : std::generic_category().message(errno);
-    throw Error(ErrorCode::io, folder.string() + ": cannot be created or opened: " + why);
+    throw Error(ErrorCode::io,
+                folder.string() + ": the folder cannot be created or opened: " + why);
   }
   if (::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   ::close(lock_);
-  refuse(folder.string() + ": another process is writing to it");
+  refuse(folder.string() + ": another process is writing to this folder");
 }
 
 FolderLock::~FolderLock() {
@@ -140,9 +140,10 @@ std::optional<SavedFrames> saved_frames(const fs::path& state, const ExecConfig&
   const BeliefGrid grid = load_map(state, nullptr, {}, exec);
   const std::set<std::string>& frames = grid.notes().frames;
   if (frames.size() != grid.views().size()) {
-    throw Error(ErrorCode::format, state.string() + ": has " + std::to_string(grid.views().size()) +
-                                       " views, but names " + std::to_string(frames.size()) +
-                                       " frames; another program wrote it");
+    throw Error(ErrorCode::format, state.string() + ": the map has " +
+                                       std::to_string(grid.views().size()) + " views, but lists " +
+                                       std::to_string(frames.size()) +
+                                       " frames. Did another program write the file?");
   }
   return SavedFrames{frames, map_sensor(grid)};
 }

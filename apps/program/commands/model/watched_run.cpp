@@ -51,7 +51,7 @@ void check_folder(const fs::path& out, bool goes_on) {
   for (const fs::path& name : run_files(out)) {
     const bool is_own = goes_on && name != "map.vdb" && name != "run.json";
     if (!is_own && fs::exists(out / name, ignored)) {
-      refuse((out / name).string() + ": exists, but --watch did not write it; choose a new folder");
+      refuse((out / name).string() + ": --watch did not write this file; choose another folder");
     }
   }
 }
@@ -81,7 +81,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     saved_ = saved_frames(out_ / "state.vdb", exec_of(options.common));
     if (saved_) {
       views_.recall(out_ / "next.json", saved_->frames);
-      say("resuming with " + std::to_string(saved_->frames.size()) + " frames of " +
+      say("resuming with " + std::to_string(saved_->frames.size()) + " frames from " +
           (out_ / "state.vdb").string());
     }
     check_folder(out_, saved_.has_value());
@@ -112,7 +112,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
   void print_summary(double seconds) const {
     if (is_done_ && count() == 0) {
       const std::string bad = counts_text(watch_->bad());
-      refuse(frames_.string() + ": is done, but no frame is in the map" +
+      refuse(frames_.string() + ": the folder is done, but no frame is in the map" +
              (bad.empty() ? "" : "; bad: " + bad));
     }
     if (options_.common.json) {

@@ -74,25 +74,25 @@ PoseSetRequest request_of(const ProposalOptions& options, const Sensor& sensor,
 void add_next_view_options(App& app, ProposalOptions& o) {
   begin_group(app, "Candidates");
   app.add_option("--generator", o.generator,
-                 "comma-separated sources of candidates, see below (default: boundary; if the map "
-                 "has no surface or no views, a sphere around the workspace)")
+                 "sources of candidates, separated by commas; see below (default: boundary, or "
+                 "sphere if the map has no surface or no views)")
       ->check(several_of(generator_names(), "generator"));
   explain_values(
       app,
       "Sources of candidates for --generator:\n"
       "  boundary  in front of open edges of the surface and of places where more\n"
-      "            surface is expected; --distance by default is the sensor's working\n"
+      "            surface is expected; default --distance: the sensor's working\n"
       "            distance\n"
-      "  sphere, dome, rings, sequence  sets of poses around --center; by default, the\n"
-      "            workspace fills the image\n"
+      "  sphere, dome, rings, sequence  sets of poses around --center; at the default\n"
+      "            --distance, the workspace fills the image\n"
       "  shell     random poses in the shells or boxes of --reach, else around --center\n");
-  app.add_option("--poses", o.poses,
-                 "TUM or .npy file of camera-to-world poses to choose from; --generator adds "
-                 "further candidates");
+  app.add_option(
+      "--poses", o.poses,
+      "TUM or .npy file of camera-to-world poses to choose from; --generator adds more candidates");
   add_cost_options(app, o.costs, "--poses");
   app.add_option("--count", o.count,
-                 "number of poses for sphere, dome or shell (default: 500) or rings: 48, 80, 288 "
-                 "or 864 (default: 48)")
+                 "number of poses for sphere, dome or shell (default: 500), or for rings (48, 80, "
+                 "288 or 864; default: 48)")
       ->check(counted(1, 1'000'000));
   app.add_option("--distance", o.distance,
                  "distance of candidates [m]: from the surface for boundary, from --center for "
@@ -101,8 +101,8 @@ void add_next_view_options(App& app, ProposalOptions& o) {
                  "x,y,z: point that sets of poses look at, world frame [m] (default: the centre of "
                  "the workspace)");
   app.add_option("--reach", o.reach,
-                 "TOML file of poses that the robot can reach (default: all; for boundary, those "
-                 "in the workspace if it contains all views so far)");
+                 "TOML file of poses that the robot can reach (default: no limit; boundary: the "
+                 "workspace, if it contains all views so far)");
   begin_group(app, "Obstacles");
   app.add_option("--body", o.body, kBodyHelp);
   app.add_option("--support-plane", o.support_plane,
@@ -165,7 +165,7 @@ GenerationConfig generation_config(const ProposalOptions& options, const Sensor&
   if (options.distance) config.boundary.working_distance = *options.distance;
   if (!options.reach.empty()) config.feasibility.reach = read_reach_toml(options.reach);
   if (!map.empty() && has_generator(options, "boundary") && grid.views().empty()) {
-    refuse(map + ": --generator boundary requires a map with views; try --generator sphere");
+    refuse(map + ": --generator boundary requires a map with views; use --generator sphere");
   }
   if (!options.poses.empty()) config.sets.push_back({kGivenPoses, poses_in(options.poses)});
   const PoseSetRequest request = request_of(options, sensor, grid, config.feasibility.reach);

@@ -42,10 +42,9 @@ Checkpoint::Checkpoint(RunFolder& folder, const Json& head, bool resume)
       throw Error(ErrorCode::format, file_ + ": not a checkpoint: " + error.what());
     }
     if (json_.dump() != last.dump()) {
-      refuse(
-          file_ +
-          ": comes from a run with other settings or another program version. Without --resume " +
-          "the run starts afresh");
+      refuse(file_ +
+             ": the run has other settings, or another version of the program made it. Without "
+             "--resume, a new run starts");
     }
   }
   folder_.write_checkpoint(json_.dump(1) + "\n");
@@ -67,9 +66,8 @@ void Checkpoint::add_view(const ViewRecord& record, const std::string& map_hash)
   Json& decisions = json_["decisions"];
   if (record.index < decisions.size()) {
     if (decisions[record.index]["map_hash"].get<std::string>() == map_hash) return;
-    refuse(
-        file_ + ": the map after view " + std::to_string(record.index) +
-        " differs from the saved one. Has a file changed? Without --resume the run starts afresh");
+    refuse(file_ + ": the map after view " + std::to_string(record.index) +
+           " differs from the saved map. Has a file changed? Without --resume, a new run starts");
   }
   if (!record.decision) return;
   Json json{{"map_hash", map_hash}, {"candidate", record.decision->candidate}};

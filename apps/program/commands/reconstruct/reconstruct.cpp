@@ -81,10 +81,11 @@ void warn_of_workspace(const Stage& stage) {
     if (side > 0) share *= std::max(0.0, inside / side);
   }
   if (share >= 0.5) return;
-  std::fprintf(stderr,
-               "viewgain: warning: the workspace contains only %.0f %% of the object's box, %s m "
-               "(--workspace)\n",
-               100 * share, describe(object).c_str());
+  std::fprintf(
+      stderr,
+      "viewgain: warning: the workspace contains only %.0f %% of the object, whose bounding box is "
+      "%s m (--workspace)\n",
+      100 * share, describe(object).c_str());
 }
 
 void warn_of_set_up(const ReconstructOptions& options, const RunSetup& setup) {
@@ -170,8 +171,8 @@ void reconstruct(const ReconstructOptions& options, const App& app) {
                 beside_text(beside, run["settings"]).c_str());
     if (setup.visibility.tolerance < options.voxel) {
       std::printf(
-          "coverage is measured at %g mm, less than a voxel. Correct surface may count as missed "
-          "(--tolerance)\n",
+          "coverage is measured at %g mm, less than a voxel, so correct surface may count as "
+          "missed; increase --tolerance\n",
           1e3 * setup.visibility.tolerance);
     }
     const Eigen::Vector3d& center = setup.stage.center;

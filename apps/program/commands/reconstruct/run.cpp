@@ -30,10 +30,10 @@ Pose start_pose(const ReconstructOptions& options, const Stage& stage, double di
   const Pose pose = parse_pose("--from", options.from);
   const std::optional<double>& plane = options.sensing.support_plane;
   if (plane && pose.translation().z() <= *plane) {
-    refuse("--from " + options.from + ": is not above the support plane");
+    refuse("--from " + options.from + ": the camera must be above the support plane");
   }
   if (!reach.contains(pose)) {
-    refuse("--from " + options.from + ": lies outside the reachable region of " + options.reach);
+    refuse("--from " + options.from + ": the pose is not reachable according to " + options.reach);
   }
   return pose;
 }
@@ -41,8 +41,8 @@ Pose start_pose(const ReconstructOptions& options, const Stage& stage, double di
 void check_voxel(const ReconstructOptions& options, const Stage& stage) {
   if (options.voxel < stage.size) return;
   refuse("--voxel " + short_text(options.voxel) +
-         ": is not smaller than the object, whose longest side is " + short_text(stage.size) +
-         " m (--size)");
+         ": the voxels must be smaller than the object, whose longest side is " +
+         short_text(stage.size) + " m (--size)");
 }
 
 // A mesh that is far too large is usually in millimetres.
@@ -95,7 +95,7 @@ std::vector<std::string> generators(const ReconstructOptions& options, Policy po
   if (!options.generator.empty()) {
     const std::vector<std::string> names = names_in(options.generator);
     if (policy == Policy::kriegel && names != std::vector<std::string>{"boundary"}) {
-      refuse("--policy kriegel can only use --generator boundary");
+      refuse("--policy kriegel requires --generator boundary");
     }
     return names;
   }

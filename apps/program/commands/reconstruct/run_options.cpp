@@ -50,39 +50,40 @@ void add_options(App& app, ReconstructOptions& o) {
                  "tx,ty,tz,qx,qy,qz,qw: start pose of the camera [m] (default: 27 deg above the "
                  "object; --seed sets the azimuth)");
   app.add_option("--distance", o.distance,
-                 "distance of the start and of sets of poses from the object's centre [m] "
+                 "distance from the object's centre to the start pose and to sets of poses [m] "
                  "(default: see below)");
-  app.add_option("--policy", o.policy, "how to choose views (see below)")
+  app.add_option("--policy", o.policy, "rule that chooses views (see below)")
       ->check(one_of(policy_names(), "policy"));
   app.add_option("--generator", o.generator,
-                 "comma-separated sources of candidates, see below (default: boundary; --policy "
-                 "random, fibonacci: sphere; sequence: sequence)")
+                 "sources of candidates, separated by commas; see below (default: boundary; sphere "
+                 "for --policy random and fibonacci)")
       ->check(several_of(generator_names(), "generator"));
   explain_values(app,
                  "Views that --policy chooses:\n"
                  "  gain       highest expected gain\n"
-                 "  kriegel    open edges of the surface: left, right, top, then bottom\n"
+                 "  kriegel    open edges of the surface, in the order left, right, top, bottom\n"
                  "  sequence   8 views of a turntable, then one from above; or --poses\n"
                  "  random     random views\n"
                  "  frontier   most unknown voxels in view\n"
                  "  fibonacci  evenly around the object\n"
-                 "  oracle     most newly covered surface; knows the mesh\n");
-  explain_values(app,
-                 "Sources of candidates for --generator:\n"
-                 "  boundary  in front of open edges of the surface\n"
-                 "  sphere, dome, rings, shell, sequence  sets of poses around the object; by\n"
-                 "            default it fills the image, at the working distance or more. With\n"
-                 "            --reach, a shell fills the shells or boxes of the reach file\n");
+                 "  oracle     most new coverage of the mesh, which this policy knows\n");
+  explain_values(
+      app,
+      "Sources of candidates for --generator:\n"
+      "  boundary  in front of open edges of the surface\n"
+      "  sphere, dome, rings, shell, sequence  sets of poses around the object. The\n"
+      "            default --distance is the working distance, or more for large objects.\n"
+      "            With --reach, shell fills the shells or boxes of the reach file\n");
   app.add_option("--poses", o.poses,
                  "TUM or .npy file of poses for --policy sequence, taken in order after the start "
                  "(default: a turntable)");
   app.add_option("--count", o.count,
-                 "number of poses for sphere, dome or shell (default: 500; --policy fibonacci: "
-                 "--max-views) or rings: 48, 80, 288 or 864 (default: 48)")
+                 "number of poses for sphere, dome or shell (default: 500; fibonacci: "
+                 "--max-views), or for rings (48, 80, 288 or 864; default: 48)")
       ->check(counted(1, kMaxCount));
   app.add_option("--gain", o.gain,
-                 "gain for --policy gain: paper (entropy removed), surface (expected new surface), "
-                 "combined or a gain of the literature (default: combined)")
+                 "gain for --policy gain: paper (entropy removed), surface (new surface), combined "
+                 "or a gain of the literature (default: combined)")
       ->check(one_of(all_gain_names(), "gain"));
   add_hazard_option(app, o.hazard);
   begin_group(app, "Gain");
@@ -91,17 +92,19 @@ void add_options(App& app, ReconstructOptions& o) {
                  "trace [m^2] (cannot be used with --gain combined)")
       ->check(one_of(criterion_names(), "criterion"));
   begin_group(app, "Stopping");
-  app.add_option("--max-views", o.max_views, "view budget")->check(counted(1, kMaxCount));
+  app.add_option("--max-views", o.max_views, "maximum number of views")
+      ->check(counted(1, kMaxCount));
   add_stop_option(app, o.stop);
   app.add_option("--tolerance", o.tolerance,
                  "largest distance from surface to mesh that counts as covered [m] (default: the "
                  "larger of 0.005 and a voxel)");
   begin_group(app, "Views");
   app.add_option("--cost-per-metre", o.cost_per_metre,
-                 "L: rank by gain - L * distance [nat/m; with --gain surface m^2/m]");
+                 "cost L per metre: rank by gain - L * distance [nat/m; m^2/m for --gain surface]");
   add_plan_option(app, o.plan);
   begin_group(app, "Obstacles");
-  app.add_option("--reach", o.reach, "TOML file of poses that the robot can reach (default: all)");
+  app.add_option("--reach", o.reach,
+                 "TOML file of poses that the robot can reach (default: no limit)");
   app.add_option("--obstacle", o.obstacles, kObstacleHelp)->allow_extra_args(false);
   app.add_option("--body", o.body, kBodyHelp);
   add_sensing_options(app, o.sensing);

@@ -94,7 +94,7 @@ FeasiblePoses candidates_of(const Options& options, const PoseSource& source, co
 
 void check_left(const FeasiblePoses& candidates) {
   if (!candidates.poses.empty()) return;
-  refuse("no pose is left to score, because all were dropped: " + counts_text(candidates.dropped));
+  refuse("all poses were dropped: " + counts_text(candidates.dropped));
 }
 
 // Costs of the poses, feasible or not.
@@ -210,11 +210,12 @@ void name_by_input(Scores& scores, const FeasiblePoses& candidates) {
 void warn_of_prior(const GainEvaluator& evaluator, const Sensor& sensor) {
   const double axial = sensor.sigmas(sensor.working_distance).axial;
   if (evaluator.prior_sigma() >= axial) return;
-  std::fprintf(stderr,
-               "viewgain: warning: the prior sigma, %.3g m, is below the sensor's noise along the "
-               "ray, %.3g m at a range of %g m. Unknown voxels would be more certain than measured "
-               "ones (--prior-sigma)\n",
-               evaluator.prior_sigma(), axial, sensor.working_distance);
+  std::fprintf(
+      stderr,
+      "viewgain: warning: the prior sigma is %.3g m, less than the sensor's noise of %.3g m along "
+      "the ray at a range of %g m. Unknown voxels would count as more certain than measured "
+      "voxels; increase --prior-sigma\n",
+      evaluator.prior_sigma(), axial, sensor.working_distance);
 }
 
 void score_by_registered_gains(const Options& options, const std::vector<std::string>& names) {
@@ -311,30 +312,29 @@ Command add_score(App& program) {
   app->add_option("--sensor", options->sensor, kMapSensorHelp);
   begin_group(*app, "Gain");
   app->add_option("--gain", options->gain,
-                  "paper (entropy removed) [nat], surface (expected new surface) [m^2] or combined "
-                  "[nat]; or comma-separated gains of the literature, of which the first ranks")
+                  "paper (entropy removed) [nat], surface (new surface) [m^2], combined [nat], or "
+                  "gains of the literature, separated by commas (the first ranks)")
       ->check(several_of(all_gain_names(), "gain"));
   add_hazard_option(*app, options->hazard);
   begin_group(*app, "Obstacles");
   app->add_option("--support-plane", options->support_plane,
-                  "height z of a table [m]; for the gains surface and combined, rays end there; "
-                  "with --feasible on, the camera stays above it (default: none)");
+                  "height z of a table [m]; it ends rays (gains surface, combined), and the camera "
+                  "stays above it (--feasible on) (default: none)");
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
   app->add_option("--reach", options->reach,
                   "TOML file of poses that the robot can reach; other poses are dropped");
-  add_switch(
-      *app, "--feasible", options->feasible,
-      "drop poses where the camera's housing touches voxels not known to be free, an obstacle or "
-      "the table, where much of the image is too near, or where the map already has a view");
+  add_switch(*app, "--feasible", options->feasible,
+             "drop poses where the camera's housing could touch something, that are too near, or "
+             "where the map already has a view");
   app->add_option("--body", options->body, kBodyHelp);
   begin_group(*app, "Gain");
   app->add_option("--criterion", options->criterion,
-                  "criterion of the gain paper: log_diagonal (as published) or log_determinant "
-                  "[nat], or trace [m^2]")
+                  "criterion of the gain paper: log_diagonal (as published) [nat], log_determinant "
+                  "[nat] or trace [m^2]")
       ->check(one_of(criterion_names(), "criterion"));
   app->add_option("--weight", options->weights,
-                  "x0,y0,z0,x1,y1,z1,W: multiply gains from voxels in this box (grid frame, [m]) "
-                  "by W >= 0; where boxes overlap, the last one counts; may be repeated")
+                  "x0,y0,z0,x1,y1,z1,W: multiply the gain of voxels in this box (grid frame) [m] "
+                  "by W >= 0; in overlaps, the last box counts; may be repeated")
       ->allow_extra_args(false);
   app->add_option("--prior-sigma", options->prior_sigma,
                   "standard deviation of an unknown voxel [m] (default: from the map)");
@@ -343,10 +343,9 @@ Command add_score(App& program) {
   app->add_option("--top", options->top, "number of poses to print, best first")
       ->check(counted(0, 1'000'000'000));
   auto* selection = app->add_option_group("selection", "at most one of; default: score all poses");
-  selection->add_flag(
-      "--race", options->race,
-      "score all poses with about 400 rays each, then only the best ones with all rays; it rarely "
-      "misses a best pose (cannot be used with --approximate, --set)");
+  selection->add_flag("--race", options->race,
+                      "estimate all poses from few rays, then score the best with all rays; rarely "
+                      "misses the best (cannot be used with --approximate, --set)");
   selection
       ->add_option("--approximate", options->approximate,
                    "trace at most this share of each view's rays, and estimate gains with their "
@@ -359,18 +358,18 @@ Command add_score(App& program) {
       ->check(counted(1, 1'000'000));
   selection->require_option(0, 1);
   app->add_option("--deadline", options->deadline,
-                  "time limit for --race [s], which then prints the best ranking found so far "
-                  "(requires --race; default: none)");
+                  "time limit for --race [s]; then prints the best ranking found so far (requires "
+                  "--race; default: none)");
   add_seed_option(
       *app, options->seed,
       "seed for --poses shell:..., for --approximate, and for --race with --gain paper");
   begin_group(*app, "Output");
   app->add_option("--out", options->out,
-                  "CSV or .npy file to write with the scores of all poses that were not dropped, "
-                  "in input order; --race: of those scored with all rays; --set: of the set");
+                  "CSV or .npy file to write with the scores of all possible poses in input order "
+                  "(--race: those scored with all rays; --set: the set)");
   app->add_option("--picture", options->picture,
                   "PNG file to write with the map, the frustum of the best view and the voxels "
-                  "where its rays may end (the larger, the likelier)");
+                  "where its rays may end (larger: more likely)");
   app->add_option("--report", options->report,
                   "HTML file to write with the map, the candidates coloured by gain, the ranking "
                   "and what the best views see");

@@ -137,8 +137,8 @@ BeliefGrid)")
               require_prior(prior_sigma, sensor);
             } else if (!workspace.is_none() || prior_sigma || occupied_from) {
               refuse(file +
-                     ": workspace, prior_sigma and occupied_from require an OctoMap .ot or .bt; a "
-                     ".vdb has its own");
+                     ": workspace, prior_sigma and occupied_from require an OctoMap file (.ot or "
+                     ".bt); a .vdb file defines them");
             }
             if (occupied_from) config.occupied_from = static_cast<float>(*occupied_from);
             config.prior_sigma = prior_sigma;

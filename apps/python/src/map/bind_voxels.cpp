@@ -34,7 +34,7 @@ std::int32_t index_number(double number) {
     return static_cast<std::int32_t>(number);
   }
   std::ostringstream text;
-  text << "voxels holds " << number << "; an index must be a whole number of 32 bits";
+  text << "voxels contains " << number << "; an index must be a whole number of 32 bits";
   throw py::value_error(text.str());
 }
 
@@ -98,8 +98,8 @@ void set(SharedGrid& grid, const py::object& voxels, const py::object& log_odds)
   if (!is_one &&
       !std::equal(wanted.begin(), wanted.end(), values.shape(), values.shape() + values.ndim())) {
     throw py::value_error("log_odds has the shape " + shape_text(values) +
-                          "; it must be one number, or one per voxel; voxels has the shape " +
-                          shape_text(array));
+                          " and voxels the shape " + shape_text(array) +
+                          "; expected one number, or one number per voxel");
   }
   std::vector<BeliefGrid::VoxelValue> changes;
   changes.reserve(indices.size());

@@ -24,9 +24,7 @@ void bind_voxels(GridClass& grid_class);
 /// voxels more certain than a reading if voxels are finer than the noise.
 inline void require_prior(std::optional<double> prior_sigma, const Sensor* sensor) {
   if (prior_sigma || sensor != nullptr) return;
-  refuse(
-      "give the sensor of the map, or prior_sigma, the standard deviation of an unknown voxel's "
-      "position [m]");
+  refuse("give sensor, or prior_sigma: the standard deviation of an unknown voxel's position [m]");
 }
 
 /// The prior sigma [m] of a grid: the given one, else the sensor's default. Throws like

@@ -45,10 +45,10 @@ def _arguments(words):
 def _check_folder(out, spec):
     """Raises SpecError for a folder that has files but no runs/.lock of a study. The spec itself may be in the folder."""
     if out.exists() and not out.is_dir():
-        raise SpecError(f"--out {out}: is a file; choose a new folder")
+        raise SpecError(f"--out {out}: this is a file; choose another folder")
     others = [path for path in out.iterdir() if path.resolve() != spec.resolve()] if out.is_dir() else []
     if others and not (out / "runs/.lock").is_file():
-        raise SpecError(f"--out {out}: has files that no study wrote; choose a new folder")
+        raise SpecError(f"--out {out}: the folder has files that no study wrote; choose another folder")
 
 
 def _csv(rows):
@@ -65,7 +65,7 @@ def _study(options):
     _check_folder(options.out, options.spec)
     voxel = max(run.voxel for run in spec.runs)
     if voxel > spec.tolerance:
-        _warn(f"coverage is measured at {1e3 * spec.tolerance:g} mm, less than a voxel of {1e3 * voxel:g} mm (set tolerance = {voxel:g} in the spec)")
+        _warn(f"coverage is measured at {1e3 * spec.tolerance:g} mm, less than a voxel of {1e3 * voxel:g} mm; set tolerance = {voxel:g} in the spec")
     said = (lambda line: None) if options.quiet else (lambda line: print(line, file=sys.stderr, flush=True))
     rows = make_runs(spec, options.out, options.jobs, options.scheduler, program, said)
     for line in early_ends(rows, spec.max_views):
@@ -80,9 +80,9 @@ def _study(options):
             write_file(options.out / name, draw[name]())
             files[name] = None
         except ImportError as error:
-            _warn(f"no {name}: {error}; install matplotlib (Debian: python3-matplotlib) and repeat the call")
+            _warn(f"{name} was not drawn: {error}; install matplotlib (Debian: python3-matplotlib) and repeat the call")
         except (ValueError, RuntimeError, MemoryError) as error:
-            _warn(f"no {name}: {error}")
+            _warn(f"{name} was not drawn: {error}")
     for name in draw.keys() - files.keys():
         (options.out / name).unlink(missing_ok=True)  # may be from another spec
     print(f"{text}\nwritten to {options.out}: {', '.join(files)}, runs/")

@@ -98,7 +98,7 @@ def version_of(program: str) -> str:
         raise SpecError(f"{program}: {error.strerror}") from error
     found = re.fullmatch(r"viewgain (\S+)\s*", said)
     if not found:
-        raise SpecError(f"{program} is not the program viewgain: --version says {said[:60]!r}")
+        raise SpecError(f"{program} is not the program viewgain; its --version prints {said[:60]!r}")
     return found[1]
 
 
@@ -115,9 +115,9 @@ def make_run(words, title, kept, beside, is_own=False, folder=None, children=Non
             record = json.loads(pathlib.Path(work, "run/run.json").read_text(encoding="utf-8"))
             record["seconds"] = {"total": seconds} if is_own else record["seconds"]
         except FileNotFoundError:
-            raise RunError(f"{title}: {words[0]} wrote no run.json into the folder that --out names", 2) from None
+            raise RunError(f"{title}: {words[0]} wrote no run.json to the folder of --out", 2) from None
         except (LookupError, TypeError, ValueError) as error:
-            raise RunError(f"{title}: run.json of {words[0]}: {type(error).__name__}: {error}", 2) from None
+            raise RunError(f"{title}: the run.json of {words[0]} is invalid: {type(error).__name__}: {error}", 2) from None
         lines = []
         for path in sorted(pathlib.Path(work, "run/maps").glob("*.txt"), key=lambda path: int(path.stem)) if kept else []:
             poses = [line.split(maxsplit=1)[1] for line in path.read_text().splitlines() if line and not line.startswith("#")]
@@ -211,7 +211,7 @@ def _on_cluster(scheduler, progress):
     except ImportError as error:
         raise SpecError(f"--scheduler needs Dask (Debian: python3-distributed), which cannot be imported: {error}") from error
     if not re.fullmatch(r"(\w+://)?\S+:\d+", scheduler):
-        raise SpecError(f"--scheduler {scheduler}: not the address of a scheduler, such as tcp://HOST:8786")
+        raise SpecError(f"--scheduler {scheduler}: expected the address of a scheduler, for example tcp://HOST:8786")
     for name in ("asyncio", "distributed", "tornado"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # errors are reported by this module
     try:
@@ -224,7 +224,7 @@ def _on_cluster(scheduler, progress):
         try:
             client.wait_for_workers(1, timeout=_WORKERS_WITHIN)
         except (OSError, TimeoutError, distributed.TimeoutError) as error:
-            raise SpecError(f"--scheduler {scheduler}: has no workers; start some with: dask worker {scheduler}") from error
+            raise SpecError(f"--scheduler {scheduler}: the scheduler has no workers; start one with: dask worker {scheduler}") from error
         futures = []
 
         def submit(*run):
@@ -311,7 +311,7 @@ def _gather(spec, folder, futures, scheduler, rows, progress):
         left = (time.monotonic() - begin) / done * (len(futures) - done)
         progress(f"run {total - len(futures) + done} of {total}: {spec.title(run)}, {seconds:.1f} s; {_time_text(left)} left")
     if failures:
-        raise RunError(f"{len(failures)} of {total} runs failed, the first: {failures[0]}; repeat the call to run them again", failures[0].code)
+        raise RunError(f"{len(failures)} of {total} runs failed. Repeat the call to run them again. The first failure: {failures[0]}", failures[0].code)
 
 
 def _row_of(spec, run, record, max_views):
@@ -319,10 +319,10 @@ def _row_of(spec, run, record, max_views):
     try:
         made_by = record.get("versions", {}).get("viewgain")
         if made_by not in (None, run.configuration["version"]) and run.configuration["version"]:
-            raise ValueError(f"it was made by viewgain {made_by}, not {run.configuration['version']}")
+            raise ValueError(f"viewgain {made_by} made this run, not viewgain {run.configuration['version']}")
         return row_of(run, record, max_views)
     except (AttributeError, LookupError, TypeError, ValueError) as error:
-        raise RunError(f"{spec.title(run)}: run.json: {type(error).__name__}: {error}", 2) from None
+        raise RunError(f"{spec.title(run)}: run.json is invalid: {type(error).__name__}: {error}", 2) from None
 
 
 def _keep(folder, run: Run, record, candidates):

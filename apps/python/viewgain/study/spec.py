@@ -122,11 +122,11 @@ class _Reader:
         except OSError as error:
             raise SpecError(f"{path}: {error.strerror}") from error
         except (ValueError, RecursionError) as error:  # also of bytes that are no UTF-8
-            raise SpecError(f"{path}: is not TOML: {error}") from error
+            raise SpecError(f"{path}: the file is not valid TOML: {error}") from error
         for key in self.table:
             if key not in _KEYS:
                 near = difflib.get_close_matches(key, _KEYS, 1)
-                self.fail(key, f"is not a key of a study; {f'did you mean {near[0]}? Valid' if near else 'valid'}: {', '.join(_KEYS)}")
+                self.fail(key, f"is not a key of a study; {f'did you mean {near[0]}? Valid' if near else 'valid'} keys: {', '.join(_KEYS)}")
 
     def fail(self, key, message):
         found = re.search(rf"^\s*\"?{re.escape(key)}\"?\s*=", self.text, re.MULTILINE)
@@ -143,9 +143,9 @@ class _Reader:
         seen = set()
         for value in values:
             if isinstance(value, bool) or not isinstance(value, kind) or not is_right(value):
-                self.fail(key, f"holds {value!r}; it {must}")
+                self.fail(key, f"contains {value!r}; it {must}")
             if repr(value) in seen:
-                self.fail(key, f"holds {value!r} twice")
+                self.fail(key, f"contains {value!r} twice")
             seen.add(repr(value))
         return values
 
@@ -168,21 +168,21 @@ class _Reader:
         flags = []
         for flag in values:
             if not isinstance(flag, str) or not re.match(r"--\w", flag):
-                self.fail(key, f'holds {flag!r}; it must be a list of strings like "--up=y"')
+                self.fail(key, f'contains {flag!r}; it must be a list of strings like "--up=y"')
             name, equals, value = flag.partition("=")
             if "\0" in flag:
-                self.fail(key, f"holds {flag!r}, with a byte that arguments cannot contain")
+                self.fail(key, f"contains {flag!r}, which has a zero byte")
             if name in _OWN_FLAGS and not (key == "objects" and name == "--size"):
-                self.fail(key, f"holds {name}, which the study sets itself")
+                self.fail(key, f"contains {name}; the study sets this flag itself")
             if name == "--help":
-                self.fail(key, "holds --help, which is not a setting of a run")
+                self.fail(key, "contains --help, which is not a setting")
             before, file = _file_of(name, value)
             flags.append(name + equals + before + (os.path.abspath(file) if file else ""))
         return flags
 
     def file(self, key, name):
         if not isinstance(name, str) or not _is_file(self.folder / name):
-            self.fail(key, f"holds {name!r}: no file at {self.folder / str(name)}")
+            self.fail(key, f"contains {name!r}, but the file {self.folder / str(name)} does not exist")
         return pathlib.Path(os.path.abspath(self.folder / name))  # does not resolve links, because the name determines the kind of mesh
 
 
@@ -200,23 +200,23 @@ def _object(reader, value):
     entry = {"mesh": value} if isinstance(value, str) else value
     for key in entry:
         if key not in _OBJECT_KEYS:
-            reader.fail("objects", f"holds an object with the key {key!r}; valid: {', '.join(_OBJECT_KEYS)}")
+            reader.fail("objects", f"contains an object with the unknown key {key!r}; valid keys: {', '.join(_OBJECT_KEYS)}")
     mesh = reader.file("objects", entry.get("mesh"))
     name = entry.get("name", mesh.stem)
     if not _is_name(name):
-        reader.fail("objects", f"holds {value!r}, whose name cannot be shown in a table; rename it with {{mesh = ..., name = ...}}")
+        reader.fail("objects", f"contains {value!r}, whose name cannot be shown in a table; rename it with {{mesh = ..., name = ...}}")
     words = [f"--reach={reader.file('objects', entry['reach'])}"] if "reach" in entry else []
     obstacles = entry.get("obstacles", [])
     if not isinstance(obstacles, list):
-        reader.fail("objects", f"holds {value!r}; obstacles must be a list of files and boxes \"x0,y0,z0,x1,y1,z1\"")
+        reader.fail("objects", f"contains {value!r}; obstacles must be a list of files and boxes \"x0,y0,z0,x1,y1,z1\"")
     for obstacle in obstacles:
         numbers = re.fullmatch(r"[-+.\deE]+(,[-+.\deE]+)+", str(obstacle))
         if numbers and str(obstacle).count(",") != 5:
-            reader.fail("objects", f"holds the obstacle {obstacle!r}; a box has six numbers, \"x0,y0,z0,x1,y1,z1\" [m]")
+            reader.fail("objects", f"contains the obstacle {obstacle!r}; a box has six numbers, \"x0,y0,z0,x1,y1,z1\" [m]")
         words.append(f"--obstacle={obstacle if numbers else reader.file('objects', obstacle)}")
     words += reader.flags("objects", entry.get("flags", []))
     if "sizes" in reader.table and any(word.startswith("--size=") for word in words):
-        reader.fail("objects", f"holds {value!r}; give either sizes for all objects or --size for each object")
+        reader.fail("objects", f"contains {value!r}; give either sizes for all objects or --size for each object")
     return Object(name, mesh, tuple(words))
 
 
@@ -224,23 +224,23 @@ def _policy(reader, value):
     if isinstance(value, dict):
         name, command = value.get("name"), value.get("command")
         if set(value) != {"name", "command"} or not _is_name(name) or ":" in name or not isinstance(command, str) or "\0" in command:
-            reader.fail("policies", f"holds {value!r}; your own policy must be {{name = \"...\", command = \"...\"}}, and its name must not contain : or |")
+            reader.fail("policies", f"contains {value!r}; your own policy must be {{name = \"...\", command = \"...\"}}, and its name must not contain : or |")
         try:
             words = shlex.split(command)
         except ValueError as error:
-            reader.fail("policies", f"holds {value!r}: {error}")
+            reader.fail("policies", f"contains {value!r}: {error}")
         if not words:
-            reader.fail("policies", f"holds {value!r}, which has no command")
+            reader.fail("policies", f"contains {value!r}, which has no command")
         # Words that name files in the spec's folder become absolute paths.
         return Policy(name, name, command=tuple(os.path.abspath(reader.folder / word) if _is_file(reader.folder / word) else word for word in words))
     if value.startswith("tour:") or value == "tour":
         counts = re.fullmatch(r"tour:([1-9]\d{0,3}):([1-9]\d{0,3})", value)
         if not counts or not 2 <= int(counts[1]) <= 1000 or int(counts[2]) > int(counts[1]):
-            reader.fail("policies", f"holds {value!r}; a tour must be \"tour:K:M\", which plans K views (2..1000) and replans after M of them")
+            reader.fail("policies", f"contains {value!r}; a tour must be \"tour:K:M\", which plans K views (2..1000) and replans after M of them")
         return Policy(value, value, words=("--policy=gain", f"--plan={counts[1]},{counts[2]}"))
     policy, colon, gain = value.partition(":")
     if (policy == "gain") != bool(gain) or (colon and not gain) or not policy:
-        reader.fail("policies", f"holds {value!r}; a policy must be \"gain:NAME\" (\"gain:combined\") or another policy of reconstruct (\"frontier\")")
+        reader.fail("policies", f"contains {value!r}; a policy must be \"gain:NAME\" (\"gain:combined\") or another policy of reconstruct (\"frontier\")")
     return Policy(value, policy, gain or None, (f"--policy={policy}", *([f"--gain={gain}"] if gain else [])))
 
 
@@ -267,7 +267,7 @@ def read_spec(path, version: str = "") -> Spec:
     names = [one.name for one in objects]
     for i, name in enumerate(names):
         if name in names[:i]:
-            reader.fail("objects", f"holds two objects named {name!r}; rename one with {{mesh = ..., name = ...}}")
+            reader.fail("objects", f"contains two objects with the name {name!r}; rename one with {{mesh = ..., name = ...}}")
     policies = [_policy(reader, value) for value in reader.values("policies", (str, dict), bool, "must be a list of names")]
     seeds = reader.values("seeds", int, lambda value: 0 <= value <= 2**62, "must be a list of whole numbers in 0..2^62")
     sensors = [str(reader.file("sensors", value)) if value.endswith(".toml") else value
@@ -285,7 +285,7 @@ def read_spec(path, version: str = "") -> Spec:
     for key, given in (("policies", policy_names), ("sensors", sensors)):
         twice = next((one for i, one in enumerate(given) if one in given[:i]), None)
         if twice is not None:
-            reader.fail(key, f"holds {twice!r} twice")
+            reader.fail(key, f"contains {twice!r} twice")
     count = len(sensors) * len(voxels) * len(sizes) * len(objects) * len(seeds) * len(policies)
     if count > _MOST_RUNS:
         reader.fail("seeds", f"make {count:,} runs together with the other lists; the maximum is {_MOST_RUNS:,}")

@@ -15,8 +15,8 @@ namespace viewgain {
 
 /// Removes flying pixels, which mix two surfaces at a depth discontinuity (after May et al.,
 /// "Three-dimensional mapping with time-of-flight cameras", J. Field Robotics 26, 2009). Removes a
-/// reading p if one of its 8 neighbours q is a reading nearer to the camera and the angle between
-/// p's viewing ray and the edge from p to q is below the threshold. Compares with the depths before
+/// reading p if one of its 8 neighbours, q, is nearer to the camera and the line from p to q is
+/// nearly parallel to p's ray: their angle is below the threshold. Compares with the depths before
 /// filtering. Thread safety: const members may run from many threads.
 class VIEWGAIN_EXPORT JumpEdgeFilter {
  public:

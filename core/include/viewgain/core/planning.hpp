@@ -21,9 +21,9 @@
 #include "viewgain/core/sensor.hpp"
 
 /// @file
-/// Algorithm 1 of the paper, written once over four replaceable interfaces named as in the paper.
+/// Algorithm 1 of the paper: one loop over four interfaces, which are named as in the paper.
 ///
-/// active_view_planning() calls the parts one at a time on the calling thread and passes on their
+/// active_view_planning() calls the parts one at a time on the calling thread and rethrows their
 /// exceptions. The parts determine the cost of a call.
 
 namespace viewgain {
@@ -202,7 +202,7 @@ struct VIEWGAIN_EXPORT PlanningResult {
 };
 
 /// Runs Algorithm 1 of the paper from x_0, a T_world_camera. Calls the parts on the calling thread,
-/// and calls `observer`, if given, after each complete record. Passes on exceptions of the parts.
+/// and calls `observer`, if given, after each complete record. Rethrows exceptions of the parts.
 /// Throws Error(invalid_argument) if max_views is 0, a limit is not finite, or a decision refers to
 /// a missing candidate.
 ///

@@ -54,7 +54,7 @@ struct VIEWGAIN_EXPORT ReachRegion {
   /// Whether there is no limit at all.
   [[nodiscard]] bool is_everywhere() const;
 
-  /// Whether the camera can reach the pose. Calls the predicate, if any, and passes on its
+  /// Whether the camera can reach the pose. Calls the predicate, if any, and rethrows its
   /// exceptions. Checks nothing. Cost: O(parts).
   [[nodiscard]] bool contains(const Pose& T_world_camera) const;
 };

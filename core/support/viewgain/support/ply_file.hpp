@@ -114,16 +114,15 @@ class PlyAsciiNumbers {
   void require(double count, ScalarType) const {
     // A number has at least one character, and all except the last are followed by another.
     const std::size_t most = line_.words().size() - word_ + line_.rest().size() / 2 + 1;
-    if (count > static_cast<double>(most))
-      line_.fail("a list's count exceeds the rest of the file");
+    if (count > static_cast<double>(most)) line_.fail("a list is longer than the rest of the file");
   }
   void end_row() const {
     if (word_ == line_.words().size()) return;
     const bool is_broken = first_line_ != line_.line();
     throw Error(ErrorCode::format,
                 line_.name() + ":" + std::to_string(first_line_) + ": the header declares " +
-                    std::to_string(numbers_) + " numbers, " +
-                    (is_broken ? "which end within line " + std::to_string(line_.line())
+                    std::to_string(numbers_) + " numbers per element, but " +
+                    (is_broken ? "they end within line " + std::to_string(line_.line())
                                : "this line has " + std::to_string(line_.words().size())));
   }
   void end_file() const {
@@ -163,7 +162,7 @@ class PlyBinaryNumbers {
   void end_row() const {}
   void end_file() const {
     if (rest_.find_first_not_of(" \t\r\n") == std::string_view::npos) return;
-    fail(std::to_string(rest_.size()) + " bytes follow the last element");
+    fail("the file has " + std::to_string(rest_.size()) + " bytes after its last element");
   }
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(ErrorCode::format, name_ + ": " + what);
@@ -210,10 +209,10 @@ class PlyFile {
 
   void read_header() {
     if (!line_.next() || line_.words().empty() || line_.words()[0] != "ply") {
-      fail("is not a PLY file: it does not begin with \"ply\"");
+      fail("the file is not a PLY file; it must begin with \"ply\"");
     }
     for (;;) {
-      if (!line_.next()) fail("the header is truncated: it has no line end_header");
+      if (!line_.next()) fail("the header is truncated; it has no line end_header");
       const auto& words = line_.words();
       if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
       if (words[0] == "end_header") break;

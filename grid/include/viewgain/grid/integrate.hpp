@@ -30,8 +30,8 @@ struct VIEWGAIN_EXPORT IntegrationConfig {
 
   /// How crossings and hits change a voxel's state.
   enum class Occupancy : std::uint8_t {
-    probabilistic,  ///< log-odds, once per voxel and frame
-    literal,        ///< crossed: free; contains a reading: occupied (Foix et al. 2012)
+    probabilistic,  ///< a frame changes each voxel's log-odds once
+    literal,        ///< crossed voxels: free; with a reading: occupied (Foix et al. 2012)
   };
 
   Carve carve = Carve::cones;                      ///< how pixels mark free space
@@ -85,8 +85,8 @@ struct VIEWGAIN_EXPORT IntegrationReport {
 /// comes from the normal of the 3×3 neighbourhood (1 without a normal). Readings of known objects
 /// (DepthFrame::known_depth) mark free space but hit no voxel.
 ///
-/// A reading hits the voxel that contains it. If sigma_ax is at least half a voxel, it instead hits
-/// the voxel on its ray with the most support, so that noise does not thicken walls
+/// A reading hits the voxel that contains it. If sigma_ax is at least half a voxel, the reading
+/// hits the voxel on its ray with the most support instead. Noise then does not thicken walls
 /// (grid/README.md, "Frames and clouds"). IntegrationConfig::Occupancy::literal disables this, as
 /// in eq. 4 of Foix et al. (2012).
 ///

@@ -43,9 +43,9 @@ struct BrickIndex {
       nodes[a] = static_cast<std::int32_t>((end + kNode - 1) / kNode);
       count *= static_cast<std::size_t>(nodes[a]);
       if (count > kMostNodes) {
-        throw Error(ErrorCode::capacity, "the workspace has more than " +
-                                             std::to_string(kMostNodes) +
-                                             " cubes of 128 voxels, the limit for this gain");
+        throw Error(ErrorCode::capacity,
+                    "the workspace has more than " + std::to_string(kMostNodes) +
+                        " cubes with edges of 128 voxels, the maximum for this gain");
       }
     }
     node_entries.assign(count, shared_node(fill));

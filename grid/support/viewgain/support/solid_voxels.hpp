@@ -29,7 +29,7 @@ class SolidVoxels {
     count_ += length(min.x, max.x) * length(min.y, max.y) * length(min.z, max.z);
     if (count_ > kMost) {
       throw Error(ErrorCode::capacity,
-                  name_ + ": solid cubes of more than 2^27 occupied voxels" + advice_);
+                  name_ + ": solid parts of the map have more than 2^27 occupied voxels" + advice_);
     }
   }
 

@@ -18,7 +18,7 @@ namespace viewgain {
 
 /// Settings of the viewpoint estimator.
 struct VIEWGAIN_EXPORT EstimatorConfig {
-  BoundaryConfig boundary{};   ///< cutting of boundaries
+  BoundaryConfig boundary{};   ///< how boundaries are cut
   double patch_length = 0.06;  ///< longer runs are cut into parts of about this length [m]
   /// Inward extent of the surface region to which a patch is fitted [m].
   double region_depth = 0.05;
@@ -35,7 +35,7 @@ struct VIEWGAIN_EXPORT EstimatorConfig {
                                                   ///< frame; approximated as well as possible
 };
 
-/// A candidate and its origin.
+/// A candidate, and the boundary that it comes from.
 struct VIEWGAIN_EXPORT BoundaryCandidate {
   Pose T_world_camera;                                 ///< camera pose
   BoundaryClass boundary_class = BoundaryClass::left;  ///< class of its run
@@ -47,7 +47,7 @@ struct VIEWGAIN_EXPORT BoundaryCandidate {
   bool nominal = false;  ///< whether tilt and roll are 0 and the distance is the first
 };
 
-/// Candidates with the runs and patches that they come from.
+/// Candidates, and the runs and patches that they come from.
 struct VIEWGAIN_EXPORT EstimatedViews {
   std::vector<BoundaryRun> runs;        ///< loops cut by class, in the order of boundary_runs()
   std::vector<QuadraticPatch> patches;  ///< one per part of a run
@@ -56,11 +56,11 @@ struct VIEWGAIN_EXPORT EstimatedViews {
   std::vector<BoundaryCandidate> candidates;        ///< ordered by run, patch and variant
 };
 
-/// Proposes views past the boundaries of a surface, after Kriegel et al., ICRA 2011. That paper
-/// leaves details open; the sizes and thresholds here are viewgain's. The estimator fits a patch to
+/// Proposes views past the boundaries of a surface, after Kriegel et al., ICRA 2011. The paper
+/// does not state all sizes and thresholds; those here are our own. The estimator fits a patch to
 /// a surface region at each boundary run, extrapolates the patch, and places views in front of it.
 ///
-/// Runs longer than patch_length are cut into equal parts; closed runs into at least three. For
+/// Runs longer than patch_length are cut into equal parts, closed runs into three or more. For
 /// each part, a patch is fitted to the vertices of grow_region() within a turn of 45°. Its origin
 /// is the mean of the part's edges. The target of a view lies on the extrapolated patch, where
 /// known surface fills the fraction `overlap` of the nominal view. The extrapolation ends at the

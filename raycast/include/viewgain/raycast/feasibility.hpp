@@ -29,8 +29,8 @@ enum class Infeasibility : std::uint8_t {
   unreachable,  ///< outside the reachable region
   taken,        ///< a view was already taken there
   plane,        ///< the body or the camera would touch the support plane or be below it
-  obstacle,     ///< the body would overlap a known obstacle, or the camera be inside one
-  collision,    ///< the body would overlap voxels that are not free, or the camera be inside one
+  obstacle,     ///< the body or the camera would overlap a known obstacle
+  collision,    ///< the body or the camera would overlap voxels that are not free
   too_near,     ///< much of the image would show surface nearer than min_range
 };
 /// Name as used in JSON; never throws.
@@ -93,7 +93,7 @@ class VIEWGAIN_EXPORT FeasibilityChecker {
   [[nodiscard]] FeasibilityChecker with_scene(std::shared_ptr<const VoxelScene> scene) const;
 
   /// Checks a pose. `taken`: T_world_camera of the views so far. Faces that only touch do not
-  /// overlap. For an invalid pose the result is bad_pose. Passes on exceptions of the reach
+  /// overlap. For an invalid pose the result is bad_pose. Rethrows exceptions of the reach
   /// region's predicate.
   [[nodiscard]] Infeasibility check(const Pose& T_world_camera,
                                     std::span<const Pose> taken = {}) const;
@@ -130,7 +130,7 @@ struct VIEWGAIN_EXPORT FeasiblePoses {
                                                            std::span<const Pose> poses,
                                                            std::span<const Pose> taken);
 
-/// The poses within the reach, in order, regardless of the body. Passes on exceptions of the
+/// The poses within the reach, in order, regardless of the body. Rethrows exceptions of the
 /// region's predicate. Cost: O(poses · parts).
 [[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses reachable_poses(const ReachRegion& reach,
                                                             std::span<const Pose> poses);

@@ -103,8 +103,8 @@ class VIEWGAIN_EXPORT ViewScorer {
  public:
   /// Starts with an empty map. Throws Error(invalid_argument) naming the value for an invalid
   /// sensor or setting, if gain.prior_sigma is set, and for voxels as large as the workspace or
-  /// larger than the sensor's range. Throws Error(backend) if Embree fails. Cost:
-  /// PinholeCamera::ray_table() five times.
+  /// larger than the sensor's range. Throws Error(backend) if Embree fails. Cost: five
+  /// calls of PinholeCamera::ray_table().
   explicit ViewScorer(const Sensor& sensor, const ScorerConfig& config = {},
                       const ExecConfig& exec = {});
   /// Starts from a map, whose layout and prior replace those of the config. Errors as above.

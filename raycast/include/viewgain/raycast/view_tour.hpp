@@ -58,7 +58,7 @@ struct VIEWGAIN_EXPORT ViewTour {
 /// Chooses a set greedily like best_set(), by the increase of the gain minus costs, then orders it
 /// with order_stops(). A view's path cost is that of the cheapest insertion into the current tour.
 /// Views with no gain are omitted. After the first view, views that cost more than they gain are
-/// omitted as well. Ignores obstacles and reach. Deterministic for any number of threads. Passes on
+/// omitted as well. Ignores obstacles and reach. Deterministic for any number of threads. Rethrows
 /// exceptions of `way`. Throws Error(invalid_argument) naming the setting that is out of range.
 /// Cost: best_set(), and two calls of `way` per pose and stop on the calling thread.
 [[nodiscard]] VIEWGAIN_EXPORT ViewTour plan_tour(const GainEvaluator& evaluator,

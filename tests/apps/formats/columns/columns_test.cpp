@@ -149,7 +149,7 @@ TEST_F(Columns, FilesOfPosesAreOfTheFormatThatTheirNameSays) {
   EXPECT_TRUE(read("p.npy").starts_with("\x93NUMPY"));
   EXPECT_TRUE(read("p.tum").starts_with("#"));
   for (const std::string name : {"p.csv", "p.npz", "p.txt.gz", "p"}) {
-    test::expect_error(ErrorCode::invalid_argument, "must end in .txt, .tum or .npy",
+    test::expect_error(ErrorCode::invalid_argument, "must have the ending .txt, .tum or .npy",
                        [&] { save_poses(dir / name, poses); });
     EXPECT_FALSE(exists(dir / name));
   }
@@ -167,7 +167,7 @@ TEST_F(Columns, EndingsThatNoWriterWritesAreRefused) {
   const auto refuses = [&](const Strings& call, const std::string& name, const std::string& word) {
     const test::ProgramResult result = run(call);
     EXPECT_EQ(result.exit_code, 2) << call[0] << " " << name;
-    EXPECT_NE(result.err.find("must end in " + word), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("must have the ending " + word), std::string::npos) << result.err;
     EXPECT_NE(result.err.find(name), std::string::npos) << result.err;
     EXPECT_FALSE(exists(dir / name)) << name;
   };

@@ -420,9 +420,9 @@ TEST_F(DamagedOctomap, HeadersAreNamedByLine) {
   expect_refused("\"size\"", with(full_, size, "# none"));
   expect_refused("\"res\"", with(full_, "res 0.1", "# none"));
   expect_refused("\"data\"", with(full_, "data\n", "date\n"));
-  expect_refused(":1: is not an OctoMap file", "");
-  expect_refused(":1: is not an OctoMap file", "ply\nformat ascii 1.0\n");
-  expect_refused(":1: is not an OctoMap file", std::string(1000, '\0'));
+  expect_refused(":1: the file is not an OctoMap file", "");
+  expect_refused(":1: the file is not an OctoMap file", "ply\nformat ascii 1.0\n");
+  expect_refused(":1: the file is not an OctoMap file", std::string(1000, '\0'));
   // A .bt's tree behind a .ot's header and the other way round.
   expect_refused("", with(full_, "# Octomap OcTree file", "# Octomap OcTree binary file"));
   expect_refused("", with(binary_, "# Octomap OcTree binary file", "# Octomap OcTree file"));

@@ -35,10 +35,11 @@ TEST_F(DamagedRecordings, ChunksAreLeftOutAndWhatNeedsThemIsCounted) {
     text.image(kTopic, 100.5, "optical", kWidth, kHeight, "16UC1", rows_mm(6), 2 * kWidth);
     text.put_in_chunk(from, missing);
     text.image("/gray", 100.6, "optical", kWidth, kHeight, "mono8", "short", 7);
-    const json report = import(text, {}, missing > 0 ? "; it is left out" : "");
+    const json report = import(text, {}, missing > 0 ? "a damaged chunk is left out" : "");
     EXPECT_EQ(report["frames"], missing > 0 ? kImages : kImages + 1);
     if (missing == 0) continue;
-    EXPECT_NE(report.dump().find("1 messages whose channel is missing"), std::string::npos)
+    EXPECT_NE(report.dump().find("1 messages are left out; they have no channel record"),
+              std::string::npos)
         << report;
   }
 }
@@ -54,7 +55,7 @@ TEST_F(DamagedRecordings, TheSummaryHasTheChannelsOfADamagedChunk) {
   add_transforms(text);
   add_info(text);
   add_images(text);
-  refuse(text, "holds no message");
+  refuse(text, "has no messages");
   const std::string bytes = text.bytes(true, true);
   write("rec.mcap", bytes);
   const ProgramResult result = run(call({"--json"}));
@@ -80,7 +81,8 @@ TEST_F(DamagedRecordings, MessagesOfUnknownConnectionsAndTopicsAreCounted) {
   bytes[bytes.find("op=\7") + 3] = '\x8';
   write("some.bag", bytes);
   std::string said = import_file("some.bag").err;
-  EXPECT_NE(said.find("messages whose connection is missing"), std::string::npos) << said;
+  EXPECT_NE(said.find("messages are left out; they have no connection record"), std::string::npos)
+      << said;
 
   fs::copy_file(data("arm.db3"), dir / "some.db3");
   sqlite3* db = nullptr;
@@ -90,7 +92,7 @@ TEST_F(DamagedRecordings, MessagesOfUnknownConnectionsAndTopicsAreCounted) {
       SQLITE_OK);
   sqlite3_close(db);
   said = import_file("some.db3").err;
-  EXPECT_NE(said.find("messages of topics that the file does not list are left out"),
+  EXPECT_NE(said.find("messages are left out; they belong to topics that the file does not list"),
             std::string::npos)
       << said;
   // A path that begins with two slashes.
@@ -119,7 +121,7 @@ TEST_F(DamagedRecordings, ImpossibleCamerasAreRefusedWithoutASensorToo) {
 }
 
 TEST_F(DamagedRecordings, PosesOfSeveralBodiesAreRefused) {
-  refuse(good(), "/tf (tf2_msgs/TFMessage) holds the transforms of all frames",
+  refuse(good(), "/tf (tf2_msgs/TFMessage) has the transforms of all frames",
          {"--pose-topic", "/tf"});
   McapText text = good();
   for (const std::string body : {"link", "link", "wheel"}) {
@@ -127,7 +129,7 @@ TEST_F(DamagedRecordings, PosesOfSeveralBodiesAreRefused) {
     odometry.header(100, "odom").text(body).doubles(kStill);
     text.add("/odom", "nav_msgs/msg/Odometry", odometry);
   }
-  refuse(text, "/odom: holds the poses of several bodies, 'link' and 'wheel'",
+  refuse(text, "/odom: the topic has the poses of several bodies, 'link' and 'wheel'",
          {"--pose-topic", "/odom"});
 }
 

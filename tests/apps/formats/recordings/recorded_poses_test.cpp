@@ -52,9 +52,8 @@ TEST_F(MessageRecordings, PosesMayComeFromATopic) {
   write_sensor_toml(dir / "small.toml", mounted);
   EXPECT_EQ(import(text, {"--pose-topic", "/pose"})["frames"], kImages);
   EXPECT_NEAR(open_frames(dir / "frames").poses[1].m[11], 0.3, 1e-9);
-  refuse(text, "/none holds no poses", {"--pose-topic", "/none"});
-  (void)import(text, {},
-               "topics of poses (/odom, /pose, /tracker), which are not used (--pose-topic)");
+  refuse(text, "/none has no poses", {"--pose-topic", "/none"});
+  (void)import(text, {}, "topics of poses (/odom, /pose, /tracker). They are not used");
   refuse(text, "--pose-topic", {"--pose-topic", "/pose,0,0"});
   refuse(text, "expected a name before the pose", {"--pose-topic", ",0,0,0.2,0,0,0,1"});
 }
@@ -67,7 +66,7 @@ TEST_F(MessageRecordings, TheCamerasFrameMayBeGiven) {
   for (std::size_t i = 0; i < kImages; ++i) {
     text.image(kTopic, image_time(i), "link", kWidth, kHeight, "16UC1", rows_mm(i), 2 * kWidth);
   }
-  (void)import(text, {}, "Should it be 'optical' (--camera-frame)?");
+  (void)import(text, {}, "If the optical frame is 'optical', give it with --camera-frame");
   (void)import(text, {"--camera-frame", "/optical"});
   expect_frames(open_frames(dir / "frames"));
   (void)import(text, {"--camera-frame", "link,0.1,0,0,0,0,0,1"});
@@ -142,7 +141,7 @@ TEST_F(MessageRecordings, WorldsAreTold) {
   for (int i = 0; i < 11; ++i) {
     two.transform("/tf", 100 + 0.1 * i, "marker", "link", {0, 1, 0, 0, 0, 0, 1});
   }
-  refuse(two, "belongs to several worlds: 'base', 'marker'; choose one with --world");
+  refuse(two, "belongs to several worlds: 'base', 'marker'; choose one of them with --world");
   EXPECT_EQ(import(two, {"--world", "base"})["frames"], kImages);
   expect_frames(open_frames(dir / "frames"));
   two.transform("/tf_static", 0, "room", "base", kStill);

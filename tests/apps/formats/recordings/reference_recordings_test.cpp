@@ -137,7 +137,7 @@ TEST_F(ReferenceRecordings, ThatAreCutAreReadAsFarAsTheyGo) {
     const json report = json::parse(result.out);
     EXPECT_GT(report["frames"], kFrames / 3) << name;
     EXPECT_LT(report["frames"], kFrames) << name;
-    EXPECT_NE(result.err.find("reading it up to"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("is used"), std::string::npos) << result.err;
     fs::remove(dir / ("cut" + ending));
   }
   // Of a split recording the second half alone has no static transforms.
@@ -158,7 +158,7 @@ TEST_F(ReferenceRecordings, DamagedChunksAreLeftOutAndSaid) {
   // The only chunk, and a later one of several.
   test::ProgramResult result = import_damaged("split/arm_9.mcap", 12000);
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.err.find("does not match its checksum"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("checksum does not match"), std::string::npos) << result.err;
   result = import_damaged("arm_zstd.mcap", 14000);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.err.find("left out"), std::string::npos) << result.err;

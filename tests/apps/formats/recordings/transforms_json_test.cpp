@@ -108,7 +108,7 @@ TEST_F(TransformsJson, IntrinsicsAreScaledToTheDepthImages) {
   scene["fl_x"] = 240, scene["fl_y"] = 240, scene["cx"] = 96, scene["cy"] = 72;
   write("scene/transforms.json", scene.dump());
   const test::ProgramResult result = run(call({"--json"}));
-  EXPECT_NE(result.err.find("are scaled to them"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("are scaled accordingly"), std::string::npos) << result.err;
   EXPECT_EQ(json::parse(result.out)["intrinsics"], (json{60, 60, 23.5, 17.5}));
   // An angle in place of a focal length.
   scene = good();
@@ -201,10 +201,11 @@ TEST_F(TransformsJson, WhatCannotBeReadIsNamed) {
     refuse(scene, "transforms.json: camera: ");
   }
   write("scene/transforms.json", good().dump());
-  expect_refused(call({"--world", "map"}), "--world map: is only for recordings of messages");
+  expect_refused(call({"--world", "map"}),
+                 "--world map: this flag requires a recording of messages");
   fs::remove(dir / "scene/depth/0.png");
   fs::create_symlink("/etc/passwd", dir / "scene/depth/0.png");
-  expect_refused(call(), "is a link that leaves the recording");
+  expect_refused(call(), "the link leads out of the recording");
 }
 
 }  // namespace

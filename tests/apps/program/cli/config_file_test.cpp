@@ -169,11 +169,11 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithFileAndLine) {
       {"weight = [0,0,0,1,1,1,2]\n", "--weight 0: needs 7"},
       {"center = []\n", "line 4: key \"center\" must be"},
       {"reach = 1979-05-27\n", "line 4: key \"reach\" must be"},
-      {"reach = \"r.toml\\u0000x\"\n", "line 4: key \"reach\" must not hold a zero byte"},
+      {"reach = \"r.toml\\u0000x\"\n", "line 4: key \"reach\" must not contain a zero byte"},
       {"[gain]\nmodel = 1\n", "line 4: key \"gain\" must be"},
       {"top = 1\ntop = 2\n", "c.toml: line 5"},
       {"dome = \"20,0.6\"\n",
-       "key \"dome\" is the key of a removed flag: --dome was removed; use --poses dome:N,RADIUS"}};
+       "key \"dome\" belongs to a removed flag: --dome was removed; use --poses dome:N,RADIUS"}};
   for (const auto& [text, word] : files) {
     write("c.toml", head + text);
     expect_refused({"score", "--config", "c.toml", "--out", "s.csv"}, word);

@@ -126,9 +126,8 @@ TEST_F(CalibrateRange, WavesAndOffsetsAreFound) {
 
 TEST_F(CalibrateRange, NoiseDoesNotBiasTheTable) {
   sigma = 0.005;
-  expect_refused_fit(
-      "a constant range error cannot be told from a shift of the wall");  // too few pixels, but not
-                                                                          // bent
+  expect_refused_fit("the constant part of the range error is uncertain");  // too few pixels, but
+                                                                            // not bent
   sensor.camera = {176, 144, 220, 220, 87.5, 71.5};
   for (const double noise : {0.002, 0.005}) {
     sigma = noise;
@@ -187,7 +186,8 @@ TEST_F(CalibrateRange, WhatDoesNotTellItIsRefusedOrNamed) {
                "frame " + std::to_string(&view - good.data()));
     saturated.add(frame_of(view, &error_at), pose_of(view), "good");
   }
-  expect_error([&] { (void)turned.solve(); }, "frame 4 shows another wall than the other frames");
+  expect_error([&] { (void)turned.solve(); },
+               "frame 4 shows a different wall than the other frames");
   saturated.add(bright, pose_of(good[0]), "bright");
   saturated.add(frame_of({1, 60, 0}, &error_at), pose_of({1, 60, 0}), "slanted");
   DepthFrame no_wall = frame_of(good[0], &error_at);
@@ -197,13 +197,13 @@ TEST_F(CalibrateRange, WhatDoesNotTellItIsRefusedOrNamed) {
   ASSERT_EQ(result.left_out.size(), 3U);
   EXPECT_EQ(result.left_out[0], "bright: 1728 pixels are saturated");
   EXPECT_EQ(result.left_out[1],
-            "slanted: the wall is seen at an angle of 60 deg; at most 45 deg can be used");
+            "slanted: the wall is seen at an angle of 60 deg; the maximum is 45 deg");
   EXPECT_EQ(result.left_out[2], "cluttered: no flat wall fills most of the image");
   expect_error(
       [&] {
         saturated.add({2, 2, {1, 1, 1, 1}}, {}, "small");
       },
-      "small: the image differs in size from the sensor");
+      "small: the image and the sensor have different sizes");
 }
 
 TEST_F(CalibrateRange, ByTheProgram) {

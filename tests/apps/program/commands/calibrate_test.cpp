@@ -155,14 +155,15 @@ TEST_F(CalibrateNoise, WhatDoesNotTellTheNoiseIsRefused) {
   const auto with = [](const std::string& frames) {
     return Strings{"calibrate", "--noise", frames, "--out", "new.toml"};
   };
-  expect_refused({{with("few"), "needs 30 frames from one pose, not 29"},
-                  {with("moving"), "the scene or the camera moves"},
-                  {with("flat"), "too few depth edges"},
-                  {with("exact"), "no more than their rounding step of 1e-04 m"},
-                  {{"calibrate", "flat", "--out", "new.toml"}, "give either --noise or --range"},
-                  {{"calibrate", "--noise", "flat", "--out", "new.txt"}, "must end in .toml"},
-                  {test::joined(with("flat"), {"--depth-scale", "0"}), "--depth-scale"},
-                  {with("nowhere"), "nowhere"}});
+  expect_refused(
+      {{with("few"), "30 frames from one pose are required, not 29"},
+       {with("moving"), "the scene or the camera moves"},
+       {with("flat"), "the straight depth edges"},
+       {with("exact"), "below their rounding step of 1e-04 m"},
+       {{"calibrate", "flat", "--out", "new.toml"}, "give either --noise or --range"},
+       {{"calibrate", "--noise", "flat", "--out", "new.txt"}, "must have the ending .toml"},
+       {test::joined(with("flat"), {"--depth-scale", "0"}), "--depth-scale"},
+       {with("nowhere"), "nowhere"}});
 }
 
 }  // namespace

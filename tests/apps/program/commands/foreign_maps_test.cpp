@@ -63,8 +63,7 @@ TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
     call.emplace_back("--json");
     const auto result = run(call);
     EXPECT_EQ(result.exit_code, 0);
-    EXPECT_NE(result.err.find(call[1] + " holds voxel states only"), std::string::npos)
-        << result.err;
+    EXPECT_NE(result.err.find(call[1] + " has only voxel states"), std::string::npos) << result.err;
     return json::parse(result.out);
   };
   const json prior =
@@ -81,14 +80,14 @@ TEST_F(ForeignMaps, AMapGoesToATreeAndBack) {
     if (call[0] == "score") call.insert(call.end(), {"--poses", "sphere:20,0.6"});
     const auto result = run(call);
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_NE(result.err.find("the map has no view"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("the map has no views"), std::string::npos) << result.err;
     call.insert(call.end(), {"--from", "0,0,1", "--json"});
     EXPECT_EQ(run(call).exit_code, 0) << run(call).err;
   }
   expect_refused({"convert", "map.vdb", "x.ot", "--sensor", "small.toml"}, "--sensor");
   // A prior that is surer than a reading is pointed out.
   Strings score{"score", "map.vdb", "--poses", "sphere:20,0.6", "--prior-sigma", "0.0001"};
-  EXPECT_NE(run(score).err.find("warning: the prior sigma, 0.0001 m"), std::string::npos);
+  EXPECT_NE(run(score).err.find("warning: the prior sigma is 0.0001 m"), std::string::npos);
   // A tree is continued; frames straight into a tree.
   const json continued = run_json({"integrate", "frames", "--map", "tree.ot", "--out", "again.ot"});
   EXPECT_EQ(continued.at("prior_sigma"), map.at("prior_sigma"));
@@ -108,14 +107,14 @@ TEST_F(ForeignMaps, EndingsAreLargeOrSmallAndOthersRefused) {
   }
   run_well({"convert", "a.OT", "b.VDB"});
   EXPECT_EQ(run_json({"info", "b.VDB"}).at("occupied"), 1);
-  expect_refused({"convert", "a.vdb", "a.BT"}, "files are read-only");
+  expect_refused({"convert", "a.vdb", "a.BT"}, "files can only be read");
   for (const char* name : {"a.txt", "a", "a.vdb2", ".vdb", "a.vdb.gz"}) {
-    expect_refused({"convert", "a.vdb", name}, "must end in .vdb or .ot");
+    expect_refused({"convert", "a.vdb", name}, "must have the ending .vdb or .ot");
   }
   write("a.pcd", pcd());
   expect_refused({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--sensor", "small.toml",
                   "--voxel", "0.1", "--out", "map.txt"},
-                 "must end in .vdb or .ot");
+                 "must have the ending .vdb or .ot");
   // What is no file of its own has no ending.
   EXPECT_EQ(run({"convert", "a.vdb", "/dev/null"}).exit_code, 0);
 }
@@ -178,7 +177,7 @@ TEST_F(ForeignMaps, CloudsAreIntegrated) {
       run({"integrate", "--cloud", "a.pcd", "--origin", "0,0,0", "--voxel", "0.02", "--sensor",
            "small.toml", "--workspace", "-0.1,-1,-1,0.8,1,1", "--out", "carved.vdb"});
   EXPECT_EQ(carved.exit_code, 0);
-  EXPECT_NE(carved.err.find("they only mark free space"), std::string::npos) << carved.err;
+  EXPECT_NE(carved.err.find("the cloud only marks free space"), std::string::npos) << carved.err;
 }
 
 TEST_F(ForeignMaps, WrongUseIsRefused) {
@@ -215,7 +214,7 @@ TEST_F(ForeignMaps, WrongUseIsRefused) {
   expect_refused({"info", "cut.ot"}, "the tree is truncated");
   expect_refused({"info", "none.bt"}, "none.bt");
   expect_refused({"convert", "cut.ot", "new.vdb"}, "the tree is truncated");
-  expect_refused({"convert", "map.vdb", "new.bt"}, "files are read-only");
+  expect_refused({"convert", "map.vdb", "new.bt"}, "files can only be read");
   expect_refused({"convert", "map.vdb", "new.ot", "--workspace", "0,0,0,1,1,1"}, "--workspace");
   expect_refused({"convert", "map.vdb", "new.ot", "--prior-sigma", "1"}, "--prior-sigma");
   expect_refused({"convert", "map.vdb"}, "OUT");

@@ -104,7 +104,8 @@ TEST_F(Implausible, SensorsInOtherUnits) {
   write("frames/done", "");
   with([](Sensor& s) { s.noise = ConstantNoise{2, 0.005}; });
   (void)run(integrate());
-  for (const Strings& call : commands(false)) expect_said(call, "(sigma_axial) are for lengths in");
+  for (const Strings& call : commands(false))
+    expect_said(call, "(sigma_axial) must be for lengths in");
   with([](Sensor& s) { s.body_size = {65, 65, 76}; });
   (void)run(integrate());
   for (const Strings& call : commands(false)) expect_said(call, "body is 65 x 65 x 76 m");
@@ -113,12 +114,12 @@ TEST_F(Implausible, SensorsInOtherUnits) {
   // It explains everything: nothing else is blamed.
   with([](Sensor& s) { s.camera.fx = s.camera.fy = 4.2; });
   for (const Strings& call : {integrate(), commands(true)[0], commands(true)[2]}) {
-    expect_said(call, "focal lengths are in pixels, not in millimetres");
+    expect_said(call, "Focal lengths must be in pixels, not in millimetres");
     EXPECT_EQ(warnings(call).find("times"), std::string::npos);
   }
   expect_said({"simulate", "cube.off", "--poses", "orbit:2,0.6,27", "--sensor",
                "frames/sensor.toml", "--size", "0.2", "--out", "other"},
-              "focal lengths are in pixels");
+              "Focal lengths must be in pixels");
 }
 
 TEST_F(Implausible, FlagsInOtherUnits) {
@@ -177,7 +178,7 @@ TEST_F(Implausible, MasksThatShowTheObjectInWhite) {
       const std::string said =
           warnings(test::joined(way, {"--voxel", "0.05", "--workspace", workspace, "--mask", "mask",
                                       "--out", "out.vdb"}));
-      EXPECT_NE(said.find("invert them"), std::string::npos) << way[0] << said;
+      EXPECT_NE(said.find("invert the masks"), std::string::npos) << way[0] << said;
       EXPECT_EQ(said.find("depth scale"), std::string::npos) << way[0] << said;
       EXPECT_EQ(said.find("camera to world"), std::string::npos) << way[0] << said;
     }
@@ -185,7 +186,7 @@ TEST_F(Implausible, MasksThatShowTheObjectInWhite) {
   // Without a workspace none is left to make one round.
   write_masks(true);
   expect_said({"integrate", "frames", "--voxel", "0.05", "--mask", "mask", "--out", "new.vdb"},
-              "invert them");
+              "invert the masks");
   write_masks(false);
   EXPECT_EQ(warnings(integrate({"--mask", "mask"})), "");
 }
@@ -206,9 +207,10 @@ TEST_F(Implausible, HazardRatesOfAnotherPlaceOrUnit) {
   };
   EXPECT_EQ(warnings(rates_of(map)), "");
   EXPECT_EQ(warnings(rates_of(grid_of(0.1, 0.2, 0))), "");
-  expect_refused(rates_of(grid_of(2.5, 20, 0)), "has voxels of 2.5 m, the map of 0.025 m");
+  expect_refused(rates_of(grid_of(2.5, 20, 0)),
+                 "have voxels of 2.5 m, but the map has voxels of 0.025 m");
   expect_refused(rates_of(grid_of(0.00025, 0.002, 0)), "has voxels of 0.00025 m");
-  expect_refused(rates_of(grid_of(0.025, 0.2, 5)), "none lies in the map");
+  expect_refused(rates_of(grid_of(0.025, 0.2, 5)), "all hazard rates lie outside the map");
 }
 
 }  // namespace

@@ -230,15 +230,16 @@ TEST_F(Next, NextChoosesAmongGivenPosesByTheirWorth) {
   }
   write("few.txt", "1\n2\n");
   write("word.txt", "1\ncheap\n");
-  expect_refused_with({"next", "run/map.vdb", "--sensor", "tof.toml"},
-                      {{{"--costs", "costs.txt"}, "--poses"},
-                       {{"--poses", "mine.txt", "--costs", "few.txt"}, "2 costs for 30 poses"},
-                       {{"--poses", "mine.txt", "--costs", "word.txt"}, "word.txt:2"},
-                       {{"--poses", "mine.txt", "--count", "7"}, "--generator"},
-                       {{"--plan", "0"}, "--plan"},
-                       {{"--plan", "2,3"}, "--plan 2,3"},
-                       {{"--take", "2"}, "--plan K,M"},
-                       {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"}});
+  expect_refused_with(
+      {"next", "run/map.vdb", "--sensor", "tof.toml"},
+      {{{"--costs", "costs.txt"}, "--poses"},
+       {{"--poses", "mine.txt", "--costs", "few.txt"}, "2 costs, but there are 30 poses"},
+       {{"--poses", "mine.txt", "--costs", "word.txt"}, "word.txt:2"},
+       {{"--poses", "mine.txt", "--count", "7"}, "--generator"},
+       {{"--plan", "0"}, "--plan"},
+       {{"--plan", "2,3"}, "--plan 2,3"},
+       {{"--take", "2"}, "--plan K,M"},
+       {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"}});
 }
 
 TEST_F(Next, RefusesWhatCannotBe) {

@@ -265,7 +265,8 @@ TEST_F(Reconstruct, AWorkspaceThatCutsTheObjectIsToldOf) {
   };
   // 2/3 by 2/3 by 1/2 of the object's box.
   const std::string small = said("-0.1,-0.1,0,0.1,0.1,0.17"), half = said("-1,-1,0,1,1,1");
-  EXPECT_NE(small.find("the workspace contains only 22 % of the object's box, -0.15,-0.15,-0.15"),
+  EXPECT_NE(small.find("the workspace contains only 22 % of the object, whose bounding box is "
+                       "-0.15,-0.15,-0.15"),
             std::string::npos)
       << small;
   EXPECT_EQ(half.find("warning"), std::string::npos) << half;
@@ -317,7 +318,7 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--gain", "surface", "--stop", "area=1"}), "stop_area"},
       {arguments("cube.off", {"--policy", "random", "--stop", "area=0.01"}), "stop_area"},
       {arguments("cube.off", {"--policy", "oracle", "--gain", "surface"}), "--policy gain"},
-      {arguments("cube.off", {"--size", "0.001"}), "is not smaller than the object"},
+      {arguments("cube.off", {"--size", "0.001"}), "the voxels must be smaller than the object"},
       {arguments("cube.off", {"--cost-per-metre", "-1"}), "--cost-per-metre -1"},
       {arguments("cube.off", {"--max-views", "0"}), "max-views"},
       {arguments("cube.off", {"--workspace", "0,0,0,-1,1,1"}), "--workspace"},

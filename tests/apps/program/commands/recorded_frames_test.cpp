@@ -234,7 +234,7 @@ TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
   std::filesystem::create_directories(dir / "empty");
   const Strings frames = test::joined({"model", "frames", "--out", "new"}, kMapFlags);
   expect_refused(
-      {{test::joined(frames, {"--size", "0.2"}), "--size: unknown flag for model"},
+      {{test::joined(frames, {"--size", "0.2"}), "--size: model has no such flag"},
        {test::joined(frames, {"--policy", "random"}), "--policy"},
        {test::joined(frames, {"--max-views", "2"}), "--max-views"},
        {test::joined(frames, {"--noise", "on"}), "--noise"},
@@ -250,7 +250,7 @@ TEST_F(RecordedFrames, WhatOnlyAMeshOrAMapHasIsRefused) {
        {{"reconstruct", "cube.off", "--voxel", "0.01", "--out", "new"}, "--sensor"},
        {{"reconstruct", "cube.off", "--voxel", "0.01", "--sensor", "tof.toml", "--size", "0.2",
          "--mask", "empty", "--out", "new"},
-        "--mask: unknown flag for reconstruct"},
+        "--mask: reconstruct has no such flag"},
        {{"reconstruct", "frames", "--voxel", "0.01", "--sensor", "tof.toml", "--out", "new"},
         "viewgain model frames"},
        {{"model", "frames", "--vxel", "0.01"}, "did you mean --voxel?"},

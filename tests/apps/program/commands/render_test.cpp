@@ -95,7 +95,7 @@ TEST_F(Render, MapsRememberTheirSensor) {
   const test::ProgramResult two =
       run({"integrate", "frames", "--map", "run/map.vdb", "--out", "two.vdb"});
   EXPECT_EQ(two.exit_code, 0);
-  EXPECT_NE(two.err.find("but --sensor d435 differs: "), std::string::npos) << two.err;
+  EXPECT_NE(two.err.find("--sensor d435 differs: "), std::string::npos) << two.err;
   EXPECT_NE(two.err.find(" in the map, "), std::string::npos) << two.err;
   EXPECT_TRUE(json::parse(run_well({"info", "two.vdb", "--json"})).at("sensor").is_null());
 
@@ -273,13 +273,13 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
   write("none/run.json", "{\"settings\": {}}");
   expect_refused({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
                   "0.01", "--out", "third", "--report", "none"},
-                 "none/run.json: is not the folder of a run");
+                 "none/run.json: this is not the folder of a run");
   json newer = run_json;
   newer["format"] = 2;
   write("none/run.json", newer.dump());
   expect_refused({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
                   "0.01", "--out", "third", "--report", "none"},
-                 "none/run.json: has format 2; this program reads up to format 1");
+                 "none/run.json: the file has format 2; this program reads up to format 1");
 
   // A later run in the folder takes the report of the one before with it.
   ASSERT_EQ(reconstruct("off").exit_code, 0);

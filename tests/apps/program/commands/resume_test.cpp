@@ -148,7 +148,7 @@ TEST_F(Resume, OfFramesWhatWasDrawnIsKept) {
   const auto time = fs::last_write_time(left() / "views/01.png");
   const test::ProgramResult other = run(test::joined(of("out"), {"--scales", "1"}));
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.err.find("comes from a run with other settings"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("the run has other settings"), std::string::npos) << other.err;
   ASSERT_EQ(run(of("out")).exit_code, 0);
   EXPECT_EQ(fs::last_write_time(dir / "out/views/01.png"), time);
   EXPECT_TRUE(result("out") == result("whole"));
@@ -221,7 +221,7 @@ TEST_F(Resume, OfFramesEveryFlagThatChangesBytesIsCompared) {
     changed.insert(changed.end(), others.at(name).begin() + 1, others.at(name).end());
     const test::ProgramResult result = run(changed);
     EXPECT_EQ(result.exit_code, 2) << name;
-    EXPECT_NE(result.err.find("comes from a run with other settings"), std::string::npos)
+    EXPECT_NE(result.err.find("the run has other settings"), std::string::npos)
         << name << ": " << result.err;
     ++flags;
   }
@@ -229,7 +229,7 @@ TEST_F(Resume, OfFramesEveryFlagThatChangesBytesIsCompared) {
   // Files of the same names with other bytes.
   const auto refused = [&](const Strings& with) {
     const test::ProgramResult result = run(test::joined(call, with));
-    return result.err.find("comes from a run with other settings") != std::string::npos;
+    return result.err.find("the run has other settings") != std::string::npos;
   };
   EXPECT_FALSE(refused({"--threads", "1", "--quiet", "--json", "--report", "off"}));
 }
@@ -257,10 +257,10 @@ TEST_F(Resume, OfFramesFilesThatFlagsNameAreCompared) {
       call, SIGKILL, [&] { return !left().empty() && fs::exists(left() / "checkpoint.json"); });
   ASSERT_TRUE(WIFSIGNALED(status)) << status;
   write("reach.toml", "# wider\n" + reach);
-  expect_refused(call, "comes from a run with other settings");
+  expect_refused(call, "the run has other settings");
   write("reach.toml", reach);
   write_mask(1);
-  expect_refused(call, "comes from a run with other settings");
+  expect_refused(call, "the run has other settings");
   write_mask(0);
   EXPECT_EQ(run(call).exit_code, 0);
 }
@@ -270,8 +270,7 @@ TEST_F(Resume, AnothersCheckpointIsRefusedAndStays) {
   ASSERT_TRUE(WIFSIGNALED(status));
   const std::string name = left().filename().string() + "/checkpoint.json";
   const std::string good = read(name);
-  expect_refused(run_of("out", {"--seed", "2"}),
-                 "checkpoint.json: comes from a run with other settings");
+  expect_refused(run_of("out", {"--seed", "2"}), "checkpoint.json: the run has other settings");
   json newer = json::parse(good);
   newer["format"] = 7;
   json otherwise = json::parse(good);

@@ -189,7 +189,7 @@ TEST_F(ScoreCandidates, CostsRank) {
   EXPECT_EQ(line.substr(0, 18), "index,worth,gain,e");
   EXPECT_EQ(line.substr(line.find(",tx")), ",tx,ty,tz,qx,qy,qz,qw");
   write("few.txt", "1\n2\n");
-  expect_refused_with(arguments({}), {{{"--costs", "few.txt"}, "2 costs for 40 poses"},
+  expect_refused_with(arguments({}), {{{"--costs", "few.txt"}, "2 costs, but there are 40 poses"},
                                       {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"},
                                       {{"--cost-per-metre", "1", "--set", "2"}, "--set"},
                                       {{"--from", "0,0,1"}, "--from 0,0,1"},

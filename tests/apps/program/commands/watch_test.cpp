@@ -339,7 +339,7 @@ TEST_F(Watch, SaysWhereToLookNext) {
   json newer = json::parse(before);
   newer["format"] = 2;
   write("plan/next.json", newer.dump());
-  expect_refused(watch({}), "next.json: has format 2; this program reads up to format 1");
+  expect_refused(watch({}), "next.json: the file has format 2; this program reads up to format 1");
   for (const char* damaged : {"", "{", "{}", "{\"format\": -1}"}) {
     write("plan/next.json", damaged);
     (void)run_well(watch({"--top", "5"}));
@@ -560,7 +560,8 @@ TEST_F(Watch, RefusesWhatItCannotGoOnWith) {
   std::string other = read("small.toml");
   other.replace(other.find("60.0"), 4, "61.0");
   write("other.toml", other);
-  expect_refused(watch({"--sensor", "other.toml"}), "plan/state.vdb: its frames come from small");
+  expect_refused(watch({"--sensor", "other.toml"}),
+                 "plan/state.vdb: the map was made with the sensor small");
   run_well({"integrate", "whole", "--voxel", "0.025", "--out", "map.vdb"});
   fs::copy_file(dir / "map.vdb", dir / "plan/state.vdb", fs::copy_options::overwrite_existing);
   expect_refused(watch(), "plan/state.vdb");

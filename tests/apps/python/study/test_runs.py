@@ -176,10 +176,10 @@ def test_a_folder_of_other_things_is_refused(folder, program):
     (folder / "spec.toml").write_text(SPEC)
     (folder / "other").mkdir()
     (folder / "other/notes.txt").write_text("mine")
-    assert "--out other: has files that no study wrote; choose a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
+    assert "--out other: the folder has files that no study wrote; choose another folder" in study("spec.toml", "--out", "other", code=2, program=program)
     assert names("other") == ["notes.txt"]
     (folder / "other/runs").mkdir()  # of something else
-    assert "--out other: has files that no study wrote; choose a new folder" in study("spec.toml", "--out", "other", code=2, program=program)
+    assert "--out other: the folder has files that no study wrote; choose another folder" in study("spec.toml", "--out", "other", code=2, program=program)
     # The spec may lie there, and stays as it is.
     (folder / "home").mkdir()
     spec = SPEC.replace("cube.off", "../cube.off").replace("tof.toml", "../tof.toml")
@@ -194,7 +194,7 @@ exec {program} reconstruct "$@"
 """)
     (folder / "spec.toml").write_text(SPEC.replace('"frontier"', '{name = "mine", command = "sh mine.sh"}'))
     error = study("spec.toml", "--out", "out", "--jobs", "1", code=1, program=program)
-    assert "1 of 6 runs failed, the first: cube, mine, seed 1: no luck; repeat the call to run them again" in error
+    assert "1 of 6 runs failed. Repeat the call to run them again. The first failure: cube, mine, seed 1: no luck" in error
     assert runs_in("out") == 5 and not (folder / "out/results.csv").exists()
     (folder / "mine.sh").write_text(f'exec {program} reconstruct "$@"\n')
     study("spec.toml", "--out", "out", program=program)
@@ -231,7 +231,7 @@ def test_without_matplotlib_there_are_no_plots(folder, program):
 def test_voxels_larger_than_the_tolerance_are_said(folder, program):
     (folder / "spec.toml").write_text(SPEC.replace("tolerance = 0.0125", "tolerance = 0.005"))
     process = start("spec.toml", "--out", "out", "--quiet", program=program)
-    assert "warning: coverage is measured at 5 mm, less than a voxel of 12.5 mm (set tolerance = 0.0125 in the spec)" in process.communicate()[1]
+    assert "warning: coverage is measured at 5 mm, less than a voxel of 12.5 mm; set tolerance = 0.0125 in the spec" in process.communicate()[1]
 
 
 def test_a_cluster_gives_what_this_machine_gives(folder, program, calls):
@@ -251,7 +251,7 @@ def test_a_cluster_gives_what_this_machine_gives(folder, program, calls):
     assert process.returncode == 0, error
     assert rows_in("there") == rows_in("here") and names("there/runs") == names("here/runs")
     assert (folder / "there/table.md").read_text().splitlines()[:10] == (folder / "here/table.md").read_text().splitlines()[:10]
-    assert "not the address of a scheduler" in study("spec.toml", "--out", "there2", "--scheduler", "tcp://127.0.0.1", code=2, program=program)
+    assert "expected the address of a scheduler" in study("spec.toml", "--out", "there2", "--scheduler", "tcp://127.0.0.1", code=2, program=program)
     assert "no scheduler answers" in study("spec.toml", "--out", "there2", "--scheduler", "tcp://127.0.0.1:9", code=2, program=program)
 
 

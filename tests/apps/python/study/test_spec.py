@@ -147,7 +147,7 @@ def test_hashes_follow_what_can_change_a_result(folder):
     ("seeds = [3, 1]", "seeds = 3", ["line 4", "list"]),
     ("seeds = [3, 1]", "seeds = [3", ["spec.toml", "line 5"]),
     ("more/ball.off", "ball.off", ["line 1", "ball.off", "no file"]),
-    ("more/ball.off", "./cube.off", ["line 1", "two objects named", "cube"]),
+    ("more/ball.off", "./cube.off", ["line 1", "two objects with the name", "cube"]),
     ('"more/ball.off"', '{mesh = "more/ball.off", reech = "x"}', ["line 1", "'reech'", "reach"]),
     ('"more/ball.off"', '{mesh = "more/ball.off", reach = "x.toml"}', ["line 1", "x.toml"]),
     ('"more/ball.off"', '{mesh = "more/ball.off", obstacles = "x"}', ["line 1", "obstacles must be a list"]),

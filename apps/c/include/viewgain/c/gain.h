@@ -30,7 +30,7 @@ typedef struct vg_scene_config {
      ends rays of the surface and combined gains. */
   double support_plane;
   /* For the surface and combined gains: longest side of the object [m]; NaN (the default): that of
-     its seen part. */
+     the part seen so far. */
   double object_size;
   /* Constant rate at which a ray meets the surface in unknown voxels [1/m]; NaN (the default):
      depends on the distance to seen surface. */
@@ -147,7 +147,7 @@ typedef struct vg_view_gain {
 
 /* Expected gain of every pose, count times 16 doubles, on all threads of the evaluator. (For a
    single pose without a watch, only the paper's gain uses more than one thread.) An invalid pose
-   has gain NaN and affects no other; a camera in an occupied voxel has gain 0. watch or null.
+   has gain NaN and affects no other; a camera in an occupied voxel has gain 0. `watch` may be null.
    VG_STOPPED: the remaining gains are NaN. */
 VG_API vg_status vg_evaluate(const vg_evaluator* evaluator, const double* poses, size_t count,
                              double* gains, const vg_watch* watch);
@@ -160,7 +160,7 @@ VG_API vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* 
 
 /* The k best poses, exact: scores all poses; best first, ties to the lower index. `indices` and
    `gains` (or null) have room for k. *found is the number of chosen poses, which is less than k if
-   fewer poses are valid. VG_STOPPED: the best so far, *found of them. */
+   fewer poses are valid. VG_STOPPED: the best *found poses so far. */
 VG_API vg_status vg_best(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          size_t* indices, double* gains, size_t* found, const vg_watch* watch);
 

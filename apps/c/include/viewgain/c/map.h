@@ -81,7 +81,7 @@ VG_API void vg_range_calibration_release(vg_range_calibration* calibration); /* 
 
 /* ---- Belief grids ---- */
 
-/* A map of a workspace. Nothing may run next to a call that changes it. */
+/* A map of a workspace. No other call may use a map while a call changes it. */
 typedef struct vg_grid vg_grid;
 
 /* Layout of a map. */

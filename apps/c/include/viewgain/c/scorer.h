@@ -3,7 +3,7 @@
 #ifndef VIEWGAIN_C_SCORER_H
 #define VIEWGAIN_C_SCORER_H
 
-/* Part of viewgain/viewgain.h: frames or labels in, gains of poses out, as C++'s ViewScorer. */
+/* Part of viewgain/viewgain.h: adds frames or labels, and scores poses, like ViewScorer in C++. */
 
 #include "viewgain/c/gain.h"
 
@@ -86,23 +86,23 @@ typedef struct vg_map_update {
 VG_API void vg_map_update_init(vg_map_update* update, size_t struct_size);
 
 /* Adds a frame: `depth` and the other arguments as in vg_integrate(). Filters it, marks obstacles,
-   and updates the hazard and the scene. `update` or null. If the frame cannot be used, the result
-   is VG_OK, and the verdict gives the reason. */
+   and updates the hazard and the scene. `update` may be null. If the frame cannot be used, the
+   result is VG_OK, and the verdict gives the reason. */
 VG_API vg_status vg_scorer_add(vg_scorer* scorer, const float* depth, const float* amplitude,
                                const double T_world_camera[16], const double pose_sigma[2],
                                vg_map_update* update);
-/* Labels a box of voxels, as vg_grid_update_box(). Labelled voxels add no refinement to the gain.
- */
+/* Labels a box of voxels, like vg_grid_update_box(). Labelled voxels add no refinement to the
+   gain. */
 VG_API vg_status vg_scorer_set(vg_scorer* scorer, const int32_t first[3], const int32_t dims[3],
                                const uint8_t* labels, uint64_t* changed);
-/* Resets a box of the grid frame [m] to unknown, as vg_grid_forget(), for moved objects. */
+/* Resets a box of the grid frame [m] to unknown, like vg_grid_forget(), for moved objects. */
 VG_API vg_status vg_scorer_forget(vg_scorer* scorer, const double min[3], const double max[3],
                                   uint64_t* forgotten);
 
-/* The gain of each pose on the current map, as vg_evaluate(). */
+/* The gain of each pose on the current map, like vg_evaluate(). */
 VG_API vg_status vg_scorer_evaluate(const vg_scorer* scorer, const double* poses, size_t count,
                                     double* gains, const vg_watch* watch);
-/* The k best poses with high probability, best first, as vg_race(). If body_size is set, only
+/* The k best poses with high probability, best first, like vg_race(). If body_size is set, only
    feasible poses are chosen. costs: one per pose, subtracted from its gain, in the gain's unit, or
    null. deadline: time limit of the call [s], as in vg_race(); INFINITY: none. */
 VG_API vg_status vg_scorer_best(const vg_scorer* scorer, const double* poses, size_t count,
@@ -116,7 +116,7 @@ VG_API vg_status vg_scorer_scene(const vg_scorer* scorer, vg_scene** scene);
 /* An evaluator of the current scene, for the functions that take one. */
 VG_API vg_status vg_scorer_evaluator(const vg_scorer* scorer, vg_evaluator** evaluator);
 
-/* How well the frames in the map agree, as C++'s FrameConsistency. */
+/* How well the frames in the map agree, like FrameConsistency in C++. */
 typedef struct vg_consistency {
   size_t struct_size;     /* set by _init() */
   size_t frames;          /* number of added frames */

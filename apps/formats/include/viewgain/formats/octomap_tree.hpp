@@ -50,7 +50,7 @@ struct OctreeLabels {
                                                    const octomap::OcTree& tree, const Box& region) {
   const double V = tree.getResolution();
   if (std::abs(voxel_size - V) > 1e-9 * V)
-    refuse("the tree and the grid have different voxel sizes");
+    refuse("the tree and the grid must have the same voxel size");
   const auto index = [&](double x) {
     return static_cast<std::int32_t>(std::clamp(std::floor(x / V), -32768.0, 32767.0));
   };

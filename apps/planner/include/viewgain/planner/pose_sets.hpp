@@ -39,7 +39,7 @@ struct VIEWGAIN_EXPORT PoseSetRequest {
   /// the one whose direction from the centre differs most from the directions of the start and of
   /// all earlier poses. Ties go to the lower index.
   bool spread_out = false;
-  /// Reach of the robot. Only the generator shell uses the reach, and not if it has a list of
+  /// Reach of the robot. Only the generator shell uses it, unless the reach has a list of
   /// poses.
   ReachRegion reach{};
 };

@@ -103,7 +103,7 @@ class VIEWGAIN_EXPORT OracleChoice {
 
   /// Index of the candidate after which the map's points cover the most samples. Simulates one
   /// noise-free frame into a copy of the map for each of the 8 candidates that see the most
-  /// uncovered samples of the mesh, unoccluded and at under 72°. Ties go to the lower index.
+  /// uncovered samples of the mesh, unoccluded and at less than 72°. Ties go to the lower index.
   /// Requires at least one candidate (unchecked). Throws like covered_after(). Cost: some seconds
   /// for a thousand candidates.
   [[nodiscard]] std::size_t next(std::span<const Candidate> candidates) const;

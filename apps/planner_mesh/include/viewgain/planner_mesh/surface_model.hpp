@@ -100,8 +100,8 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
 };
 
 /// UPDATEREPRESENTATIONS for slightly wrong poses. Aligns the first frames of all views so far with
-/// each other (FrameAlignment) and rebuilds the model from the corrected poses. A refused view is
-/// left out of the model while it is refused. The first view's pose is fixed.
+/// each other (FrameAlignment) and rebuilds the model from the corrected poses. A view is
+/// left out of the model as long as its alignment is refused. The first view's pose is fixed.
 ///
 /// Keeps all frames. Thread safety: one call at a time. Cost of a view: the alignment, and an
 /// update for every view so far.
@@ -111,7 +111,7 @@ class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
   /// Error(invalid_argument) like FrameAlignment.
   RegisteredModel(SurfaceModel& model, const PoseSigma& sigma, const ExecConfig& exec = {});
 
-  /// The stages are those of SurfaceModel::update(), and register. Throws like
+  /// The stages are those of SurfaceModel::update(), plus register. Throws like
   /// FrameAlignment::add() and SurfaceModel::rebuild().
   ModelProgress update(const Measurements& measurements) override;
 

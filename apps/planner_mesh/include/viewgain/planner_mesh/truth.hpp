@@ -119,7 +119,7 @@ VIEWGAIN_EXPORT void mark_seen(const SurfaceScene& scene, const SurfaceScene* su
 class VIEWGAIN_EXPORT Truth {
  public:
   /// Determines the visible samples. The scene must not be null. Throws like GroundTruth, and
-  /// passes on exceptions of the region's predicate.
+  /// rethrows exceptions of the region's predicate.
   Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
         const VisibilityConfig& config, const ExecConfig& exec);
 
