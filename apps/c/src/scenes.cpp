@@ -98,7 +98,7 @@ vg_status vg_calibrate_hazard(const vg_integrator* integrator, vg_grid* grid, co
                               const float* depth, const double T_world_camera[16]) {
   return guarded("integrator grid scene depth T_world_camera",
                  {integrator, grid, scene, depth, T_world_camera}, [&] {
-                   integrator->calibration.count(grid->grid, scene->scene->hazard(),
+                   integrator->calibration.count(grid->grid, scene->scene->hazard_probe(),
                                                  frame_of(integrator->camera, depth, nullptr),
                                                  rigid_pose_of(T_world_camera));
                  });

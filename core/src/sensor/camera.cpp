@@ -145,6 +145,15 @@ bool PinholeCamera::sees(const Eigen::Vector3d& p_camera) const {
 std::vector<Eigen::Vector3d> PinholeCamera::ray_table() const {
   std::vector<Eigen::Vector3d> table;
   table.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  if (!has_distortion()) {
+    std::vector<double> x;  // of each column
+    for (int u = 0; u < width; ++u) x.push_back((u - cx) / fx);
+    for (int v = 0; v < height; ++v) {
+      const double y = (v - cy) / fy;
+      for (const double of_column : x) table.emplace_back(of_column, y, 1.0);
+    }
+    return table;
+  }
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) table.push_back(ray(u, v));
   }

@@ -67,54 +67,66 @@ JumpEdgeFilter::JumpEdgeFilter(const PinholeCamera& camera, const JumpEdgeFilter
 
 std::size_t JumpEdgeFilter::apply(DepthFrame& frame) const {
   check_frame_size(frame, camera_);
-  const std::size_t pixels = rays_.size();
   const auto width = static_cast<std::size_t>(camera_.width);
   const auto height = static_cast<std::size_t>(camera_.height);
+  constexpr double kNone = std::numeric_limits<double>::infinity();
 
-  // Zero means no reading, because a reading cannot be at the camera's centre.
-  std::vector<double> squared_ranges(pixels, 0.0);
-  std::vector<float> depth = frame.depth;
-  const auto point = [&](std::size_t i) -> Eigen::Vector3d {
-    return static_cast<double>(depth[i]) * rays_[i];
+  // Depths as given and squared ranges, of the row above a pixel's, its own, and the one below.
+  // kNone without a reading, also beyond the image.
+  std::vector<float> depths(3 * width);
+  std::vector<double> squares(3 * (width + 2), kNone), least(width + 2, kNone);
+  const auto depth_row = [&](std::size_t v) { return &depths[v % 3 * width]; };
+  const auto square_row = [&](std::size_t v) { return &squares[v % 3 * (width + 2) + 1]; };
+  const auto load = [&](std::size_t v) {
+    double* squared = square_row(v);
+    if (v == height) {
+      std::fill_n(squared, width, kNone);
+      return;
+    }
+    const float* depth = &frame.depth[v * width];
+    std::copy_n(depth, width, depth_row(v));
+    for (std::size_t u = 0; u < width; ++u) {
+      const double of_pixel =
+          (static_cast<double>(depth[u]) * rays_[v * width + u]).squaredNorm();  // or not a number
+      squared[u] = depth[u] > 0 && of_pixel < kNone ? of_pixel : kNone;
+    }
   };
-  for (std::size_t i = 0; i < pixels; ++i) {
-    if (!(depth[i] > 0 && std::isfinite(depth[i])) || !rays_[i].allFinite()) continue;
-    squared_ranges[i] = point(i).squaredNorm();
-  }
+  const auto point = [&](std::size_t v, std::size_t u) -> Eigen::Vector3d {
+    return static_cast<double>(depth_row(v)[u]) * rays_[v * width + u];
+  };
 
   const double sin_angle = std::sin(config_.angle);
   const double sin2_angle = sin_angle * sin_angle;
-  std::size_t removed = 0;
-  // Smallest squared range of three rows, to compare with all neighbours at once; infinite without
-  // readings.
-  std::vector<double> least(width + 2);
-  for (std::size_t v = 0; v < height; ++v) {
-    std::fill(least.begin(), least.end(), std::numeric_limits<double>::infinity());
+  const auto is_flying = [&](std::size_t v, std::size_t u) {
+    const double own = square_row(v)[u];
     for (std::size_t j = v > 0 ? v - 1 : v; j <= v + 1 && j < height; ++j) {
-      for (std::size_t u = 0; u < width; ++u) {
-        const double squared = squared_ranges[j * width + u];
-        least[u + 1] = squared > 0 && squared < least[u + 1] ? squared : least[u + 1];
+      for (std::size_t i = u > 0 ? u - 1 : u; i <= u + 1 && i < width; ++i) {
+        const double other = square_row(j)[i];
+        const double near = std::min(own, other), far = std::max(own, other);
+        if (far < smooth_ * near || !(far < kNone)) continue;
+        if (!config_.two_sided && !(other < own)) continue;
+        if (along_ray(point(v, u), point(j, i), sin2_angle)) return true;
       }
     }
+    return false;
+  };
+
+  std::size_t removed = 0;
+  load(0);
+  for (std::size_t v = 0; v < height; ++v) {
+    load(v + 1);
+    const double *above = square_row(v + 2), *own = square_row(v), *below = square_row(v + 1);
+    // Smallest of three rows, to compare with all neighbours at once.
     for (std::size_t u = 0; u < width; ++u) {
-      const std::size_t p = v * width + u;
-      if (!(squared_ranges[p] > 0)) continue;
-      const double nearest = std::min({least[u], least[u + 1], least[u + 2]});
-      if (!config_.two_sided && squared_ranges[p] < smooth_ * nearest) continue;
-      bool flying = false;
-      for (std::size_t j = v > 0 ? v - 1 : v; j <= v + 1 && j < height && !flying; ++j) {
-        for (std::size_t i = u > 0 ? u - 1 : u; i <= u + 1 && i < width && !flying; ++i) {
-          const std::size_t q = j * width + i;
-          const double near = std::min(squared_ranges[p], squared_ranges[q]);
-          const double far = std::max(squared_ranges[p], squared_ranges[q]);
-          if (far < smooth_ * near || !(near > 0)) continue;
-          if (!config_.two_sided && !(squared_ranges[q] < squared_ranges[p])) continue;
-          flying = along_ray(point(p), point(q), sin2_angle);
-        }
-      }
-      if (!flying) continue;
-      frame.depth[p] = DepthFrame::kInvalid;
-      if (!frame.amplitude.empty()) frame.amplitude[p] = 0;
+      least[u + 1] = std::min(std::min(above[u], own[u]), below[u]);
+    }
+    for (std::size_t u = 0; u < width; ++u) {
+      if (!(own[u] < kNone)) continue;
+      const double nearest = std::min(std::min(least[u], least[u + 1]), least[u + 2]);
+      if (!config_.two_sided && own[u] < smooth_ * nearest) continue;
+      if (!is_flying(v, u)) continue;
+      frame.depth[v * width + u] = DepthFrame::kInvalid;
+      if (!frame.amplitude.empty()) frame.amplitude[v * width + u] = 0;
       ++removed;
     }
   }

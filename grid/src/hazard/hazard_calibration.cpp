@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/state_reader.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
@@ -43,15 +44,11 @@ Stretch clipped(const Box& box, const Eigen::Vector3d& origin, const Eigen::Vect
 
 // Whether the map's update assigns the reading to known surface, as associate() does: then noise
 // moved it, and it is not a meeting.
-bool is_of_known_surface(const BeliefGrid& grid, const Eigen::Vector3d& p_grid,
+bool is_of_known_surface(StateReader& map, double size, const Eigen::Vector3d& p_grid,
                          const Eigen::Vector3d& direction, double range, double sigma) {
-  const double size = grid.voxel_size();
   if (sigma < 0.5 * size) return false;
   const auto is_occupied = [&](double t) {
-    const Eigen::Array3d v = ((p_grid + t * direction) / size).array().floor();
-    const Index3 voxel{static_cast<std::int32_t>(v.x()), static_cast<std::int32_t>(v.y()),
-                       static_cast<std::int32_t>(v.z())};
-    return grid.state(voxel) == VoxelState::occupied;
+    return map.state(voxel_of((p_grid + t * direction) / size)) == VoxelState::occupied;
   };
   const double reach = std::min(3 * sigma, 8 * size);
   for (double t = 0.5 * size; t < reach; t += 0.5 * size) {
@@ -68,7 +65,7 @@ HazardCalibration::HazardCalibration(const Sensor& sensor, std::optional<double>
   rays_ = sensor.camera.ray_table();
 }
 
-void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
+void HazardCalibration::count(BeliefGrid& grid, const HazardProbe& hazard, const DepthFrame& frame,
                               const Pose& T_world_camera) const {
   const PinholeCamera& camera = sensor_.camera;
   check_frame_size(frame, camera);
@@ -90,9 +87,7 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
     return HazardCounters::class_of(distance / model.decay_length);
   };
   const auto voxel_at = [&](const Eigen::Vector3d& p) -> Index3 {
-    const Eigen::Array3d v = (p / grid.voxel_size()).array().floor();
-    return {static_cast<std::int32_t>(v.x()), static_cast<std::int32_t>(v.y()),
-            static_cast<std::int32_t>(v.z())};
+    return voxel_of(p / grid.voxel_size());
   };
   const auto sees_plane = [&](const Eigen::Vector3d& p_camera, double range) {
     if (!support_plane_) return false;
@@ -102,6 +97,7 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
   };
 
   Sums sums;
+  StateReader map(grid);
   const int width = camera.width, height = camera.height;
   const int stride = std::max(
       1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(rays_.size()) / kPixels))));
@@ -122,9 +118,9 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
       const Stretch seen = clipped(workspace, eye, direction, {sensor_.min_range, last});
       for (double t = seen.begin + 0.5 * step; t < seen.end; t += step) {
         const Index3 voxel = voxel_at(eye + t * direction);
-        if (grid.state(voxel) != VoxelState::unknown) continue;
-        const double distance = hazard.distance(voxel);
-        sums.expected[class_at(distance)] += hazard.start_rate(voxel) * step;
+        if (map.state(voxel) != VoxelState::unknown) continue;
+        const HazardProbe::At at = hazard.at(voxel);
+        sums.expected[class_at(at.distance)] += at.start_rate * step;
       }
       if (!is_reading || frame.shows_known(i) ||
           sees_plane(static_cast<double>(z) * rays_[i], range)) {
@@ -133,9 +129,10 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardField& hazard, const
       const Eigen::Vector3d p = eye + range * direction;
       if (!workspace.contains(p.x(), p.y(), p.z())) continue;
       const Index3 voxel = voxel_at(p);
-      if (grid.state(voxel) != VoxelState::unknown) continue;
-      if (is_of_known_surface(grid, p, direction, range, sensor_.sigmas(range).axial)) continue;
-      sums.met[class_at(hazard.distance(voxel))] += 1;
+      if (map.state(voxel) != VoxelState::unknown) continue;
+      const double sigma = sensor_.sigmas(range).axial;
+      if (is_of_known_surface(map, grid.voxel_size(), p, direction, range, sigma)) continue;
+      sums.met[class_at(hazard.at(voxel).distance)] += 1;
     }
   }
 

@@ -7,75 +7,19 @@
 #include <utility>
 
 #include "free_share.hpp"
+#include "hazard_layout.hpp"
 #include "nearest_cells.hpp"
 #include "open_directions.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/grid/hazard.hpp"
-#include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain {
 namespace {
 
-// Minimum hits of a voxel, or cube of voxels, to be evidence of surface.
-constexpr std::uint64_t kLeastHits = 3;
 constexpr double kFar = std::numeric_limits<double>::infinity();
-// Distance within which surface is not new [pooling lengths]. By rank correlation with the surface
-// that views really show, 1.2 and 1.6 are equally good, and 2 and more are worse.
-constexpr double kKnownDistance = 1.2;
-
 void check(bool ok, const char* name, double value) {
   if (!ok) refuse("hazard: the " + std::string(name) + ", not " + short_text(value));
-}
-
-// The voxels with evidence of surface; those of a cube of 2^shift voxels per edge count together.
-std::vector<Index3> evidence_in(const GridSnapshot& snapshot, int shift) {
-  std::vector<Index3> voxels;
-  std::vector<unsigned> occupied;
-  std::array<std::uint64_t, 512> hits{};  // by the offset of a cube's lowest voxel
-  for (const GridSnapshot::Leaf& leaf : snapshot.leaves) {
-    if (!leaf.beliefs) continue;
-    const int scale = leaf.beliefs->scale;
-    const int cube = std::max(shift, scale);
-    occupied.clear();
-    std::size_t rank = 0;
-    for_each_bit(leaf.beliefs->mask, [&](unsigned offset) {
-      const Belief& belief = leaf.beliefs->beliefs[rank++];
-      if (!test_bit(leaf.occupied, offset)) return;
-      hits[cell_offset(offset, cube)] += belief.hits;
-      occupied.push_back(offset);
-    });
-    for (const unsigned offset : occupied) {
-      if (hits[cell_offset(offset, cube)] < kLeastHits) continue;
-      for_each_in_cell(offset, scale,
-                       [&](unsigned at) { voxels.push_back(offset_voxel(leaf.origin, at)); });
-    }
-    for (const unsigned offset : occupied) hits[cell_offset(offset, cube)] = 0;
-  }
-  return voxels;
-}
-
-// Bounding box of voxels; empty if there are none.
-VoxelBox box_of(const std::vector<Index3>& voxels) {
-  if (voxels.empty()) return {};
-  VoxelBox box{voxels.front(), voxels.front()};
-  for (const Index3& v : voxels) {
-    box.min = {std::min(box.min.x, v.x), std::min(box.min.y, v.y), std::min(box.min.z, v.z)};
-    box.max = {std::max(box.max.x, v.x), std::max(box.max.y, v.y), std::max(box.max.z, v.z)};
-  }
-  return {box.min, {box.max.x + 1, box.max.y + 1, box.max.z + 1}};
-}
-
-Index3 last_of(const VoxelBox& box) { return {box.max.x - 1, box.max.y - 1, box.max.z - 1}; }
-
-int longest_side(const VoxelBox& box) {
-  return std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z});
-}
-
-// log2 of the hazard cells' edge [voxels].
-int shift_for(double decay_length, double voxel_size) {
-  const double wanted = std::log2(0.28 * decay_length / voxel_size);
-  return static_cast<int>(std::clamp(std::round(wanted), 0.0, 3.0));
 }
 
 // Factors of the model's rates by distance class that make the rates of classes decrease with
@@ -174,68 +118,45 @@ HazardConfig constant_hazard(double rate, const BeliefGrid& grid,
 
 HazardField::HazardField(const GridSnapshot& snapshot, const HazardConfig& config,
                          const ExecConfig& exec)
-    : volume_(config.volume), pooling_(pooling_of(snapshot)), voxel_size_(snapshot.voxel_size) {
-  config.validate();
-  const std::vector<Index3> evidence = evidence_in(snapshot, pooling_.shift);
-  const VoxelBox workspace = VoxelBox::from_dims(snapshot.min_index, snapshot.dims);
-  const VoxelBox seen = evidence.empty() ? workspace : box_of(evidence);
-  const double size = config.object_size.value_or(longest_side(seen) * voxel_size_);
-  model_ = config.model.value_or(HazardConfig::Model::for_size(size));
-  shift_ = shift_for(model_.decay_length, voxel_size_);
+    : volume_(config.volume), voxel_size_(snapshot.voxel_size) {
+  const detail::HazardLayout layout(snapshot, config);
+  model_ = layout.model;
+  pooling_ = layout.pooling;
+  shift_ = layout.shift;
+  most_known_ = layout.most_known;
+  follows_counters_ = layout.follows_counters;
   factors_.fill(1.0);
-  follows_counters_ = config.calibrated && !config.model && !volume_;
   if (follows_counters_ && !snapshot.hazard.empty()) {
     factors_ = monotone_factors(model_, snapshot.hazard);
   }
   far_rate_ = volume_ ? volume_->outside : static_cast<float>(model_.rate(kFar) * factors_.back());
+  if (layout.evidence.empty()) return;
   ThreadPool pool(exec.num_threads);
-  find_distances(snapshot, evidence, pool);
+  find_distances(snapshot, layout, pool);
 }
 
-void HazardField::find_distances(const GridSnapshot& snapshot, const std::vector<Index3>& evidence,
+void HazardField::find_distances(const GridSnapshot& snapshot, const detail::HazardLayout& layout,
                                  ThreadPool& pool) {
-  if (evidence.empty()) return;
-  const int edge = 1 << shift_;
-  const double cell = voxel_size_ * edge;
-  const int reach = static_cast<int>(std::clamp(
-      HazardConfig::Model::kCut * model_.decay_length / cell, 1.0, static_cast<double>(kMaxReach)));
-  const VoxelBox seen = box_of(evidence);
-  const VoxelBox workspace = VoxelBox::from_dims(snapshot.min_index, snapshot.dims);
-  const VoxelBox cells =
-      VoxelBox{cell_at(seen.min, -reach), cell_at(last_of(seen), reach + 1)}.intersection(
-          {cell_at(workspace.min, 0), cell_at(last_of(workspace), 1)});
+  const VoxelBox& cells = layout.cells;
   low_cell_ = cells.min;
   size_ = {static_cast<std::size_t>(cells.max.x - cells.min.x),
            static_cast<std::size_t>(cells.max.y - cells.min.y),
            static_cast<std::size_t>(cells.max.z - cells.min.z)};
-  near_box_ = {{cells.min.x * edge, cells.min.y * edge, cells.min.z * edge},
-               {cells.max.x * edge, cells.max.y * edge, cells.max.z * edge}};
-  constexpr std::uint64_t kMostCells = std::uint64_t{1} << 31U;
-  if (cells.volume() > kMostCells) {
-    throw Error(ErrorCode::capacity, "hazard: the known surface extends over " +
-                                         std::to_string(cells.volume()) +
-                                         " cells; the maximum is " + std::to_string(kMostCells));
-  }
+  near_box_ = layout.voxels;
   squared_.assign(cells.volume(), detail::kNoDistance);
   std::vector<std::uint32_t> sources;  // cells with evidence
-  for (const Index3& v : evidence) {
+  for (const Index3& v : layout.evidence) {
     const std::size_t at = cell_of(v);
     if (std::exchange(squared_[at], std::uint16_t{0}) != 0) {
       sources.push_back(static_cast<std::uint32_t>(at));
     }
   }
   static_assert(kNoDistance == detail::kNoDistance);
-  const detail::NearestCells nearest(squared_, size_, reach, pool);
+  const detail::NearestCells nearest(squared_, size_, layout.reach, pool);
   const detail::FreeShare free(snapshot, cells, shift_, pool);
-  const int open_reach = static_cast<int>(
-      std::clamp(HazardConfig::Model::kOpenReach * model_.decay_length / cell, 1.0, 63.0));
-  find_shapes(nearest, free,
-              detail::OpenDirections(snapshot, cells, shift_, free, open_reach, pool), sources,
-              pool);
-  find_rates(reach);
-  // [cells]; at least the neighbours of a cell with evidence
-  const double known = std::max(kKnownDistance * pooling_.length / cell, 1.0);
-  most_known_ = static_cast<std::uint32_t>(known * known);
+  const detail::OpenDirections open(snapshot, cells, shift_, free, layout.open_reach, pool);
+  find_shapes(nearest, free, open, sources, pool);
+  find_rates(layout.reach);
 }
 
 void HazardField::find_shapes(const detail::NearestCells& nearest, const detail::FreeShare& free,

@@ -16,6 +16,7 @@
 #include "map_notes.hpp"
 #include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/block_lattice.hpp"
+#include "viewgain/support/state_reader.hpp"
 
 namespace viewgain {
 namespace {
@@ -199,6 +200,15 @@ Eigen::Vector3d BeliefGrid::center(Index3 voxel) const {
 VoxelState BeliefGrid::state(Index3 voxel) const {
   if (!storage_->lattice.contains(voxel)) return VoxelState::unknown;
   return code_state(storage_->tree.getValue(to_coord(voxel)));
+}
+
+void StateReader::enter(Index3 block) {
+  const CodeTree& tree = GridAccess::storage(grid_).tree;
+  const openvdb::Coord origin(block.x * 8, block.y * 8, block.z * 8);
+  const CodeLeaf* leaf = tree.probeConstLeaf(origin);
+  codes_ = leaf != nullptr ? leaf->buffer().data() : nullptr;
+  if (leaf == nullptr) tile_code_ = tree.getValue(origin);
+  block_ = block;
 }
 
 std::optional<float> BeliefGrid::log_odds(Index3 voxel) const {

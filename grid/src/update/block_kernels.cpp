@@ -26,6 +26,9 @@ constexpr DF df;
 constexpr hn::RebindToSigned<DF> di;
 constexpr hn::Rebind<std::int32_t, DF> di32;
 constexpr hn::Rebind<std::int8_t, DF> di8;
+constexpr hn::RebindToUnsigned<DF> du;
+constexpr hn::Rebind<std::uint32_t, DF> du32;
+constexpr hn::Rebind<float, DF> df32;
 using VF = hn::Vec<DF>;
 using MF = hn::Mask<DF>;
 
@@ -53,11 +56,17 @@ HWY_INLINE hn::Vec<decltype(di)> small_integer(VF value) {
                  hn::Set(di, (std::int64_t{1} << 52) - 1));
 }
 
+// The pixel of a point, where a coordinate lies within this of the middle between two pixels, is
+// found by quotients; elsewhere by a reciprocal, whose error is about 1e-12.
+constexpr double kNearEdge = 1e-6;  // [pixels]
+
 template <bool kDistorted>
-bool project(const ConeCamera& camera, const double* HWY_RESTRICT reach_taper, double voxel_size,
-             Index3 origin, int edge, std::int8_t* HWY_RESTRICT deltas) {
+bool project(const ConeCamera& camera, const ConePixels& pixels, double voxel_size, Index3 origin,
+             int edge, std::int8_t* HWY_RESTRICT deltas) {
   const auto& T = camera.T_camera_grid;
-  const VF zero = hn::Zero(df), half = hn::Set(df, 0.5), eight = hn::Set(df, 8.0);
+  const VF zero = hn::Zero(df), half = hn::Set(df, 0.5), one = hn::Set(df, 1.0);
+  const VF eight = hn::Set(df, 8.0);
+  const VF low_edge = hn::Set(df, kNearEdge), high_edge = hn::Set(df, 1.0 - kNearEdge);
   const VF none = hn::Set(df, kNoDelta);
   const VF fx = hn::Set(df, camera.fx), fy = hn::Set(df, camera.fy);
   const VF cx = hn::Set(df, camera.cx), cy = hn::Set(df, camera.cy);
@@ -80,10 +89,25 @@ bool project(const ConeCamera& camera, const double* HWY_RESTRICT reach_taper, d
         const VF py = hn::Add(hn::Add(row_y, hn::Mul(hn::Set(df, T[6]), gz)), hn::Set(df, T[7]));
         const VF pz = hn::Add(hn::Add(row_z, hn::Mul(hn::Set(df, T[10]), gz)), hn::Set(df, T[11]));
         MF seen = hn::Gt(pz, zero);
-        VF x = hn::Div(px, pz), y = hn::Div(py, pz);
-        if constexpr (kDistorted) distort(camera, x, y, seen);
-        const VF u = hn::Floor(hn::Add(hn::Add(hn::Mul(fx, x), cx), half));
-        const VF v = hn::Floor(hn::Add(hn::Add(hn::Mul(fy, y), cy), half));
+        VF u, v;
+        const auto place = [&](VF x, VF y) {
+          u = hn::Add(hn::Add(hn::Mul(fx, x), cx), half);
+          v = hn::Add(hn::Add(hn::Mul(fy, y), cy), half);
+        };
+        if constexpr (kDistorted) {
+          VF x = hn::Div(px, pz), y = hn::Div(py, pz);
+          distort(camera, x, y, seen);
+          place(x, y);
+        } else {
+          const VF inverse = hn::Div(one, pz);
+          place(hn::Mul(px, inverse), hn::Mul(py, inverse));
+          const VF right = hn::Sub(u, hn::Floor(u)), below = hn::Sub(v, hn::Floor(v));
+          const MF is_near = hn::Or(hn::Lt(hn::Min(right, below), low_edge),
+                                    hn::Gt(hn::Max(right, below), high_edge));
+          if (!hn::AllFalse(df, hn::And(seen, is_near))) place(hn::Div(px, pz), hn::Div(py, pz));
+        }
+        u = hn::Floor(u);
+        v = hn::Floor(v);
         seen = hn::And(seen, hn::And(hn::Ge(u, zero), hn::Lt(u, width)));
         seen = hn::And(seen, hn::And(hn::Ge(v, zero), hn::Lt(v, height)));
         if (hn::AllFalse(df, seen)) {
@@ -91,17 +115,34 @@ bool project(const ConeCamera& camera, const double* HWY_RESTRICT reach_taper, d
           continue;
         }
         const VF pixel = hn::IfThenElseZero(seen, hn::Add(hn::Mul(v, width), u));
+        const auto bounds = hn::GatherIndex(du, pixels.bounds, small_integer(pixel));
+        const auto bound = [](auto half_of_bounds) {
+          return hn::PromoteTo(df, hn::BitCast(df32, hn::TruncateTo(du32, half_of_bounds)));
+        };
+        const VF clear = bound(bounds), farthest = bound(hn::ShiftRight<32>(bounds));
+        const VF range2 = hn::Add(hn::Add(hn::Mul(px, px), hn::Mul(py, py)), hn::Mul(pz, pz));
+        const MF within = hn::And(seen, hn::Lt(range2, hn::Mul(farthest, farthest)));
+        if (hn::AllFalse(df, within)) {
+          hn::StoreU(hn::Set(di8, kNoDelta), di8, out);
+          continue;
+        }
+        const MF in_full = hn::Lt(range2, hn::Mul(clear, clear));
+        if (hn::AllFalse(df, hn::AndNot(in_full, within))) {
+          any = true;
+          const VF delta = hn::IfThenElse(within, hn::Sub(zero, eight), none);
+          hn::StoreU(hn::DemoteTo(di8, hn::DemoteTo(di32, delta)), di8, out);
+          continue;
+        }
         const auto index = small_integer(hn::Add(pixel, pixel));
-        const VF reach = hn::GatherIndex(df, reach_taper, index);
-        const VF range =
-            hn::Sqrt(hn::Add(hn::Add(hn::Mul(px, px), hn::Mul(py, py)), hn::Mul(pz, pz)));
+        const VF reach = hn::GatherIndex(df, pixels.reach_taper, index);
+        const VF range = hn::Sqrt(range2);
         const MF crossed = hn::And(seen, hn::Lt(range, reach));
         if (hn::AllFalse(df, crossed)) {
           hn::StoreU(hn::Set(di8, kNoDelta), di8, out);
           continue;
         }
         any = true;
-        const VF taper = hn::GatherIndex(df, reach_taper + 1, index);
+        const VF taper = hn::GatherIndex(df, pixels.reach_taper + 1, index);
         const VF gap = hn::Sub(reach, range);
         const MF tapered = hn::And(crossed, hn::Lt(gap, taper));
         VF weight = eight;
@@ -117,10 +158,10 @@ bool project(const ConeCamera& camera, const double* HWY_RESTRICT reach_taper, d
   return any;
 }
 
-bool project_any(const ConeCamera& camera, const double* reach_taper, double voxel_size,
+bool project_any(const ConeCamera& camera, const ConePixels& pixels, double voxel_size,
                  Index3 origin, int edge, std::int8_t* deltas) {
-  return camera.distorted ? project<true>(camera, reach_taper, voxel_size, origin, edge, deltas)
-                          : project<false>(camera, reach_taper, voxel_size, origin, edge, deltas);
+  return camera.distorted ? project<true>(camera, pixels, voxel_size, origin, edge, deltas)
+                          : project<false>(camera, pixels, voxel_size, origin, edge, deltas);
 }
 
 void update(const std::int8_t* HWY_RESTRICT deltas, bool literal, std::uint8_t* HWY_RESTRICT codes,

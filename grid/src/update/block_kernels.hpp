@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "viewgain/core/camera.hpp"
@@ -27,6 +29,34 @@ struct ConeCamera {
   ConeCamera(const PinholeCamera& camera, const Pose& T_camera_grid_pose);
 };
 
+/// Which centres a pixel crosses, or one of several pixels, rounded outwards to single precision.
+struct RangeBounds {
+  float clear = 0;  ///< below this range all pixels cross at full weight [m]
+  float reach = 0;  ///< from this range on no pixel crosses [m]
+
+  /// Bounds of a pixel with this reach and taper [m] (Readings::reach_taper()).
+  [[nodiscard]] static RangeBounds of(double reach, double taper) {
+    constexpr double kOutwards = 2e-7;
+    return {static_cast<float>(std::max(0.0, reach - taper) * (1 - kOutwards)),
+            static_cast<float>(reach * (1 + kOutwards))};
+  }
+  /// As one number, for gathers: clear in the low half.
+  [[nodiscard]] std::uint64_t packed() const {
+    return std::bit_cast<std::uint32_t>(clear) | std::uint64_t{std::bit_cast<std::uint32_t>(reach)}
+                                                     << 32U;
+  }
+  [[nodiscard]] static RangeBounds unpacked(std::uint64_t packed) {
+    return {std::bit_cast<float>(static_cast<std::uint32_t>(packed)),
+            std::bit_cast<float>(static_cast<std::uint32_t>(packed >> 32U))};
+  }
+};
+
+/// A frame's pixels, in rows.
+struct ConePixels {
+  const double* reach_taper;    ///< Readings::reach_taper()
+  const std::uint64_t* bounds;  ///< RangeBounds::packed(), one per pixel
+};
+
 /// Result of update() for a block.
 struct BlockUpdate {
   LeafMask non_free{};   ///< after the update
@@ -38,10 +68,10 @@ struct BlockUpdate {
 /// instruction set. All give the same bits: + - × / sqrt, no fused multiply-add.
 struct BlockKernels {
   /// Projects the voxel centres into the image, of the first `edge` along each axis; other entries
-  /// of `deltas` are undefined. reach_taper holds two numbers per pixel: the range [m] below which
-  /// a centre is crossed, and the length [m] before it over which a crossing loses its weight.
-  /// deltas: 0..-8 steps, or kNoDelta. False: no deltas at all.
-  bool (*project)(const ConeCamera& camera, const double* reach_taper, double voxel_size,
+  /// of `deltas` are undefined. A centre is crossed below its pixel's reach [m]; a crossing loses
+  /// its weight over the taper [m] before it. deltas: 0..-8 steps, or kNoDelta. False: no deltas at
+  /// all.
+  bool (*project)(const ConeCamera& camera, const ConePixels& pixels, double voxel_size,
                   Index3 origin, int edge, std::int8_t* deltas);
   /// Applies deltas to codes (log_odds_code.hpp).
   void (*update)(const std::int8_t* deltas, bool literal, std::uint8_t* codes, BlockUpdate& result);

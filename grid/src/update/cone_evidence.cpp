@@ -13,6 +13,7 @@ namespace {
 // range.
 constexpr double kPixelMargin = 1e-6;
 constexpr double kRangeMargin = 1e-9;
+constexpr std::size_t kBoundsChunk = 8192;
 // Squares along one side of a rectangle: more is tighter, fewer is faster.
 constexpr std::int32_t kTexels = 4;
 
@@ -31,21 +32,28 @@ Interval square(Interval a) {
   return {a.low <= 0 && a.high >= 0 ? 0.0 : std::min(p, q), std::max(p, q)};
 }
 
+RangeBounds joined(const RangeBounds& a, const RangeBounds& b) {
+  return {std::min(a.clear, b.clear), std::max(a.reach, b.reach)};
+}
+
 }  // namespace
 
 void RangePyramid::build(std::span<const double> reach_taper, std::int32_t width,
-                         std::int32_t height) {
+                         std::int32_t height, ThreadPool& pool) {
   const auto count = [](std::int32_t w, std::int32_t h) {
     return static_cast<std::size_t>(w) * static_cast<std::size_t>(h);
   };
   levels_.resize(static_cast<std::size_t>(
       std::bit_width(static_cast<std::uint32_t>(std::max(width, height) - 1)) + 1));
-  levels_[0].width = width;
-  levels_[0].height = height;
-  levels_[0].texels.resize(count(width, height));
-  for (std::size_t i = 0; i < levels_[0].texels.size(); ++i) {
-    levels_[0].texels[i] = {reach_taper[2 * i] - reach_taper[2 * i + 1], reach_taper[2 * i]};
-  }
+  Level& finest = levels_[0];
+  finest.width = width;
+  finest.height = height;
+  finest.texels.resize(count(width, height));
+  pool.for_each_chunk(finest.texels.size(), kBoundsChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      finest.texels[i] = RangeBounds::of(reach_taper[2 * i], reach_taper[2 * i + 1]).packed();
+    }
+  });
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const Level& fine = levels_[l - 1];
     Level& coarse = levels_[l];
@@ -54,36 +62,34 @@ void RangePyramid::build(std::span<const double> reach_taper, std::int32_t width
     coarse.texels.resize(count(coarse.width, coarse.height));
     for (std::int32_t v = 0; v < coarse.height; ++v) {
       // With an odd size the last row or column counts twice.
-      const Bounds* row0 = fine.texels.data() + count(fine.width, 2 * v);
-      const Bounds* row1 =
+      const std::uint64_t* row0 = fine.texels.data() + count(fine.width, 2 * v);
+      const std::uint64_t* row1 =
           fine.texels.data() + count(fine.width, std::min(2 * v + 1, fine.height - 1));
-      Bounds* out = coarse.texels.data() + count(coarse.width, v);
+      std::uint64_t* out = coarse.texels.data() + count(coarse.width, v);
       for (std::int32_t u = 0; u < coarse.width; ++u) {
         const std::int32_t u0 = 2 * u, u1 = std::min(2 * u + 1, fine.width - 1);
-        out[u] = {std::min(std::min(row0[u0].clear, row0[u1].clear),
-                           std::min(row1[u0].clear, row1[u1].clear)),
-                  std::max(std::max(row0[u0].reach, row0[u1].reach),
-                           std::max(row1[u0].reach, row1[u1].reach))};
+        out[u] = joined(joined(RangeBounds::unpacked(row0[u0]), RangeBounds::unpacked(row0[u1])),
+                        joined(RangeBounds::unpacked(row1[u0]), RangeBounds::unpacked(row1[u1])))
+                     .packed();
       }
     }
   }
 }
 
-RangePyramid::Bounds RangePyramid::bounds(std::int32_t u0, std::int32_t v0, std::int32_t u1,
-                                          std::int32_t v1) const {
+RangeBounds RangePyramid::bounds(std::int32_t u0, std::int32_t v0, std::int32_t u1,
+                                 std::int32_t v1) const {
   const std::int32_t span = std::max(u1 - u0, v1 - v0) + 1;
   std::size_t l = 0;
   while ((span >> l) > kTexels) ++l;
   const Level& level = levels_[l];
-  Bounds result =
-      level.texels[static_cast<std::size_t>(v0 >> l) * static_cast<std::size_t>(level.width) +
-                   static_cast<std::size_t>(u0 >> l)];
+  const auto row = [&](std::int32_t v) {
+    return level.texels.data() +
+           static_cast<std::size_t>(v) * static_cast<std::size_t>(level.width);
+  };
+  RangeBounds result = RangeBounds::unpacked(row(v0 >> l)[u0 >> l]);
   for (std::int32_t v = v0 >> l; v <= v1 >> l; ++v) {
-    const Bounds* row =
-        level.texels.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(level.width);
     for (std::int32_t u = u0 >> l; u <= u1 >> l; ++u) {
-      result.clear = std::min(result.clear, row[u].clear);
-      result.reach = std::max(result.reach, row[u].reach);
+      result = joined(result, RangeBounds::unpacked(row(v)[u]));
     }
   }
   return result;
@@ -158,7 +164,7 @@ CubeClass ConeCull::classify(Index3 origin, int size) const {
   const auto upper = [](double value, double last) {
     return static_cast<std::int32_t>(value < last ? value : last);
   };
-  const RangePyramid::Bounds bounds =
+  const RangeBounds bounds =
       pyramid_.bounds(lower(u_low), lower(v_low), upper(u_high, last_u), upper(v_high, last_v));
 
   // The nearest centre lies behind the plane that touches the box and is perpendicular to the
@@ -169,18 +175,19 @@ CubeClass ConeCull::classify(Index3 origin, int size) const {
     nearest -= half * std::abs(p[0] * T[a] + p[1] * T[4 + a] + p[2] * T[8 + a]) / distance;
   }
   const double margin = kRangeMargin * (distance + size * voxel_size_);
-  if (nearest - margin > bounds.reach) return CubeClass::untouched;
-  if (std::sqrt(farthest2) + margin < bounds.clear) {
+  if (nearest - margin > static_cast<double>(bounds.reach)) return CubeClass::untouched;
+  if (std::sqrt(farthest2) + margin < static_cast<double>(bounds.clear)) {
     return inside ? CubeClass::crossed : CubeClass::cut;
   }
   return CubeClass::mixed;
 }
 
-void ConeEvidence::gather(const Readings& readings, const ConeCamera& camera, double voxel_size) {
+void ConeEvidence::gather(const Readings& readings, const ConeCamera& camera, double voxel_size,
+                          ThreadPool& pool) {
   readings_ = &readings;
   camera_ = &camera;
   voxel_size_ = voxel_size;
-  pyramid_.build(readings.reach_taper(), camera.width, camera.height);
+  pyramid_.build(readings.reach_taper(), camera.width, camera.height, pool);
   cull_.emplace(camera, pyramid_, voxel_size);
 }
 
@@ -199,7 +206,7 @@ std::vector<std::uint64_t> ConeEvidence::regions(const BlockLattice& lattice) co
 bool ConeEvidence::deltas(std::uint64_t /*key*/, Index3 origin, int scale,
                           std::int8_t* deltas) const {
   const bool any = kernels_.project(
-      *camera_, readings_->reach_taper().data(), voxel_size_ * (1 << scale),
+      *camera_, {readings_->reach_taper().data(), pyramid_.pixels()}, voxel_size_ * (1 << scale),
       {origin.x >> scale, origin.y >> scale, origin.z >> scale}, kBlockSize >> scale, deltas);
   // Expanded downwards in place: a cell's entry precedes those of its voxels.
   const auto s = static_cast<unsigned>(scale);

@@ -10,26 +10,26 @@
 #include "block_kernels.hpp"
 #include "evidence.hpp"
 #include "readings.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 
-/// Minima and maxima over squares of 2^level pixels.
+/// Bounds of squares of 2^level pixels.
 class RangePyramid {
  public:
-  void build(std::span<const double> reach_taper, std::int32_t width, std::int32_t height);
+  void build(std::span<const double> reach_taper, std::int32_t width, std::int32_t height,
+             ThreadPool& pool);
 
-  struct Bounds {
-    double clear = 0;  ///< below this range all pixels cross at full weight
-    double reach = 0;  ///< from this range on no pixel crosses
-  };
   /// Bounds for the pixels [u0, u1] x [v0, v1], inside the image.
-  [[nodiscard]] Bounds bounds(std::int32_t u0, std::int32_t v0, std::int32_t u1,
-                              std::int32_t v1) const;
+  [[nodiscard]] RangeBounds bounds(std::int32_t u0, std::int32_t v0, std::int32_t u1,
+                                   std::int32_t v1) const;
+  /// RangeBounds::packed() of the pixels.
+  [[nodiscard]] const std::uint64_t* pixels() const { return levels_[0].texels.data(); }
 
  private:
   struct Level {
     std::int32_t width = 0, height = 0;
-    std::vector<Bounds> texels;
+    std::vector<std::uint64_t> texels;  // packed
   };
   std::vector<Level> levels_;
 };
@@ -58,7 +58,8 @@ class ConeEvidence {
   ConeEvidence& operator=(const ConeEvidence&) = delete;
 
   /// Uses the pixels of this camera; both must live until the evidence has been used.
-  void gather(const Readings& readings, const ConeCamera& camera, double voxel_size);
+  void gather(const Readings& readings, const ConeCamera& camera, double voxel_size,
+              ThreadPool& pool);
 
   [[nodiscard]] std::vector<std::uint64_t> regions(const BlockLattice& lattice) const;
   [[nodiscard]] CubeClass classify(Index3 origin, int size) const {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string_view>
 #include <utility>
 
 #include "map/grid_layout.hpp"
@@ -24,6 +23,7 @@ constexpr std::size_t kFewSamples = 300;  // with fewer, more are sought
 constexpr std::size_t kKept = 40'000;     // readings of all frames
 constexpr std::size_t kOthers = 600;      // of these, compared with a frame
 constexpr std::size_t kImages = 64;       // remembered images
+constexpr std::size_t kHashed = 20'000;   // pixels of an image by which copies are recognised
 // Relative to range: errors of real cameras and trackers beyond those declared.
 constexpr double kUndeclared = 0.01;
 constexpr double kSigmas = 3;            // sigmas explained by noise
@@ -276,8 +276,10 @@ void FrameAgreement::look_for_copy(const DepthFrame& frame, const Pose& T_world_
     return;
   }
   Hash64 hash;
-  const auto* bytes = reinterpret_cast<const char*>(frame.depth.data());
-  hash.add_bytes({bytes, frame.depth.size() * sizeof(float)});
+  const std::size_t step = frame.depth.size() / kHashed + 1;
+  for (std::size_t i = 0; i < frame.depth.size(); i += step) {
+    hash.add(std::bit_cast<std::uint32_t>(frame.depth[i]));
+  }
   const auto same = std::find_if(images_.begin(), images_.end(),
                                  [&](const Image& image) { return image.hash == hash.value(); });
   if (same == images_.end()) {

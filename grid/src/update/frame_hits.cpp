@@ -5,11 +5,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "map/belief_sum.hpp"
-#include "viewgain/core/noise.hpp"
 
 namespace viewgain::detail {
 namespace {
@@ -19,64 +17,10 @@ constexpr double kStep = 0.5;    // along the ray [cells]
 constexpr double kMargin = 2.0;  // factor by which another voxel must be better
 constexpr double kFarthest = 8;  // reach that is searched; limits the cost [cells]
 
-constexpr std::size_t kHitChunk = 1024;
-constexpr int kRadius = 2;         // of the neighbourhood [pixels]
-constexpr double kSteepest = 2.0;  // depth per lateral distance
-constexpr int kFewest = 6;
+constexpr std::size_t kHitChunk = 1024, kSurfaceRows = 4;
 
-/// The reading moved along the normal onto the surface of the surrounding pixels [m]: the
-/// least-squares plane of depth over the image through readings of the 5×5 pixels whose depth
-/// differs from the pixel's by at most a slope of 2 plus noise. Empty if fewer than 6 remain, they
-/// are collinear, the plane is seen at less than kMinCosIncidence, or the reading is more than 3
-/// sigma from it and so belongs to something else. Empty for clouds, whose points have no
-/// neighbours. `pixel` must be a reading.
-std::optional<Eigen::Vector3d> surface_at(const Readings& readings, std::size_t pixel) {
-  const int width = readings.row_length();
-  if (width == 0) return std::nullopt;
-  const int height = static_cast<int>(readings.size()) / width;
-  const int u = static_cast<int>(pixel) % width, v = static_cast<int>(pixel) / width;
-  const PinholeCamera& camera = readings.sensor().camera;
-  const Eigen::Vector3d& point = readings.point(pixel);
-  const MeasurementSigmas sigmas = readings.sigmas(pixel);
-  const double noise = kTaperSigmas * std::numbers::sqrt2 * sigmas.axial;
-  const double slope = kSteepest * point.z() / std::min(camera.fx, camera.fy);
-
-  double n = 0, z = 0, uu = 0, uv = 0, vv = 0;
-  Eigen::Vector2d p = Eigen::Vector2d::Zero(), pz = Eigen::Vector2d::Zero();
-  for (int j = std::max(-kRadius, -v); j <= std::min(kRadius, height - 1 - v); ++j) {
-    for (int i = std::max(-kRadius, -u); i <= std::min(kRadius, width - 1 - u); ++i) {
-      const std::size_t at = pixel + static_cast<std::size_t>(j * width + i);
-      if (readings.kind(at) != PixelKind::reading) continue;
-      const double dz = readings.point(at).z() - point.z();
-      if (std::abs(dz) > slope * std::sqrt(i * i + j * j) + noise) continue;
-      n += 1, z += dz;
-      p += Eigen::Vector2d(i, j), pz += dz * Eigen::Vector2d(i, j);
-      uu += i * i, uv += i * j, vv += j * j;
-    }
-  }
-  if (n < kFewest) return std::nullopt;
-  // Depth = z + gradient · (pixel - p), with the means p and z.
-  p /= n, z /= n;
-  pz -= n * z * p;
-  uu -= n * p.x() * p.x(), uv -= n * p.x() * p.y(), vv -= n * p.y() * p.y();
-  const double determinant = uu * vv - uv * uv;
-  if (!(determinant > 1)) return std::nullopt;
-  const Eigen::Vector2d gradient((vv * pz.x() - uv * pz.y()) / determinant,
-                                 (uu * pz.y() - uv * pz.x()) / determinant);
-
-  const double off = z - gradient.dot(p);  // distance of the plane from the reading, in depth [m]
-  const double depth = point.z() + off;
-  const Eigen::Vector3d ray = point / point.z();
-  const Eigen::Vector3d along_u = gradient.x() * ray + Eigen::Vector3d(depth / camera.fx, 0, 0);
-  const Eigen::Vector3d along_v = gradient.y() * ray + Eigen::Vector3d(0, depth / camera.fy, 0);
-  const Eigen::Vector3d normal = along_u.cross(along_v).normalized();  // away from the camera
-  const double cosine = normal.dot(readings.direction(pixel));
-  if (!(cosine >= kMinCosIncidence)) return std::nullopt;
-  const double sigma = std::sqrt(sigmas.axial * sigmas.axial * cosine * cosine +
-                                 sigmas.lateral * sigmas.lateral * (1 - cosine * cosine));
-  const double distance = off * normal.dot(ray);
-  if (std::abs(distance) > kTaperSigmas * sigma) return std::nullopt;
-  return point + distance * normal;
+Hit hit(const BlockLattice& lattice, Index3 voxel, std::size_t pixel) {
+  return {lattice.key(voxel), static_cast<std::uint32_t>(pixel), block_offset(voxel)};
 }
 
 /// Sorts the hits by block, stably. `scratch` is working space.
@@ -212,21 +156,44 @@ void FrameHits::find(const PlacedFrame& frame, const BlockLattice& lattice, doub
       by_pixel_[i].offset = kBlockVoxels;
       if (pixels.kind(i) != PixelKind::reading) continue;
       places_[i] = frame.T_grid_readings * pixels.point(i) / voxel_size;
-      std::optional<Index3> voxel = lattice.voxel_at(places_[i]);
-      if (!voxel) continue;
-      if (on_surface && pixels.sigmas(i).axial >= kNoisySigma * voxel_size) {
-        if (const auto surface = surface_at(pixels, i)) {
-          const Eigen::Vector3d place = frame.T_grid_readings * *surface / voxel_size;
-          if (const auto there = lattice.voxel_at(place)) {
-            places_[i] = place;
-            voxel = there;
-          }
-        }
-      }
-      by_pixel_[i] = {lattice.key(*voxel), static_cast<std::uint32_t>(i), block_offset(*voxel)};
+      if (const auto voxel = lattice.voxel_at(places_[i])) by_pixel_[i] = hit(lattice, *voxel, i);
     }
   });
+  if (on_surface && pixels.row_length() > 0) move_to_surface(frame, lattice, voxel_size, pool);
   sort();
+}
+
+void FrameHits::move_to_surface(const PlacedFrame& frame, const BlockLattice& lattice,
+                                double voxel_size, ThreadPool& pool) {
+  const Readings& pixels = frame.readings;
+  const int width = pixels.row_length();
+  const double noisy = kNoisySigma * voxel_size;
+  const auto is_noisy_hit = [&](std::size_t i) {
+    return by_pixel_[i].offset < kBlockVoxels && pixels.sigmas(i).axial >= noisy;
+  };
+  const std::size_t rows = pixels.size() / static_cast<std::size_t>(width);
+  pool.for_each_chunk(rows, kSurfaceRows, [&](std::size_t begin, std::size_t end) {
+    LocalSurfaces surfaces;
+    for (std::size_t v = begin; v < end; ++v) {
+      const std::size_t row = v * static_cast<std::size_t>(width);
+      for (int u = 0; u < width; ++u) {
+        if (!is_noisy_hit(row + static_cast<std::size_t>(u))) continue;
+        const auto [first, count] = kernels_.find(pixels, u, static_cast<int>(v), surfaces);
+        for (; u < first + count; ++u) {
+          const auto k = static_cast<std::size_t>(u - first);
+          const std::size_t i = row + static_cast<std::size_t>(u);
+          if (!surfaces.found[k] || !is_noisy_hit(i)) continue;
+          const Eigen::Vector3d surface(surfaces.x[k], surfaces.y[k], surfaces.z[k]);
+          const Eigen::Vector3d place = frame.T_grid_readings * surface / voxel_size;
+          const auto voxel = lattice.voxel_at(place);
+          if (!voxel) continue;
+          places_[i] = place;
+          by_pixel_[i] = hit(lattice, *voxel, i);
+        }
+        --u;
+      }
+    }
+  });
 }
 
 void FrameHits::associate(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,

@@ -12,6 +12,7 @@
 #include "map/belief_blocks.hpp"
 #include "readings.hpp"
 #include "scale_plan.hpp"
+#include "surface_kernels.hpp"
 #include "viewgain/grid/belief.hpp"
 #include "viewgain/support/belief_block.hpp"
 #include "viewgain/support/block_lattice.hpp"
@@ -88,8 +89,11 @@ void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places
 /// Readings of a frame in the workspace, by block and then by pixel.
 class FrameHits {
  public:
+  explicit FrameHits(const SurfaceKernels& kernels) : kernels_(kernels) {}
+
   /// Each reading counts to the voxel that contains it: eq. (4) of the paper. With `on_surface`
-  /// noisy ones count to the voxel of their surface_at(), unless it is outside the workspace.
+  /// noisy ones of an image count to the voxel of their place on the local surface
+  /// (SurfaceKernels), unless it is outside the workspace.
   void find(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
             bool on_surface, ThreadPool& pool);
   /// After find(): noisy readings count to the best supported voxel along their ray (associate()).
@@ -109,8 +113,11 @@ class FrameHits {
   [[nodiscard]] std::span<const HitBlock> in_region(std::uint64_t region) const;
 
  private:
+  void move_to_surface(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
+                       ThreadPool& pool);
   void sort();
 
+  const SurfaceKernels& kernels_;
   std::vector<Hit> by_pixel_;            ///< one per pixel; offset kBlockVoxels without a hit
   std::vector<Eigen::Vector3d> places_;  ///< one per pixel: assumed position [voxels]
   std::vector<Hit> hits_, scratch_;

@@ -16,6 +16,7 @@
 #include "readings.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose.hpp"
+#include "viewgain/support/block_lattice.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
@@ -43,9 +44,10 @@ class FramePixels : public Readings {
   /// Classifies the frame's pixels and computes data that depends only on the readings. cosθ =
   /// amplitude · range² if the frame has unsaturated amplitudes, otherwise cos_incidence(). With
   /// `tapered` false crossings keep their weight up to the reading. Readings of the frame's known
-  /// depth, and those below `plane` or less than 3 σ above it, are on_known. The frame must have
-  /// the camera's size.
-  void load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
+  /// depth, and those below `plane` or less than 3 σ above it, are on_known. Readings that are
+  /// certain, by their noise, to cross the first `certain_range` [m] at full weight get neither
+  /// taper nor sigmas, unless there is a plane. The frame must have the camera's size.
+  void load(const DepthFrame& frame, bool tapered, double certain_range, ThreadPool& pool,
             const std::optional<CameraPlane>& plane = {});
 
   /// Cosine of the angle between a reading's ray and the normal of its 3×3 neighbourhood: the cross
@@ -56,8 +58,12 @@ class FramePixels : public Readings {
   [[nodiscard]] double cos_incidence(int u, int v) const;
 
  private:
+  /// Place of a pixel in depths().
+  [[nodiscard]] std::ptrdiff_t bordered(int u, int v) const {
+    return std::ptrdiff_t{v + kDepthBorder} * (row_length_ + 2 * kDepthBorder) + u + kDepthBorder;
+  }
+
   PoseSigma own_pose_sigma_;
-  std::vector<double> depths_;  ///< of readings, otherwise NaN; with a border of one pixel
 };
 
 namespace {
@@ -79,8 +85,8 @@ FramePixels::FramePixels(const Sensor& sensor)
   norms_.reserve(rays_.size());
   for (const Eigen::Vector3d& ray : rays_) norms_.push_back(ray.norm());
   resize(rays_.size());
-  depths_.assign((static_cast<std::size_t>(sensor_.camera.width) + 2) *
-                     (static_cast<std::size_t>(sensor_.camera.height) + 2),
+  depths_.assign(static_cast<std::size_t>(row_length_ + 2 * kDepthBorder) *
+                     static_cast<std::size_t>(sensor_.camera.height + 2 * kDepthBorder),
                  kNoDepth);
 }
 
@@ -89,20 +95,23 @@ void FramePixels::set_pose_sigma(const PoseSigma& sigma) {
                         std::hypot(own_pose_sigma_.rotation, sigma.rotation)};
 }
 
-void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
-                       const std::optional<CameraPlane>& plane) {
+void FramePixels::load(const DepthFrame& frame, bool tapered, double certain_range,
+                       ThreadPool& pool, const std::optional<CameraPlane>& plane) {
   const auto width = static_cast<std::size_t>(sensor_.camera.width);
   const auto height = static_cast<std::size_t>(sensor_.camera.height);
 
   pool.for_each_chunk(height, kRowChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * width; i < end * width; ++i) {
-      const double depth = frame.depth[i];
-      // The range is NaN where the lens model has no ray.
-      const PixelKind kind = sort_by_range(i, depth > 0 ? depth * norms_[i] : kNoDepth);
-      points_[i] = kind == PixelKind::reading ? Eigen::Vector3d(rays_[i] * depth)
-                                              : Eigen::Vector3d(Eigen::Vector3d::Zero());
-      depths_[(i / width + 1) * (width + 2) + i % width + 1] =
-          kind == PixelKind::reading ? depth : kNoDepth;
+    for (std::size_t v = begin; v < end; ++v) {
+      double* const depths = &depths_[static_cast<std::size_t>(bordered(0, static_cast<int>(v)))];
+      for (std::size_t u = 0; u < width; ++u) {
+        const std::size_t i = v * width + u;
+        const double depth = frame.depth[i];
+        // The range is NaN where the lens model has no ray.
+        const PixelKind kind = sort_by_range(i, depth > 0 ? depth * norms_[i] : kNoDepth);
+        points_[i] = kind == PixelKind::reading ? Eigen::Vector3d(rays_[i] * depth)
+                                                : Eigen::Vector3d(Eigen::Vector3d::Zero());
+        depths[u] = kind == PixelKind::reading ? depth : kNoDepth;
+      }
     }
   });
 
@@ -112,6 +121,14 @@ void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
         const std::size_t i = v * width + u;
         if (kinds_[i] != PixelKind::reading) continue;
         const double range = reach_taper_[2 * i];
+        if (range > certain_range && !plane) {
+          // The largest sigma, whatever the surface's slope.
+          const double taper = tapered ? kTaperSigmas * sensor_.sigmas(range, 0.0).axial : 0.0;
+          if (range - taper > certain_range) {
+            if (frame.shows_known(i)) kinds_[i] = PixelKind::on_known;
+            continue;
+          }
+        }
         const double cosine =
             frame.amplitude.empty() || frame.amplitude[i] == DepthFrame::kSaturated
                 ? cos_incidence(static_cast<int>(u), static_cast<int>(v))
@@ -130,14 +147,19 @@ void FramePixels::load(const DepthFrame& frame, bool tapered, ThreadPool& pool,
       }
     }
   });
+  if (!plane && frame.known_depth.empty()) return;
+  for (std::size_t i = 0; i < kinds_.size(); ++i) {
+    if (kinds_[i] != PixelKind::on_known) continue;
+    depths_[static_cast<std::size_t>(
+        bordered(static_cast<int>(i % width), static_cast<int>(i / width)))] = kNoDepth;
+  }
 }
 
 double FramePixels::cos_incidence(int u, int v) const {
   const PinholeCamera& camera = sensor_.camera;
   const Eigen::Vector3d* points =
       points_.data() + static_cast<std::ptrdiff_t>(v) * camera.width + u;
-  const double* depths =
-      depths_.data() + static_cast<std::ptrdiff_t>(v + 1) * (camera.width + 2) + u + 1;
+  const double* depths = depths_.data() + bordered(u, v);
   const auto at = [&](int i, int j) -> const Eigen::Vector3d& {
     return points[static_cast<std::ptrdiff_t>(j) * camera.width + i];
   };
@@ -150,7 +172,7 @@ double FramePixels::cos_incidence(int u, int v) const {
   bool ok[3][3];
   for (int j = -1; j <= 1; ++j) {
     for (int i = -1; i <= 1; ++i) {
-      const double depth = depths[static_cast<std::ptrdiff_t>(j) * (camera.width + 2) + i];
+      const double depth = depths[std::ptrdiff_t{j} * (camera.width + 2 * kDepthBorder) + i];
       const double pixels = std::abs(i) + std::abs(j);
       ok[j + 1][i + 1] = std::abs(depth - center.z()) <= pixels * max_step;  // false for NaN
     }
@@ -182,6 +204,19 @@ namespace viewgain {
 namespace {
 
 using namespace detail;
+
+// No voxel that a frame can change is farther from the eye [m]: those of all blocks that the
+// workspace touches.
+double farthest_voxel(const BeliefGrid& grid, const Eigen::Vector3d& eye) {
+  const Index3 low = grid.min_index(), dims = grid.dims();
+  const auto at = [&](std::int32_t from, std::int32_t count, double of_eye) {
+    const double first = (from - kBlockSize) * grid.voxel_size(),
+                 last = (from + count + kBlockSize) * grid.voxel_size();
+    return std::max(std::abs(of_eye - first), std::abs(of_eye - last));
+  };
+  return std::hypot(at(low.x, dims.x, eye.x()), at(low.y, dims.y, eye.y()),
+                    at(low.z, dims.z, eye.z()));
+}
 
 std::optional<CameraPlane> plane_seen_from(const Pose& T_world_camera,
                                            std::optional<double> height) {
@@ -220,7 +255,8 @@ IntegrationReport FrameIntegrator::integrate(BeliefGrid& grid, const DepthFrame&
   const ConeCamera camera(m.pixels.sensor().camera, T_camera_grid);
   FrameNote note(grid, m.sensor, frame.identity);
   m.pixels.set_pose_sigma(pose_sigma);
-  m.pixels.load(frame, m.config.occupancy != IntegrationConfig::Occupancy::literal, m.update.pool(),
+  m.pixels.load(frame, m.config.occupancy != IntegrationConfig::Occupancy::literal,
+                farthest_voxel(grid, T_grid_camera.translation()), m.update.pool(),
                 plane_seen_from(T_world_camera, m.config.support_plane));
   const IntegrationReport report =
       m.update.run(grid, {m.pixels, T_grid_camera, T_world_camera},
@@ -237,7 +273,7 @@ std::optional<Box> reading_bounds(const Sensor& sensor, const DepthFrame& frame,
   check_plane(support_plane);
   const Pose T_grid_camera = T_world_grid.inverse() * rigid_view(T_world_camera);
   ThreadPool caller_alone(1);
-  pixels.load(frame, false, caller_alone,
+  pixels.load(frame, false, 0, caller_alone,
               plane_seen_from(rigid_view(T_world_camera), support_plane));
   return bounds_of(pixels, T_grid_camera);
 }

@@ -11,12 +11,13 @@
 namespace viewgain::detail {
 
 struct MapUpdate::Impl {
-  Impl(const IntegrationConfig& config, const ExecConfig& exec, const BlockKernels& kernels)
+  Impl(const IntegrationConfig& config, const ExecConfig& exec, Isa isa)
       : literal(config.occupancy == IntegrationConfig::Occupancy::literal),
         plan(config),
         pool(exec.num_threads),
-        cones(kernels),
-        apply(kernels, literal) {}
+        cones(block_kernels(isa)),
+        hits(surface_kernels(isa)),
+        apply(block_kernels(isa), literal) {}
 
   bool literal;
   ScalePlan plan;
@@ -28,7 +29,7 @@ struct MapUpdate::Impl {
 };
 
 MapUpdate::MapUpdate(const IntegrationConfig& config, const ExecConfig& exec)
-    : impl_(std::make_unique<Impl>(config, exec, block_kernels(select_isa()))) {}
+    : impl_(std::make_unique<Impl>(config, exec, select_isa())) {}
 MapUpdate::~MapUpdate() = default;
 MapUpdate::MapUpdate(MapUpdate&&) noexcept = default;
 MapUpdate& MapUpdate::operator=(MapUpdate&&) noexcept = default;
@@ -49,7 +50,7 @@ IntegrationReport MapUpdate::run(BeliefGrid& grid, const PlacedFrame& frame,
   }
   ApplyCounts counts;
   if (camera != nullptr) {
-    m.cones.gather(frame.readings, *camera, voxel_size);
+    m.cones.gather(frame.readings, *camera, voxel_size, m.pool);
     counts = m.apply.run(grid, frame, m.cones, m.hits, m.plan, m.pool);
   } else {
     m.lines.gather(frame, lattice, voxel_size, m.pool);

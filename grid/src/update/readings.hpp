@@ -39,7 +39,17 @@ class Readings {
   [[nodiscard]] Eigen::Vector3d direction(std::size_t pixel) const {
     return rays_[pixel] / norms_[pixel];
   }
+  /// Of readings in the workspace.
   [[nodiscard]] MeasurementSigmas sigmas(std::size_t pixel) const { return sigmas_[pixel]; }
+
+  /// For kernels: all rays, their norms, all sigmas.
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& rays() const { return rays_; }
+  [[nodiscard]] const std::vector<double>& norms() const { return norms_; }
+  [[nodiscard]] const std::vector<MeasurementSigmas>& all_sigmas() const { return sigmas_; }
+  /// Depths along z of an image's readings, otherwise NaN, with a border of kDepthBorder pixels of
+  /// NaN.
+  static constexpr int kDepthBorder = 2;
+  [[nodiscard]] const double* depths() const { return depths_.data(); }
 
   /// Reach and taper [m] of each pixel, alternating; 0, 0 for invalid pixels. A voxel nearer than
   /// the reach is crossed. Within the taper before the reach the crossing weighs less
@@ -65,6 +75,7 @@ class Readings {
   std::vector<Eigen::Vector3d> points_;
   std::vector<MeasurementSigmas> sigmas_;
   std::vector<double> reach_taper_;
+  std::vector<double> depths_;
 };
 
 /// Readings and their place in a grid.

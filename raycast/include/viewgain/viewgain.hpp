@@ -28,6 +28,7 @@
 #include "viewgain/grid/grid_snapshot.hpp"
 #include "viewgain/grid/hazard.hpp"
 #include "viewgain/grid/hazard_calibration.hpp"
+#include "viewgain/grid/hazard_probe.hpp"
 #include "viewgain/grid/integrate.hpp"
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/grid/voxel.hpp"

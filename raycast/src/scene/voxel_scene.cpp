@@ -87,6 +87,7 @@ std::uint64_t VoxelScene::bytes() const noexcept {
 }
 
 const HazardField& VoxelScene::hazard() const { return data_->hazard_field(); }
+HazardProbe VoxelScene::hazard_probe() const { return HazardProbe(snapshot(), *data_->hazard); }
 
 std::string_view VoxelScene::isa() const noexcept {
   return isa_name(detail::isa_of(*data_->tracing));

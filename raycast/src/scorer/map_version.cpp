@@ -43,6 +43,11 @@ std::shared_ptr<const VoxelScene> MapVersion::scene() {
   return own_scene();
 }
 
+HazardProbe MapVersion::hazard_probe(const HazardConfig& config) {
+  const std::lock_guard lock(mutex_);
+  return HazardProbe(snapshot_ ? *snapshot_ : made_.scene->snapshot(), config);
+}
+
 std::shared_ptr<const GainEvaluator> MapVersion::evaluator() {
   const std::lock_guard lock(mutex_);
   const auto& scene = own_scene();

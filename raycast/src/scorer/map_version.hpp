@@ -30,6 +30,8 @@ class MapVersion {
 
   [[nodiscard]] std::shared_ptr<const VoxelScene> scene();
   [[nodiscard]] std::shared_ptr<const GainEvaluator> evaluator();
+  /// The scene's hazard at single voxels, without making the scene.
+  [[nodiscard]] HazardProbe hazard_probe(const HazardConfig& config);
   /// Null if the sensor has no body.
   [[nodiscard]] std::shared_ptr<const FeasibilityChecker> checker();
 

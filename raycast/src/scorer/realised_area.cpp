@@ -9,10 +9,13 @@
 
 #include "gain/from_behind.hpp"
 #include "gain/frontal_sigmas.hpp"
+#include "viewgain/support/state_reader.hpp"
 #include "viewgain/support/voxel_walk.hpp"
 
 namespace viewgain::detail {
 namespace {
+
+constexpr std::size_t kPixelChunk = 4096;
 
 bool sees_plane(const Sensor& sensor, const Eigen::Vector3d& point, const Eigen::Vector3d& sight,
                 double plane) {
@@ -26,13 +29,22 @@ class SurfaceBehind {
  public:
   explicit SurfaceBehind(const BeliefGrid& map)
       : map_(map),
+        voxel_size_(map.voxel_size()),
         T_grid_world_(map.T_world_grid().inverse()),
         box_(VoxelBox::from_dims(map.min_index(), map.dims())) {}
 
-  /// For a reading in the workspace and its ray [m, world]: cosine between the ray and the outward
-  /// normal of that surface; 0 if there is none.
-  double cosine(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) {
-    const Eigen::Vector3d at = T_grid_world_ * point / map_.voxel_size();
+  /// A point of the world in the map [voxels].
+  [[nodiscard]] Eigen::Vector3d place(const Eigen::Vector3d& point) const {
+    return T_grid_world_ * point / voxel_size_;
+  }
+  [[nodiscard]] std::optional<Index3> voxel_at(const Eigen::Vector3d& place) const {
+    return box_.voxel_at(place);
+  }
+  [[nodiscard]] VoxelState state(Index3 voxel) { return map_.state(voxel); }
+
+  /// For a reading's place in the workspace [voxels] and its ray (world): cosine between the ray
+  /// and the outward normal of that surface; 0 if there is none.
+  double cosine(const Eigen::Vector3d& at, const Eigen::Vector3d& direction) {
     const Eigen::Vector3d along = T_grid_world_.rotation() * direction;
     const Way on = way(at, along);
     if (on.end != VoxelState::occupied) return 0;
@@ -54,7 +66,7 @@ class SurfaceBehind {
 
   // `beside`: begins where the ray leaves its first voxel.
   [[nodiscard]] Way way(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
-                        bool beside = false) const {
+                        bool beside = false) {
     const HalfLine line(from, along);
     VoxelWalk walk(line, 0, box_);
     if (beside) walk.leave<1>();
@@ -92,7 +104,8 @@ class SurfaceBehind {
              (static_cast<std::size_t>(static_cast<std::uint32_t>(v.z)) * 83492791U);
     }
   };
-  const BeliefGrid& map_;
+  StateReader map_;
+  double voxel_size_;
   Pose T_grid_world_;
   VoxelBox box_;
   std::unordered_map<Index3, Eigen::Vector3d, Hash> normals_;
@@ -109,11 +122,26 @@ RealisedArea::RealisedArea(const Sensor& sensor, double voxel_size,
       worth_(frontal_sigmas(sensor), sensor.working_distance, voxel_size) {}
 
 double RealisedArea::of(const DepthFrame& frame, const Pose& T_world_camera,
-                        const BeliefGrid& before, const HazardField* hazard) const {
+                        const BeliefGrid& before, const HazardProbe* hazard,
+                        ThreadPool& pool) const {
   check_frame_size(frame, sensor_.camera);
-  double area = 0;
+  std::vector<std::vector<double>> areas((rays_.size() + kPixelChunk - 1) / kPixelChunk);
+  pool.for_each_chunk(rays_.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
+    add_areas(frame, T_world_camera, before, hazard, {begin, end}, areas[begin / kPixelChunk]);
+  });
+  double area = 0;  // in the order of the pixels
+  for (const std::vector<double>& part : areas) {
+    for (const double of_pixel : part) area += of_pixel;
+  }
+  return area;
+}
+
+void RealisedArea::add_areas(const DepthFrame& frame, const Pose& T_world_camera,
+                             const BeliefGrid& before, const HazardProbe* hazard,
+                             const std::array<std::size_t, 2>& pixels,
+                             std::vector<double>& areas) const {
   SurfaceBehind behind(before);
-  for (std::size_t i = 0; i < rays_.size(); ++i) {
+  for (std::size_t i = pixels[0]; i < pixels[1]; ++i) {
     const float z = frame.depth[i];
     if (!(z > 0) || !std::isfinite(z) || !rays_[i].allFinite()) continue;
     const Eigen::Vector3d p_camera = static_cast<double>(z) * rays_[i];
@@ -123,18 +151,18 @@ double RealisedArea::of(const DepthFrame& frame, const Pose& T_world_camera,
     const Eigen::Vector3d point = T_world_camera * p_camera;
     const Eigen::Vector3d sight = point - T_world_camera.translation();
     if (support_plane_ && sees_plane(sensor_, point, sight, *support_plane_)) continue;
-    const std::optional<Index3> voxel = before.index_of(point);
+    const Eigen::Vector3d place = behind.place(point);
+    const std::optional<Index3> voxel = behind.voxel_at(place);
     if (!voxel) continue;
-    const VoxelState state = before.state(*voxel);
+    const VoxelState state = behind.state(*voxel);
     if (state == VoxelState::free) continue;
     const double across = solid_angles_[i] * range * range * worth_(range);
-    if (const double cosine = behind.cosine(point, sight.normalized()); cosine > 0) {
-      area += across * FromBehind::area_over_across(cosine);
+    if (const double cosine = behind.cosine(place, sight.normalized()); cosine > 0) {
+      areas.push_back(across * FromBehind::area_over_across(cosine));
     } else if (state == VoxelState::unknown && (hazard == nullptr || hazard->is_new(*voxel))) {
-      area += across;
+      areas.push_back(across);
     }
   }
-  return area;
 }
 
 }  // namespace viewgain::detail

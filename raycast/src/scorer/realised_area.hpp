@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -11,12 +13,13 @@
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
-#include "viewgain/grid/hazard.hpp"
+#include "viewgain/grid/hazard_probe.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
 
 /// Area of new surface that frames show, to compare with ViewGain::area. Immutable; thread safe.
-/// Cost of of(): a pass over the pixels.
+/// Cost of of(): a pass over the pixels. Results do not depend on the number of threads.
 class RealisedArea {
  public:
   /// Removes the lens distortion once. Readings of the support plane (world z [m]) do not count.
@@ -28,9 +31,15 @@ class RealisedArea {
   /// would reach known surface from behind (FromBehind). `hazard`: that of the same map; null if no
   /// surface is known. Throws Error(invalid_argument) like check_frame_size().
   [[nodiscard]] double of(const DepthFrame& frame, const Pose& T_world_camera,
-                          const BeliefGrid& before, const HazardField* hazard) const;
+                          const BeliefGrid& before, const HazardProbe* hazard,
+                          ThreadPool& pool) const;
 
  private:
+  /// Appends the areas of the readings of new surface among the pixels [begin, end).
+  void add_areas(const DepthFrame& frame, const Pose& T_world_camera, const BeliefGrid& before,
+                 const HazardProbe* hazard, const std::array<std::size_t, 2>& pixels,
+                 std::vector<double>& areas) const;
+
   Sensor sensor_;
   std::optional<double> support_plane_;
   std::vector<Eigen::Vector3d> rays_;

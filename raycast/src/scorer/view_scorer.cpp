@@ -19,6 +19,7 @@
 #include "viewgain/raycast/obstacle_view.hpp"
 #include "viewgain/support/stopwatch.hpp"
 #include "viewgain/support/text.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -103,10 +104,11 @@ struct ViewScorer::Impl {
   ObstacleView obstacles;
   FrameIntegrator integrator;
   FrameCheck check;
-  detail::RealisedArea new_surface;
+  ThreadPool pool;
   HazardCalibration calibration;
   bool learns;
-  VoxelBox voxels;  ///< of the workspace
+  std::optional<detail::RealisedArea> new_surface;  ///< if it is measured
+  VoxelBox voxels;                                  ///< of the workspace
   std::mutex changing;
   bool is_published = true;    ///< whether `current` shows the grid
   mutable std::mutex reading;  ///< protects `current`
@@ -121,11 +123,14 @@ struct ViewScorer::Impl {
         obstacles(with.obstacles, of, by),
         integrator(of, with.integration(), by),
         check(of, with.support_plane),
-        new_surface(of, grid.voxel_size(), with.support_plane),
+        pool(by.num_threads),
         calibration(of, with.support_plane),
         learns(with.learn_hazard.value_or(with.gain.model != GainModel::paper)),
         voxels(VoxelBox::from_dims(grid.min_index(), grid.dims())),
         current(std::make_shared<detail::MapVersion>(grid, of, config, by)) {
+    if (learns && with.measure_new_area) {
+      new_surface.emplace(of, grid.voxel_size(), with.support_plane);
+    }
     if (with.jump_edges) filter.emplace(of.camera, *with.jump_edges);
   }
 
@@ -153,12 +158,19 @@ struct ViewScorer::Impl {
   }
 
   [[nodiscard]] bool shows_workspace(const DepthFrame& frame, const Pose& T_world_camera) const {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto shows = [&](std::size_t i) {
       const Eigen::Vector3d p = static_cast<double>(frame.depth[i]) * rays[i];
       const double range = p.norm();
       // False for pixels without a depth or without a ray.
-      if (!(range >= sensor.min_range && range <= sensor.max_range)) continue;
-      if (!frame.shows_known(i) && grid.index_of(T_world_camera * p)) return true;
+      if (!(range >= sensor.min_range && range <= sensor.max_range)) return false;
+      return !frame.shows_known(i) && grid.index_of(T_world_camera * p).has_value();
+    };
+    // First a few pixels of the whole image, because one is enough.
+    constexpr std::size_t kPasses = 61;
+    for (std::size_t pass = 0; pass < kPasses; ++pass) {
+      for (std::size_t i = pass; i < rays.size(); i += kPasses) {
+        if (shows(i)) return true;
+      }
     }
     return false;
   }
@@ -190,11 +202,12 @@ struct ViewScorer::Impl {
   void integrate(BeliefGrid& map, const std::vector<DepthFrame>& frames,
                  const Measurements& measurements, MapUpdate& update) {
     const Pose& T_world_camera = measurements.T_world_camera;
-    if (learns) update.new_area = 0;
+    if (new_surface) update.new_area = 0;
     if (learns && !frames.empty()) {
-      const std::shared_ptr<const VoxelScene> scene = now()->scene();
-      const HazardField& hazard = scene->hazard();
-      update.new_area = new_surface.of(frames.front(), T_world_camera, map, &hazard);
+      const HazardProbe hazard = now()->hazard_probe(config.hazard);
+      if (new_surface) {
+        update.new_area = new_surface->of(frames.front(), T_world_camera, map, &hazard, pool);
+      }
       calibration.count(map, hazard, frames.front(), T_world_camera);
     }
     for (const DepthFrame& frame : frames) {

@@ -219,7 +219,7 @@ TEST(CApi, HazardsFromElsewhereAndFromFramesAreThoseOfCpp) {
                      static_cast<float>(sensor.working_distance));
   BeliefGrid same = load_vdb(path);
   const auto scene = VoxelScene::build(same);
-  HazardCalibration(sensor).count(same, scene->hazard(), frame, pose);
+  HazardCalibration(sensor).count(same, scene->hazard_probe(), frame, pose);
   ASSERT_EQ(vg_scene_build(own.grid, nullptr, &own.scene), VG_OK);
   const std::vector<double> matrix = matrices_of({&pose, 1});
   ASSERT_EQ(vg_calibrate_hazard(integrator, own.grid, own.scene, frame.depth.data(), matrix.data()),

@@ -26,6 +26,11 @@ using detail::RealisedArea;
 constexpr double kVoxel = 0.005;
 constexpr double kEye = 0.4;  // above the plane z = 0 [m]
 
+ThreadPool& threads(int count = 3) {
+  static ThreadPool one(1), three(3);
+  return count == 1 ? one : three;
+}
+
 BeliefGrid empty_map(double half = 0.3) {
   return BeliefGrid(test::model_config(test::half_sr4000(), half, kVoxel).map.grid());
 }
@@ -55,8 +60,8 @@ TEST(RealisedArea, APlaneSeenFrontallyFillsItsArea) {
   const PinholeCamera& c = sensor.camera;
   const double area = c.width * kEye / c.fx * (c.height * kEye / c.fy);
   const RealisedArea realised(sensor, kVoxel);
-  EXPECT_NEAR(realised.of(plane_frame(sensor, kEye), from_above(), empty_map(), nullptr), area,
-              2e-3 * area);
+  EXPECT_NEAR(realised.of(plane_frame(sensor, kEye), from_above(), empty_map(), nullptr, threads()),
+              area, 2e-3 * area);
   // Seen from the side, by the wide camera, what counts is what lies across the rays.
   const Sensor wide = test::half_sr4000();
   double across = 0;
@@ -64,9 +69,9 @@ TEST(RealisedArea, APlaneSeenFrontallyFillsItsArea) {
     across += kEye * kEye / (wide.camera.fx * wide.camera.fy) / ray.norm() *
               worth(wide, kEye * ray.norm());
   }
-  EXPECT_NEAR(
-      RealisedArea(wide, kVoxel).of(plane_frame(wide, kEye), from_above(), empty_map(), nullptr),
-      across, 1e-8);
+  EXPECT_NEAR(RealisedArea(wide, kVoxel)
+                  .of(plane_frame(wide, kEye), from_above(), empty_map(), nullptr, threads()),
+              across, 1e-8);
 }
 
 TEST(RealisedArea, NothingIsShownByWhatIsNoReading) {
@@ -76,10 +81,12 @@ TEST(RealisedArea, NothingIsShownByWhatIsNoReading) {
   for (const float depth :
        {DepthFrame::kInvalid, DepthFrame::kOutOfRange, std::numeric_limits<float>::quiet_NaN(),
         -0.4F, 0.1F, 5.5F, 0.9F}) {  // nearer and farther than it measures, beside the workspace
-    EXPECT_EQ(realised.of(plane_frame(sensor, depth), from_above(), grid, nullptr), 0) << depth;
+    EXPECT_EQ(realised.of(plane_frame(sensor, depth), from_above(), grid, nullptr, threads()), 0)
+        << depth;
   }
   test::expect_error(ErrorCode::invalid_argument, "6 values", [&] {
-    (void)realised.of({3, 2, std::vector<float>(6, 0.4F), {}}, from_above(), grid, nullptr);
+    (void)realised.of({3, 2, std::vector<float>(6, 0.4F), {}}, from_above(), grid, nullptr,
+                      threads());
   });
 }
 
@@ -88,7 +95,7 @@ TEST(RealisedArea, WhatIsKnownShowsNothing) {
   const RealisedArea realised(sensor, kVoxel);
   const BeliefGrid grid = empty_map();
   DepthFrame frame = plane_frame(sensor, kEye);
-  const double all = realised.of(frame, from_above(), grid, nullptr);
+  const double all = realised.of(frame, from_above(), grid, nullptr, threads());
   // The left half of the image is known: at the reading, behind it and clearly before.
   const std::size_t pixels = frame.depth.size();
   for (const auto& [before, share] : {std::pair(0.0F, 0.5), {-0.1F, 0.5}, {0.2F, 1.0}}) {
@@ -98,17 +105,18 @@ TEST(RealisedArea, WhatIsKnownShowsNothing) {
         frame.known_depth[i] = frame.depth[i] + before;
       }
     }
-    EXPECT_NEAR(realised.of(frame, from_above(), grid, nullptr), share * all, 0.01 * all) << before;
+    EXPECT_NEAR(realised.of(frame, from_above(), grid, nullptr, threads()), share * all, 0.01 * all)
+        << before;
   }
 }
 
 Belief hit(std::uint32_t hits) { return {{1e6F, 1e6F, 1e6F, 0.F, 0.F, 0.F}, {}, hits}; }
 
 // Hazard cells of one voxel.
-HazardField fine_hazard(const BeliefGrid& grid) {
+HazardProbe fine_hazard(const BeliefGrid& grid) {
   HazardConfig config;
   config.model = HazardConfig::Model{20, 4 * kVoxel, 0.5};
-  return HazardField(grid.snapshot(), config);
+  return HazardProbe(grid.snapshot(), config);
 }
 
 TEST(RealisedArea, TheSupportPlaneIsNotSurface) {
@@ -117,8 +125,10 @@ TEST(RealisedArea, TheSupportPlaneIsNotSurface) {
   const double sigma = sensor.sigmas(kEye).axial;
   for (const double above : {-0.01, 0.0, 2.5 * sigma, 4.5 * sigma}) {
     const DepthFrame frame = plane_frame(sensor, kEye - above);
-    const double with = RealisedArea(sensor, kVoxel, 0.0).of(frame, from_above(), grid, nullptr);
-    const double without = RealisedArea(sensor, kVoxel).of(frame, from_above(), grid, nullptr);
+    const double with =
+        RealisedArea(sensor, kVoxel, 0.0).of(frame, from_above(), grid, nullptr, threads());
+    const double without =
+        RealisedArea(sensor, kVoxel).of(frame, from_above(), grid, nullptr, threads());
     EXPECT_GT(without, 0);
     EXPECT_EQ(with, above > 3 * sigma ? without : 0.0) << above;
   }
@@ -206,12 +216,12 @@ TEST(RealisedArea, TheOtherSideOfAThinWallIsNew) {
       for (int z = low.z; z < -1; ++z) grid.set({x, y, z}, -0.4F);
     }
   }
-  const HazardField hazard = fine_hazard(grid);
+  const HazardProbe hazard = fine_hazard(grid);
   const BeliefGrid unknown = empty_map();
   for (const double above : {0.001, 0.004, 0.02}) {  // of the other side over z = 0 [m]
     const DepthFrame frame = plane_frame(sensor, kEye - above);
-    const double all = realised.of(frame, from_above(), unknown, nullptr);
-    const double behind = realised.of(frame, from_above(), grid, &hazard);
+    const double all = realised.of(frame, from_above(), unknown, nullptr, threads());
+    const double behind = realised.of(frame, from_above(), grid, &hazard, threads());
     // More than across the rays, which are slanted by up to 28 degrees.
     EXPECT_GT(behind, all) << above;
     EXPECT_LT(behind, 1.1 * all) << above;
@@ -242,7 +252,7 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
       occupied ? grid.set(voxel, 0.85F, hit(hits)) : grid.set(voxel, -0.4F);
       if (occupied && hits >= 3) evidence.push_back(voxel);
     }
-    const HazardField hazard = fine_hazard(grid);
+    const HazardProbe hazard = fine_hazard(grid);
     const Pose pose = look_at({uniform(-0.2, 0.2), uniform(-0.2, 0.2), 0.4}, {0, 0, 0});
     DepthFrame frame = plane_frame(sensor, 0);
     for (float& z : frame.depth) z = static_cast<float>(uniform(0.25, 0.6));
@@ -277,7 +287,9 @@ TEST(RealisedArea, IsWhatAnOracleCounts) {
       ++new_readings;
       expected += across;
     }
-    EXPECT_NEAR(realised.of(frame, pose, grid, &hazard), expected, 1e-9 * expected);
+    const double area = realised.of(frame, pose, grid, &hazard, threads());
+    EXPECT_NEAR(area, expected, 1e-9 * expected);
+    EXPECT_EQ(realised.of(frame, pose, grid, &hazard, threads(1)), area);
   }
   EXPECT_EQ(maps, 20);
   EXPECT_GT(new_readings, 5000U);

@@ -48,7 +48,7 @@ class Parts {
     ObstacleView(config_.map.obstacles, scene_.sensor).mark(frame, pose);
     if (config_.map.gain.model != GainModel::paper) {
       const HazardCalibration calibration(scene_.sensor, config_.map.support_plane);
-      calibration.count(grid_, HazardField(grid_.snapshot()), frame, pose);
+      calibration.count(grid_, HazardProbe(grid_.snapshot()), frame, pose);
     }
     integrator_.integrate(grid_, frame, pose);
   }

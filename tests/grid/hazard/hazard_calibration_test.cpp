@@ -58,9 +58,10 @@ TEST(HazardCalibration, CountsWhatAFineWalkCounts) {
     for (const double depth : {0.7, 0.55, 10.0}) {  // [m]; the last is out of range
       BeliefGrid grid = unknown_cube(T_world_grid, {2, -8, 3});
       const HazardField field(grid.snapshot(), {.object_size = 0.35});
+      const HazardProbe probe(grid.snapshot(), {.object_size = 0.35});
       const DepthFrame frame =
           test::see_plane(sensor, depth > 2 ? DepthFrame::kOutOfRange : static_cast<float>(depth));
-      HazardCalibration(sensor).count(grid, field, frame, kFromFront);
+      HazardCalibration(sensor).count(grid, probe, frame, kFromFront);
 
       // All pixels, in steps of a twentieth of a voxel.
       std::array<double, HazardCounters::kClasses> expected{}, met{};
@@ -107,6 +108,7 @@ TEST(HazardCalibration, FindsTheRateOfAWorldThatHasOne) {
   std::mt19937 random(5);
   BeliefGrid grid = unknown_cube();
   const HazardField field(grid.snapshot(), {.object_size = 0.35});
+  const HazardProbe probe(grid.snapshot(), {.object_size = 0.35});
   const double rate = 3 * field.model().far_rate;
   const std::size_t far = HazardCounters::kClasses - 1;
   int frames = 0;
@@ -123,7 +125,7 @@ TEST(HazardCalibration, FindsTheRateOfAWorldThatHasOne) {
         frame.depth[i] = static_cast<float>(range / rays[i].norm());
       }
     }
-    HazardCalibration(sensor).count(grid, field, frame, kFromFront);
+    HazardCalibration(sensor).count(grid, probe, frame, kFromFront);
   }
   EXPECT_EQ(frames, 12);
   const HazardCounters::Class& c = grid.hazard_counters().classes[far];
@@ -165,11 +167,11 @@ TEST(HazardCalibration, EarlierFramesFade) {
   const Sensor sensor = looking();
   const DepthFrame frame = test::see_plane(sensor, 0.6F);
   BeliefGrid grid = unknown_cube();
-  const HazardField field(grid.snapshot(), {.object_size = 0.35});
+  const HazardProbe probe(grid.snapshot(), {.object_size = 0.35});
   const HazardCalibration calibration(sensor);
-  calibration.count(grid, field, frame, kFromFront);
+  calibration.count(grid, probe, frame, kFromFront);
   const HazardCounters once = grid.hazard_counters();
-  for (int i = 1; i < 40; ++i) calibration.count(grid, field, frame, kFromFront);
+  for (int i = 1; i < 40; ++i) calibration.count(grid, probe, frame, kFromFront);
   std::size_t counted = 0;
   for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
     const HazardCounters::Class &c = grid.hazard_counters().classes[k], &first = once.classes[k];
@@ -187,17 +189,17 @@ TEST(HazardCalibration, EarlierFramesFade) {
 TEST(HazardCalibration, PosesThatAreALittleOffAreMended) {
   const Sensor sensor = looking();
   BeliefGrid mended = unknown_cube({}, {0, 0, 0}), grid = unknown_cube({}, {0, 0, 0});
-  const HazardField field(grid.snapshot(), {.object_size = 0.35});
+  const HazardProbe probe(grid.snapshot(), {.object_size = 0.35});
   Eigen::Matrix3d R = kFromFront.rotation();
   R.col(0) += 9e-4 * R.col(1);
   const Pose off(R, kFromFront.translation());
   const DepthFrame frame = test::see_plane(sensor, 0.6F);
-  HazardCalibration(sensor).count(mended, field, frame, orthonormalized(off));
-  HazardCalibration(sensor).count(grid, field, frame, off);
+  HazardCalibration(sensor).count(mended, probe, frame, orthonormalized(off));
+  HazardCalibration(sensor).count(grid, probe, frame, off);
   EXPECT_EQ(grid.hazard_counters(), mended.hazard_counters());
   EXPECT_FALSE(grid.hazard_counters().empty());
   test::expect_error(ErrorCode::invalid_argument, "rigid", [&] {
-    HazardCalibration(sensor).count(grid, field, frame, Pose(2 * R, off.translation()));
+    HazardCalibration(sensor).count(grid, probe, frame, Pose(2 * R, off.translation()));
   });
 }
 
@@ -206,17 +208,18 @@ TEST(HazardCalibration, WhatSaysNothing) {
   const HazardCalibration calibration(sensor);
   BeliefGrid grid = unknown_cube();
   const HazardField field(grid.snapshot(), {.object_size = 0.35});
-  calibration.count(grid, field, test::see_plane(sensor, DepthFrame::kInvalid), kFromFront);
+  const HazardProbe probe(grid.snapshot(), {.object_size = 0.35});
+  calibration.count(grid, probe, test::see_plane(sensor, DepthFrame::kInvalid), kFromFront);
   EXPECT_TRUE(grid.hazard_counters().empty());
   // NaN is no reading, as at integration.
-  calibration.count(grid, field, test::see_plane(sensor, std::numeric_limits<float>::quiet_NaN()),
+  calibration.count(grid, probe, test::see_plane(sensor, std::numeric_limits<float>::quiet_NaN()),
                     kFromFront);
   EXPECT_TRUE(grid.hazard_counters().empty());
   // What is given is not what is counted against: other scenes of the map would be misled.
   for (const HazardConfig& given :
        {constant_hazard(0.5, grid), HazardConfig{.model = HazardConfig::Model::for_size(0.3)},
         HazardConfig{.calibrated = false}}) {
-    const HazardField fixed(grid.snapshot(), given);
+    const HazardProbe fixed(grid.snapshot(), given);
     EXPECT_FALSE(fixed.follows_counters());
     calibration.count(grid, fixed, test::see_plane(sensor, 0.6F), kFromFront);
     EXPECT_TRUE(grid.hazard_counters().empty());
@@ -225,10 +228,10 @@ TEST(HazardCalibration, WhatSaysNothing) {
   DepthFrame turned = test::see_plane(sensor, 0.6F);
   std::swap(turned.width, turned.height);
   test::expect_error(ErrorCode::invalid_argument, "px",
-                     [&] { calibration.count(grid, field, turned, kFromFront); });
+                     [&] { calibration.count(grid, probe, turned, kFromFront); });
   // Readings of a table meet nothing, but pass what is before it.
   const Pose down = look_at({0, 0, 0.6}, {0, 0, 0}, {0, 1, 0});
-  HazardCalibration(sensor, 0.0).count(grid, field, test::see_plane(sensor, 0.6F), down);
+  HazardCalibration(sensor, 0.0).count(grid, probe, test::see_plane(sensor, 0.6F), down);
   std::int64_t expected = 0;
   for (const HazardCounters::Class& c : grid.hazard_counters().classes) {
     EXPECT_EQ(c.met, 0);
@@ -237,17 +240,17 @@ TEST(HazardCalibration, WhatSaysNothing) {
   EXPECT_GT(expected, 0);
   // Without known surface there is no distance.
   BeliefGrid empty({kVoxel, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
-  calibration.count(empty, HazardField(empty.snapshot()), test::see_plane(sensor, 0.6F),
+  calibration.count(empty, HazardProbe(empty.snapshot()), test::see_plane(sensor, 0.6F),
                     kFromFront);
   EXPECT_TRUE(empty.hazard_counters().empty());
   // A field of another map.
   test::expect_error(ErrorCode::invalid_argument, short_text(2 * kVoxel).c_str(), [&] {
     const BeliefGrid other({2 * kVoxel, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, {}, 0.01});
-    calibration.count(grid, HazardField(other.snapshot()), test::see_plane(sensor, 0.6F),
+    calibration.count(grid, HazardProbe(other.snapshot()), test::see_plane(sensor, 0.6F),
                       kFromFront);
   });
   test::expect_error(ErrorCode::invalid_argument, "2 x 2 px", [&] {
-    calibration.count(grid, field, DepthFrame{2, 2, std::vector<float>(4, 0.6F)}, kFromFront);
+    calibration.count(grid, probe, DepthFrame{2, 2, std::vector<float>(4, 0.6F)}, kFromFront);
   });
 }
 

@@ -257,7 +257,7 @@ TEST(KnownDepth, MeetsNothingInCalibration) {
              second = look_at({0.1, 0.5, 0.1}, {0, 0, 0});
   const auto see = [&](const Pose& pose) { return see_spheres(sensor, pose, {{{0, 0, 0}, 0.12}}); };
   FrameIntegrator(sensor).integrate(grid, see(first), first);
-  const HazardField hazard(grid.snapshot());
+  const HazardProbe hazard(grid.snapshot());
   const auto met = [&](const DepthFrame& frame) {
     BeliefGrid counted = grid.clone();
     HazardCalibration(sensor).count(counted, hazard, frame, second);

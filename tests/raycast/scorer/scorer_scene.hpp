@@ -61,7 +61,7 @@ class ScorerParts {
     ObstacleView(config_.obstacles, sensor_).mark(frame, pose);
     if (config_.gain.model != GainModel::paper) {
       const HazardCalibration calibration(sensor_, config_.support_plane);
-      calibration.count(grid_, HazardField(grid_.snapshot(), config_.hazard), frame, pose);
+      calibration.count(grid_, HazardProbe(grid_.snapshot(), config_.hazard), frame, pose);
     }
     FrameIntegrator(sensor_, config_.integration(), {1}).integrate(grid_, frame, pose);
   }

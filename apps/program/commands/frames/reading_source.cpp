@@ -24,6 +24,7 @@ ScorerConfig rules_of(const IntegrateOptions& options) {
   options.scales.set(config);
   config.support_plane = options.support_plane;
   config.learn_hazard = options.calibrates_hazard();
+  config.measure_new_area = false;
   config.gain.model = GainModel::paper;
   return config;
 }
@@ -83,7 +84,9 @@ class FrameSource : public ReadingSource {
     return result;
   }
   MapUpdate integrate() override {
-    return map_->add({T_world_camera_, {loaded_.frame}, pose_sigma_});
+    Measurements measurements{T_world_camera_, {}, pose_sigma_};
+    measurements.frames.push_back(std::move(loaded_.frame));
+    return map_->add(measurements);
   }
   [[nodiscard]] std::optional<FrameConsistency> consistency() const override {
     return map_->consistency();

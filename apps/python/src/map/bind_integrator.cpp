@@ -276,7 +276,7 @@ void calibrate_hazard(const Integrator& self, const Given<SharedGrid>& grid,
   const DepthFrame frame = depth_frame(self.sensor, depth, py::none());
   const Pose pose = one_pose(T_world_camera, "T_world_camera");
   grid->write(
-      [&](BeliefGrid& g) { self.calibration.count(g, scene->scene->hazard(), frame, pose); });
+      [&](BeliefGrid& g) { self.calibration.count(g, scene->scene->hazard_probe(), frame, pose); });
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ namespace viewgain {
 class ThreadPool;
 namespace detail {
 class FreeShare;
+struct HazardLayout;
 class NearestCells;
 class OpenDirections;
 }  // namespace detail
@@ -180,9 +181,9 @@ class VIEWGAIN_EXPORT HazardField {
   [[nodiscard]] const HazardConfig::Volume* volume() const { return volume_.get(); }
 
  private:
+  friend class HazardProbe;  // for kShapeUnit
   static constexpr std::uint16_t kNoDistance = 0xFFFF;
   static constexpr std::size_t kBeyond = std::numeric_limits<std::size_t>::max();
-  static constexpr int kMaxReach = 127;  // of distances [cells]
   static constexpr double kShapeUnit = 16384;
 
   [[nodiscard]] std::size_t cell_of(Index3 voxel) const {
@@ -193,10 +194,7 @@ class VIEWGAIN_EXPORT HazardField {
     return (x * size_[1] + y) * size_[2] + z;
   }
   [[nodiscard]] float volume_rate(Index3 voxel) const;
-  [[nodiscard]] Index3 cell_at(Index3 v, int by) const {
-    return {(v.x >> shift_) + by, (v.y >> shift_) + by, (v.z >> shift_) + by};
-  }
-  void find_distances(const GridSnapshot& snapshot, const std::vector<Index3>& evidence,
+  void find_distances(const GridSnapshot& snapshot, const detail::HazardLayout& layout,
                       ThreadPool& pool);
   void find_shapes(const detail::NearestCells& nearest, const detail::FreeShare& free,
                    const detail::OpenDirections& open, const std::vector<std::uint32_t>& sources,

@@ -11,7 +11,7 @@
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 #include "viewgain/grid/belief_grid.hpp"
-#include "viewgain/grid/hazard.hpp"
+#include "viewgain/grid/hazard_probe.hpp"
 
 namespace viewgain {
 
@@ -32,11 +32,11 @@ class VIEWGAIN_EXPORT HazardCalibration {
   /// lies in an unknown voxel. Rays that are out of range, or end on the support plane or a known
   /// object, have met no surface.
   ///
-  /// Has no effect while no surface is known, if HazardField::follows_counters() is false, and for
+  /// Has no effect while no surface is known, if HazardProbe::follows_counters() is false, and for
   /// a frame that sees almost no unknown space. Throws Error(invalid_argument) for a frame of
   /// another size, a pose that is not rigid (rigid_pose()), or if grid and hazard have different
   /// voxel sizes. Cost: about 5 ms.
-  void count(BeliefGrid& grid, const HazardField& hazard, const DepthFrame& frame,
+  void count(BeliefGrid& grid, const HazardProbe& hazard, const DepthFrame& frame,
              const Pose& T_world_camera) const;
 
  private:

@@ -21,6 +21,15 @@ struct VIEWGAIN_EXPORT Index3 {
   bool operator==(const Index3&) const = default;
 };
 
+/// The voxel that contains a point `p` [voxels], whose coordinates must be below 2^31.
+[[nodiscard]] inline Index3 voxel_of(const Eigen::Vector3d& p) {
+  const auto rounded_down = [](double value) {  // a call of std::floor takes longer
+    const auto towards_zero = static_cast<std::int32_t>(value);
+    return towards_zero - (value < towards_zero ? 1 : 0);
+  };
+  return {rounded_down(p.x()), rounded_down(p.y()), rounded_down(p.z())};
+}
+
 /// A box of voxels, [min, max); empty if a side is not positive. Members accept any voxel and never
 /// throw.
 struct VIEWGAIN_EXPORT VoxelBox {
@@ -40,12 +49,11 @@ struct VIEWGAIN_EXPORT VoxelBox {
   /// The voxel of the box that contains a point `p` [voxels] (grid frame, divided by the voxel
   /// size); empty if the point lies outside or is not finite.
   [[nodiscard]] std::optional<Index3> voxel_at(const Eigen::Vector3d& p) const {
-    const double x = std::floor(p.x()), y = std::floor(p.y()), z = std::floor(p.z());
-    if (!(x >= min.x && x < max.x && y >= min.y && y < max.y && z >= min.z && z < max.z)) {
+    if (!(p.x() >= min.x && p.x() < max.x && p.y() >= min.y && p.y() < max.y && p.z() >= min.z &&
+          p.z() < max.z)) {
       return std::nullopt;
     }
-    return Index3{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
-                  static_cast<std::int32_t>(z)};
+    return voxel_of(p);
   }
 
   /// Number of voxels; 0 if the box is empty.

@@ -53,12 +53,12 @@ struct VIEWGAIN_EXPORT ScorerConfig {
   std::vector<Box> fine{};  ///< leaves that touch one of these boxes keep scale 0; grid's frame [m]
   bool refine = true;       ///< false: ignores readings in voxels that already have one
   HazardConfig hazard{};    ///< rate at which rays meet the surface in unknown space
-  /// Whether each frame updates the hazard and measures MapUpdate::new_area. This costs some
-  /// milliseconds per frame. Unset: false for the paper's gain, which needs neither; otherwise
-  /// true.
+  /// Whether each frame updates the hazard and measures MapUpdate::new_area. Unset: false for the
+  /// paper's gain, which needs neither; otherwise true.
   std::optional<bool> learn_hazard{};
-  GainConfig gain{};     ///< settings of the gain
-  double clearance = 0;  ///< margin around the sensor's body that best() requires [m]
+  bool measure_new_area = true;  ///< false: frames that update the hazard do not measure it
+  GainConfig gain{};             ///< settings of the gain
+  double clearance = 0;          ///< margin around the sensor's body that best() requires [m]
 
   /// The layout of the map.
   [[nodiscard]] GridConfig grid() const {
@@ -79,7 +79,8 @@ struct VIEWGAIN_EXPORT MapUpdate {
   std::size_t flying_pixels = 0;              ///< removed by the jump-edge filter
   /// Area of new surface in the first frame, measured perpendicular to the rays [m²], to compare
   /// with ViewGain::area (apps/docs/guide/surface_gain.md). Measured depths count if they lie in
-  /// unknown voxels away from known surface. NaN without ScorerConfig::learn_hazard.
+  /// unknown voxels away from known surface. NaN without ScorerConfig::learn_hazard and
+  /// measure_new_area.
   double new_area = std::numeric_limits<double>::quiet_NaN();
   StageSeconds seconds{};  ///< "integrate": filters and map; "snapshot": data for scenes
 };

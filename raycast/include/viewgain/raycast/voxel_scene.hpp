@@ -15,6 +15,7 @@
 #include "viewgain/core/triangle_mesh.hpp"
 #include "viewgain/grid/belief_grid.hpp"
 #include "viewgain/grid/hazard.hpp"
+#include "viewgain/grid/hazard_probe.hpp"
 
 namespace viewgain {
 
@@ -86,6 +87,8 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// Hazard of unknown voxels and their distance to known surface; computed on the first call, in
   /// some milliseconds. Valid as long as the scene.
   [[nodiscard]] const HazardField& hazard() const;
+  /// The same at single voxels, without computing all of it.
+  [[nodiscard]] HazardProbe hazard_probe() const;
 
   /// Instruction set that traces this scene: "avx512", "avx2" or "sse4" ("baseline" off x86-64).
   /// Chosen when the scene is built: the best that the CPU supports, limited by the environment

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "readings.hpp"
+#include "viewgain/support/isa.hpp"
+
+namespace viewgain::detail {
+
+/// Local surfaces at a row's adjacent pixels, as many as a vector has lanes.
+struct LocalSurfaces {
+  static constexpr std::size_t kMost = 8;
+  std::array<bool, kMost> found{};
+  std::array<double, kMost> x{}, y{}, z{};  ///< the moved readings [m]
+};
+
+/// Finds the readings moved along the normal onto the surface of the surrounding pixels: the
+/// least-squares plane of depth over the image through readings of the 5×5 pixels whose depth
+/// differs from the pixel's by at most a slope of 2 plus noise. There is none if fewer than 6
+/// remain, they are collinear, the plane is seen at less than kMinCosIncidence, or the reading is
+/// more than 3 sigma from it and so belongs to something else; and none at a pixel without reading.
+///
+/// One set of functions per instruction set. All give the same bits, as BlockKernels do.
+struct SurfaceKernels {
+  int lanes;  ///< pixels of group()
+  void (*group)(const Readings& readings, int u, int v, LocalSurfaces& surfaces);
+  void (*one)(const Readings& readings, int u, int v, LocalSurfaces& surfaces);
+
+  /// Finds the surfaces at pixels from `u` of row v on. Returns the pixel of the first, which can
+  /// lie before u, and their number.
+  std::array<int, 2> find(const Readings& readings, int u, int v, LocalSurfaces& surfaces) const {
+    const int width = readings.row_length();
+    if (width < lanes) {
+      one(readings, u, v, surfaces);
+      return {u, 1};
+    }
+    const int first = u + lanes <= width ? u : width - lanes;
+    group(readings, first, v, surfaces);
+    return {first, lanes};
+  }
+};
+
+[[nodiscard]] const SurfaceKernels& surface_kernels(Isa isa);
+
+}  // namespace viewgain::detail

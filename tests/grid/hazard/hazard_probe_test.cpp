@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The viewgain authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The hazard at single voxels against the field of the whole map.
+
+#include "viewgain/grid/hazard_probe.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace viewgain {
+namespace {
+
+constexpr double kVoxel = 0.01;  // [m]
+
+Belief hit(std::uint32_t hits, double sigma) {
+  const auto information = static_cast<float>(hits / (sigma * sigma));
+  return {{information, information, information, 0, 0, 0}, {0, 0, 0}, hits};
+}
+
+/// A workspace that cuts blocks and cells, with random boxes of free space, whole blocks among
+/// them, and random surface.
+BeliefGrid random_map(Index3 dims, int surface, double sigma, std::mt19937& random) {
+  GridConfig config;
+  config.voxel_size = kVoxel;
+  config.workspace = {{-0.13, 0.07, -1.0},
+                      {-0.13 + dims.x * kVoxel, 0.07 + dims.y * kVoxel, -1.0 + dims.z * kVoxel}};
+  config.prior_sigma = 0.01;
+  BeliefGrid grid(config);
+  const auto any = [&](int size) {
+    return std::uniform_int_distribution<int>(0, size - 1)(random);
+  };
+  const Index3 low = grid.min_index();
+  const VoxelBox workspace = VoxelBox::from_dims(low, dims);
+  for (int k = 0; k < 12; ++k) {
+    const Index3 from{low.x + any(dims.x), low.y + any(dims.y), low.z + any(dims.z)};
+    const VoxelBox box =
+        VoxelBox::from_dims(from, {3 + any(24), 3 + any(24), 3 + any(24)}).intersection(workspace);
+    grid.update_box(box, std::vector<std::uint8_t>(box.volume(), 1));
+  }
+  for (int k = 0; k < surface; ++k) {
+    const auto hits = static_cast<std::uint32_t>(1 + any(4));
+    grid.set({low.x + any(dims.x), low.y + any(dims.y), low.z + any(dims.z)}, 0.85F,
+             hit(hits, sigma));
+  }
+  return grid;
+}
+
+TEST(HazardProbe, SaysWhatTheFieldSays) {
+  std::mt19937 random(11);
+  std::size_t voxels = 0, near = 0, shaped = 0, new_ones = 0;
+  for (const Index3 dims : {Index3{41, 29, 35}, Index3{9, 70, 150}, Index3{64, 64, 64}}) {
+    for (int shift = 0; shift < 4; ++shift) {
+      for (const double sigma : {0.003, 0.02}) {  // below a voxel; combined into cubes
+        const BeliefGrid grid = random_map(dims, shift == 1 ? 4 : 60, sigma, random);
+        HazardConfig config;
+        config.model =
+            HazardConfig::Model{30.0, (shift == 0 ? 2.5 : 4.0) * kVoxel * (1 << shift), 0.5};
+        const GridSnapshot snapshot = grid.snapshot();
+        const HazardField field(snapshot, config);
+        const HazardProbe probe(snapshot, config);
+        ASSERT_EQ(probe.cell_shift(), field.cell_shift());
+        ASSERT_EQ(probe.near_box(), field.near_box());
+        const Index3 low = grid.min_index();
+        for (int x = low.x - 2; x < low.x + dims.x + 2; ++x) {
+          for (int y = low.y - 2; y < low.y + dims.y + 2; y += 2) {
+            for (int z = low.z - 2; z < low.z + dims.z + 2; z += 3) {
+              const HazardProbe::At at = probe.at({x, y, z});
+              ASSERT_EQ(at.distance, field.distance({x, y, z})) << x << " " << y << " " << z;
+              ASSERT_EQ(at.start_rate, field.start_rate({x, y, z})) << x << " " << y << " " << z;
+              ASSERT_EQ(probe.is_new({x, y, z}), field.is_new({x, y, z}));
+              ++voxels;
+              near += std::isfinite(at.distance) ? 1 : 0;
+              shaped += field.shape({x, y, z}) < 1 ? 1 : 0;
+              new_ones += probe.is_new({x, y, z}) ? 1 : 0;
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(voxels, 500'000U);
+  EXPECT_GT(near, 200'000U);
+  EXPECT_GT(shaped, 100'000U);
+  EXPECT_GT(new_ones, 100'000U);
+  EXPECT_LT(new_ones, voxels - 5'000U);
+}
+
+TEST(HazardProbe, TakesTheModelAndItsLimitsFromTheMap) {
+  std::mt19937 random(3);
+  const BeliefGrid grid = random_map({50, 40, 30}, 200, 0.004, random);
+  const HazardField field(grid.snapshot());
+  const HazardProbe probe(grid.snapshot());
+  EXPECT_EQ(probe.model(), field.model());
+  EXPECT_TRUE(probe.follows_counters());
+  EXPECT_EQ(probe.voxel_size(), kVoxel);
+  EXPECT_FALSE(HazardProbe(grid.snapshot(), {.calibrated = false}).follows_counters());
+
+  // Without evidence everything is beyond the cut.
+  const BeliefGrid empty = random_map({20, 20, 20}, 0, 0.004, random);
+  const HazardProbe nothing(empty.snapshot());
+  EXPECT_EQ(nothing.near_box().volume(), 0U);
+  EXPECT_TRUE(std::isinf(nothing.at({0, 10, -95}).distance));
+  EXPECT_EQ(nothing.at({0, 10, -95}).start_rate, nothing.model().far_rate);
+  EXPECT_TRUE(nothing.is_new({0, 10, -95}));
+}
+
+}  // namespace
+}  // namespace viewgain
