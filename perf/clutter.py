@@ -6,7 +6,7 @@
     clutter.py DIR [--jobs N] [--program PATH] [--tables] [--unseen]
 
 Runs every policy on the scenes of scenes.toml with use = "report": with an SR4000 from three start
-poses, which are the seeds, and with a D435 in two scenes from one. The default and the counts come
+poses, which are the seeds, then with a D435 in two scenes from one. The default and the counts come
 first. If it is stopped, the same call goes on with the runs that are in DIR. About an hour on two
 idle cores. Needs the program viewgain, apps/install_dependencies.sh --perf, and
 PYTHONPATH=build/release/python.
@@ -73,7 +73,7 @@ def specs(out, program):
         if not is_made(out / "scenes" / name):
             scenes.write_listed([name], out / "scenes")
     sensors = ("sr4000", reported, SEEDS), ("d435", D435_SCENES, D435_SEEDS)
-    for (part, policies), (sensor, names, seeds) in itertools.product(enumerate(POLICIES, 1), sensors):
+    for (sensor, names, seeds), (part, policies) in itertools.product(sensors, enumerate(POLICIES, 1)):
         for seed in seeds:
             keys = {"objects": [scene_object((out / "scenes" / name).resolve(), seed) for name in names], "policies": policies,
                     "seeds": [seed], "sensors": [sensor], "voxels": [.005], "max_views": MAX_VIEWS}

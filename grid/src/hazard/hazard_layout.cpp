@@ -98,8 +98,8 @@ HazardLayout::HazardLayout(const GridSnapshot& snapshot, const HazardConfig& con
             {cells.max.x * edge, cells.max.y * edge, cells.max.z * edge}};
   if (cells.volume() > kMostCells) {
     throw Error(ErrorCode::capacity, "hazard: the known surface extends over " +
-                                         std::to_string(cells.volume()) + " cells, " +
-                                         std::to_string(kMostCells) + " is the maximum");
+                                         std::to_string(cells.volume()) +
+                                         " cells; the maximum is " + std::to_string(kMostCells));
   }
   // At least the neighbours of a cell with evidence.
   const double known = std::max(kKnownDistance * pooling.length / cell, 1.0);
