@@ -23,9 +23,9 @@ namespace {
 
 using detail::BlockMasks, detail::HazardLayout;
 
-constexpr int kCoarse = 4;  // cells of a coarse cell, along each axis
+constexpr int kCoarse = 2;  // cells of a coarse cell, along each axis
 // Twice the largest distance between a cell's centre and that of its coarse cell [cells].
-constexpr double kSlack = 5.2;
+constexpr double kSlack = 1.74;
 constexpr int kAround = 3;  // cells on each side, of those that make the normal
 
 /// The cells with evidence: one bit per cell, rows along z.
@@ -37,12 +37,14 @@ class EvidenceCells {
               layout.cells.max.z - low_.z},
         words_(static_cast<std::size_t>(size_.z + 63) / 64),
         rows_(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) * words_),
+        has_any_(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y)),
         reach_(layout.reach),
         coarse_size_{coarse_extent(size_.x), coarse_extent(size_.y), coarse_extent(size_.z)},
         coarse_(coarse_size_[0] * coarse_size_[1] * coarse_size_[2], detail::kNoDistance) {
     for (const Index3& voxel : layout.evidence) {
       const Index3 cell = in_box(layout.cell_of(voxel));
       row(cell.x, cell.y)[cell.z >> 6] |= std::uint64_t{1} << (cell.z & 63);
+      has_any_[row_index(cell.x, cell.y)] = 1;
       coarse_[coarse_index(cell)] = 0;
     }
     const int coarse_reach = static_cast<int>(std::ceil((reach_ + kSlack) / kCoarse));
@@ -81,10 +83,10 @@ class EvidenceCells {
     return (part(c.x) * coarse_size_[1] + part(c.y)) * coarse_size_[2] + part(c.z);
   }
   [[nodiscard]] std::size_t row_index(std::int32_t x, std::int32_t y) const {
-    return static_cast<std::size_t>(x * std::ptrdiff_t{size_.y} + y) * words_;
+    return static_cast<std::size_t>(x * std::ptrdiff_t{size_.y} + y);
   }
   [[nodiscard]] std::uint64_t* row(std::int32_t x, std::int32_t y) {
-    return &rows_[row_index(x, y)];
+    return &rows_[row_index(x, y) * words_];
   }
 
   // Offset along z to the nearest bit of a row; the lower one of two. A large value without one.
@@ -114,7 +116,9 @@ class EvidenceCells {
         for (int b = 0; a * a + b * b < best.squared; ++b) {
           for (int dy = -b; dy <= b; dy += std::max(1, 2 * b)) {
             if (c.y + dy < 0 || c.y + dy >= size_.y) continue;
-            const int dz = along(&rows_[row_index(c.x + dx, c.y + dy)], c.z);
+            const std::size_t row = row_index(c.x + dx, c.y + dy);
+            if (has_any_[row] == 0) continue;
+            const int dz = along(&rows_[row * words_], c.z);
             const int squared = a * a + b * b + dz * dz;
             if (squared < best.squared) best = {squared, {dx, dy, dz}};
           }
@@ -128,6 +132,7 @@ class EvidenceCells {
   Index3 low_, size_;  // of the box of cells
   std::size_t words_;  // of a row
   std::vector<std::uint64_t> rows_;
+  std::vector<std::uint8_t> has_any_;  // of each row
   int reach_;
   detail::CellBox coarse_size_;
   std::vector<std::uint16_t> coarse_;  // squared distances of coarse cells to coarse evidence
