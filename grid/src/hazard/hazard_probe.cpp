@@ -17,6 +17,7 @@
 #include "hazard_layout.hpp"
 #include "nearest_cells.hpp"
 #include "open_directions.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -48,7 +49,8 @@ class EvidenceCells {
       coarse_[coarse_index(cell)] = 0;
     }
     const int coarse_reach = static_cast<int>(std::ceil((reach_ + kSlack) / kCoarse));
-    (void)detail::NearestCells(coarse_, coarse_size_, coarse_reach);
+    ThreadPool caller(1);
+    (void)detail::NearestCells(coarse_, coarse_size_, coarse_reach, caller);
   }
 
   struct Nearest {
