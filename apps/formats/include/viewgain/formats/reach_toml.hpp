@@ -20,8 +20,8 @@ namespace viewgain {
 
 /// Writes a region. When read back, angles and rotations differ only by rounding (1e-14). Poses go
 /// to a TUM file next to the region's file: NAME.poses.txt for NAME.toml. An existing file is
-/// replaced. Each file is written atomically. Throws Error(io). Throws Error(invalid_argument) for a
-/// region that is invalid or has a predicate, for a name that does not end in .toml and, if there
+/// replaced. Each file is written atomically. Throws Error(io). Throws Error(invalid_argument) for
+/// a region that is invalid or has a predicate, for a name that does not end in .toml and, if there
 /// are poses, for a name that is not UTF-8.
 VIEWGAIN_EXPORT void write_reach_toml(const std::filesystem::path& path, const ReachRegion& region);
 
