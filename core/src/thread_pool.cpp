@@ -17,18 +17,13 @@
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/exec_config.hpp"
+#include "viewgain/support/relax.hpp"
 
 namespace viewgain {
 namespace {
 
 /// Number of looks at the flag before sleeping: some microseconds, less than the cost of a wake-up.
 constexpr int kSpins = 200;
-
-void relax() {
-#if defined(__x86_64__) || defined(__i386__)
-  __builtin_ia32_pause();
-#endif
-}
 
 template <typename Condition>
 bool spin_until(const Condition& condition) {

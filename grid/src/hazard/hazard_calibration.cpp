@@ -57,6 +57,68 @@ bool is_of_known_surface(StateReader& map, double size, const Eigen::Vector3d& p
   return false;
 }
 
+// Expected and actual meetings of a frame's rays with the surface in unknown voxels.
+class Meetings {
+ public:
+  Meetings(const BeliefGrid& grid, const HazardProbe& hazard, const Eigen::Vector3d& eye)
+      : map_(grid),
+        voxel_size_(grid.voxel_size()),
+        hazard_(hazard),
+        eye_(eye),
+        workspace_(grid.workspace()),
+        // Half a hazard cell: finer steps give the same result.
+        step_(0.5 * std::ldexp(grid.voxel_size(), hazard.cell_shift())) {}
+
+  // A ray is free from `begin` to `end`, in metres.
+  void pass(const Eigen::Vector3d& direction, double begin, double end) {
+    const Stretch seen = clipped(workspace_, eye_, direction, {begin, end});
+    for (double t = seen.begin + 0.5 * step_; t < seen.end; t += step_) {
+      const Index3 voxel = voxel_of((eye_ + t * direction) / voxel_size_);
+      if (map_.state(voxel) != VoxelState::unknown) continue;
+      const HazardProbe::At at = hazard_.at(voxel);
+      sums_.expected[class_at(at)] += at.start_rate * step_;
+    }
+  }
+  // It meets the surface.
+  void meet(const Eigen::Vector3d& direction, double range, double sigma) {
+    const Eigen::Vector3d p = eye_ + range * direction;
+    if (!workspace_.contains(p.x(), p.y(), p.z())) return;
+    const Index3 voxel = voxel_of(p / voxel_size_);
+    if (map_.state(voxel) != VoxelState::unknown) return;
+    if (is_of_known_surface(map_, voxel_size_, p, direction, range, sigma)) return;
+    sums_.met[class_at(hazard_.at(voxel))] += 1;
+  }
+  [[nodiscard]] const Sums& sums() const { return sums_; }
+
+ private:
+  [[nodiscard]] std::size_t class_at(const HazardProbe::At& at) const {
+    return HazardCounters::class_of(at.distance / hazard_.model().decay_length);
+  }
+
+  StateReader map_;
+  double voxel_size_;  // [m]
+  const HazardProbe& hazard_;
+  Eigen::Vector3d eye_;
+  Box workspace_;
+  double step_;  // [m]
+  Sums sums_;
+};
+
+// Adds a frame's counts; older ones lose weight.
+void add_counts(const Sums& sums, BeliefGrid& grid) {
+  const double expected = std::accumulate(sums.expected.begin(), sums.expected.end(), 0.0);
+  if (expected < kLeastEvents) return;
+  const double weight = HazardCounters::kFrame * std::min(1.0, expected / kEnough) / expected;
+  HazardCounters counters = grid.hazard_counters();
+  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
+    HazardCounters::Class& c = counters.classes[k];
+    c.expected =
+        c.expected * HazardCounters::kKeptOf10 / 10 + std::llround(sums.expected[k] * weight);
+    c.met = c.met * HazardCounters::kKeptOf10 / 10 + std::llround(sums.met[k] * weight);
+  }
+  grid.set_hazard_counters(counters);
+}
+
 }  // namespace
 
 HazardCalibration::HazardCalibration(const Sensor& sensor, std::optional<double> support_plane)
@@ -78,26 +140,13 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardProbe& hazard, const
   if (!hazard.follows_counters() || hazard.near_box().volume() == 0) return;
 
   const Pose T_grid_camera = grid.T_world_grid().inverse() * *T_rigid;
-  const Eigen::Vector3d eye = T_grid_camera.translation();
-  const Box workspace = grid.workspace();
-  const HazardConfig::Model& model = hazard.model();
-  // Half a hazard cell: finer steps give the same result.
-  const double step = 0.5 * std::ldexp(grid.voxel_size(), hazard.cell_shift());
-  const auto class_at = [&](double distance) {
-    return HazardCounters::class_of(distance / model.decay_length);
-  };
-  const auto voxel_at = [&](const Eigen::Vector3d& p) -> Index3 {
-    return voxel_of(p / grid.voxel_size());
-  };
+  Meetings meetings(grid, hazard, T_grid_camera.translation());
   const auto sees_plane = [&](const Eigen::Vector3d& p_camera, double range) {
     if (!support_plane_) return false;
     const Eigen::Vector3d p = *T_rigid * p_camera;
     const double rise = (p.z() - T_rigid->translation().z()) / range;
     return is_of_plane(p.z() - *support_plane_, rise, sensor_.sigmas(range, std::abs(rise)));
   };
-
-  Sums sums;
-  StateReader map(grid);
   const int width = camera.width, height = camera.height;
   const int stride = std::max(
       1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(rays_.size()) / kPixels))));
@@ -112,41 +161,17 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardProbe& hazard, const
                                                         : static_cast<double>(z) * norm;
       if (range < sensor_.min_range) continue;
       const bool is_reading = range <= sensor_.max_range;
-      const double last =
-          is_reading ? range - kLeftOut * sensor_.sigmas(range).axial : sensor_.max_range;
+      const double sigma = is_reading ? sensor_.sigmas(range).axial : 0;
       const Eigen::Vector3d direction = T_grid_camera.rotation() * rays_[i] / norm;
-      const Stretch seen = clipped(workspace, eye, direction, {sensor_.min_range, last});
-      for (double t = seen.begin + 0.5 * step; t < seen.end; t += step) {
-        const Index3 voxel = voxel_at(eye + t * direction);
-        if (map.state(voxel) != VoxelState::unknown) continue;
-        const HazardProbe::At at = hazard.at(voxel);
-        sums.expected[class_at(at.distance)] += at.start_rate * step;
+      meetings.pass(direction, sensor_.min_range,
+                    is_reading ? range - kLeftOut * sigma : sensor_.max_range);
+      if (is_reading && !frame.shows_known(i) &&
+          !sees_plane(static_cast<double>(z) * rays_[i], range)) {
+        meetings.meet(direction, range, sigma);
       }
-      if (!is_reading || frame.shows_known(i) ||
-          sees_plane(static_cast<double>(z) * rays_[i], range)) {
-        continue;
-      }
-      const Eigen::Vector3d p = eye + range * direction;
-      if (!workspace.contains(p.x(), p.y(), p.z())) continue;
-      const Index3 voxel = voxel_at(p);
-      if (map.state(voxel) != VoxelState::unknown) continue;
-      const double sigma = sensor_.sigmas(range).axial;
-      if (is_of_known_surface(map, grid.voxel_size(), p, direction, range, sigma)) continue;
-      sums.met[class_at(hazard.at(voxel).distance)] += 1;
     }
   }
-
-  const double expected = std::accumulate(sums.expected.begin(), sums.expected.end(), 0.0);
-  if (expected < kLeastEvents) return;
-  const double weight = HazardCounters::kFrame * std::min(1.0, expected / kEnough) / expected;
-  HazardCounters counters = grid.hazard_counters();
-  for (std::size_t k = 0; k < HazardCounters::kClasses; ++k) {
-    HazardCounters::Class& c = counters.classes[k];
-    c.expected =
-        c.expected * HazardCounters::kKeptOf10 / 10 + std::llround(sums.expected[k] * weight);
-    c.met = c.met * HazardCounters::kKeptOf10 / 10 + std::llround(sums.met[k] * weight);
-  }
-  grid.set_hazard_counters(counters);
+  add_counts(meetings.sums(), grid);
 }
 
 }  // namespace viewgain

@@ -65,8 +65,8 @@ OpenDirections::Steps OpenDirections::cells_of(const GridSnapshot& snapshot, con
   pool.for_each_chunk(rows, 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       const std::uint8_t* is_free = free.is_free() + row * length;
-      std::uint64_t *const bits = &here.free[word_of(row, 0)], *const unknown =
-                                                                   &here.unknown[word_of(row, 0)];
+      std::uint64_t* const bits = &here.free[word_of(row, 0)];
+      std::uint64_t* const unknown = &here.unknown[word_of(row, 0)];
       std::size_t z = 0;
       for (; z + 8 <= length; z += 8) bits[z / 64] |= packed(is_free + z) << z % 64;
       for (; z < length; ++z) bits[z / 64] |= std::uint64_t{is_free[z]} << z % 64;
@@ -141,6 +141,7 @@ void OpenDirections::join(const Steps* first, const Steps& then, const Direction
     }
     end_there(x, 0, low);
     end_there(x, high, ny);
+    if (low == high) continue;
     const std::size_t here = word_of(static_cast<std::size_t>(x * ny + low), 0),
                       there = word_of(static_cast<std::size_t>((x + dx) * ny + low + dy), 0),
                       count = static_cast<std::size_t>(high - low) * words_;

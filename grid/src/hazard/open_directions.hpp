@@ -22,8 +22,8 @@ class OpenDirections {
   static constexpr int kDirections = 26;
 
   /// `free` belongs to the same box; `reach` in cells, 1 to 63. A diagonal takes as many whole
-  /// steps as its length allows, at least one. Cost: about 130 passes over the cells, 64 cells at
-  /// once, and 2 bytes per cell.
+  /// steps as its length allows, at least one. Cost: about 130 passes over the cells on all
+  /// threads, at least 64 cells at once, and 2 bytes per cell and thread.
   OpenDirections(const GridSnapshot& snapshot, const VoxelBox& cells, int shift,
                  const FreeShare& free, int reach, ThreadPool& pool);
 

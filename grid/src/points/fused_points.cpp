@@ -185,52 +185,73 @@ Eigen::Vector3d mean_way(const std::vector<Pose>& views, const Eigen::Vector3d& 
 }
 
 /// Points of the leaves of one scale; beliefs of finer leaves nearby contribute to their columns.
-std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& snapshot,
-                                  const std::vector<BeliefBlockAt>& blocks, int scale,
-                                  const FusedPointsConfig& config, const ExecConfig& exec) {
-  const bool pooled = !config.per_voxel;
-  const Pooling pooling =
-      pooled ? pooling_of(snapshot, scale) : Pooling{scale, std::ldexp(grid.voxel_size(), scale)};
-  ThreadPool pool(exec.num_threads);
-  BeliefBricks bricks(snapshot, blocks, pooling.shift);
-  if (pooled) bricks.find_sides(pool);
-  const double V = std::ldexp(grid.voxel_size(), pooling.shift);
-  const double unit = pooling.length / V;
-  const Lengths lengths{std::min(config.normal_radius * unit, kMaxReach),
-                        config.column_radius * unit, config.min_distance * unit,
-                        kSupportRadius * unit};
-  const double column_area = std::numbers::pi * std::pow(lengths.column_radius * V, 2);  // [m²]
-  const Pose& T_world_grid = grid.T_world_grid();
-  std::vector<std::pair<std::size_t, unsigned>> occupied = bricks.occupied_with_belief();
-  std::erase_if(occupied, [&](const auto& at) {
-    const Index3 v = offset_voxel(bricks.origin(at.first), at.second);
-    const auto inside = [&](std::int32_t cube, std::int32_t low) {  // a cube at the rim is cut off
-      return std::max(cube << pooling.shift, low);
-    };
-    const Index3& low = snapshot.min_index;
-    return grid.scale({inside(v.x, low.x), inside(v.y, low.y), inside(v.z, low.z)}) != scale;
-  });
-  if (config.where) {
-    std::erase_if(occupied, [&](const auto& at) {
-      const Index3 voxel = offset_voxel(bricks.origin(at.first), at.second);
+class ScalePoints {
+ public:
+  ScalePoints(const BeliefGrid& grid, const GridSnapshot& snapshot,
+              const std::vector<BeliefBlockAt>& blocks, int scale, const FusedPointsConfig& config,
+              const ExecConfig& exec)
+      : grid_(grid),
+        snapshot_(snapshot),
+        config_(config),
+        scale_(scale),
+        pooled_(!config.per_voxel),
+        pooling_(pooled_ ? pooling_of(snapshot, scale)
+                         : Pooling{scale, std::ldexp(grid.voxel_size(), scale)}),
+        voxel_size_(std::ldexp(grid.voxel_size(), pooling_.shift)),
+        unit_(pooling_.length / voxel_size_),
+        lengths_{std::min(config.normal_radius * unit_, kMaxReach), config.column_radius * unit_,
+                 config.min_distance * unit_, kSupportRadius * unit_},
+        column_area_(std::numbers::pi * std::pow(lengths_.column_radius * voxel_size_, 2)),
+        pool_(exec.num_threads),
+        bricks_(snapshot, blocks, pooling_.shift) {
+    if (pooled_) bricks_.find_sides(pool_);
+  }
+
+  std::vector<FusedPoint> find() {
+    find_occupied();
+    seeds_.resize(occupied_.size());
+    pool_.for_each_chunk(occupied_.size(), 256,
+                         [&](std::size_t begin, std::size_t end) { make_seeds(begin, end); });
+    select();
+    std::vector<FusedPoint> points;
+    points.reserve(kept_.size());
+    for (const std::size_t i : kept_) points.push_back(point_of(seeds_[i]));
+    return points;
+  }
+
+ private:
+  // The occupied voxels with a belief that make points: of this scale, and where wanted.
+  void find_occupied() {
+    occupied_ = bricks_.occupied_with_belief();
+    std::erase_if(occupied_, [&](const auto& at) {
+      const Index3 v = offset_voxel(bricks_.origin(at.first), at.second);
+      const auto inside = [&](std::int32_t cube,
+                              std::int32_t low) {  // a cube at the rim is cut off
+        return std::max(cube << pooling_.shift, low);
+      };
+      const Index3& low = snapshot_.min_index;
+      return grid_.scale({inside(v.x, low.x), inside(v.y, low.y), inside(v.z, low.z)}) != scale_;
+    });
+    if (!config_.where) return;
+    std::erase_if(occupied_, [&](const auto& at) {
+      const Index3 voxel = offset_voxel(bricks_.origin(at.first), at.second);
       const Eigen::Vector3d center = Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5;
-      return !config.where(T_world_grid * Eigen::Vector3d(center * V));
+      return !config_.where(grid_.T_world_grid() * Eigen::Vector3d(center * voxel_size_));
     });
   }
 
-  std::vector<Seed> seeds(occupied.size());
-  pool.for_each_chunk(occupied.size(), 256, [&](std::size_t begin, std::size_t end) {
-    HitMoments moments(lengths.normal_radius);
-    BrickNeighborhood around(bricks, occupied[begin].first);
+  void make_seeds(std::size_t begin, std::size_t end) {
+    HitMoments moments(lengths_.normal_radius);
+    BrickNeighborhood around(bricks_, occupied_[begin].first);
     for (std::size_t i = begin; i < end; ++i) {
-      const auto [brick, offset] = occupied[i];
-      if (i == begin || brick != occupied[i - 1].first) {
-        around = BrickNeighborhood(bricks, brick);
-        moments.look_at(around, bricks.origin(brick));
+      const auto [brick, offset] = occupied_[i];
+      if (i == begin || brick != occupied_[i - 1].first) {
+        around = BrickNeighborhood(bricks_, brick);
+        moments.look_at(around, bricks_.origin(brick));
       }
-      const Index3 voxel = offset_voxel(bricks.origin(brick), offset);
-      const PlacedBelief& own = *bricks.find(brick, offset);
-      Seed& seed = seeds[i];
+      const Index3 voxel = offset_voxel(bricks_.origin(brick), offset);
+      const PlacedBelief& own = *bricks_.find(brick, offset);
+      Seed& seed = seeds_[i];
       seed.normal = local_normal(moments.round(offset, own.toward_free));
       const double along = seed.normal.dot(own.toward_free);
       seed.has_side = along != 0;
@@ -240,73 +261,89 @@ std::vector<FusedPoint> points_of(const BeliefGrid& grid, const GridSnapshot& sn
       seed.information = own.information;
       seed.covariance = own.covariance;
       seed.hits = own.hits;
-      if (pooled && around.is_near(seed.position)) {
+      if (pooled_ && around.is_near(seed.position)) {
         // Noise assigns readings from some distance to a voxel: the mean of a few can lie so far
         // from the surface that a column around it would miss the surface.
         seed.position = center + own.mean.cwiseMax(-0.5).cwiseMin(0.5);
-        pool_column(bricks, around, V, own, config, lengths.column_radius, seed);
+        pool_column(bricks_, around, voxel_size_, own, config_, lengths_.column_radius, seed);
       }
       seed.is_near = around.is_near(seed.position);
     }
-  });
-
-  std::vector<std::size_t> kept(seeds.size());
-  std::iota(kept.begin(), kept.end(), std::size_t{0});
-  std::erase_if(
-      kept, [&](std::size_t i) { return seeds[i].hits < config.min_hits || !seeds[i].is_near; });
-  std::vector<PooledPoint> pooled_points(pooled ? kept.size() : 0);
-  pool.for_each_chunk(kept.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      Seed& seed = seeds[kept[k]];
-      // A pooled point keeps the side of its pooling, wherever it ends up in a thin wall.
-      if (!seed.has_side) {
-        const BrickNeighborhood around(bricks, occupied[kept[k]].first);
-        if (seed.normal.dot(around.free_side(seed.position)) < 0) seed.normal = -seed.normal;
-      }
-      if (pooled) {
-        pooled_points[k] = {seed.position, seed.normal, evidence(seed, column_area), seed.hits};
-      }
-    }
-  });
-  if (pooled) {
-    // Before thinning, so that no point is removed because of a removed one.
-    const std::vector<std::uint8_t> good =
-        well_supported(pooled_points, lengths.support_radius, config.min_relative_evidence, pool);
-    keep(kept, good);
-    keep(pooled_points, good);
-    std::vector<std::uint8_t> stays(kept.size());
-    const double cover = std::max(unit, lengths.min_distance);
-    for (const std::size_t k : thinned(pooled_points, lengths.min_distance, cover, pool)) {
-      stays[k] = 1;
-    }
-    keep(kept, stays);
   }
 
-  const double floor = config.floor_sigma.value_or(V / std::sqrt(12.0));
-  const Eigen::Matrix3d R = T_world_grid.rotation();
-  std::vector<FusedPoint> points;
-  points.reserve(kept.size());
-  for (const std::size_t i : kept) {
-    const Seed& seed = seeds[i];
-    const Eigen::Vector3d p = T_world_grid * (seed.position * V);
+  // Keeps seeds that have enough hits; of pooled ones those with support, thinned.
+  void select() {
+    kept_.resize(seeds_.size());
+    std::iota(kept_.begin(), kept_.end(), std::size_t{0});
+    std::erase_if(kept_, [&](std::size_t i) {
+      return seeds_[i].hits < config_.min_hits || !seeds_[i].is_near;
+    });
+    std::vector<PooledPoint> pooled_points(pooled_ ? kept_.size() : 0);
+    pool_.for_each_chunk(kept_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        Seed& seed = seeds_[kept_[k]];
+        // A pooled point keeps the side of its pooling, wherever it ends up in a thin wall.
+        if (!seed.has_side) {
+          const BrickNeighborhood around(bricks_, occupied_[kept_[k]].first);
+          if (seed.normal.dot(around.free_side(seed.position)) < 0) seed.normal = -seed.normal;
+        }
+        if (pooled_) {
+          pooled_points[k] = {seed.position, seed.normal, evidence(seed, column_area_), seed.hits};
+        }
+      }
+    });
+    if (!pooled_) return;
+    // Before thinning, so that no point is removed because of a removed one.
+    const std::vector<std::uint8_t> good = well_supported(pooled_points, lengths_.support_radius,
+                                                          config_.min_relative_evidence, pool_);
+    keep(kept_, good);
+    keep(pooled_points, good);
+    std::vector<std::uint8_t> stays(kept_.size());
+    const double cover = std::max(unit_, lengths_.min_distance);
+    for (const std::size_t k : thinned(pooled_points, lengths_.min_distance, cover, pool_)) {
+      stays[k] = 1;
+    }
+    keep(kept_, stays);
+  }
+
+  [[nodiscard]] FusedPoint point_of(const Seed& seed) const {
+    const Pose& T_world_grid = grid_.T_world_grid();
+    const Eigen::Matrix3d R = T_world_grid.rotation();
+    const Eigen::Vector3d p = T_world_grid * (seed.position * voxel_size_);
     const Eigen::Vector3d n = R * seed.normal;
-    const double F = pooled && !config.floor_sigma
-                         ? pooled_floor(seed, evidence(seed, column_area), V)
+    const double floor = config_.floor_sigma.value_or(voxel_size_ / std::sqrt(12.0));
+    const double F = pooled_ && !config_.floor_sigma
+                         ? pooled_floor(seed, evidence(seed, column_area_), voxel_size_)
                          : floor * floor;
     Eigen::Matrix3d covariance = R * seed.covariance.matrix() * R.transpose() +
                                  Eigen::Matrix3d(Eigen::Vector3d::Constant(F).asDiagonal());
-    if (config.scale_sigma > 0) {
-      const Eigen::Vector3d moves = config.scale_sigma * mean_way(grid.views(), p, n);
+    if (config_.scale_sigma > 0) {
+      const Eigen::Vector3d moves = config_.scale_sigma * mean_way(grid_.views(), p, n);
       covariance += moves * moves.transpose();
     }
-    points.push_back({{p.x(), p.y(), p.z()},
-                      SymmetricMatrix3::from(covariance),
-                      {n.x(), n.y(), n.z()},
-                      seed.hits,
-                      pooling.length});
+    return {{p.x(), p.y(), p.z()},
+            SymmetricMatrix3::from(covariance),
+            {n.x(), n.y(), n.z()},
+            seed.hits,
+            pooling_.length};
   }
-  return points;
-}
+
+  const BeliefGrid& grid_;
+  const GridSnapshot& snapshot_;
+  const FusedPointsConfig& config_;
+  int scale_;
+  bool pooled_;
+  Pooling pooling_;
+  double voxel_size_;  // of the bricks [m]
+  double unit_;        // pooling length [voxels of the bricks]
+  Lengths lengths_;
+  double column_area_;  // [m²]
+  ThreadPool pool_;
+  BeliefBricks bricks_;
+  std::vector<std::pair<std::size_t, unsigned>> occupied_;
+  std::vector<Seed> seeds_;  // of the occupied voxels
+  std::vector<std::size_t> kept_;
+};
 
 constexpr int kMostShift = 3;  // cubes stay within a leaf
 
@@ -341,7 +378,8 @@ std::vector<FusedPoint> fused_points(const BeliefGrid& grid, const FusedPointsCo
   std::vector<FusedPoint> points;
   for (int scale = 0; scale < 4; ++scale) {
     if (!is_there[static_cast<std::size_t>(scale)]) continue;
-    const std::vector<FusedPoint> part = points_of(grid, snapshot, blocks, scale, config, exec);
+    const std::vector<FusedPoint> part =
+        ScalePoints(grid, snapshot, blocks, scale, config, exec).find();
     points.insert(points.end(), part.begin(), part.end());
   }
   return points;

@@ -95,65 +95,107 @@ RangeBounds RangePyramid::bounds(std::int32_t u0, std::int32_t v0, std::int32_t 
   return result;
 }
 
-CubeClass ConeCull::classify(Index3 origin, int size) const {
-  const auto& T = camera_.T_camera_grid;
-  // The box of the voxel centres: its centre and, along each grid axis, half its extent.
-  const double middle[3] = {(origin.x + 0.5 * size) * voxel_size_,
-                            (origin.y + 0.5 * size) * voxel_size_,
-                            (origin.z + 0.5 * size) * voxel_size_};
-  const double half = 0.5 * (size - 1) * voxel_size_;
+namespace {
+
+// The box of a cube's voxel centres in the camera's frame: its centre and half its extent along
+// each grid axis.
+struct CenterBox {
   double p[3];
-  for (std::size_t r = 0; r < 3; ++r) {
-    p[r] =
-        T[4 * r] * middle[0] + T[4 * r + 1] * middle[1] + T[4 * r + 2] * middle[2] + T[4 * r + 3];
-  }
+  double half;
 
-  double z_low = p[2], z_high = p[2];
-  for (std::size_t a = 0; a < 3; ++a) {
-    z_low -= std::abs(T[8 + a]) * half;
-    z_high += std::abs(T[8 + a]) * half;
-  }
-  const double rounding = kRangeMargin * (std::abs(p[2]) + size * voxel_size_);
-  if (z_high < -rounding) return CubeClass::untouched;
-  if (z_low <= rounding) return CubeClass::mixed;  // straddles the camera's plane
-
-  Interval x{}, y{};
-  double farthest2 = 0;  // range is convex, so a corner is the farthest
-  for (int corner = 0; corner < 8; ++corner) {
-    const double s[3] = {corner & 1 ? half : -half, corner & 2 ? half : -half,
-                         corner & 4 ? half : -half};
-    const double z = p[2] + T[8] * s[0] + T[9] * s[1] + T[10] * s[2];
-    const double px = p[0] + T[0] * s[0] + T[1] * s[1] + T[2] * s[2];
-    const double py = p[1] + T[4] * s[0] + T[5] * s[1] + T[6] * s[2];
-    const double cx = px / z, cy = py / z;
-    farthest2 = std::max(farthest2, px * px + py * py + z * z);
-    if (corner == 0) {
-      x = {cx, cx};
-      y = {cy, cy};
-    } else {
-      x = {std::min(x.low, cx), std::max(x.high, cx)};
-      y = {std::min(y.low, cy), std::max(y.high, cy)};
+  CenterBox(const ConeCamera& camera, Index3 origin, int size, double voxel_size)
+      : p{}, half(0.5 * (size - 1) * voxel_size) {
+    const auto& T = camera.T_camera_grid;
+    const double middle[3] = {(origin.x + 0.5 * size) * voxel_size,
+                              (origin.y + 0.5 * size) * voxel_size,
+                              (origin.z + 0.5 * size) * voxel_size};
+    for (std::size_t r = 0; r < 3; ++r) {
+      p[r] =
+          T[4 * r] * middle[0] + T[4 * r + 1] * middle[1] + T[4 * r + 2] * middle[2] + T[4 * r + 3];
     }
   }
-
-  bool inside = true;  // all centres project into the image
-  if (camera_.distorted) {
-    const auto& d = camera_.distortion;
-    const Interval xx = square(x), yy = square(y), xy = x * y;
-    const Interval r2 = xx + yy;
-    if (r2.low > camera_.fold_r2 * (1.0 + kRangeMargin)) return CubeClass::untouched;
-    if (!(r2.high < camera_.fold_r2 * (1.0 - kRangeMargin))) inside = false;
-    const Interval radial = 1.0 + r2 * (d[0] + r2 * (d[1] + d[4] * r2));
-    const Interval x_distorted = x * radial + 2.0 * d[2] * xy + d[3] * (r2 + 2.0 * xx);
-    y = y * radial + d[2] * (r2 + 2.0 * yy) + 2.0 * d[3] * xy;
-    x = x_distorted;
+  [[nodiscard]] Interval depth(const ConeCamera& camera) const {
+    double low = p[2], high = p[2];
+    for (std::size_t a = 0; a < 3; ++a) {
+      low -= std::abs(camera.T_camera_grid[8 + a]) * half;
+      high += std::abs(camera.T_camera_grid[8 + a]) * half;
+    }
+    return {low, high};
   }
+  [[nodiscard]] double distance() const {
+    return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+  }
+  // The nearest centre lies behind the plane that touches the box and is perpendicular to the
+  // direction to its centre.
+  [[nodiscard]] double nearest(const ConeCamera& camera) const {
+    const auto& T = camera.T_camera_grid;
+    const double distance = this->distance();
+    double nearest = distance;
+    for (std::size_t a = 0; a < 3; ++a) {
+      nearest -= half * std::abs(p[0] * T[a] + p[1] * T[4 + a] + p[2] * T[8 + a]) / distance;
+    }
+    return nearest;
+  }
+};
+
+// A box in front of the camera, in the plane z = 1, and the squared range of its farthest corner.
+struct SeenBox {
+  Interval x{}, y{};
+  double farthest2 = 0;  // range is convex, so a corner is the farthest
+
+  SeenBox(const ConeCamera& camera, const CenterBox& box) {
+    const auto& T = camera.T_camera_grid;
+    const auto& [p, half] = box;
+    for (int corner = 0; corner < 8; ++corner) {
+      const double s[3] = {corner & 1 ? half : -half, corner & 2 ? half : -half,
+                           corner & 4 ? half : -half};
+      const double z = p[2] + T[8] * s[0] + T[9] * s[1] + T[10] * s[2];
+      const double px = p[0] + T[0] * s[0] + T[1] * s[1] + T[2] * s[2];
+      const double py = p[1] + T[4] * s[0] + T[5] * s[1] + T[6] * s[2];
+      const double cx = px / z, cy = py / z;
+      farthest2 = std::max(farthest2, px * px + py * py + z * z);
+      if (corner == 0) {
+        x = {cx, cx};
+        y = {cy, cy};
+      } else {
+        x = {std::min(x.low, cx), std::max(x.high, cx)};
+        y = {std::min(y.low, cy), std::max(y.high, cy)};
+      }
+    }
+  }
+};
+
+// Where the box may be after the lens, and whether all of it surely is within the fold. False: all
+// of it is beyond.
+bool distort(const ConeCamera& camera, SeenBox& seen, bool& inside) {
+  const auto& d = camera.distortion;
+  const Interval x = seen.x, y = seen.y, xx = square(x), yy = square(y), xy = x * y;
+  const Interval r2 = xx + yy;
+  if (r2.low > camera.fold_r2 * (1.0 + kRangeMargin)) return false;
+  if (!(r2.high < camera.fold_r2 * (1.0 - kRangeMargin))) inside = false;
+  const Interval radial = 1.0 + r2 * (d[0] + r2 * (d[1] + d[4] * r2));
+  seen.x = x * radial + 2.0 * d[2] * xy + d[3] * (r2 + 2.0 * xx);
+  seen.y = y * radial + d[2] * (r2 + 2.0 * yy) + 2.0 * d[3] * xy;
+  return true;
+}
+
+}  // namespace
+
+CubeClass ConeCull::classify(Index3 origin, int size) const {
+  const CenterBox box(camera_, origin, size, voxel_size_);
+  const Interval z = box.depth(camera_);
+  const double rounding = kRangeMargin * (std::abs(box.p[2]) + size * voxel_size_);
+  if (z.high < -rounding) return CubeClass::untouched;
+  if (z.low <= rounding) return CubeClass::mixed;  // straddles the camera's plane
+  SeenBox seen(camera_, box);
+  bool inside = true;  // all centres project into the image
+  if (camera_.distorted && !distort(camera_, seen, inside)) return CubeClass::untouched;
 
   // Pixel q contains the centres with coordinates in [q - 0.5, q + 0.5).
-  const double u_low = std::floor(camera_.fx * x.low + camera_.cx + 0.5 - kPixelMargin);
-  const double u_high = std::floor(camera_.fx * x.high + camera_.cx + 0.5 + kPixelMargin);
-  const double v_low = std::floor(camera_.fy * y.low + camera_.cy + 0.5 - kPixelMargin);
-  const double v_high = std::floor(camera_.fy * y.high + camera_.cy + 0.5 + kPixelMargin);
+  const double u_low = std::floor(camera_.fx * seen.x.low + camera_.cx + 0.5 - kPixelMargin);
+  const double u_high = std::floor(camera_.fx * seen.x.high + camera_.cx + 0.5 + kPixelMargin);
+  const double v_low = std::floor(camera_.fy * seen.y.low + camera_.cy + 0.5 - kPixelMargin);
+  const double v_high = std::floor(camera_.fy * seen.y.high + camera_.cy + 0.5 + kPixelMargin);
   const double last_u = camera_.width - 1, last_v = camera_.height - 1;
   if (u_high < 0 || u_low > last_u || v_high < 0 || v_low > last_v) return CubeClass::untouched;
   if (!(u_low >= 0 && u_high <= last_u && v_low >= 0 && v_high <= last_v)) inside = false;
@@ -166,17 +208,9 @@ CubeClass ConeCull::classify(Index3 origin, int size) const {
   };
   const RangeBounds bounds =
       pyramid_.bounds(lower(u_low), lower(v_low), upper(u_high, last_u), upper(v_high, last_v));
-
-  // The nearest centre lies behind the plane that touches the box and is perpendicular to the
-  // direction to its centre.
-  const double distance = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-  double nearest = distance;
-  for (std::size_t a = 0; a < 3; ++a) {
-    nearest -= half * std::abs(p[0] * T[a] + p[1] * T[4 + a] + p[2] * T[8 + a]) / distance;
-  }
-  const double margin = kRangeMargin * (distance + size * voxel_size_);
-  if (nearest - margin > static_cast<double>(bounds.reach)) return CubeClass::untouched;
-  if (std::sqrt(farthest2) + margin < static_cast<double>(bounds.clear)) {
+  const double margin = kRangeMargin * (box.distance() + size * voxel_size_);
+  if (box.nearest(camera_) - margin > static_cast<double>(bounds.reach)) return CubeClass::untouched;
+  if (std::sqrt(seen.farthest2) + margin < static_cast<double>(bounds.clear)) {
     return inside ? CubeClass::crossed : CubeClass::cut;
   }
   return CubeClass::mixed;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 
@@ -105,127 +106,177 @@ class PaperSet {
   Overlay chosen_;
 };
 
-// With `config` the choice ends when no view is worth its cost. If it is null, nothing costs, and k
-// views are chosen.
+// A greedy choice. With `config` it ends when no view is worth its cost. If it is null, nothing
+// costs, and k views are chosen.
+template <typename Chosen>
+class GreedyChoice {
+ public:
+  GreedyChoice(const ViewDriver& driver, Chosen& chosen, std::span<const Pose> T_world_camera,
+               std::size_t k, const TourConfig* config, const BatchControl& control)
+      : driver_(driver),
+        chosen_(chosen),
+        poses_(T_world_camera),
+        k_(std::min(k, poses_.size())),
+        config_(config),
+        control_(control),
+        pricing_(config != nullptr ? *config : free_, poses_.size()),
+        gains_(poses_.size()),
+        scored_(poses_.size()),
+        open_(poses_.size()) {
+    std::iota(open_.begin(), open_.end(), std::size_t{0});
+  }
+
+  ViewTour run() {
+    if (k_ == 0) return std::move(made_);
+    if (control_.progress) control_.progress(0, k_);
+    for (round_ = 1; round_ <= k_ && !open_.empty(); ++round_) {
+      if (!update_gains() || open_.empty()) break;
+      const auto winner =
+          std::min_element(open_.begin(), open_.end(), [&](std::size_t a, std::size_t b) {
+            if ((scored_[a] == round_) != (scored_[b] == round_)) return scored_[a] == round_;
+            return is_better(a, b);
+          });
+      const std::size_t index = *winner;
+      if (!is_worth_it(index)) {
+        if (control_.progress) control_.progress(k_, k_);
+        break;
+      }
+      open_.erase(winner);
+      take(index);
+    }
+    made_.tour = pricing_.tour();
+    return std::move(made_);
+  }
+
+ private:
+  template <typename Gain>
+  bool score_by(std::span<const std::size_t> indices, std::size_t round, const Gain& gain) {
+    made_.set.complete = detail::for_each(driver_, indices.size(), control_,
+                                          [&](std::size_t j, ViewDriver::Lease& lease) {
+                                            const std::size_t i = indices[j];
+                                            gains_[i] = gain(i, lease);
+                                            scored_[i] = round;
+                                          });
+    made_.set.evaluations += indices.size();
+    return made_.set.complete;
+  }
+  bool score(std::span<const std::size_t> indices) {
+    return score_by(indices, round_, [&](std::size_t i, ViewDriver::Lease& lease) {
+      return chosen_.after(i, poses_[i], lease);
+    });
+  }
+  // Lowers the bounds of poses of earlier rounds if that is faster than scoring them again.
+  bool tighten(std::span<const std::size_t> indices) {
+    if constexpr (Chosen::kTightens) {
+      made_.set.complete = detail::for_each(
+          driver_, indices.size(), control_, [&](std::size_t j, ViewDriver::Lease& lease) {
+            const std::size_t i = indices[j];
+            const double bound = chosen_.tighter(poses_[i], lease).gain;
+            gains_[i].gain = std::min(gains_[i].gain, bound * Chosen::kBoundFactor);
+          });
+      made_.set.evaluations += indices.size();
+    }
+    return made_.set.complete;
+  }
+
+  [[nodiscard]] bool is_better(std::size_t a, std::size_t b) const {
+    const double of_a = pricing_.rank(a, gains_[a].gain), of_b = pricing_.rank(b, gains_[b].gain);
+    if (of_a != of_b) return of_a > of_b;
+    return gains_[a].gain != gains_[b].gain ? gains_[a].gain > gains_[b].gain : a < b;
+  }
+  // Upper bound for a view of an earlier round.
+  [[nodiscard]] double bound_of(std::size_t i) const {
+    return pricing_.rank(i, gains_[i].gain * kRounding);
+  }
+
+  // Finds the largest gain of the round. False: stopped.
+  bool update_gains() {
+    const bool is_lazy = chosen_.is_lazy();
+    if (round_ == 1) {
+      if (!score_first()) return false;
+    } else if (!is_lazy && !score(open_)) {
+      return false;
+    }
+    return !is_lazy || score_lazily();
+  }
+
+  bool score_first() {
+    const auto bound = [&](std::size_t i, ViewDriver::Lease& lease) {
+      return chosen_.bound(i, poses_[i], lease);
+    };
+    if (!score_by(open_, Chosen::kBoundIsFirst ? 1 : 0, bound)) return false;
+    std::erase_if(open_, [&](std::size_t i) {
+      return std::isnan(gains_[i].gain) ||
+             (config_ != nullptr && i != config_->first && !(gains_[i].gain > 0));
+    });
+    if (config_ != nullptr) made_.alone = gains_;
+    for (ViewGain& gain : gains_) gain.gain *= Chosen::kBoundFactor;
+    return true;
+  }
+
+  // Earlier gains are upper bounds: scores from the largest on until a current gain beats the rest.
+  bool score_lazily() {
+    std::sort(open_.begin(), open_.end(),
+              [&](std::size_t a, std::size_t b) { return is_better(a, b); });
+    double largest = kNoStop;
+    for (std::size_t begin = 0; begin < open_.size() && bound_of(open_[begin]) >= largest;) {
+      const std::size_t end = std::min(begin + kLazyBatch, open_.size());
+      stale_.assign(open_.begin() + static_cast<std::ptrdiff_t>(begin),
+                    open_.begin() + static_cast<std::ptrdiff_t>(end));
+      std::erase_if(stale_, [&](std::size_t i) { return scored_[i] == round_; });
+      if (round_ > 1 && !tighten(stale_)) return false;
+      std::erase_if(stale_, [&](std::size_t i) { return bound_of(i) < largest; });
+      if (!score(stale_)) return false;
+      for (; begin < end; ++begin) {
+        const std::size_t i = open_[begin];
+        if (scored_[i] == round_) largest = std::max(largest, pricing_.rank(i, gains_[i].gain));
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool is_worth_it(std::size_t index) const {
+    const bool is_given = config_ != nullptr && round_ == 1 && index == config_->first;
+    if (config_ == nullptr || is_given) return true;
+    const ViewGain& adds = gains_[index];
+    if (!(adds.gain > 0) || pricing_.rank(index, adds.gain) == kNoStop) return false;
+    return round_ == 1 ||
+           !(pricing_.worth(index, adds.gain) <= 0 || adds.area < config_->least_area);
+  }
+
+  void take(std::size_t index) {
+    made_.worth.push_back(pricing_.worth(index, gains_[index].gain));
+    ViewSet& set = made_.set;
+    set.indices.push_back(index);
+    set.marginal.push_back(gains_[index]);
+    set.gain += gains_[index].gain;
+    if (control_.progress) control_.progress(round_, k_);
+    ViewDriver::Lease lease(driver_);
+    chosen_.choose(index, poses_[index], lease);
+    pricing_.choose(index);
+  }
+
+  const ViewDriver& driver_;
+  Chosen& chosen_;
+  std::span<const Pose> poses_;
+  std::size_t k_;
+  const TourConfig* config_;
+  const BatchControl& control_;
+  const TourConfig free_;  // of a choice without costs
+  detail::WayPricing pricing_;
+  std::vector<ViewGain> gains_;      // marginal gain in the round of scored_
+  std::vector<std::size_t> scored_;  // round; 0: never
+  std::vector<std::size_t> open_;    // poses that may be chosen
+  std::vector<std::size_t> stale_;
+  std::size_t round_ = 0;
+  ViewTour made_;
+};
+
 template <typename Chosen>
 ViewTour choose_greedily(const ViewDriver& driver, Chosen& chosen,
                          std::span<const Pose> T_world_camera, std::size_t k,
                          const TourConfig* config, const BatchControl& control) {
-  const std::size_t count = T_world_camera.size();
-  const TourConfig free;
-  detail::WayPricing pricing(config != nullptr ? *config : free, count);
-  k = std::min(k, count);
-  ViewTour made;
-  ViewSet& set = made.set;
-  if (k == 0) return made;
-  if (control.progress) control.progress(0, k);
-  const bool lazy = chosen.is_lazy();
-  std::vector<ViewGain> gains(count);     // marginal gain in round[i]
-  std::vector<std::size_t> round(count);  // 0: never scored
-  std::vector<std::size_t> open(count);   // poses that may be chosen
-  std::vector<std::size_t> stale;
-  for (std::size_t i = 0; i < count; ++i) open[i] = i;
-  const auto score_by = [&](std::span<const std::size_t> indices, std::size_t now, auto&& gain) {
-    set.complete = detail::for_each(driver, indices.size(), control,
-                                    [&](std::size_t j, ViewDriver::Lease& lease) {
-                                      const std::size_t i = indices[j];
-                                      gains[i] = gain(i, lease);
-                                      round[i] = now;
-                                    });
-    set.evaluations += indices.size();
-    return set.complete;
-  };
-  const auto score = [&](std::span<const std::size_t> indices, std::size_t now) {
-    return score_by(indices, now, [&](std::size_t i, ViewDriver::Lease& lease) {
-      return chosen.after(i, T_world_camera[i], lease);
-    });
-  };
-  // Lowers the bounds of poses of earlier rounds if that is faster than scoring them again.
-  const auto tighten = [&](std::span<const std::size_t> indices) {
-    if constexpr (Chosen::kTightens) {
-      set.complete = detail::for_each(
-          driver, indices.size(), control, [&](std::size_t j, ViewDriver::Lease& lease) {
-            const std::size_t i = indices[j];
-            const double bound = chosen.tighter(T_world_camera[i], lease).gain;
-            gains[i].gain = std::min(gains[i].gain, bound * Chosen::kBoundFactor);
-          });
-      set.evaluations += indices.size();
-    }
-    return set.complete;
-  };
-  const auto better = [&](std::size_t a, std::size_t b) {
-    const double of_a = pricing.rank(a, gains[a].gain), of_b = pricing.rank(b, gains[b].gain);
-    if (of_a != of_b) return of_a > of_b;
-    return gains[a].gain != gains[b].gain ? gains[a].gain > gains[b].gain : a < b;
-  };
-  // Upper bound for a view of an earlier round.
-  const auto bound_of = [&](std::size_t i) { return pricing.rank(i, gains[i].gain * kRounding); };
-  const auto finished = [&] {
-    made.tour = pricing.tour();
-    return std::move(made);
-  };
-
-  for (std::size_t now = 1; now <= k && !open.empty(); ++now) {
-    if (now == 1) {
-      const auto bound = [&](std::size_t i, ViewDriver::Lease& lease) {
-        return chosen.bound(i, T_world_camera[i], lease);
-      };
-      if (!score_by(open, Chosen::kBoundIsFirst ? 1 : 0, bound)) return finished();
-      std::erase_if(open, [&](std::size_t i) {
-        return std::isnan(gains[i].gain) ||
-               (config != nullptr && i != config->first && !(gains[i].gain > 0));
-      });
-      if (config != nullptr) made.alone = gains;
-      for (ViewGain& gain : gains) gain.gain *= Chosen::kBoundFactor;
-      if (open.empty()) break;
-    } else if (!lazy) {
-      if (!score(open, now)) return finished();
-    }
-    if (lazy) {
-      // Earlier gains are upper bounds: score from the largest on until a current gain beats the
-      // rest.
-      std::sort(open.begin(), open.end(), better);
-      double largest = kNoStop;
-      for (std::size_t begin = 0; begin < open.size() && bound_of(open[begin]) >= largest;) {
-        const std::size_t end = std::min(begin + kLazyBatch, open.size());
-        stale.assign(open.begin() + static_cast<std::ptrdiff_t>(begin),
-                     open.begin() + static_cast<std::ptrdiff_t>(end));
-        std::erase_if(stale, [&](std::size_t i) { return round[i] == now; });
-        if (now > 1 && !tighten(stale)) return finished();
-        std::erase_if(stale, [&](std::size_t i) { return bound_of(i) < largest; });
-        if (!score(stale, now)) return finished();
-        for (; begin < end; ++begin) {
-          const std::size_t i = open[begin];
-          if (round[i] == now) largest = std::max(largest, pricing.rank(i, gains[i].gain));
-        }
-      }
-    }
-    const auto winner =
-        std::min_element(open.begin(), open.end(), [&](std::size_t a, std::size_t b) {
-          if ((round[a] == now) != (round[b] == now)) return round[a] == now;
-          return better(a, b);
-        });
-    const std::size_t index = *winner;
-    const ViewGain& adds = gains[index];
-    const bool is_given = config != nullptr && now == 1 && index == config->first;
-    if (config != nullptr && !is_given &&
-        (!(adds.gain > 0) || pricing.rank(index, adds.gain) == kNoStop ||
-         (now > 1 && (pricing.worth(index, adds.gain) <= 0 || adds.area < config->least_area)))) {
-      if (control.progress) control.progress(k, k);
-      break;
-    }
-    made.worth.push_back(pricing.worth(index, adds.gain));
-    open.erase(winner);
-    set.indices.push_back(index);
-    set.marginal.push_back(gains[index]);
-    set.gain += gains[index].gain;
-    if (control.progress) control.progress(now, k);
-
-    ViewDriver::Lease lease(driver);
-    chosen.choose(index, T_world_camera[index], lease);
-    pricing.choose(index);
-  }
-  return finished();
+  return GreedyChoice<Chosen>(driver, chosen, T_world_camera, k, config, control).run();
 }
 
 ViewTour choose_by(const ViewDriver& driver, std::span<const Pose> T_world_camera, std::size_t k,

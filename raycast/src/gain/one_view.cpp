@@ -8,9 +8,24 @@
 
 #include "gain_evaluator_impl.hpp"
 #include "trace/scene_tracing.hpp"
+#include "viewgain/support/relax.hpp"
 
 namespace viewgain::detail {
 namespace {
+
+// Waits for what another thread is finishing, some tenths of a millisecond. Yields later: where
+// other processes wait for the core, the first yield costs a time slice.
+template <typename Condition>
+void wait_for(const Condition& condition) {
+  constexpr int kSpins = 4000;
+  for (int i = 0; !condition(); ++i) {
+    if (i < kSpins) {
+      relax();
+    } else {
+      std::this_thread::yield();
+    }
+  }
+}
 
 // The jobs of a view: any thread calls trace() for a strip; number 0 calls begin(), add() for the
 // strips in order, and close(). Then finish(0) and finish(1) may run at once, and end() is last.
@@ -59,7 +74,7 @@ class PaperJob {
 
 class SurfaceJob {
  public:
-  static constexpr std::size_t kStripsPerThread = 4;
+  static constexpr std::size_t kStripsPerThread = 6;
 
   SurfaceJob(const ViewDriver& driver, const PoseFrame& frame)
       : surface_(*driver.surface()), frame_(frame) {}
@@ -156,7 +171,9 @@ class Crew {
       if (strips_->is_traced[added].load(std::memory_order_acquire)) {
         job_.add(strips_->strips[added++]);
       } else if (!trace_next(lease.workspace())) {
-        std::this_thread::yield();
+        wait_for([&] {
+          return strips_->is_traced[added].load(std::memory_order_acquire) || has_failed_;
+        });
       }
     }
     if (has_failed_) return;
@@ -164,22 +181,16 @@ class Crew {
     is_closed_.store(true, std::memory_order_release);
     job_.finish(0);
     finish_second();
-    while (!is_second_done_.load(std::memory_order_acquire)) {
-      if (has_failed_) return;
-      std::this_thread::yield();
-    }
-    job_.end(result);
+    wait_for([&] { return is_second_done_.load(std::memory_order_acquire) || has_failed_; });
+    if (!has_failed_) job_.end(result);
   }
 
   void help(std::size_t number, Workspace& workspace) {
     while (trace_next(workspace)) {
     }
     if (number > 1) return;
-    while (!is_closed_.load(std::memory_order_acquire)) {
-      if (has_failed_) return;
-      std::this_thread::yield();
-    }
-    finish_second();
+    wait_for([&] { return is_closed_.load(std::memory_order_acquire) || has_failed_; });
+    if (!has_failed_) finish_second();
   }
 
   void finish_second() {

@@ -220,26 +220,6 @@ double SurfaceView::trace_shares(const PoseFrame& frame, Workspace& workspace, s
   return area;
 }
 
-RefiningEnd SurfaceView::end_of(const RayTile& rays, const WalkedTile& walked, int lane) const {
-  return {rays.dx[lane],       rays.dy[lane],
-          rays.dz[lane],       walked.range[lane],
-          walked.passed[lane], voxel_at(walked.x[lane], walked.y[lane], walked.z[lane])};
-}
-
-// Has a hit wait for sum_refining(). Returns the place of its voxel.
-std::uint32_t SurfaceView::add_refining(const RefiningEnd& end, Workspace& workspace) {
-  RefiningHits& refining = workspace.refining;
-  HitBatch& batch = refining.batch;
-  const std::size_t i = batch.count++;
-  batch.dx[i] = end.dx, batch.dy[i] = end.dy, batch.dz[i] = end.dz;
-  batch.range[i] = end.range;
-  refining.passed[i] = end.passed;
-  bool is_new = false;
-  refining.places[i] = workspace.occupied.place_of(end.voxel, is_new);
-  refining.keep[i] = is_new ? 0 : ~std::uint64_t{0};
-  return refining.places[i];
-}
-
 // Λ_r of the hits that wait, each times its ray's T, into the sums.
 void SurfaceView::sum_refining(Workspace& workspace) const {
   RefiningHits& refining = workspace.refining;

@@ -155,8 +155,24 @@ class SurfaceView {
   /// anything, in order.
   template <typename Trace, typename Walked>
   void walk(const PoseFrame& frame, const float* missed, Trace&& trace, Walked&& walked) const;
-  [[nodiscard]] RefiningEnd end_of(const RayTile& rays, const WalkedTile& walked, int lane) const;
-  static std::uint32_t add_refining(const RefiningEnd& end, Workspace& workspace);
+  [[nodiscard]] RefiningEnd end_of(const RayTile& rays, const WalkedTile& walked, int lane) const {
+    return {rays.dx[lane],       rays.dy[lane],
+            rays.dz[lane],       walked.range[lane],
+            walked.passed[lane], voxel_at(walked.x[lane], walked.y[lane], walked.z[lane])};
+  }
+  /// Has a hit wait for sum_refining(). Returns the place of its voxel.
+  static std::uint32_t add_refining(const RefiningEnd& end, Workspace& workspace) {
+    RefiningHits& refining = workspace.refining;
+    HitBatch& batch = refining.batch;
+    const std::size_t i = batch.count++;
+    batch.dx[i] = end.dx, batch.dy[i] = end.dy, batch.dz[i] = end.dz;
+    batch.range[i] = end.range;
+    refining.passed[i] = end.passed;
+    bool is_new = false;
+    refining.places[i] = workspace.occupied.place_of(end.voxel, is_new);
+    refining.keep[i] = is_new ? 0 : ~std::uint64_t{0};
+    return refining.places[i];
+  }
   /// How many of the tracer's rays would end in an occupied voxel if nothing stood before it.
   [[nodiscard]] double expected_hits(std::size_t number, const RayTile& rays, int lane, float range,
                                      Index3 voxel) const;

@@ -16,7 +16,7 @@ namespace viewgain::detail {
 
 /// Whether a BVH pays for what it takes to build, if as many such views follow as there were.
 [[nodiscard]] constexpr bool bvh_pays(std::size_t primitives, std::uint64_t views) {
-  return views >= primitives / 5;
+  return views >= std::min<std::size_t>(primitives / 5, 3000);
 }
 
 }  // namespace viewgain::detail

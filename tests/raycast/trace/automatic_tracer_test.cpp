@@ -14,13 +14,15 @@ TEST(AutomaticTracer, TheRuleHasTwoSides) {
   using detail::bvh_is_faster;
   using detail::bvh_pays;
   // An object, a room and a sparse hall, as perf/results/tracers.md measures them.
-  static_assert(bvh_is_faster(64, 802) && !bvh_is_faster(396, 802));
-  static_assert(bvh_is_faster(64, 13'127) && !bvh_is_faster(396, 13'127));
-  static_assert(bvh_is_faster(396, 85'156) && !bvh_is_faster(25'344, 85'156));
-  for (const std::size_t primitives : {802U, 13'127U, 85'156U}) {
-    EXPECT_FALSE(bvh_pays(primitives, 0));
-    EXPECT_FALSE(bvh_pays(primitives, primitives / 5 - 1));
-    EXPECT_TRUE(bvh_pays(primitives, primitives / 5));
+  struct Case {
+    std::size_t primitives, most_rays, views;
+  };
+  for (const auto& [primitives, most_rays, views] :
+       {Case{802, 100, 160}, Case{13'127, 262, 2625}, Case{85'156, 1703, 3000}}) {
+    EXPECT_TRUE(bvh_is_faster(most_rays, primitives));
+    EXPECT_FALSE(bvh_is_faster(most_rays + 1, primitives));
+    EXPECT_FALSE(bvh_pays(primitives, views - 1));
+    EXPECT_TRUE(bvh_pays(primitives, views));
   }
 }
 
