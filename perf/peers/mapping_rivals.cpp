@@ -5,10 +5,11 @@
 //
 //     mapping_rivals METHOD VOXEL[m] FRAMES SURFACE
 //
-// FRAMES, all float64: width, height, fx, fy, cx, cy, number of frames; per frame T_world_camera (row
-// by row), the number of points, the points in the world frame [m]. Writes SURFACE: numbers of
-// vertices and triangles, then both; none if the library has no surface. Prints seconds per frame and
-// megabytes as JSON.
+// FRAMES, all float64: width, height, fx, fy, cx, cy, number of frames; per frame T_world_camera
+// (row by row), the number of points, the points in the world frame [m]. Writes SURFACE: numbers of
+// vertices and triangles, then both; none if the library has no surface. Prints seconds per frame
+// and megabytes as JSON.
+#include <Eigen/Core>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -16,8 +17,6 @@
 #include <memory>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 #if defined(MAPPING_VDBFUSION)
 #include "vdbfusion/VDBVolume.h"
 #elif defined(MAPPING_BONXAI)
@@ -119,9 +118,9 @@ struct Mapper {
     pinhole.cx = float(camera.cx);
     pinhole.cy = float(camera.cy);
     const auto projector = std::make_shared<const wavemap::PinholeCameraProjector>(pinhole);
-    const auto image = std::make_shared<wavemap::PosedImage<>>(projector->getDimensions());
+    const auto image = std::make_shared<wavemap::PosedImage<> >(projector->getDimensions());
     const auto offsets =
-        std::make_shared<wavemap::Image<wavemap::Vector2D>>(projector->getDimensions());
+        std::make_shared<wavemap::Image<wavemap::Vector2D> >(projector->getDimensions());
     const auto beam = std::make_shared<const wavemap::ContinuousRay>(
         wavemap::ContinuousRayConfig(float(voxel / 2), 0.5f, 0.5f), projector, image);
     integrator = std::make_unique<wavemap::HashedChunkedWaveletIntegrator>(
@@ -131,9 +130,9 @@ struct Mapper {
     const Eigen::Matrix4d T_camera_world = frame.T_world_camera.inverse();
     std::vector<wavemap::Point3D> points;
     for (const Eigen::Vector3d& point : frame.points)
-      points.push_back((T_camera_world.topLeftCorner<3, 3>() * point +
-                        T_camera_world.topRightCorner<3, 1>())
-                           .cast<float>());
+      points.push_back(
+          (T_camera_world.topLeftCorner<3, 3>() * point + T_camera_world.topRightCorner<3, 1>())
+              .cast<float>());
     const wavemap::Transformation3D pose(Eigen::Matrix4f(frame.T_world_camera.cast<float>()));
     integrator->integrate(wavemap::PosedPointcloud<>(pose, wavemap::Pointcloud<>(points)));
   }
@@ -144,7 +143,8 @@ struct Mapper {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 5) return std::fprintf(stderr, "usage: mapping_rivals METHOD VOXEL FRAMES SURFACE\n"), 2;
+  if (argc != 5)
+    return std::fprintf(stderr, "usage: mapping_rivals METHOD VOXEL FRAMES SURFACE\n"), 2;
   const Input input = read_input(argv[3]);
   Mapper mapper(argv[1], std::stod(argv[2]), input.camera);
   std::ofstream("/proc/self/clear_refs") << 5;  // the peak is now
@@ -162,6 +162,6 @@ int main(int argc, char** argv) {
              std::streamsize(surface.vertices.size() * sizeof(Eigen::Vector3d)));
   file.write(reinterpret_cast<const char*>(surface.triangles.data()),
              std::streamsize(surface.triangles.size() * sizeof(Eigen::Vector3i)));
-  std::printf("{\"seconds\": %.9f, \"megabytes\": %.3f}\n", passed.count() / double(input.frames.size()),
-              peak - before);
+  std::printf("{\"seconds\": %.9f, \"megabytes\": %.3f}\n",
+              passed.count() / double(input.frames.size()), peak - before);
 }

@@ -209,7 +209,8 @@ CubeClass ConeCull::classify(Index3 origin, int size) const {
   const RangeBounds bounds =
       pyramid_.bounds(lower(u_low), lower(v_low), upper(u_high, last_u), upper(v_high, last_v));
   const double margin = kRangeMargin * (box.distance() + size * voxel_size_);
-  if (box.nearest(camera_) - margin > static_cast<double>(bounds.reach)) return CubeClass::untouched;
+  if (box.nearest(camera_) - margin > static_cast<double>(bounds.reach))
+    return CubeClass::untouched;
   if (std::sqrt(seen.farthest2) + margin < static_cast<double>(bounds.clear)) {
     return inside ? CubeClass::crossed : CubeClass::cut;
   }
