@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""How do policies compare in clutter and under a reach? Prints the tables of results/clutter.md.
+"""How do policies compare in clutter and with limited reach? Prints the tables of results/clutter.md.
 
     clutter.py DIR [--jobs N] [--program PATH] [--tables] [--unseen]
 

@@ -28,7 +28,7 @@ struct VIEWGAIN_EXPORT RangeFitResult {
   double rms_before = 0;                ///< of the frames' mean errors, without the table [m]
   double rms_after = 0;                 ///< with it [m]
   double offset_sigma = 0;              ///< of an offset of all ranges, from pixel noise alone [m]
-  std::size_t distances = 0;            ///< number that differ by more than 2 %
+  std::size_t distances = 0;            ///< different distances; those within 2 % count as one
   std::vector<RangeStep> steps{};       ///< by range
   std::vector<std::string> left_out{};  ///< frames left out, with the reason
 };

@@ -68,7 +68,7 @@ void require_size(std::size_t size, const std::string& name) {
          " bytes, but in viewgain " VIEWGAIN_VERSION " it is " + std::to_string(sizeof(Struct)));
 }
 
-/// Throws Error(invalid_argument) for null, and like require_size().
+/// Throws Error(invalid_argument) for null. Also throws whatever require_size() throws.
 template <typename Struct>
 void require_struct(const Struct* value, const std::string& name) {
   require(name, {value});

@@ -191,7 +191,7 @@ Command add_calibrate(App& program) {
                 "object in front of a wall, but the frames need no poses");
   app->add_flag("--range", options->range,
                 "measure the range error (range_calibration in the sensor file); in some frames, "
-                "turn the camera by 10 to 30 deg");
+                "rotate the camera by 10 to 30 deg");
   app->add_option("--sensor", options->sensor,
                   kSensorHelp + " to calibrate (default: FRAMES_DIR/sensor.toml)");
   app->add_option("--depth-scale", options->depth_scale,

@@ -173,7 +173,7 @@ Command add_import(App& program) {
                   "topic of the depth images (default: the only one)");
   app->add_option(
       "--world", options->world,
-      "tf frame to use as the world (default: the topmost parent of the images' frame)");
+      "tf frame to use as the world (default: the topmost parent of the images' frame_id)");
   app->add_option("--camera-frame", options->camera_frame,
                   "FRAME[,tx,ty,tz,qx,qy,qz,qw]: tf frame to use instead of the images' frame_id, "
                   "and the camera's pose in FRAME");
@@ -182,14 +182,14 @@ Command add_import(App& program) {
                   "instead of tf, and the camera's pose on this body");
   app->add_option("--max-time-gap", options->max_time_gap,
                   "longest time between an image and its pose [s] (default: 0.1, or 0.02 for TUM); "
-                  "two tf transforms may be twice as far apart");
+                  "the two tf transforms around an image may be twice as far apart");
   app->add_option(
       "--depth-scale", options->depth_scale,
       "metres per unit of 16-bit depth images (default: from the recording, else 1e-3)");
   add_mask_options(*app, options->mask, options->confidence);
   app->add_option(
          "--out", options->out,
-         "folder to write; replaces the frames of an earlier import, and refuses other frames")
+         "output folder; frames of an earlier import are replaced, other frames cause an error")
       ->required();
   explain_values(
       *app,

@@ -138,7 +138,7 @@ Command add_info(App& program) {
                   "criterion of the entropy: log_diagonal, log_determinant [nat] or trace [m^2]")
       ->check(one_of(criterion_names(), "criterion"));
   app->add_option("--workspace", options->region,
-                  "x0,y0,z0,x1,y1,z1: box to report separately, in the grid's frame [m]");
+                  "x0,y0,z0,x1,y1,z1: box to report separately, in grid coordinates [m]");
   add_help(*app, kLookGroup, "info map.vdb --criterion trace");
   return command_of(app, options, info);
 }

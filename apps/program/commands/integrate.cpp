@@ -307,8 +307,8 @@ Command add_integrate(App& program) {
                   "x,y,z: position of the sensor for clouds in the world frame [m]; viewpoint: "
                   "from VIEWPOINT in each .pcd");
   app->add_option("--poses", options->poses,
-                  "TUM file of sensor-to-world poses, line i for cloud i; clouds are then in the "
-                  "sensor's frame, and VIEWPOINT is ignored");
+                  "TUM file of sensor-to-world poses, line i for cloud i; clouds are then in "
+                  "sensor coordinates, and VIEWPOINT is ignored");
   begin_group(*app, "Map");
   app->add_option("--voxel", options->voxel, "voxel size [m] (required without --map)");
   app->add_option("--workspace", options->workspace,

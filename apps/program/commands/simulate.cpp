@@ -230,7 +230,7 @@ Command add_simulate(App& program) {
       ->check(counted(1, 1000));
   app->add_option(
          "--out", options->out,
-         "folder to write; replaces the frames of an earlier simulate, and refuses other frames")
+         "output folder; frames of an earlier simulate are replaced, other frames cause an error")
       ->required();
   most_need(*app, {"--sensor", "--out", "--size", "--place", "--up", "--noise", "--support-plane",
                    "--background"});

@@ -19,7 +19,7 @@ struct PoseBatch {
   Shape shape;
 };
 
-/// T_world_camera as (..., 4, 4), (..., 3, 4) or (..., 7) of tx ty tz qx qy qz qw [m], [1]. A pose
+/// T_world_camera as (..., 4, 4), (..., 3, 4) or (..., 7) of tx ty tz [m] and qx qy qz qw. A pose
 /// is invalid (NaN) if its last row or its rotation deviates by more than 1e-3, or a quaternion's
 /// norm by more than 1e-2; with `strict`, throws with the pose's index instead.
 [[nodiscard]] PoseBatch pose_batch(const py::handle& value, const char* name, bool strict);

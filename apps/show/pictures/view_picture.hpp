@@ -38,9 +38,9 @@ struct ViewPicture {
 /// class's colour, others grey; the view just taken as a black frustum; the chosen one as a larger
 /// green frustum with some of its rays, orange where they end in unknown voxels, blue in occupied
 /// ones, and by the surface and combined gain unknown voxels in which it may find surface, the
-/// larger the likelier. The surface's inside is darker; of more than 200 candidates an even subset
-/// is drawn, none right in front of the viewer. Throws Error(invalid_argument) for a view that is
-/// no rigid transform (1e-3). The same picture for any number of threads.
+/// larger the likelier. The surface's inside is darker; of more than 200 candidates an evenly
+/// spaced sample is drawn, none right in front of the viewer. Throws Error(invalid_argument) for a
+/// view that is no rigid transform (1e-3). The same picture for any number of threads.
 [[nodiscard]] RgbImage view_picture(const ViewPicture& picture, const ExecConfig& exec);
 
 /// The amplitude image of a frame (the paper's Fig. 1), 8-bit grey, enlarged by a whole number to

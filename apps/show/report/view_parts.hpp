@@ -35,7 +35,7 @@ struct ShownCandidates {
 };
 [[nodiscard]] Json to_json(const ShownCandidates& candidates);
 
-/// Where the rays of a view end: an even subset of those that end in a voxel.
+/// Where the rays of a view end: an evenly spaced sample of those that end in a voxel.
 [[nodiscard]] Json bundle_json(const GainEvaluator& evaluator, const Sensor& sensor,
                                const Pose& T_world_camera);
 

@@ -35,8 +35,8 @@ class GrowingPoses {
   void add_earlier(std::uint64_t number) { first_ = std::min(first_.value_or(number), number); }
 
   /// Reads the lines, if they changed, and matches them to the images of these ascending numbers.
-  /// Throws Error(format) if first numbers do not fit for longer than `settle`, and like
-  /// read_pose_lines().
+  /// Throws Error(format) if first numbers do not fit for longer than `settle`. Also throws
+  /// whatever read_pose_lines() throws.
   void look(std::vector<std::uint64_t> numbers, Time now);
 
   /// The pose of an image; empty if it has no line yet.

@@ -115,8 +115,9 @@ TransformTree::Chain TransformTree::chain(std::string& world, const std::string&
          " form a loop: a frame has two parents. Perhaps two nodes publish this frame");
   }
   if (world.empty() && roots.size() > 1) {
-    fail("the frame " + viewgain::quoted(frame) + " belongs to several worlds: " +
-         listed_frames(roots) + "; choose one of them with --world");
+    fail("the coordinate frame " + viewgain::quoted(frame) +
+         " is connected to several world frames: " + listed_frames(roots) +
+         "; choose one with --world");
   }
   if (world.empty()) world = *roots.begin();
   if (!joined.contains(world)) {

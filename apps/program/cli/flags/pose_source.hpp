@@ -71,8 +71,8 @@ void add_cost_options(App& app, CostOptions& options, const std::string& of);
 /// the file, and the line or the number of `poses`.
 [[nodiscard]] std::vector<double> read_costs(const std::string& file, std::size_t poses);
 
-/// `seed` is used for a shell. Throws Error(invalid_argument), naming the flag, and like
-/// load_poses().
+/// `seed` is used for a shell. Throws Error(invalid_argument), naming the flag. Also throws
+/// whatever load_poses() throws.
 [[nodiscard]] PoseSource make_poses(const PoseOptions& options, std::uint64_t seed);
 
 /// Poses of a file of --poses. Throws like make_poses().

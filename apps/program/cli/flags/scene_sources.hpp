@@ -27,7 +27,7 @@ namespace viewgain::app {
 
 /// The hazard of a map's unknown space according to --hazard: empty for the default model, a
 /// constant rate [1/m], or a .vdb file of rates (load_hazard_vdb()). Throws Error(invalid_argument)
-/// for other text, and like load_hazard_vdb().
+/// for other text. Also throws whatever load_hazard_vdb() throws.
 [[nodiscard]] HazardConfig hazard_source(const std::string& text, const BeliefGrid& grid);
 
 /// Adds --hazard, whose value hazard_source() reads.
@@ -42,7 +42,7 @@ void add_hazard_option(App& app, std::string& text);
 
 /// The obstacles of --obstacle: each value is a mesh file (OFF, OBJ, STL, PLY) or a box
 /// x0,y0,z0,x1,y1,z1, world frame [m]. Throws Error(invalid_argument), naming the flag, for an
-/// invalid box, and like read_mesh().
+/// invalid box. Also throws whatever read_mesh() throws.
 [[nodiscard]] Obstacles obstacles_of(const std::vector<std::string>& values);
 
 inline constexpr const char* kObstacleHelp =
@@ -67,7 +67,7 @@ struct SensedMap {
 
 /// The map, and the sensor of `sensor_flag` (--sensor) or, if empty, the sensor that measured the
 /// map. Warns on stderr if both exist and differ. Throws Error(invalid_argument) if both are
-/// missing, and like load_map() and load_sensor().
+/// missing. Also throws whatever load_map() and load_sensor() throw.
 [[nodiscard]] SensedMap load_sensed_map(const std::string& path, const std::string& sensor_flag,
                                         const ExecConfig& exec);
 

@@ -31,7 +31,7 @@ struct SensingOptions {
 struct SimulatedNoise {
   bool readings = false;         ///< whether there is noise along and across the ray
   std::optional<bool> flying{};  ///< whether pixels mix several returns; empty: as `readings`
-  double scale_error = 0;        ///< relative error of all ranges [1]
+  double scale_error = 0;        ///< relative error of all ranges, dimensionless
   PoseSigma pose{};              ///< errors of the reported poses
 
   /// Sub-rays mix only in sensors with a modulation frequency.

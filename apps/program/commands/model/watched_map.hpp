@@ -51,7 +51,7 @@ struct SavedFrames {
 };
 
 /// Reads a file of WatchedMap::save(); empty if there is no file. Throws Error(format), naming the
-/// file, if the map does not state the frame of each view, and like load_map().
+/// file, if the map does not state the frame of each view. Also throws whatever load_map() throws.
 [[nodiscard]] std::optional<SavedFrames> saved_frames(const std::filesystem::path& state,
                                                       const ExecConfig& exec);
 

@@ -58,7 +58,7 @@ void check(const ProposalOptions& options);
 
 /// Settings of the generation. `map`: its name in messages, or empty if its views are still to
 /// come; `tried`: poses of failed views. Throws Error(invalid_argument) if boundaries are requested
-/// for a map without views, and like read_reach_toml().
+/// for a map without views. Also throws whatever read_reach_toml() throws.
 [[nodiscard]] GenerationConfig generation_config(const ProposalOptions& options,
                                                  const Sensor& sensor, const BeliefGrid& grid,
                                                  const std::string& map,
@@ -78,7 +78,8 @@ void warn_of_views(const ProposalOptions& options, const Obstacles& obstacles,
 /// At most `top` candidates ranked together (rank_views()), or the first views of a plan
 /// (plan_views()), without views of no gain. Each has its marginal gain, and that minus --costs and
 /// --cost-per-metre of the path from --from, else from `last_pose`. Throws Error(invalid_argument),
-/// naming the file and the line, if there is not one cost per pose, and like begin_of_ways().
+/// naming the file and the line, if there is not one cost per pose. Also throws whatever
+/// begin_of_ways() throws.
 [[nodiscard]] NextViews best_views(const GainEvaluator& evaluator, const Proposal& proposal,
                                    const ProposalOptions& options,
                                    const std::optional<Pose>& last_pose, std::size_t top,

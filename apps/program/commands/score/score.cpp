@@ -333,8 +333,8 @@ Command add_score(App& program) {
                   "[nat] or trace [m^2]")
       ->check(one_of(criterion_names(), "criterion"));
   app->add_option("--weight", options->weights,
-                  "x0,y0,z0,x1,y1,z1,W: multiply the gain of voxels in this box (grid frame) [m] "
-                  "by W >= 0; in overlaps, the last box counts; may be repeated")
+                  "x0,y0,z0,x1,y1,z1,W: multiply the gain of voxels in this box by W >= 0 (grid "
+                  "coordinates [m]); in overlaps, the last box counts; may be repeated")
       ->allow_extra_args(false);
   app->add_option("--prior-sigma", options->prior_sigma,
                   "standard deviation of an unknown voxel [m] (default: from the map)");

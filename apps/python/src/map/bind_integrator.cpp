@@ -288,8 +288,8 @@ Parameters
 ----------
 sensor : Sensor
 carve : {"cones", "lines"}
-    Which voxels a pixel crosses: those whose centre lies in the pixel's pyramid, or those on its
-    ray.
+    Which voxels a pixel crosses. "cones": those whose centre lies in the pixel's cone, nearer than
+    the reading. "lines": those on the ray through its centre.
 )") + kIntegratorSettings +
                           kIntegratorNotes;
   const std::string integrate_doc = std::string(R"(Updates the grid by one frame.

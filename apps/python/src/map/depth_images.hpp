@@ -14,7 +14,7 @@ namespace viewgain::python {
 
 /// A frame of the sensor from floating point arrays (height, width); `amplitude` may be None. NaN,
 /// negative and masked depths are invalid; a masked amplitude is NaN. Throws py::value_error for
-/// another shape or dtype, and like MetresCheck.
+/// another shape or dtype. Also throws whatever MetresCheck throws.
 [[nodiscard]] DepthFrame depth_frame(const Sensor& sensor, const py::object& depth,
                                      const py::object& amplitude);
 

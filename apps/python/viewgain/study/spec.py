@@ -200,7 +200,7 @@ def _object(reader, value):
     entry = {"mesh": value} if isinstance(value, str) else value
     for key in entry:
         if key not in _OBJECT_KEYS:
-            reader.fail("objects", f"contains an object with the unknown key {key!r}; valid keys: {', '.join(_OBJECT_KEYS)}")
+            reader.fail("objects", f"has an entry with the unknown key {key!r}; valid keys: {', '.join(_OBJECT_KEYS)}")
     mesh = reader.file("objects", entry.get("mesh"))
     name = entry.get("name", mesh.stem)
     if not _is_name(name):

@@ -16,8 +16,8 @@ namespace viewgain {
 enum class Criterion : std::uint8_t {
   log_diagonal,  ///< ½ Σ_k ln Σ_kk in grid axes [nat]: eqs. (3) and (6) of the paper, with the
                  ///< factor ½ of eq. (2)
-  log_determinant,  ///< ½ ln det Σ [nat]: eq. (2); the same in every frame
-  trace,            ///< tr Σ [m²]: A-optimality; the same in every frame
+  log_determinant,  ///< ½ ln det Σ [nat]: eq. (2); independent of the coordinate frame
+  trace,            ///< tr Σ [m²]: A-optimality; independent of the coordinate frame
 };
 
 /// Names of the criteria, in enumeration order.

@@ -61,7 +61,7 @@ struct VIEWGAIN_EXPORT StereoNoise {
 struct VIEWGAIN_EXPORT QuadraticNoise {
   double offset = 1.0e-3;       ///< [m]
   double quadratic = 1.074e-3;  ///< [1/m]
-  double linear = 0;            ///< [1]
+  double linear = 0;            ///< dimensionless
   bool operator==(const QuadraticNoise&) const = default;
 };
 

@@ -72,7 +72,7 @@ struct VIEWGAIN_EXPORT Pose {
 static_assert(sizeof(Pose) == 96 && alignof(Pose) == 8);
 
 /// Deviation of the rotation from orthonormal and right-handed: the largest absolute entry of RᵀR -
-/// I [1], or infinity if any number is not finite or det R <= 0.
+/// I, dimensionless, or infinity if any number is not finite or det R <= 0.
 [[nodiscard]] VIEWGAIN_EXPORT double orthonormality_error(const Pose& pose);
 
 /// Nearest rotation (polar decomposition by SVD) with the same translation. Deterministic. Returns
@@ -82,7 +82,7 @@ static_assert(sizeof(Pose) == 96 && alignof(Pose) == 8);
 /// The rigid transform used for a given pose: the pose itself if orthonormality_error() is at most
 /// 1e-9, orthonormalized() if it is at most kMaxPoseError, otherwise none. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Pose> rigid_pose(const Pose& pose);
-inline constexpr double kMaxPoseError = 1e-3;  ///< largest orthonormality_error() repaired [1]
+inline constexpr double kMaxPoseError = 1e-3;  ///< largest orthonormality_error() that is repaired
 
 /// T_world_camera of a camera at `eye` [m] whose optical axis passes through `target` [m]. Image up
 /// (minus y) is as close as possible to `up`, a vector of any length. If the view direction is

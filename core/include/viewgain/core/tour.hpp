@@ -16,8 +16,8 @@ namespace viewgain {
 /// Index that stands for the current camera pose.
 inline constexpr std::size_t kTourStart = std::numeric_limits<std::size_t>::max();
 
-/// Cost of the path between two stops in a unit of your choice, such as metres or seconds of an
-/// arm. `from` can be kTourStart. At least 0; infinity means that there is no path.
+/// Cost of the path between two stops, in a unit of your choice: for example metres, or the seconds
+/// that an arm needs. `from` can be kTourStart. At least 0; infinity means that there is no path.
 using WayCost = std::function<double(std::size_t from, std::size_t to)>;
 
 /// An order of stops, each visited once, without return to the start.

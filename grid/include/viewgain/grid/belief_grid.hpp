@@ -91,8 +91,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Makes a map from a dense array of states, [x][y][z] with z fastest, one per voxel of the
   /// workspace: 0 unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief). Because
   /// beliefs are missing, GainModel::paper rewards measuring occupied voxels again; the other gains
-  /// do not. Throws Error(invalid_argument) for another size or state, and like the constructor.
-  /// Cost: one pass over the array.
+  /// do not. Throws Error(invalid_argument) for another size or state. Also throws whatever the
+  /// constructor throws. Cost: one pass over the array.
   [[nodiscard]] static BeliefGrid from_states(const GridConfig& config,
                                               std::span<const std::uint8_t> states,
                                               const Sensor& sensor = {});

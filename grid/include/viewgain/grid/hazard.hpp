@@ -40,7 +40,7 @@ struct VIEWGAIN_EXPORT HazardConfig {
   /// - s: sine of the elevation of the location above the tangent plane at the nearest point of
   ///   known surface; 1 is straight towards free space
   /// - o: fraction of the 26 directions to neighbouring cells in which free space begins within 2.2
-  ///   decay lengths, before anything occupied
+  ///   decay lengths, nearer than any occupied voxel
   ///
   /// Members check nothing; validate() does.
   struct Model {

@@ -27,10 +27,10 @@ class VIEWGAIN_EXPORT HazardCalibration {
 
   /// Adds a frame to the grid's counters. Call it before the frame is integrated; `hazard` must be
   /// the field of the current map. Follows about 800 rays through unknown voxels, up to 3 σ_ax
-  /// before the reading (the measured depth). The number of meetings that the model predicts is its
-  /// rate times the length of the ray in unknown voxels. A ray has met the surface if its reading
-  /// lies in an unknown voxel. Rays that are out of range, or end on the support plane or a known
-  /// object, have met no surface.
+  /// nearer than the reading (the measured depth). The number of meetings that the model predicts
+  /// is its rate times the length of the ray in unknown voxels. A ray has met the surface if its
+  /// reading lies in an unknown voxel. Rays that are out of range, or end on the support plane or a
+  /// known object, have met no surface.
   ///
   /// Has no effect while no surface is known, if HazardProbe::follows_counters() is false, and for
   /// a frame that sees almost no unknown space. Throws Error(invalid_argument) for a frame of

@@ -22,7 +22,7 @@ namespace viewgain {
 struct VIEWGAIN_EXPORT IntegrationConfig {
   /// Which voxels a pixel crosses.
   enum class Carve : std::uint8_t {
-    cones,  ///< those whose centre lies in the pixel's pyramid, before the reading
+    cones,  ///< those whose centre lies in the pixel's cone, nearer than the reading
     /// Those that the ray through the pixel's centre intersects, as in Foix et al. (2012). If
     /// several rays cross a voxel, the strongest evidence counts.
     lines,
@@ -47,7 +47,7 @@ struct VIEWGAIN_EXPORT IntegrationConfig {
   /// the leaf. Free space is stored in blocks of 8³ voxels, with the log-odds of their least
   /// certain voxel. The method follows Funk et al. 2021 (supereight2).
   int coarsest = 0;
-  std::vector<Box> fine{};  ///< leaves that touch one of these keep scale 0; grid frame [m]
+  std::vector<Box> fine{};  ///< leaves that touch one of these keep scale 0; grid coordinates [m]
   int finest = 0;           ///< smallest scale of all other leaves, at most `coarsest`
 };
 
@@ -102,9 +102,9 @@ class VIEWGAIN_EXPORT FrameIntegrator {
   FrameIntegrator(FrameIntegrator&&) noexcept;
   FrameIntegrator& operator=(FrameIntegrator&&) noexcept;
 
-  /// Updates states, log-odds and beliefs; appends the pose to the grid's views; and records sensor
-  /// and frame (BeliefGrid::notes()). `pose_sigma` [m], [rad] is the uncertainty of this pose, for
-  /// example after a registration. It is combined with Sensor::pose_sigma.
+  /// Updates states, log-odds and beliefs. Appends the pose to the grid's views. Records the sensor
+  /// and the depth frame (BeliefGrid::notes()). `pose_sigma` [m], [rad] is the uncertainty of this
+  /// pose, for example after a registration. It is combined with Sensor::pose_sigma.
   ///
   /// Throws Error(invalid_argument), and leaves the grid unchanged, if the frame has a wrong size
   /// or an invalid DepthFrame::identity, pose_sigma is invalid, or the pose is not rigid within
@@ -118,10 +118,11 @@ class VIEWGAIN_EXPORT FrameIntegrator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The box in the frame of T_world_grid [m] that contains all readings of the frame, for choosing a
+/// Bounding box [m], in grid coordinates, of all readings of the depth frame. Use it to choose a
 /// workspace. Readings of the support plane and of known objects are left out. Empty if there are
-/// no readings. support_plane [m]: as in IntegrationConfig. Throws Error(invalid_argument) like
-/// FrameIntegrator. Cost: removes the lens distortion, and one pass over the pixels.
+/// no readings. `T_world_grid` is the pose of the grid. `support_plane` [m] has the same meaning as
+/// in IntegrationConfig. Throws the same Error(invalid_argument) as FrameIntegrator. Cost: removes
+/// the lens distortion, and one pass over the pixels.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(
     const Sensor& sensor, const DepthFrame& frame, const Pose& T_world_camera,
     const Pose& T_world_grid = {}, std::optional<double> support_plane = {});
@@ -162,10 +163,11 @@ class VIEWGAIN_EXPORT CloudIntegrator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The box in the frame of T_world_grid [m] that contains all readings of the cloud, for choosing a
+/// Bounding box [m], in grid coordinates, of all readings of the cloud. Use it to choose a
 /// workspace. Readings of the support plane are left out. Empty if there are no readings. `points`
-/// [m] are in the world, in any order. support_plane [m]: as in IntegrationConfig. Throws
-/// Error(invalid_argument) like CloudIntegrator. Cost: O(points).
+/// [m] are in the world frame, in any order. `T_world_grid` is the pose of the grid.
+/// `support_plane` [m] has the same meaning as in IntegrationConfig. Throws the same
+/// Error(invalid_argument) as CloudIntegrator. Cost: O(points).
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Box> reading_bounds(
     const Sensor& sensor, std::span<const std::array<double, 3>> points, const Pose& T_world_sensor,
     const Pose& T_world_grid = {}, std::optional<double> support_plane = {});

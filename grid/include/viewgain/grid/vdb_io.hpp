@@ -24,8 +24,8 @@ struct VIEWGAIN_EXPORT VdbWriteConfig {
 /// are the known ones; apps/docs/reference/formats.md describes the layout. Notes go into the
 /// metadata as note_<name>. Atomic: writes a temporary file and renames it. If memory runs out
 /// (std::bad_alloc), an existing file remains. Throws Error(io). Throws Error(invalid_argument) if
-/// the name of a regular file does not end in .vdb, and like BeliefGrid::set_notes(). Cost: grows
-/// with leaves and beliefs.
+/// the name of a regular file does not end in .vdb. Also throws whatever BeliefGrid::set_notes()
+/// throws. Cost: grows with leaves and beliefs.
 VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::path& path,
                               const VdbWriteConfig& config = {});
 

@@ -57,8 +57,8 @@ inline constexpr std::uint8_t kLiteralOccupiedCode = kZeroCode + kHitDelta;
       std::clamp(before + delta, static_cast<int>(kMinCode), static_cast<int>(kMaxCode)));
 }
 
-/// Steps that a crossing subtracts, 0..8: full strength from `taper` before the reading. gap > 0 is
-/// the distance to the reading; taper is 3 sigma_ax, or 0 without a reading.
+/// Steps that a crossing subtracts, 0..8: full strength from `taper` in front of the reading. gap >
+/// 0 is the distance to the reading; taper is 3 sigma_ax, or 0 without a reading.
 [[nodiscard]] inline int miss_weight(double gap, double taper) {
   if (gap >= taper) return -kMissDelta;
   return static_cast<int>(std::floor(-kMissDelta * (gap / taper) + 0.5));

@@ -37,12 +37,12 @@ enum class UpAxis : std::uint8_t { x, y, z };
 
 /// Placement of a file's mesh in the world.
 struct VIEWGAIN_EXPORT MeshPlacement {
-  UpAxis up = UpAxis::z;    ///< axis to turn to +z, by a cyclic permutation of the axes
+  UpAxis up = UpAxis::z;    ///< axis that becomes +z, by a cyclic permutation of the axes
   bool center = false;      ///< move the bounding box's centre to the origin
   double longest_side = 0;  ///< scale the bounding box's longest side to this [m]; 0: as it is
 };
 
-/// Turns, then scales about the origin, then centres the mesh. Throws Error(invalid_argument) if
+/// Rotates, then scales about the origin, then centres the mesh. Throws Error(invalid_argument) if
 /// longest_side is negative or not finite, or the mesh has no extent to scale. Cost: O(vertices).
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh placed(TriangleMesh mesh,
                                                   const MeshPlacement& placement);

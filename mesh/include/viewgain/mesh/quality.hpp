@@ -33,8 +33,8 @@ struct VIEWGAIN_EXPORT ErrorStatistics {
 /// to the surface, and n the direction to the nearest surface point. If e is 0, n is the surface
 /// normal.
 struct VIEWGAIN_EXPORT Consistency {
-  double mean_clipped = 0;  ///< mean of min(z², 25) [1]; ideal 1
-  double median = 0;        ///< median of z² [1]; ideal 0.455
+  double mean_clipped = 0;  ///< mean of min(z², 25), dimensionless; ideal 1
+  double median = 0;        ///< median of z², dimensionless; ideal 0.455
   double above_9 = 0;       ///< fraction of points with z² > 9; ideal 0.003
   std::size_t points = 0;  ///< points within 10 mm, which are counted; 0: the other members are NaN
   std::size_t outliers = 0;  ///< points more than 10 mm away
@@ -65,7 +65,7 @@ class VIEWGAIN_EXPORT GroundTruth {
       std::span<const std::array<double, 3>> points) const;
 
   /// Distance of each sample to the triangles of a mesh [m]; infinity without any. Ignores
-  /// triangles without area. Also throws like the constructor for an invalid mesh.
+  /// triangles without area. Also throws whatever the constructor throws for an invalid mesh.
   [[nodiscard]] std::vector<double> distances_to(const TriangleMesh& mesh) const;
 
   /// Distance of each point to the surface [m].

@@ -16,7 +16,8 @@ namespace viewgain {
 /// frame.
 struct VIEWGAIN_EXPORT OrientedPoint {
   std::array<double, 3> position{};  ///< [m]
-  /// Direction [1] towards free space, of any length and precision; zero: unknown.
+  /// Vector towards free space. Its length does not matter, and the direction may be rough. Zero:
+  /// unknown.
   std::array<double, 3> toward_free{};
   /// Distance between neighbouring points [m]; 0: SurfaceConfig::spacing.
   double spacing = 0;
@@ -47,7 +48,7 @@ struct VIEWGAIN_EXPORT SurfaceConfig {
 /// - smooths the points (jet fit); points with opposed hints are not smoothed together
 /// - connects them into triangles (advancing front, CGAL)
 /// - drops components of the mesh with fewer than min_component vertices
-/// - turns the faces of each component outward, as most hints in the component say
+/// - orients the faces of each component outward, according to most hints in the component
 ///
 /// Lengths are relative to each point's own spacing. A vertex is at most 1.25 spacings from its
 /// point; points that smoothing would move further are dropped as outliers. Holes larger than

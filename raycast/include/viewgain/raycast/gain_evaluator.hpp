@@ -116,7 +116,7 @@ struct VIEWGAIN_EXPORT ViewGain {
 
 /// The end of one ray of a view.
 struct VIEWGAIN_EXPORT RayHit {
-  /// What the ray ends in. Known surface that the ray enters before min_range counts as an
+  /// What the ray ends in. Known surface that the ray enters nearer than min_range counts as an
   /// obstacle.
   enum class Kind : std::uint8_t { none, unknown, occupied, obstacle };
   Kind kind = Kind::none;  ///< kind of end
@@ -157,7 +157,7 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// add up to `rays`.
   struct RayOutcomes {
     std::uint32_t rays = 0;           ///< rays of the view
-    std::uint32_t too_near = 0;       ///< hit known surface or an obstacle before min_range
+    std::uint32_t too_near = 0;       ///< hit known surface or an obstacle nearer than min_range
     std::uint32_t unknown = 0;        ///< reach unknown space: possible new surface
     std::uint32_t known_surface = 0;  ///< end on known surface after free space
     /// End on an obstacle or, except for the paper's gain, on the support plane.
@@ -234,8 +234,8 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// The k best poses with their results of evaluate(), ties to the lower index. Returns fewer if
   /// not enough poses are valid. `config` can subtract costs and replace the gain by a measure.
   /// Scores all poses, so it costs the same as evaluate(). After a stop or the deadline it returns
-  /// the best so far, and `complete` is false. Throws like evaluate(), and Error(invalid_argument)
-  /// for an invalid `config`.
+  /// the best so far, and `complete` is false. Throws whatever evaluate() throws, also
+  /// Error(invalid_argument) for an invalid `config`.
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BestConfig& config = {},
                                const BatchControl& control = {}) const;

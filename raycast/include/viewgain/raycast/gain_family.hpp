@@ -48,7 +48,8 @@ class VIEWGAIN_EXPORT GainFamily {
   /// Unit of the named gain, such as "nat" or "voxels".
   [[nodiscard]] virtual std::string_view unit(std::string_view name) const = 0;
   /// Evaluator for views of `sensor` on the current map. The map must be from the same sensor.
-  /// Throws Error(invalid_argument) for an unknown name, and like the evaluator of these gains.
+  /// Throws Error(invalid_argument) for an unknown name. Also throws whatever the constructor of
+  /// the gains' evaluator throws.
   [[nodiscard]] virtual std::unique_ptr<FamilyEvaluator> evaluator(
       std::shared_ptr<const VoxelScene> scene, const BeliefGrid& grid, const Sensor& sensor,
       std::span<const std::string> names, const ExecConfig& exec) const = 0;

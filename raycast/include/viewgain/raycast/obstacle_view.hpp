@@ -34,8 +34,9 @@ class VIEWGAIN_EXPORT ObstacleView {
 
   /// Sets DepthFrame::known_depth for a frame from T_world_camera: the depth of the first obstacle
   /// on each pixel's ray, minus a margin of kKnownSigmas along the obstacle's normal. The depths
-  /// are empty if there are no obstacles. Throws Error(invalid_argument) like check_frame_size(),
-  /// and for a pose that is not rigid (1e-3). Cost: about 0.2 µs per pixel and thread.
+  /// are empty if there are no obstacles. Throws Error(invalid_argument) for a pose that is
+  /// not rigid (1e-3). Also throws whatever check_frame_size() throws. Cost: about 0.2 µs per pixel
+  /// and thread.
   void mark(DepthFrame& frame, const Pose& T_world_camera) const;
 
  private:

@@ -90,8 +90,8 @@ namespace viewgain {
 /// Whether masks remove too much. `unmasked` and `masked` are the same frames before and after
 /// masking. Suspects masks that remove 95 % of the measured depths in the map's workspace (without
 /// a map: everywhere), or the middle of the images and little else. Kind masks. Throws
-/// Error(invalid_argument) for spans of different lengths, and like check_frame_size(). Cost: one
-/// pass over the pixels.
+/// Error(invalid_argument) for spans of different lengths. Also throws whatever check_frame_size()
+/// throws. Cost: one pass over the pixels.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_masks(const Sensor& sensor,
                                                       std::span<const DepthFrame> unmasked,
                                                       std::span<const DepthFrame> masked,

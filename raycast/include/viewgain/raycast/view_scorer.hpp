@@ -119,8 +119,8 @@ class VIEWGAIN_EXPORT ViewScorer {
   /// Filters a frame, marks obstacles in it, updates the hazard and integrates the frame. A frame
   /// that cannot be used does not throw; the verdict gives the reason. `pose_sigma` [m], [rad] is
   /// the pose's uncertainty in addition to Sensor::pose_sigma. Throws Error(invalid_argument)
-  /// without a change for an invalid sigma or frame identity, and like scene() if learn_hazard is
-  /// on. Cost: FrameIntegrator::integrate(), and a snapshot.
+  /// for an invalid sigma or frame identity; the map then stays unchanged. If learn_hazard is on,
+  /// also throws whatever scene() throws. Cost: FrameIntegrator::integrate(), and a snapshot.
   MapUpdate add(const DepthFrame& frame, const Pose& T_world_camera,
                 const PoseSigma& pose_sigma = {});
   /// As above, for several frames from one pose.
@@ -173,8 +173,8 @@ class VIEWGAIN_EXPORT ViewScorer {
   /// How well the frames added so far agree. Cost: FrameCheck::result().
   [[nodiscard]] FrameConsistency consistency() const;
   /// A copy of the map with these measurements integrated; the scorer does not change. Throws
-  /// Error(invalid_argument) for a wrong image size or a pose that is not rigid, and like add().
-  /// Cost: a copy of the map, and FrameIntegrator::integrate() per frame.
+  /// Error(invalid_argument) for a wrong image size or a pose that is not rigid. Also throws
+  /// whatever add() throws. Cost: a copy of the map, and FrameIntegrator::integrate() per frame.
   [[nodiscard]] BeliefGrid grid_after(const Measurements& measurements) const;
 
   /// Writes the map with save_vdb(). A scorer loaded from the file gives the same gains, but its

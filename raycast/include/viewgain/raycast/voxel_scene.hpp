@@ -54,8 +54,8 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// are computed when first needed (some milliseconds). The rest runs on the calling thread; the
   /// BVH also uses the threads of TBB, which `exec` does not limit. Throws Error(backend) if Embree
   /// fails; Error(capacity) above 2^23 leaves and tiles; Error(invalid_argument) for invalid
-  /// obstacles, a support plane that is not finite or an invalid number of threads, and like
-  /// HazardConfig::validate().
+  /// obstacles, a support plane that is not finite or an invalid number of threads. Also throws
+  /// whatever HazardConfig::validate() throws.
   [[nodiscard]] static std::shared_ptr<const VoxelScene> build(
       const BeliefGrid& grid, const Surroundings& surroundings = {}, const ExecConfig& exec = {},
       const HazardConfig& hazard = {});
@@ -66,7 +66,7 @@ class VIEWGAIN_EXPORT VoxelScene {
   /// The scene of the current `grid` with the surroundings and hazard settings of `before`, which
   /// does not change. If `before` is a scene of the same grid, this is faster than build(), because
   /// unchanged parts of the map are copied (perf/README.md). Throws Error(invalid_argument) for a
-  /// null scene, and like build().
+  /// null scene. Also throws whatever build() throws.
   [[nodiscard]] static std::shared_ptr<const VoxelScene> update(
       const std::shared_ptr<const VoxelScene>& before, const BeliefGrid& grid,
       const ExecConfig& exec = {});

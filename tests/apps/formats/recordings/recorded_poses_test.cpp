@@ -141,7 +141,7 @@ TEST_F(MessageRecordings, WorldsAreTold) {
   for (int i = 0; i < 11; ++i) {
     two.transform("/tf", 100 + 0.1 * i, "marker", "link", {0, 1, 0, 0, 0, 0, 1});
   }
-  refuse(two, "belongs to several worlds: 'base', 'marker'; choose one of them with --world");
+  refuse(two, "is connected to several world frames: 'base', 'marker'; choose one with --world");
   EXPECT_EQ(import(two, {"--world", "base"})["frames"], kImages);
   expect_frames(open_frames(dir / "frames"));
   two.transform("/tf_static", 0, "room", "base", kStill);

@@ -32,7 +32,7 @@ VIEWGAIN_EXPORT void write_sensor_toml(const std::filesystem::path& path, const 
 [[nodiscard]] VIEWGAIN_EXPORT bool is_sensor_file(const std::string& preset_or_file);
 
 /// A preset by name, or the sensor in a file whose name ends in .toml. Throws
-/// Error(invalid_argument) for an unknown name, and like read_sensor_toml().
+/// Error(invalid_argument) for an unknown name. Also throws whatever read_sensor_toml() throws.
 [[nodiscard]] VIEWGAIN_EXPORT Sensor load_sensor(const std::string& preset_or_file);
 
 }  // namespace viewgain

@@ -29,18 +29,18 @@ struct ClassicAccess;
 
 /// Gains of the literature; apps/literature/README.md has equations and sources. Sums run over the
 /// rays of a view and the voxels v of each ray, in order. H is the entropy of a voxel's occupancy
-/// [nat]; P is its visibility, the transmission of all voxels before it on the ray.
+/// [nat]; P is its visibility, the transmission of all nearer voxels on the ray.
 enum class ClassicGain : std::uint8_t {
   occlusion_aware,    ///< Σ P H [nat]
   unobserved_voxel,   ///< Σ P H over unknown voxels [nat]
   average_entropy,    ///< mean of H over the crossed voxels [nat]
-  rear_side_voxel,    ///< rays whose last voxel before a surface is unknown [rays]
-  rear_side_entropy,  ///< Σ P H over the unknown voxels before such a surface [nat]
+  rear_side_voxel,    ///< rays whose last voxel in front of a surface is unknown [rays]
+  rear_side_entropy,  ///< Σ P H over the unknown voxels in front of such a surface [nat]
   proximity_count,  ///< Σ over unknown voxels, larger the nearer they are behind a measured surface
                     ///< [voxels]
-  area_factor,     ///< from the fractions of rays that hit a surface, and space hidden by one [1]
-  unknown_volume,  ///< Σ of the volume of the rays' cones in unknown voxels [m³]
-  unknown_count,   ///< distinct unknown voxels [voxels]
+  area_factor,             ///< from the fractions of rays that hit a surface, or space behind one
+  unknown_volume,          ///< Σ of the volume of the rays' cones in unknown voxels [m³]
+  unknown_count,           ///< distinct unknown voxels [voxels]
   surface_frontier_count,  ///< distinct unknown voxels with a free and an occupied neighbour
                            ///< [voxels]
 };

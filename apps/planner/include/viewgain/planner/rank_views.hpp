@@ -33,8 +33,8 @@ struct VIEWGAIN_EXPORT RankConfig {
   std::optional<Pose> current_pose{};
   const ViewMeasure* measure = nullptr;     ///< custom gain, as in BestConfig
   const RunMeasure* run_measure = nullptr;  ///< custom gain, as in BestConfig
-  /// Ranks each view by its marginal gain given the views before it, so that views do not show the
-  /// same surface twice. Cannot be used with measures.
+  /// Ranks each view by its marginal gain given the higher-ranked views, so that views do not show
+  /// the same surface twice. Cannot be used with measures.
   bool together = false;
   /// True: scores all poses in full. False: uses two stages (GainEvaluator::race()), except with
   /// the paper's gain. If `together` is set and `exact` is not, each view after the first is chosen
@@ -102,8 +102,8 @@ struct VIEWGAIN_EXPORT Ranking {
 /// Chooses at most `ahead.plan` poses whose joint gain is large. They are ordered along a short
 /// path of straight lines. The path starts at config.current_pose or, if that is empty, anywhere.
 /// Paths cost config.cost_per_metre; see plan_tour(). `surface_area` [m²] is the surface so far,
-/// for PlanAhead::least_share. Poses must be finite. Throws Error(invalid_argument) like
-/// PlanAhead::check(), view_costs() and plan_tour(), and if a measure is set.
+/// for PlanAhead::least_share. Poses must be finite. Throws Error(invalid_argument) if a
+/// measure is set. Also throws whatever PlanAhead::check(), view_costs() and plan_tour() throw.
 [[nodiscard]] VIEWGAIN_EXPORT Ranking plan_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  const PlanAhead& ahead, double surface_area,

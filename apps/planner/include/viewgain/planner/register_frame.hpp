@@ -39,8 +39,10 @@ struct VIEWGAIN_EXPORT FreeDirection {
 struct VIEWGAIN_EXPORT FrameRegistration {
   /// Whether a correction was found, or why not.
   RegistrationStatus status = RegistrationStatus::too_little_overlap;
-  std::string reason;   ///< reason of the status, for people; empty if registered
-  Pose T_world_camera;  ///< corrected if registered, otherwise as reported, made rigid
+  std::string reason;  ///< reason of the status, for people; empty if registered
+  /// The corrected pose. If the frame is not registered, this is the reported pose,
+  /// orthonormalised.
+  Pose T_world_camera;
   /// Displacement of the camera centre by the correction [m]. If the frame is not registered, this
   /// and `rotation` describe the last attempt.
   double translation = 0;
@@ -65,9 +67,9 @@ struct VIEWGAIN_EXPORT FrameRegistration {
   /// Pose uncertainty from the covariance, for integrating the frame: roots of the mean variances
   /// of translation [m] and rotation [rad].
   [[nodiscard]] PoseSigma pose_sigma() const;
-  /// How well the others determine the pose: the smallest information over all motions, divided by
-  /// the reported pose's information about the same motion. If it is below 1, the reported pose is
-  /// more accurate along that motion.
+  /// How well the others determine the pose. For each motion, the information from the others is
+  /// divided by that of the reported pose; this is the smallest of these ratios. If it is below 1,
+  /// the reported pose is more accurate along that motion.
   double smallest_information = 0;
   /// Motions along which the pose stays as reported.
   std::vector<FreeDirection> free_directions{};

@@ -101,11 +101,11 @@ class VIEWGAIN_EXPORT ViewPlanner {
                                                  const PoseSigma& sigma = kUsualPoseSigma) const;
 
   /// Integrates a frame and updates the scene; invalidates the last proposal. If a frame cannot be
-  /// used, the verdict in AddedView::update gives the reason. The map then stays unchanged; the
-  /// frame counts as a failed view, and its pose as tried. DepthFrame::known_depth is recomputed
-  /// from the obstacles. `pose_sigma` [m], [rad] is the pose's uncertainty in addition to the
-  /// sensor's; after register_frame() use FrameRegistration::pose_sigma(). Throws
-  /// Error(invalid_argument) for an invalid pose_sigma, and like VoxelScene::build().
+  /// used, AddedView::update gives the reason, and the map stays unchanged; the frame counts as a
+  /// failed view, and its pose as tried. DepthFrame::known_depth is recomputed from the obstacles.
+  /// `pose_sigma` [m], [rad] is combined with the sensor's; after register_frame() use
+  /// FrameRegistration::pose_sigma(). Throws Error(invalid_argument) if it is invalid. Also throws
+  /// whatever VoxelScene::build() throws.
   AddedView add(const DepthFrame& frame, const Pose& T_world_camera,
                 const PoseSigma& pose_sigma = {});
   /// As above, for one or more frames from one pose.
@@ -136,7 +136,7 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// left, the result is the plan's next k views, in the plan's order. Paths start at
   /// RankConfig::current_pose; by default this is the pose of the last frame, or of a later tried()
   /// that was reached. Throws Error(invalid_argument) if propose() was not called since the last
-  /// view, and like rank_views().
+  /// view. Also throws whatever rank_views() throws.
   [[nodiscard]] Ranking rank(std::size_t k = 1, const RankConfig& config = {},
                              const BatchControl& control = {});
   /// Ranks any poses, `T_world_camera`, without a check of feasibility. Omits invalid ones. Does

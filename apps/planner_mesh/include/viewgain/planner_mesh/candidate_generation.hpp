@@ -25,7 +25,8 @@ struct VIEWGAIN_EXPORT BoundaryViewsConfig {
   EstimatorConfig estimator{};  ///< estimation of the views at a boundary
   double working_distance = 0;  ///< distance from the surface [m]
   /// Classifies a boundary by the last view that sees it unoccluded, instead of the last one that
-  /// has it in its image. Changes the runs, and so the candidates. Costs a trace per view.
+  /// has it in its image. Changes the boundary runs (BoundaryRun), and so the candidates. Costs a
+  /// trace per view.
   bool classes_by_sight = false;
 };
 
@@ -114,8 +115,8 @@ class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
   /// The settings.
   [[nodiscard]] const GenerationConfig& config() const noexcept { return config_; }
 
-  /// Runs and patches behind the boundary candidates of the last proposal. The `number` of a
-  /// candidate with a class is its index in estimated().candidates; the `number` of a set's
+  /// Boundary runs and patches behind the boundary candidates of the last proposal. The `number` of
+  /// a candidate with a class is its index in estimated().candidates; the `number` of a set's
   /// candidate is its index in the set.
   [[nodiscard]] const EstimatedViews& estimated() const noexcept {
     return boundaries_->estimated();

@@ -27,12 +27,12 @@
 namespace viewgain {
 
 /// Decision rule of Kriegel et al. (section 5 of the paper): left boundaries first, then right, top
-/// and bottom ones. Within a class, our rule takes the longest run first.
+/// and bottom ones. Within a class, our rule takes the longest boundary run first.
 ///
-/// Each run (BoundaryRun) is tried once, with one pose: the nominal pose of the feasible patch
-/// nearest to the run's middle. After the surface has changed, a run counts as tried if it has the
-/// same class and one of its patches lies within `same_place` of the tried patch. Thread safety:
-/// one call at a time. Cost: O(candidates + patches · runs tried).
+/// Each boundary run (BoundaryRun) is tried once, with one pose: the nominal pose of the feasible
+/// patch nearest to the run's middle. After the surface has changed, a run counts as tried if it
+/// has the same class and one of its patches lies within `same_place` of the tried patch. Thread
+/// safety: one call at a time. Cost: O(candidates + patches · runs tried).
 class VIEWGAIN_EXPORT BoundaryOrder {
  public:
   /// `same_place` [m], unchecked. Half the length of a patch is a good value.
@@ -164,7 +164,8 @@ VIEWGAIN_EXPORT void set_stop_rules(PlanningConfig& planning, const PolicyConfig
 class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGeneration {
  public:
   /// Model and generation must outlive this object. Throws Error(invalid_argument) for an oracle
-  /// without an object, planning ahead with another policy than gain, and like PlanAhead::check().
+  /// without an object, or if a policy other than `gain` plans ahead. Also throws whatever
+  /// PlanAhead::check() throws.
   PolicyDecision(const SurfaceModel& model, CandidateGeneration& generation, const Sensor& sensor,
                  const PolicyConfig& config, const ExecConfig& exec);
 

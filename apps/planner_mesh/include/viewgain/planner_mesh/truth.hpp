@@ -82,8 +82,8 @@ struct VIEWGAIN_EXPORT QualityFigures {
 
 /// All figures of a surface and its points except covered_area, which stays 0. `visible` has one
 /// entry per sample of the reference mesh, nonzero for a visible one. A sample is covered if a
-/// point is within `tolerance` [m]. Throws for a wrong number of entries, and like the members of
-/// GroundTruth, which determine the cost.
+/// point is within `tolerance` [m]. Throws for a wrong number of entries. Also throws whatever
+/// the members of GroundTruth throw; they also determine the cost.
 [[nodiscard]] VIEWGAIN_EXPORT QualityFigures quality_figures(const GroundTruth& truth,
                                                              const SurfaceMesh& surface,
                                                              std::span<const FusedPoint> points,
