@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Is HEAD faster than BASE? Builds viewgain-bench at both commits and runs `trace` or `bars` in turns.
+# Is HEAD faster than BASE? Builds viewgain-bench at both commits and alternates runs of `trace` or `bars`.
 # Prints the ratio of the medians and its spread per method or bar. Above 1, HEAD is better.
 #   perf/compare.sh BASE HEAD        for example BENCH=bars perf/compare.sh v0.1 main
 # Environment (defaults): BENCH: trace or bars (trace); RUNS of each (9); POSES (100); VOXELS (128);

@@ -36,7 +36,7 @@ def quantile(values, share):
 def main(folder):
     runs = sorted(int(path.name.split(".")[1]) for path in folder.glob("base.*.json"))
     base, head = ([figures((folder / f"{side}.{run}.json").read_text()) for run in runs] for side in ("base", "head"))
-    print(f"medians of {len(runs)} runs of each, in turns; ratio of the medians, 5 and 95 % quantiles of the runs' ratios; above 1, head is better")
+    print(f"medians of {len(runs)} alternating runs of each; ratio of the medians, 5 and 95 % quantiles of the runs' ratios; above 1, head is better")
     print(f"{'figure':<24} {'better':>7} {'base':>12} {'head':>12} {'ratio':>7} {'p05':>7} {'p95':>7}")
     for name in (name for name in base[0] if name in head[0]):
         is_higher_better = base[0][name][1]

@@ -5,7 +5,7 @@
     python_overhead.py PYTHON_GAINS [POSES [ROUNDS]]
 
 PYTHON_GAINS is the test program python_gains. C++ and Python score the same poses on the same map,
-in turns. Prints the medians over the rounds, and the time of the conversions alone.
+alternately. Prints the medians over the rounds, and the time of the conversions alone.
 """
 import pathlib
 import statistics

@@ -24,7 +24,7 @@ namespace {
 constexpr std::array kTracers{std::pair(ExecConfig::Tracer::sweep, ""),
                               std::pair(ExecConfig::Tracer::embree, "_embree")};
 
-// 200 poses one by one, by evaluators of one and of all threads in turns.
+// 200 poses one by one, by evaluators of one and of all threads, alternately.
 Figure latency_figure(const BarsOptions& options, const std::shared_ptr<const VoxelScene>& scene,
                       ExecConfig::Tracer tracer) {
   const Sensor sensor = sensor_preset("sr4000");

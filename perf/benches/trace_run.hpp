@@ -63,7 +63,7 @@ struct TraceRun {
   [[nodiscard]] std::string wrong_rays(bool of_ours) const;
 };
 
-/// Makes the map, checks all methods against the oracle and times them in turns. Throws Error.
+/// Makes the map, checks all methods against the oracle and times them alternately. Throws Error.
 [[nodiscard]] TraceRun run_trace_methods(const TraceOptions& options);
 
 }  // namespace viewgain::bench

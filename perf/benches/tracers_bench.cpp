@@ -102,7 +102,7 @@ class Pair {
     return true;
   }
 
-  // Views a second by each tracer, in turns; ratios are of neighbours in time.
+  // Views a second by each tracer, alternately; ratios are of neighbours in time.
   void measure(int repetitions) {
     std::array<int, 2> calls{};
     for (std::size_t k = 0; k < 2; ++k) {

@@ -12,8 +12,8 @@ struct TracersOptions {
   std::filesystem::path mesh;  ///< of the camel
 };
 
-/// Compares Embree's BVH with the sweep, in turns. Prints a table of medians with spread. Returns
-/// the exit code: 1 if a gain differs in any bit. The rows are combinations of
+/// Compares Embree's BVH with the sweep, alternately. Prints a table of medians with spread.
+/// Returns the exit code: 1 if a gain differs in any bit. The rows are combinations of
 /// - an object, a room and a sparse hall
 /// - poses around them and random poses inside
 /// - batches and single poses

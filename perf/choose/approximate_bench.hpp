@@ -15,7 +15,7 @@ struct ApproximateOptions {
   bool json = false;
 };
 
-/// Measures accuracy and speed of pixel strides and of approximate(), in turns. Accuracy is the
+/// Measures accuracy and speed of pixel strides and of approximate(), alternately. Accuracy is the
 /// rank correlation with the full gains. Speed is relative to scoring in full. Prints a table or
 /// JSON. Returns the exit code, 0.
 int run_approximate(const ApproximateOptions& options);

@@ -122,7 +122,7 @@ def counts(grid, sensor, frames, size):
 def fit(data):
     """(log-likelihood, lambda, h_inf, h_0, c, g, rates).
 
-    A grid search finds lambda and h_inf. Expectation and maximisation find c and g, in turns. The
+    A grid search finds lambda and h_inf. Expectation and maximisation find c and g, alternately. The
     maxima of c and g are 1.
     """
     passed, met = data

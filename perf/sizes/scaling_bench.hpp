@@ -16,7 +16,7 @@ struct ScalingOptions {
   bool json = false;
 };
 
-/// Times the full gain for each combination of map, rays per pose and threads, in turns. Also
+/// Times the full gain for each combination of map, rays per pose and threads, alternately. Also
 /// reports the memory of each map and scene. Prints a table or JSON. Returns the exit code: 1 if an
 /// answer is wrong or depends on the number of threads.
 int run_scaling(const ScalingOptions& options);

@@ -52,7 +52,7 @@ struct ScalingCase {
   [[nodiscard]] bool agrees() const { return same_bits && agreement.agrees(); }
 };
 
-/// Runs all combinations, in turns in every repetition, after one run to warm up. Throws Error.
+/// Runs all combinations once per repetition, after one run to warm up. Throws Error.
 [[nodiscard]] std::vector<ScalingCase> run_scaling_cases(const ScalingPlan& plan);
 
 }  // namespace viewgain::bench

@@ -87,7 +87,7 @@ class RayOutcomes(NamedTuple):
     unknown: Annotated[int, "Reach unknown space: possible new surface."]
     known_surface: Annotated[int, "End on known surface after free space."]
     obstacle: Annotated[int, "End on an obstacle or, except with gain \"paper\", on the support plane."]
-    too_near: Annotated[int, "Hit known surface or an obstacle before min_range."]
+    too_near: Annotated[int, "Hit known surface or an obstacle nearer than min_range."]
     out_of_range: Annotated[int, "Stay in known free space up to max_range."]
     out_of_map: Annotated[int, "Leave the workspace, or never enter it."]
 
@@ -165,7 +165,7 @@ class FrameRegistration(NamedTuple):
 
     status: Annotated[str, "\"registered\", \"too_little_overlap\" or \"refused\"."]
     reason: Annotated[str, "Reason of the status, in words; empty if registered."]
-    T_world_camera: Annotated[_Floats, "(4, 4), float64, corrected if registered, otherwise as reported."]
+    T_world_camera: Annotated[_Floats, "(4, 4), float64, corrected pose; if the frame is not registered, the reported pose."]
     covariance: Annotated[_Floats, "(6, 6), float64: covariance of the translation [m], then the rotation [rad], world axes."]
     translation: Annotated[float, "Displacement of the camera centre by the correction [m]."]
     rotation: Annotated[float, "Angle of the correction [rad]; the program's JSON has rotation_deg."]

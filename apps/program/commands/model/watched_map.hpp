@@ -110,8 +110,8 @@ class AskedViews {
 class WatchedMap final : public ViewpointGeneration, public DecisionMaking {
  public:
   /// An empty map or, with `saved`, the map of the file state.vdb. `options` must outlive this
-  /// object. Throws Error like ViewPlanner's constructor and load(), and Error(invalid_argument) if
-  /// another sensor than `sensor` took the saved frames.
+  /// object. Throws Error(invalid_argument) if another sensor than `sensor` took the saved frames.
+  /// Also throws whatever ViewPlanner's constructor and load() throw.
   WatchedMap(const ModelOptions& options, const Sensor& sensor, const ScorerConfig& map,
              const PlannerConfig& config, const std::optional<SavedFrames>& saved);
 

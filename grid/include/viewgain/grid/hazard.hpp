@@ -125,8 +125,8 @@ class VIEWGAIN_EXPORT HazardField {
   /// Computes exact distances in the box of cells with evidence, extended by the cut, on the
   /// threads of `exec`; results do not depend on their number. Cost: some milliseconds per million
   /// cells (perf/README.md). Needs about 20 bytes per cell during the call and 4 bytes afterwards.
-  /// Throws like HazardConfig::validate() and thread_count(), and Error(capacity) above 2³¹
-  /// cells.
+  /// Throws Error(capacity) above 2³¹ cells. Also throws whatever HazardConfig::validate() and
+  /// thread_count() throw.
   explicit HazardField(const GridSnapshot& snapshot, const HazardConfig& config = {},
                        const ExecConfig& exec = {});
 

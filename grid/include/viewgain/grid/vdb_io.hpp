@@ -48,8 +48,8 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
     const std::filesystem::path& path, const BeliefGrid& grid);
 
 /// Writes rates of the map's voxels; load_hazard_vdb() reads them back exactly. Atomic. Throws
-/// Error(io). Throws Error(invalid_argument) like HazardConfig::validate(), and if the name of a
-/// regular file does not end in .vdb. Cost: one pass over the rates.
+/// Error(io). Throws Error(invalid_argument) if the name of a regular file does not end in .vdb.
+/// Also throws whatever HazardConfig::validate() throws. Cost: one pass over the rates.
 VIEWGAIN_EXPORT void save_hazard_vdb(const HazardConfig::Volume& volume, const BeliefGrid& grid,
                                      const std::filesystem::path& path);
 

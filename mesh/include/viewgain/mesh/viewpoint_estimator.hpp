@@ -69,9 +69,8 @@ struct VIEWGAIN_EXPORT EstimatedViews {
 /// For each part, a patch is fitted to the vertices of grow_region() whose normals differ by less
 /// than 45° from the mean. Its origin is the mean of the part's edges. The target of a view lies on
 /// the extrapolated patch, where known surface fills the fraction `overlap` of the nominal view.
-/// The extrapolation ends at the depth of the region, or where the normal has rotated by max_turn.
-/// The camera stands at distance · working_distance from the target, along the patch's normal
-/// there, and looks at the target.
+/// The extrapolation ends at the depth of the region or at max_turn. The camera looks at the target
+/// from distance · working_distance away, along the patch's normal.
 ///
 /// `views` are the poses T_world_camera, in the order in which they were taken.
 /// `working_distance` is in metres.

@@ -116,8 +116,8 @@ struct VIEWGAIN_EXPORT ViewGain {
 
 /// The end of one ray of a view.
 struct VIEWGAIN_EXPORT RayHit {
-  /// What the ray ends in. Known surface that the ray enters nearer than min_range counts as an
-  /// obstacle.
+  /// What the ray ends in. Known surface that the ray enters at a range below min_range
+  /// counts as an obstacle.
   enum class Kind : std::uint8_t { none, unknown, occupied, obstacle };
   Kind kind = Kind::none;  ///< kind of end
   Index3 voxel{};          ///< voxel of the end (unknown, occupied)
@@ -234,8 +234,8 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// The k best poses with their results of evaluate(), ties to the lower index. Returns fewer if
   /// not enough poses are valid. `config` can subtract costs and replace the gain by a measure.
   /// Scores all poses, so it costs the same as evaluate(). After a stop or the deadline it returns
-  /// the best so far, and `complete` is false. Throws whatever evaluate() throws, also
-  /// Error(invalid_argument) for an invalid `config`.
+  /// the best so far, and `complete` is false. Throws Error(invalid_argument) for an invalid
+  /// `config`. Also throws whatever evaluate() throws.
   [[nodiscard]] BestViews best(std::span<const Pose> T_world_camera, std::size_t k = 1,
                                const BestConfig& config = {},
                                const BatchControl& control = {}) const;

@@ -28,9 +28,9 @@ struct VIEWGAIN_EXPORT Suspicion {
 /// Checks whether frames of one scene agree better under another convention for poses, images or
 /// depths. Compares the surfaces of the frames, first as given and then with each common mistake
 /// corrected. Suspects the mistake whose correction makes the frames agree best, or several
-/// mistakes if they fit equally. Ignores frames without overlap. `T_world_camera`: one per frame.
-/// Throws Error(invalid_argument) like check_frame_size(), and for a wrong number of poses. Thread
-/// safe. Cost: one pass over the pixels and 50 ms for a dozen frames, 0.5 s if they disagree.
+/// mistakes if they fit equally. Ignores frames without overlap. Throws Error(invalid_argument) for
+/// a wrong number of poses. Also throws whatever check_frame_size() throws. Thread safe. Cost: one
+/// pass over the pixels and 50 ms for a dozen frames, 0.5 s if they disagree.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_frames(const Sensor& sensor,
                                                        std::span<const DepthFrame> frames,
                                                        std::span<const Pose> T_world_camera);

@@ -171,7 +171,8 @@ TEST_F(ViewPictureTest, EachClassHasItsColor) {
 }
 
 TEST_F(ViewPictureTest, CandidatesHaveTheColorOfTheirClass) {
-  // Many more than are shown, the classes one after the other: an even subset shows them all.
+  // Many more than are shown, the classes one after the other: an evenly spaced sample shows them
+  // all.
   const std::vector<std::optional<BoundaryClass>> classes{BoundaryClass::left, BoundaryClass::right,
                                                           BoundaryClass::top, BoundaryClass::bottom,
                                                           std::nullopt};

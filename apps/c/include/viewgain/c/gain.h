@@ -213,7 +213,7 @@ VG_API vg_status vg_contributions(const vg_evaluator* evaluator, const double T_
 typedef struct vg_ray_outcomes {
   size_t struct_size;     /* set by _init() */
   uint32_t rays;          /* rays of the view */
-  uint32_t too_near;      /* hit known surface or an obstacle before min_range */
+  uint32_t too_near;      /* hit known surface or an obstacle nearer than min_range */
   uint32_t unknown;       /* reach unknown space: possible new surface */
   uint32_t known_surface; /* end on known surface after free space */
   uint32_t obstacle; /* end on an obstacle or, except with VG_GAIN_PAPER, on the support plane */

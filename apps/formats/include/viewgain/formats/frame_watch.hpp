@@ -85,11 +85,10 @@ class VIEWGAIN_EXPORT FrameWatch {
   FrameWatch& operator=(FrameWatch&&) noexcept;
 
   /// Looks at the folder; `now` must not decrease. A returned frame counts as taken; the next look
-  /// returns the next frame. Each look also checks 256 of the taken or bad frames for changes, in
-  /// turn. Throws Error(io) if the folder cannot be read; Error(format) if the first numbers of
-  /// images and poses.txt disagree for longer than `settle`; and with the first complete frame like
-  /// open_frames(), for faults of the whole folder. Cost: a few µs per file of new and checked
-  /// frames.
+  /// returns the next frame. Each look also checks the next 256 taken or bad frames for changes.
+  /// Throws Error(io) if the folder cannot be read. Throws Error(format) if the first numbers of
+  /// images and poses.txt disagree for longer than `settle`. With the first complete frame, also
+  /// throws whatever open_frames() throws. Cost: a few µs per file of new and checked frames.
   [[nodiscard]] FolderLook look(Time now);
 
   /// Ends the wait for incomplete frames. Frames that lack a pose, a mask or an image that

@@ -26,9 +26,9 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT std::filesystem::path map_in(const std::filesystem::path& path);
 
 /// Reads a .vdb map, the map of a run's folder (map_in()), or an OctoMap tree with `config`. If a
-/// sensor is given, the default of config.prior_sigma is that of the sensor. Throws like load_vdb()
-/// and load_octomap(), and Error(format) with file and key if the map's note of its sensor is
-/// invalid.
+/// sensor is given, the default of config.prior_sigma is that of the sensor. Throws
+/// Error(format) with file and key if the map's note of its sensor is invalid. Also throws whatever
+/// load_vdb() and load_octomap() throw.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_map(const std::filesystem::path& file_or_run,
                                                   const Sensor* sensor = nullptr,
                                                   OctomapConfig config = {},

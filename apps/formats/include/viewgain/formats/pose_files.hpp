@@ -21,8 +21,8 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT PoseList load_poses(const std::filesystem::path& path);
 
 /// Writes a file for load_poses(): TUM text for .txt and .tum; for .npy rows with timestamp, tx,
-/// ty, tz, qx, qy, qz, qw. Throws like write_tum(), and Error(invalid_argument) with the valid
-/// endings for other names of regular files.
+/// ty, tz, qx, qy, qz, qw. Throws Error(invalid_argument) with the valid endings for other names of
+/// regular files. Also throws whatever write_tum() throws.
 VIEWGAIN_EXPORT void save_poses(const std::filesystem::path& path, std::span<const Pose> poses);
 /// As above with timestamps [s], one per pose.
 VIEWGAIN_EXPORT void save_poses(const std::filesystem::path& path, std::span<const Pose> poses,

@@ -38,7 +38,9 @@ enum class ClassicGain : std::uint8_t {
   rear_side_entropy,  ///< Σ P H over the unknown voxels in front of such a surface [nat]
   proximity_count,  ///< Σ over unknown voxels, larger the nearer they are behind a measured surface
                     ///< [voxels]
-  area_factor,             ///< from the fractions of rays that hit a surface, or space behind one
+  /// From two fractions of the rays: those that hit a surface, and those that reach space hidden by
+  /// one. Dimensionless.
+  area_factor,
   unknown_volume,          ///< Σ of the volume of the rays' cones in unknown voxels [m³]
   unknown_count,           ///< distinct unknown voxels [voxels]
   surface_frontier_count,  ///< distinct unknown voxels with a free and an occupied neighbour
@@ -116,8 +118,8 @@ class VIEWGAIN_EXPORT ClassicMap {
 /// Computes any number of classic gains of camera poses at once. A ray visits, in order, the voxels
 /// of the workspace that it crosses from min_range to the first occupied one (log-odds above 0),
 /// where it ends, or to max_range, a known obstacle, the scene's support plane or the workspace's
-/// edge. A ray that enters an occupied voxel before min_range visits none. Each ray counts a voxel
-/// once; several rays count it several times, unless the gain counts distinct voxels.
+/// edge. A ray that enters an occupied voxel nearer than min_range visits none. Each ray counts a
+/// voxel once; several rays count it several times, unless the gain counts distinct voxels.
 ///
 /// Rays are in single precision; apps/literature/README.md states the accuracy. Thread safety:
 /// const members may run from many threads at once. Bit-identical for any number of threads.

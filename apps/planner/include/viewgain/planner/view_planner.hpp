@@ -159,9 +159,9 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// generations and the last proposal. Atomic. Throws Error(io).
   void save(const std::filesystem::path& path) const;
   /// Continues after save(). With the same settings, sets and generations, all later results are
-  /// bit-identical. Throws like the constructors and load_vdb(); Error(invalid_argument) if the
-  /// map's layout differs from scorer.grid(), or the map was changed by other functions than add();
-  /// Error(format) for another kind of file.
+  /// bit-identical. Throws Error(invalid_argument) if the map's layout differs from scorer.grid(),
+  /// or the map was changed by other functions than add(). Throws Error(format) for another kind of
+  /// file. Also throws whatever the constructors and load_vdb() throw.
   [[nodiscard]] static ViewPlanner load(const std::filesystem::path& path, const Sensor& sensor,
                                         const ScorerConfig& scorer, const PlannerConfig& config,
                                         const ExecConfig& exec = {});
