@@ -250,7 +250,7 @@ TEST(Generators, RefuseWhatMakesNoSense) {
   expect_error(code, "centre", [] { (void)sphere_poses(3, 1, {0, kNan, 0}); });
   expect_error(code, "angle", [] { (void)orbit_poses(3, 1, kNan); });
   expect_error(code, "angle", [] { (void)orbit_poses(3, 1, 0, 0, kNan); });
-  expect_error(code, "angle", [] { (void)ring_poses(3, 1, 0, kNan); });
+  expect_error(code, "rings: the tilt must be finite", [] { (void)ring_poses(3, 1, 0, kNan); });
   expect_error(code, "height", [] { (void)ring_poses(3, 1, kNan, 0); });
   expect_error(code, "radius", [] { (void)ring_poses(3, 0, 1, 0); });
   expect_error(code, "48, 80, 288 or 864, not 64", [] { (void)literature_ring_poses(64, 1); });

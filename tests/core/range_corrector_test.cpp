@@ -126,7 +126,7 @@ TEST(RangeCorrector, RefusesWhatCannotBe) {
     expect_error(ErrorCode::invalid_argument, "5 x 7", [&] { corrector.correct(turned); });
     DepthFrame few{7, 5, std::vector<float>(34, 1.F)};
     expect_error(ErrorCode::invalid_argument, "34", [&] { corrector.correct(few); });
-    expect_error(ErrorCode::invalid_argument, "34 depths for 7 x 5",
+    expect_error(ErrorCode::invalid_argument, "34 depths, but the camera has 7 x 5 pixels",
                  [&] { corrector.correct(few.depth); });
     EXPECT_EQ(few.depth, std::vector<float>(34, 1.F));
     DepthFrame dim{7, 5, std::vector<float>(35, 1.F), {1.F}};

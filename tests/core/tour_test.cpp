@@ -166,7 +166,7 @@ TEST(Tour, TakesNoStopsAndRefusesBadCosts) {
   EXPECT_TRUE(none.stops.empty());
   EXPECT_EQ(none.cost, 0);
   for (const double bad : {-1.0, std::nan("")}) {
-    test::expect_error(ErrorCode::invalid_argument, "the path from 1 to 2 costs", [&] {
+    test::expect_error(ErrorCode::invalid_argument, "the cost of the path from 1 to 2 is", [&] {
       (void)order_stops(
           3, [&](std::size_t from, std::size_t to) { return from == 1 && to == 2 ? bad : 1.0; });
     });

@@ -100,7 +100,7 @@ static void of_grids(const char* folder) {
   CHECK_REFUSED(vg_grid_set(map, vast, &log_odds, 1), "workspace");
   CHECK_REFUSED(vg_grid_forget(map, point, NULL, NULL), "max is null");
   CHECK_REFUSED(vg_grid_scale(map, dims, 1, NULL), "scales is null");
-  CHECK_REFUSED(vg_grid_resample(map, point, point, 4, NULL), "scale 4");
+  CHECK_REFUSED(vg_grid_resample(map, point, point, 4, NULL), "the scale must be in 0..3, not 4");
   CHECK_REFUSED(vg_grid_update_box(map, dims, dims, NULL, NULL), "labels is null");
   CHECK_REFUSED(vg_grid_update_box(map, vast, dims, states, NULL), "workspace");
   CHECK_REFUSED(vg_grid_occupied(map, NULL, NULL, 1, &found), "voxels is null");
@@ -140,7 +140,8 @@ static void of_frames(void) {
   report.struct_size = 0;
   CHECK_REFUSED(vg_integrate(integrator, map, depth, NULL, pose, NULL, &report),
                 "vg_integration_report");
-  CHECK_REFUSED(vg_integrate(integrator, map, depth, NULL, pose, bad_sigma, NULL), "sigma");
+  CHECK_REFUSED(vg_integrate(integrator, map, depth, NULL, pose, bad_sigma, NULL),
+                "the standard deviations of a pose must be at least 0 and finite, not -1");
   pose[0] = NAN;
   CHECK_REFUSED(vg_integrate(integrator, map, depth, NULL, pose, NULL, NULL), "pose");
   pose[0] = 1;

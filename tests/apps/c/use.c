@@ -280,7 +280,7 @@ static void looks(const vg_evaluator* evaluator) {
 
 /* Only the half of space with y >= 0 can be reached. */
 static int32_t is_reachable(const double T_world_camera[16], void* user) {
-  ++*(int*)user;
+  __atomic_add_fetch((int*)user, 1, __ATOMIC_RELAXED); /* called by several threads */
   return T_world_camera[7] >= 0;
 }
 

@@ -192,7 +192,7 @@ TEST(Formats, FramesThatCannotBeAreRefusedAndNothingIsWritten) {
     writer.write_frame(2, {3, 2, six, {}});
   });
   refuses("differs in size", [&] { writer.write_frame(1, {2, 3, six, {}}); });
-  refuses("2 poses for 1 frames", [&] { writer.commit(sphere_poses(2, 1), sensor); });
+  refuses("there are 2 poses, but 1 frames", [&] { writer.commit(sphere_poses(2, 1), sensor); });
   refuses("3 x 2 px, but the sensor has", [&] { writer.commit(sphere_poses(1, 1), sensor); });
   refuses("values", [&] { write_png(folder.path() / "a.png", GrayImage{3, 2, {1, 2, 3}}); });
   refuses("values", [&] { write_png(folder.path() / "a.png", RgbImage{1, 1, {1}}); });

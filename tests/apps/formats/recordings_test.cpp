@@ -384,7 +384,7 @@ TEST_F(Recordings, FlagsThatDoNotFitAreRefused) {
        {call({"--intrinsics", "60,-60,23.5,17.5"}), "fy"},
        {{"import", "nowhere", "--sensor", "small.toml", "--out", "frames"}, "nowhere"},
        {{"import", "rec", "--format", "bop", "--sensor", "small.toml", "--out", "frames"},
-        "unknown format bop; valid: auto, tum"},
+        "unknown format bop; valid values: auto, tum"},
        {{"import", "rec", "--sensor", "small.toml"}, "--out"}});
 }
 

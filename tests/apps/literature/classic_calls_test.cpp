@@ -160,7 +160,8 @@ TEST(ClassicGains, RefuseWhatTheyCannotDo) {
   expect(refused(map, {.gains = {one, one}}), "twice");
   expect(refused(nullptr, {.gains = {one}}), "require a map");
   expect(refused(map, {.gains = {one}, .pixel_stride = 0}), "stride must be at least 1, not 0");
-  expect(refused(map, {.gains = {one}, .min_range = 2, .max_range = 1}), "min_range 2 m");
+  expect(refused(map, {.gains = {one}, .min_range = 2, .max_range = 1}),
+         "min_range, 2 m, must be below max_range, 1 m");
   expect(refused(map, {.gains = {one}, .unknown_prior = 1.5}), "1.5");
   expect(error_of([&] { (void)ClassicMap::build(nullptr, grid); }), "require a scene");
   expect(error_of([&] {

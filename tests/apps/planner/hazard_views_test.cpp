@@ -157,7 +157,7 @@ TEST(HazardViews, AreNoneOfAnEmptyMapAndAtMostAsManyAsAskedFor) {
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::infinity(),
                            std::numeric_limits<double>::quiet_NaN()}) {
     for (const bool first : {true, false}) {
-      test::expect_error(ErrorCode::invalid_argument, "length", [&] {
+      test::expect_error(ErrorCode::invalid_argument, "distance and spacing must be positive", [&] {
         (void)hazard_views(*seen.scene(), first ? bad : 1, first ? 1 : bad, 10);
       });
       ++cases;

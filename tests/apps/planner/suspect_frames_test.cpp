@@ -239,7 +239,8 @@ TEST(SuspectFocalLengths, WhatFitsAsWellAsADepthScaleIsNamedBesideIt) {
     EXPECT_NE(found.what.find(std::string("the correct focal length is ") + factor + " times"),
               std::string::npos)
         << found.what;
-    EXPECT_NE(found.what.find(std::string("the depth scale is ") + words), std::string::npos)
+    EXPECT_NE(found.what.find(std::string("the correct depth scale is ") + words),
+              std::string::npos)
         << found.what;
     ++cases;
   }

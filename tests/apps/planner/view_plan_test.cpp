@@ -178,7 +178,8 @@ TEST_F(ViewPlan, RefusesWhatCannotBe) {
   refuses({.plan = 1001, .take = 1}, "plan must be in 1..1000, not 1001");
   refuses({.plan = 3, .take = 4}, "(plan), not 4");
   refuses({.plan = 3, .take = 0}, "(plan), not 0");
-  refuses({.plan = 3, .take = 1, .least_share = 1}, "least_share 1");
+  refuses({.plan = 3, .take = 1, .least_share = 1},
+          "least_share must be at least 0 and less than 1, not 1");
 }
 
 }  // namespace

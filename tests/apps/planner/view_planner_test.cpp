@@ -365,7 +365,7 @@ TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
     refuses("rigid", [&] { planner.tried(bad, false); });
     refuses("pose 1 of the set \"mine\"", [&] { planner.add_poses({"mine", {{}, bad}}); });
   }
-  refuses("end in .vdb", [&] { planner.save("state.ot"); });
+  refuses("state.ot: an OpenVDB file must have the ending .vdb", [&] { planner.save("state.ot"); });
   refuses("at least one frame",
           [&] { planner.add(std::span<const DepthFrame>(), scene.views[0]); });
   refuses("null", [&] { planner.add_generation(nullptr); });

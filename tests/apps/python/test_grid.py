@@ -153,7 +153,7 @@ def test_frames_make_a_map(sensor):
         integrator.integrate(grid, depth, poses[0], amplitude=amplitude[1:])
     with pytest.raises(ValueError, match="orthonormal"):
         integrator.integrate(grid, depth, 2 * poses[0] - np.diag([0, 0, 0, 1]))
-    with pytest.raises(ValueError, match="sigma -1"):
+    with pytest.raises(ValueError, match="the standard deviations of a pose must be at least 0 and finite, not -1"):
         integrator.integrate(grid, depth, poses[0], pose_sigma=(0, -1))
     with pytest.raises(ValueError, match="carve"):
         viewgain.FrameIntegrator(sensor, carve="rays")
@@ -186,8 +186,8 @@ def test_voxels_and_points(labels, sensor):
     at = of_labels.index_of([[0.085, 0.155, 0.231], [0.001, 0.319, 0.001]])
     assert np.array_equal(of_labels.states()[tuple(at.T)], [labels[8, 15, 23], labels[0, 31, 0]])
     assert grid.index_of([]).shape == grid.center([]).shape == (0, 3)
-    for wrong, text in [([1, 2], r"\(\.\.\., 3\), not \(2,\)"), ([0, 0, 0.5], "holds 0.5"),
-                        ([0, 0, 2.0**31], "holds 2.1474"), (index[0, 0], "holds -2.1474"), ("x", "real numbers")]:
+    for wrong, text in [([1, 2], r"\(\.\.\., 3\), not \(2,\)"), ([0, 0, 0.5], "contains 0.5"),
+                        ([0, 0, 2.0**31], "contains 2.1474"), (index[0, 0], "contains -2.1474"), ("x", "real numbers")]:
         with pytest.raises(ValueError, match=text):
             grid.center(wrong)
     with pytest.raises(ValueError, match=r"points.*\(2,\)"):
@@ -260,11 +260,11 @@ def test_leaves_have_scales(sensor):
         assert np.count_nonzero(scales) > 100 if coarsest and not fine else np.all(scales == 0)
         assert np.all(scales == 3) == (finest > 0 and not fine)
     assert grid.resample(np.array(box) * np.inf, 2) > 0 and np.all(grid.scale(grid.occupied()["voxel"]) == 2)
-    with pytest.raises(ValueError, match="scale 4"):
+    with pytest.raises(ValueError, match=r"the scale must be in 0\.\.3, not 4"):
         grid.resample(box, 4)
-    with pytest.raises(ValueError, match="coarsest scale 5"):
+    with pytest.raises(ValueError, match=r"the coarsest scale must be in 0\.\.3, not 5"):
         viewgain.CloudIntegrator(sensor, coarsest=5)
-    with pytest.raises(ValueError, match="finest scale 2"):
+    with pytest.raises(ValueError, match="the finest scale must be between 0 and the coarsest scale, 1, not 2"):
         viewgain.FrameIntegrator(sensor, coarsest=1, finest=2)
     with pytest.raises(ValueError, match="fine"):
         viewgain.FrameIntegrator(sensor, fine=[[0, 1]])

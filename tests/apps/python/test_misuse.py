@@ -233,7 +233,8 @@ def test_readers_of_maps_name_one_another(tmp_path, grid):
         viewgain.BeliefGrid.load(tmp_path / "map.vdb")
     grid.save(tmp_path / "map.vdb")
     for given in ({"prior_sigma": 0.01}, {"workspace": WORKSPACE}, {"occupied_from": 0.5}):
-        with pytest.raises(ValueError, match="map.vdb: workspace, prior_sigma and occupied_from require an OctoMap .ot or .bt"):
+        with pytest.raises(ValueError, match=r"map.vdb: workspace, prior_sigma and occupied_from "
+                                             r"require an OctoMap file \(.ot or .bt\); a .vdb file defines them"):
             viewgain.BeliefGrid.load(tmp_path / "map.vdb", **given)
     (tmp_path / "map.vdb").rename(tmp_path / "map.ot")
     with pytest.raises(viewgain.Error, match="map.ot"):

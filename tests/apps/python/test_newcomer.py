@@ -60,7 +60,7 @@ def test_labels_that_are_no_states_are_named(labels, dtype):
 
     assert refusal(7) == "labels contains 7; valid values: 0 (unknown), 1 (free), 2 (occupied)"
     assert refusal(100, 3, 100) == "labels contains 3, 100; valid values: 0 (unknown), 1 (free), 2 (occupied)"
-    assert refusal(*range(3, 12)).startswith("labels holds 3, 4, 5, 6, 7 and 4 more: ")
+    assert refusal(*range(3, 12)).startswith("labels contains 3, 4, 5, 6, 7 and 4 more; valid values: ")
     if np.issubdtype(dtype, np.signedinteger):
         assert refusal(-1) == "labels contains -1; valid values: 0 (unknown), 1 (free), 2 (occupied)"
 

@@ -271,7 +271,7 @@ TEST(HazardCalibration, IsPartOfTheMap) {
   grid.set_hazard_counters({});
   EXPECT_EQ(grid.content_hash(), without);
   counters.classes[5].met = -1;
-  test::expect_error(ErrorCode::invalid_argument, "hazard counter -1",
+  test::expect_error(ErrorCode::invalid_argument, "a hazard counter is -1; it must be in 0..2^40",
                      [&] { grid.set_hazard_counters(counters); });
 }
 

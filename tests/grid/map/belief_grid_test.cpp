@@ -79,10 +79,10 @@ TEST(BeliefGrid, RefusesBadConfigurations) {
   for (const double bad : {nan, inf, -inf}) {
     GridConfig config = cube(0.01, 0, 1);
     config.workspace.min[1] = bad;
-    refused(ErrorCode::invalid_argument, "axis y", config);
+    refused(ErrorCode::invalid_argument, "the workspace must be finite, but along y", config);
     config = cube(0.01, 0, 1);
     config.workspace.max[2] = bad;
-    refused(ErrorCode::invalid_argument, "axis z", config);
+    refused(ErrorCode::invalid_argument, "the workspace must be finite, but along z", config);
   }
   refused(ErrorCode::invalid_argument, "inside out", cube(0.01, 1, 0));
   refused(ErrorCode::invalid_argument, "inside out", cube(0.01, 1, 1));
@@ -139,9 +139,9 @@ TEST(BeliefGrid, DenseStatesRoundTrip) {
   expect_error(ErrorCode::invalid_argument, "position 3",
                [&] { (void)BeliefGrid::from_states(config, states); });
   states.pop_back();
-  expect_error(ErrorCode::invalid_argument, "array of 7",
+  expect_error(ErrorCode::invalid_argument, "array has 7 states, but the workspace has 8",
                [&] { (void)BeliefGrid::from_states(config, states); });
-  expect_error(ErrorCode::invalid_argument, "array of 7",
+  expect_error(ErrorCode::invalid_argument, "array has 7 states, but the workspace has 8",
                [&] { BeliefGrid(config).copy_states(states); });
 }
 
@@ -193,7 +193,8 @@ TEST(BeliefGrid, AppendedViewsAreRigid) {
       if (place == 3 && value == 1.01) continue;  // a translation
       bad = Pose{};
       bad.m[place] = value;
-      expect_error(ErrorCode::invalid_argument, "not rigid", [&] { grid.append_view(bad); });
+      expect_error(ErrorCode::invalid_argument, "the camera pose is not a rigid transform",
+                   [&] { grid.append_view(bad); });
     }
   }
   EXPECT_EQ(grid.content_hash(), before);
@@ -281,14 +282,14 @@ TEST(BeliefGrid, IntegratorRefusesWrongFramesAndPoses) {
   const DepthFrame frame{8, 6, std::vector<float>(48, 0.5F)};
   Pose bad;
   bad.m[0] = 1.01;
-  expect_error(ErrorCode::invalid_argument, "not rigid",
+  expect_error(ErrorCode::invalid_argument, "the camera pose is not a rigid transform",
                [&] { integrator.integrate(grid, frame, bad); });
   bad.m[0] = std::nan("");
-  expect_error(ErrorCode::invalid_argument, "not rigid",
+  expect_error(ErrorCode::invalid_argument, "the camera pose is not a rigid transform",
                [&] { integrator.integrate(grid, frame, bad); });
   bad = Pose{};
   bad.m[3] = std::numeric_limits<double>::infinity();
-  expect_error(ErrorCode::invalid_argument, "not rigid",
+  expect_error(ErrorCode::invalid_argument, "the camera pose is not a rigid transform",
                [&] { integrator.integrate(grid, frame, bad); });
   EXPECT_EQ(grid.content_hash(), before);
   // What a file with six digits makes of a rotation is mended.

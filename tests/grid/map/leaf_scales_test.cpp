@@ -313,8 +313,10 @@ TEST(LeafScales, EmptyUniformAndWrong) {
   EXPECT_EQ(grid.scale({100, 0, 0}), 0);  // outside
   grid.forget(kAll);
   EXPECT_EQ(grid.content_hash(), BeliefGrid(kConfig).content_hash());
-  expect_error(ErrorCode::invalid_argument, "scale 4", [&] { grid.resample(kAll, 4); });
-  expect_error(ErrorCode::invalid_argument, "scale -1", [&] { grid.resample(kAll, -1); });
+  expect_error(ErrorCode::invalid_argument, "the scale must be in 0..3, not 4",
+               [&] { grid.resample(kAll, 4); });
+  expect_error(ErrorCode::invalid_argument, "the scale must be in 0..3, not -1",
+               [&] { grid.resample(kAll, -1); });
   expect_error(ErrorCode::invalid_argument, "not a number", [&] {
     grid.resample({{std::nan(""), 0, 0}, {1, 1, 1}}, 1);
   });

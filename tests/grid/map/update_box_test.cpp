@@ -113,7 +113,7 @@ TEST(UpdateBox, WrongArgumentsChangeNothing) {
                      [&] { (void)grid.update_box(box, std::vector<std::uint8_t>(5, 1)); });
   std::vector<std::uint8_t> states(24, 1);
   states[7] = 9;
-  test::expect_error(ErrorCode::invalid_argument, "state 9 at position 7",
+  test::expect_error(ErrorCode::invalid_argument, "the state at position 7 is 9; valid values:",
                      [&] { (void)grid.update_box(box, states); });
   states[7] = 1;
   VoxelBox beyond = box;

@@ -124,7 +124,7 @@ TEST(Cloud, PointsAreSortedByRange) {
   CloudIntegrator integrator(sensor);
   Pose bad = origin;
   bad.m[0] = 1.1;
-  expect_error(ErrorCode::invalid_argument, "not rigid",
+  expect_error(ErrorCode::invalid_argument, "the camera pose is not a rigid transform",
                [&] { integrator.integrate(grid, points, bad); });
   EXPECT_EQ(grid.content_hash(), before);
   expect_error(ErrorCode::invalid_argument, "support plane",

@@ -255,11 +255,14 @@ TEST(Footprint, CloudsHaveScalesToo) {
 TEST(Footprint, WrongSettingsAreRefused) {
   const Sensor sensor = small_sensor(16, 12);
   for (const int coarsest : {-1, 4}) {
-    expect_error(ErrorCode::invalid_argument, "coarsest scale " + std::to_string(coarsest),
+    expect_error(ErrorCode::invalid_argument,
+                 "the coarsest scale must be in 0..3, not " + std::to_string(coarsest),
                  [&] { FrameIntegrator(sensor, {.coarsest = coarsest}); });
   }
   for (const int finest : {-1, 2}) {
-    expect_error(ErrorCode::invalid_argument, "finest scale " + std::to_string(finest),
+    expect_error(ErrorCode::invalid_argument,
+                 "the finest scale must be between 0 and the coarsest scale, 1, not " +
+                     std::to_string(finest),
                  [&] { FrameIntegrator(sensor, {.coarsest = 1, .finest = finest}); });
   }
   for (const double end : {0.0, -1.0, std::nan("")}) {

@@ -37,7 +37,7 @@ struct VIEWGAIN_EXPORT SurfaceConfig {
   /// Distance between neighbouring points where they are closest [m]; usually the voxel size.
   double spacing = 0;
   /// Number of neighbours that smooth a point (jet fit); 0: no smoothing.
-  unsigned smoothing_neighbors = 12;
+  unsigned smoothing_neighbors = 24;
   double max_edge = 4;       ///< longest edge of a triangle [spacings]
   double join_distance = 3;  ///< points within this distance belong to one component [spacings]
   std::size_t min_component = 40;  ///< components with fewer points are dropped as outliers

@@ -125,7 +125,7 @@ TEST(Octomap, AGridFollowsATreeThatGrows) {
   EXPECT_GT(changed, 5'000U);
   EXPECT_EQ(update_from_octree(grid, tree, {{5, 5, 5}, {6, 6, 6}}), 0U);
   const octomap::OcTree other(0.05);
-  expect_error(ErrorCode::invalid_argument, "voxel sizes",
+  expect_error(ErrorCode::invalid_argument, "the tree and the grid must have the same voxel size",
                [&] { (void)update_from_octree(grid, other, workspace); });
 }
 

@@ -237,7 +237,7 @@ TEST_F(MessageRecordings, WhatIsSuspiciousIsSaid) {
             2 * kImages);
   McapText twice = good();
   add_transforms(twice);
-  (void)import(twice, {}, "stamps of 'base' to 'link' go back by 1 s");
+  (void)import(twice, {}, "the time stamps from 'base' to 'link' go back by 1 s");
   McapText other_lens = good();
   add_info(other_lens, {.size = {96, 72}});
   (void)import(other_lens, {}, "1 messages differ from the first message");
@@ -259,7 +259,7 @@ TEST_F(MessageRecordings, CutsAreReadAsFarAsTheyGo) {
     if (result.exit_code == 0) {
       const std::size_t frames = json::parse(result.out)["frames"];
       EXPECT_GE(frames, last);
-      EXPECT_NE(result.err.find("is used"), std::string::npos) << result.err;
+      EXPECT_NE(result.err.find("the complete records are used"), std::string::npos) << result.err;
       last = frames;
     } else {
       EXPECT_EQ(result.exit_code, 2) << length;
@@ -289,7 +289,7 @@ TEST_F(MessageRecordings, FlagsAndFilesThatDoNotFitAreRefused) {
   const auto import = [](const std::string& source, const Strings& more = {}) {
     return test::joined({"import", source, "--sensor", "small.toml", "--out", "frames"}, more);
   };
-  expect_refused({{import("rec.mcap", {"--format", "tum"}), "has format mcap"},
+  expect_refused({{import("rec.mcap", {"--format", "tum"}), "has the format mcap"},
                   {import("rec.mcap", {"--mask", "none"}),
                    "masks cannot be used with a recording of messages"},
                   {import("rec.mcap", {"--depth-scale", "2"}), "between 0 and 1"},

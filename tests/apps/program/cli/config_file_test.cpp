@@ -166,7 +166,7 @@ TEST_F(ConfigFile, WhatIsWrongIsNamedWithFileAndLine) {
       {"gain = true\n", "line 4: key \"gain\" must be a string"},
       {"feasible = 1\n", "line 4: key \"feasible\" must be true or false"},
       {"weight = \"0,0,0,1,1,1,2\"\n", "line 4: key \"weight\" must be a list"},
-      {"weight = [0,0,0,1,1,1,2]\n", "--weight 0: needs 7"},
+      {"weight = [0,0,0,1,1,1,2]\n", "--weight 0: expected 7 numbers"},
       {"center = []\n", "line 4: key \"center\" must be"},
       {"reach = 1979-05-27\n", "line 4: key \"reach\" must be"},
       {"reach = \"r.toml\\u0000x\"\n", "line 4: key \"reach\" must not contain a zero byte"},

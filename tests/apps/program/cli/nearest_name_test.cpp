@@ -70,8 +70,8 @@ class Spelling : public test::ProgramTest {
 TEST_F(Spelling, TheNearestIsNamed) {
   expect_refused(
       {{{"scor"},
-        "unknown subcommand scor; did you mean score? Valid: model, reconstruct, simulate"},
-       {{"zzz"}, "unknown subcommand zzz; valid: model, reconstruct, simulate"},
+        "unknown subcommand scor; did you mean score? Valid values: model, reconstruct, simulate"},
+       {{"zzz"}, "unknown subcommand zzz; valid values: model, reconstruct, simulate"},
        {{"--versoin"}, "did you mean --version?"},
        {{"info", "map.vdb", "--jsno"}, "--jsno: info has no such flag; did you mean --json?"},
        {{"score", "map.vdb", "--poss=5,1"},
@@ -83,7 +83,8 @@ TEST_F(Spelling, TheNearestIsNamed) {
         "--policy: unknown policy best"},
        {{"reconstruct", "--nonsense"}, "--nonsense: reconstruct has no such flag (see"},
        {{"score", "map.vdb", "--gain", "surfce"},
-        "--gain: unknown gain surfce; did you mean surface? Valid: paper, surface, combined"},
+        "--gain: unknown gain surfce; did you mean surface? Valid values: paper, surface, "
+        "combined"},
        {{"next", "map.vdb", "--generator", "boundry"}, "did you mean boundary?"},
        {{"reconstruct", "cube.off", "--policy", "fronteir"}, "did you mean frontier?"},
        {{"integrate", "frames", "--out-of-range", "carv"}, "did you mean carve?"},

@@ -110,17 +110,18 @@ TEST(PoseSource, ErrorsNameTheFlag) {
   struct Case {
     std::string poses, center, word;
   };
-  const std::vector<Case> cases{{"rings:64,0.5", "", "--poses rings:64,0.5: "},
-                                {"rings:48,0", "", "--poses rings:48,0: "},
-                                {"rings:48.5,1", "", "--poses"},
-                                {"shell:10,0.9,0.4", "", "--poses shell"},
-                                {"shell:10,0,1", "", "--poses shell"},
-                                {"shell:10,0.4", "", "--poses"},
-                                {"orbit:10,0.4", "", "--poses"},
-                                {"sphere:10,0.4", "0,0,x", "--center"},
-                                {"poses.txt", "0,0,0", "--center"},
-                                {"shell:10,0.4,0.9,7", "", "needs 3 numbers"},
-                                {"dome:10,0.4,1", "", "needs 2 numbers"}};
+  const std::vector<Case> cases{
+      {"rings:64,0.5", "", "--poses rings:64,0.5: "},
+      {"rings:48,0", "", "--poses rings:48,0: "},
+      {"rings:48.5,1", "", "--poses"},
+      {"shell:10,0.9,0.4", "", "--poses shell"},
+      {"shell:10,0,1", "", "--poses shell"},
+      {"shell:10,0.4", "", "--poses"},
+      {"orbit:10,0.4", "", "--poses"},
+      {"sphere:10,0.4", "0,0,x", "--center"},
+      {"poses.txt", "0,0,0", "--center"},
+      {"shell:10,0.4,0.9,7", "", "expected 3 numbers separated by commas; found 4"},
+      {"dome:10,0.4,1", "", "expected 2 numbers separated by commas; found 3"}};
   for (const Case& wrong : cases) {
     test::expect_error(ErrorCode::invalid_argument, wrong.word,
                        [&] { (void)poses(wrong.poses, wrong.center); });

@@ -173,9 +173,9 @@ TEST_F(CalibrateRange, WhatDoesNotTellItIsRefusedOrNamed) {
   const std::vector<View> good = views;
   expect_refused_fit("the wall is not flat", 0.05);
   views.resize(7);
-  expect_refused_fit("frames at 7 distances; 8 distances");
+  expect_refused_fit("at only 7 different distances; at least 8 are required");
   views.assign(20, good[3]);
-  expect_refused_fit("frames at 1 distances");
+  expect_refused_fit("at only 1 different distances");
 
   RangeFit turned(sensor), saturated(sensor);
   DepthFrame bright = frame_of(good[0], &error_at);

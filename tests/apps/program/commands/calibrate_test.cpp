@@ -157,7 +157,7 @@ TEST_F(CalibrateNoise, WhatDoesNotTellTheNoiseIsRefused) {
   };
   expect_refused(
       {{with("few"), "30 frames from one pose are required, not 29"},
-       {with("moving"), "the scene or the camera moves"},
+       {with("moving"), "Does the scene or the camera move?"},
        {with("flat"), "the straight depth edges"},
        {with("exact"), "below their rounding step of 1e-04 m"},
        {{"calibrate", "flat", "--out", "new.toml"}, "give either --noise or --range"},

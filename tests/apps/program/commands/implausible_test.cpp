@@ -209,7 +209,7 @@ TEST_F(Implausible, HazardRatesOfAnotherPlaceOrUnit) {
   EXPECT_EQ(warnings(rates_of(grid_of(0.1, 0.2, 0))), "");
   expect_refused(rates_of(grid_of(2.5, 20, 0)),
                  "have voxels of 2.5 m, but the map has voxels of 0.025 m");
-  expect_refused(rates_of(grid_of(0.00025, 0.002, 0)), "has voxels of 0.00025 m");
+  expect_refused(rates_of(grid_of(0.00025, 0.002, 0)), "have voxels of 0.00025 m");
   expect_refused(rates_of(grid_of(0.025, 0.2, 5)), "all hazard rates lie outside the map");
 }
 

@@ -324,7 +324,8 @@ TEST_F(Reconstruct, RefusesBadInputAndLeavesNothing) {
       {arguments("cube.off", {"--workspace", "0,0,0,-1,1,1"}), "--workspace"},
       {arguments("cube.off", {"--from", "1,2,3,0,0,0,0"}), "--from"},
       // Looks away from the object.
-      {arguments("cube.off", {"--from", "0,0,1,0,0,0,1", "--background", "0"}), "start pose"},
+      {arguments("cube.off", {"--from", "0,0,1,0,0,0,1", "--background", "0"}),
+       "the first view shows nothing in the workspace"},
       {arguments("cube.off", {"--reach", "missing.toml"}), "missing.toml"},
       {arguments("cube.off", {"--body", "0.1,-0.1,0.1"}), "--body"},
       {arguments("cube.off", {"--reach", "no_reach.toml"}), "reach"},

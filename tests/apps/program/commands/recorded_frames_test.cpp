@@ -153,14 +153,15 @@ TEST_F(RecordedFrames, MillimetresAreToldOf) {
   const auto expect = [](const std::string& text, const std::string& word) {
     EXPECT_NE(text.find(word), std::string::npos) << text;
   };
-  expect(said({"--voxel", "5"}), "--voxel 5 m leaves 2 voxels");
+  expect(said({"--voxel", "5"}),
+         "at --voxel 5 m, the longest side of the workspace has only 2 voxels");
   expect(said({"--voxel", "0.005", "--depth-scale", "1e-3"}),
-         "if the depth scale is 10 times smaller");
+         "Perhaps the correct depth scale is 10 times smaller");
   expect(said({"--voxel", "0.005", "--depth-scale", "2e-4"}),
-         "if the depth scale is 2 times smaller");
+         "Perhaps the correct depth scale is 2 times smaller");
   expect(said({"--voxel", "0.01", "--depth-scale", "4e-4", "--workspace",
                "-0.2,-0.2,-0.2,0.2,0.2,0.2"}),
-         "if the depth scale is 4 times smaller");
+         "Perhaps the correct depth scale is 4 times smaller");
   PoseList list = read_tum(dir / "units/poses.txt");
   for (Pose& pose : list.poses) pose = {pose.rotation(), 1000 * pose.translation()};
   write_tum(dir / "units/poses.txt", list.poses);

@@ -131,7 +131,10 @@ TEST_F(Surface, ATruthInMillimetresOrElsewhereIsNamed) {
            {{"mm.off"}, true}, {{"cube.off", "--size", "0.2", "--place", "center"}, false}}) {
     const std::string said =
         run(test::joined({"surface", "run/map.vdb", "--out", "s.ply", "--truth"}, more)).err;
-    EXPECT_EQ(said.find("in metres? (--size") != std::string::npos, is_named) << said;
+    EXPECT_EQ(said.find("Is the mesh in metres, and at the place of the object? (--size") !=
+                  std::string::npos,
+              is_named)
+        << said;
   }
 }
 

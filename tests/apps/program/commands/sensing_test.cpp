@@ -235,12 +235,12 @@ TEST_F(Sensing, MendedMeshesAreReported) {
   EXPECT_EQ(tie.exit_code, 0);
   EXPECT_EQ(tie.err,
             "viewgain: warning: tie.obj: 1 face crosses itself and was split at the crossings; 2 "
-            "faces without area were left out\n");
+            "faces without area were removed\n");
   EXPECT_EQ(json::parse(tie.out).at("mended_faces"), 1);
   EXPECT_EQ(json::parse(tie.out).at("dropped_faces"), 2);
   EXPECT_EQ(json::parse(tie.out).at("triangles"), 6);
   const auto line = run(call("line.obj"));
-  EXPECT_EQ(line.err, "viewgain: warning: line.obj: 1 face without area was left out\n");
+  EXPECT_EQ(line.err, "viewgain: warning: line.obj: 1 face without area was removed\n");
   EXPECT_EQ(json::parse(line.out).at("mended_faces"), 0);
 }
 

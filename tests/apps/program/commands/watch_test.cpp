@@ -459,7 +459,7 @@ TEST_F(Watch, WhatContradictsTheMapIsLeftOut) {
   EXPECT_EQ(result["frames"], 9);
   EXPECT_EQ(result["hash"], hash);
   const json integrated = ran({"integrate", "moved"}, test::joined(made, map));
-  EXPECT_NE(said.find("(contradicts); left out"), std::string::npos) << said;
+  EXPECT_NE(said.find("(contradicts); the frame is left out"), std::string::npos) << said;
   EXPECT_EQ(integrated["registration"]["refused"], 1);
   EXPECT_EQ(integrated["hash"], hash);
   // Fed again it is tried again; the others are skipped.

@@ -201,13 +201,14 @@ exec {program} reconstruct "$@"
     assert len(rows_in("out")) == 6
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"seconds": {}}', "\\377"])
-def test_a_run_that_is_none_is_refused_at_once(folder, program, text):
+@pytest.mark.parametrize("text, name", [("", "the run.json of sh"), ("[]", "the run.json of sh"), ("{}", "run.json"),
+                                        ('{"seconds": {}}', "run.json"), ("\\377", "the run.json of sh")])
+def test_a_run_that_is_none_is_refused_at_once(folder, program, text, name):
     (folder / "mine.sh").write_text(f"""for word in "$@"; do case "$word" in --out=*) out=${{word#--out=}};; esac; done
 mkdir "$out" && printf '{text}' >"$out/run.json"
 """)
     (folder / "spec.toml").write_text(SPEC.replace('"frontier"', '{name = "mine", command = "sh mine.sh"}'))
-    assert "cube, mine, seed 1: run.json" in study("spec.toml", "--out", "out", code=2, program=program)
+    assert f"cube, mine, seed 1: {name} is invalid: " in study("spec.toml", "--out", "out", code=2, program=program)
     assert not (folder / "out").exists()
 
 
@@ -224,7 +225,7 @@ def test_without_matplotlib_there_are_no_plots(folder, program):
     (folder / "hidden/matplotlib.py").write_text("raise ImportError('not here')\n")
     process = start("spec.toml", "--out", "out", program=program, environment={"PYTHONPATH": f"{folder}/hidden:{SOURCES}"})
     error = process.communicate()[1]
-    assert process.returncode == 0 and "warning: no coverage.png: not here; install matplotlib" in error
+    assert process.returncode == 0 and "warning: coverage.png was not drawn: not here; install matplotlib" in error
     assert names("out") == ["results.csv", "results.json", "runs", "table.md"]
 
 
