@@ -38,7 +38,6 @@ SurfaceMesh surface_of(const std::vector<FusedPoint>& points, const ExecConfig& 
   std::vector<OrientedPoint> oriented;
   oriented.reserve(points.size());
   SurfaceConfig config;
-  config.smoothing_neighbors = 12;  // of points that are means over 27 voxels already
   config.spacing = points.front().spacing;
   for (const FusedPoint& point : points) {
     oriented.push_back({point.position, point.toward_free, point.spacing});

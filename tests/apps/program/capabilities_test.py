@@ -69,7 +69,7 @@ CALLS = [
     ("costs", "next model --poses poses.txt --costs costs.txt --gain paper", lambda j: j["next"][0]["worth"] < j["next"][0]["gain"]),
     ("cost per metre from the current position", "next model --cost-per-metre 1 --from 9,0,0",
      lambda j: j["next"][0]["gain"] - j["next"][0]["worth"] > 7),
-    ("obstacles: a box and a mesh", "next model --obstacle 0.2,-1,-1,0.6,1,1 --obstacle wall.off",
+    ("obstacles: a box and a mesh", "next model --obstacle 0.3,-1,-1,0.4,1,1 --obstacle wall.off",
      lambda j: sum(j["dropped"].values()) > 0),
     ("support plane", "next model --support-plane=-0.1", lambda j: j["dropped"].get("plane", 0) > 0),
     ("reach", "next model --reach reach.toml --generator sphere", lambda j: len(j["next"]) > 0),

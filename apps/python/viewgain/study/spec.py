@@ -181,6 +181,8 @@ class _Reader:
         return flags
 
     def file(self, key, name):
+        if name is None:
+            self.fail(key, "contains an entry without a file")
         if not isinstance(name, str) or not _is_file(self.folder / name):
             self.fail(key, f"contains {name!r}, but the file {self.folder / str(name)} does not exist")
         return pathlib.Path(os.path.abspath(self.folder / name))  # does not resolve links, because the name determines the kind of mesh

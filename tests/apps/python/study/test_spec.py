@@ -164,7 +164,7 @@ def test_hashes_follow_what_can_change_a_result(folder):
     ('"tof.toml"', '"tof.toml", "./tof.toml"', ["line 5", "twice"]),
     ('"more/ball.off"', '{mesh = "more/ball.off", reach = 3}', ["line 1", "3"]),
     ('"more/ball.off"', '{mesh = "more/ball.off", obstacles = ["0,0,0,1,1"]}', ["line 1", "six numbers"]),
-    ('"more/ball.off"', '{name = "b"}', ["line 1", "the file None does not exist"]),
+    ('"more/ball.off"', '{name = "b"}', ["line 1", "an entry without a file"]),
     ("--up=y", "--up=y\\u0000", ["line 8", "byte"]),
     ("max_views = 5", "max_views = " + "[" * 3000 + "]" * 3000, ["is not valid TOML"]),
     ("gain:combined", "tour:3", ["line 2", "tour:3", "tour:K:M"]),
