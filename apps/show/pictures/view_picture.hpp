@@ -33,14 +33,17 @@ struct ViewPicture {
   const std::vector<VoxelContribution>* contributions = nullptr;
 };
 
-/// A picture, 640x480 px: the surface in grey; boundary runs in class colours (left red, right
-/// green, top blue, bottom yellow); candidates as small frusta, those of boundaries in their
-/// class's colour, others grey; the view just taken as a black frustum; the chosen one as a larger
-/// green frustum with some of its rays, orange where they end in unknown voxels, blue in occupied
-/// ones, and by the surface and combined gain unknown voxels in which it may find surface, the
-/// larger the likelier. The surface's inside is darker; of more than 200 candidates an evenly
-/// spaced sample is drawn, none right in front of the viewer. Throws Error(invalid_argument) for a
-/// view that is no rigid transform (1e-3). The same picture for any number of threads.
+/// A picture of 640x480 px:
+/// - the surface in grey, its inside darker, with boundary runs in the colours of their classes
+/// - at most 200 candidates as small frusta, in the colours of their boundaries or in grey
+/// - the view just taken as a black frustum
+/// - the chosen view as a larger green frustum, with some of its rays: orange if they end in
+///   unknown voxels, blue if in occupied ones
+/// - for the surface and combined gains, unknown voxels that may contain surface; likelier ones are
+///   larger
+///
+/// Throws Error(invalid_argument) for a view that is not rigid (1e-3). The picture does not depend
+/// on the number of threads.
 [[nodiscard]] RgbImage view_picture(const ViewPicture& picture, const ExecConfig& exec);
 
 /// The amplitude image of a frame (the paper's Fig. 1), 8-bit grey, enlarged by a whole number to

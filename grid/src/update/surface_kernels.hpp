@@ -17,11 +17,13 @@ struct LocalSurfaces {
   std::array<double, kMost> x{}, y{}, z{};  ///< the moved readings [m]
 };
 
-/// Finds the readings moved along the normal onto the surface of the surrounding pixels: the
-/// least-squares plane of depth over the image through readings of the 5×5 pixels whose depth
-/// differs from the pixel's by at most a slope of 2 plus noise. There is none if fewer than 6
-/// remain, they are collinear, the plane is seen at less than kMinCosIncidence, or the reading is
-/// more than 3 sigma from it and so belongs to something else; and none at a pixel without reading.
+/// Moves readings along the normal onto the surface of the surrounding pixels. This surface is the
+/// least-squares plane of depth over the image. It is fitted to those of the 5×5 pixels whose depth
+/// differs from the pixel's by at most a slope of 2 plus noise. No place is found if:
+/// - the pixel has no reading
+/// - fewer than 6 of the 5×5 pixels remain, or they are collinear
+/// - the cosine of the angle of incidence is below kMinCosIncidence
+/// - the reading is more than 3 sigma from the plane, and so belongs to another surface
 ///
 /// One set of functions per instruction set. All give the same bits, as BlockKernels do.
 struct SurfaceKernels {

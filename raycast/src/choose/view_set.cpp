@@ -106,8 +106,8 @@ class PaperSet {
   Overlay chosen_;
 };
 
-// A greedy choice. With `config` it ends when no view is worth its cost. If it is null, nothing
-// costs, and k views are chosen.
+// A greedy choice of up to k views. If `config` is given, the choice ends when no view is worth its
+// cost. If it is null, views cost nothing.
 template <typename Chosen>
 class GreedyChoice {
  public:

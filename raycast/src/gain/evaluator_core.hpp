@@ -145,7 +145,8 @@ struct RefiningHits {
   std::vector<MatrixHalf> known_a, known_b;
   std::vector<double> each;
 
-  /// The voxels are gone through in parts, each with room of its own in the arrays by place.
+  /// Threads refine different parts of the voxels. Each part has its own range in the arrays by
+  /// place.
   static constexpr std::size_t kMostParts = 2;
   struct Part {
     std::uint32_t begin = 0, end = 0;  ///< places

@@ -7,22 +7,14 @@
 #include <random>
 
 #include "core/expect_error.hpp"
+#include "grid/hazard/cut_grid.hpp"
 #include "oracle/surface.hpp"
 #include "viewgain/grid/hazard.hpp"
 
 namespace viewgain {
 namespace {
 
-constexpr double kVoxel = 0.01;  // [m]
-
-BeliefGrid grid_of(Index3 dims) {
-  GridConfig config;
-  config.voxel_size = kVoxel;
-  config.workspace = {{-0.13, 0.07, -1.0},
-                      {-0.13 + dims.x * kVoxel, 0.07 + dims.y * kVoxel, -1.0 + dims.z * kVoxel}};
-  config.prior_sigma = 0.01;
-  return BeliefGrid(config);
-}
+using test::cut_grid, test::kVoxel;
 
 // `hits` readings with this sigma [m].
 void put(BeliefGrid& grid, Index3 voxel, std::uint32_t hits, double sigma = 0.005) {
@@ -45,7 +37,7 @@ TEST(HazardField, DistancesAreThoseOfBruteForce) {
   std::mt19937 random(7);
   std::size_t checks = 0, finite = 0;
   for (int shift = 0; shift < 4; ++shift) {
-    BeliefGrid grid = grid_of({41, 29, 35});
+    BeliefGrid grid = cut_grid({41, 29, 35});
     const auto voxel = [&] { return any_voxel(grid, random); };
     for (int k = 0; k < 5; ++k) put(grid, voxel(), 3);
     for (int k = 0; k < 50; ++k) {  // too little evidence
@@ -166,7 +158,7 @@ TEST(HazardField, ShapesAreThoseOfTheDefinition) {
   // The last has rows of cells that take several words of bits.
   for (const auto& [dims, shift] :
        {Case{{29, 22, 26}, 0}, {{29, 22, 26}, 1}, {{29, 22, 26}, 2}, {{13, 12, 150}, 0}}) {
-    BeliefGrid grid = grid_of(dims);
+    BeliefGrid grid = cut_grid(dims);
     // Free on one side of a slope, and here and there.
     const Index3 base = grid.min_index();
     for (int i = 0; i < dims.x * dims.y * dims.z; ++i) {
@@ -198,7 +190,7 @@ TEST(HazardField, SameBitsForAnyNumberOfThreads) {
   std::mt19937 random(41);
   std::size_t near = 0, cells = 0;
   for (const double decay_cells : {4.0, 8.0, 16.0}) {
-    BeliefGrid grid = grid_of({61, 33, 75});
+    BeliefGrid grid = cut_grid({61, 33, 75});
     for (int k = 0; k < 20000; ++k) grid.set(any_voxel(grid, random), -1.0F, {});
     for (int k = 0; k < 40; ++k) put(grid, any_voxel(grid, random), 3);
     const GridSnapshot snapshot = grid.snapshot();
@@ -240,7 +232,7 @@ TEST(HazardField, VoxelsFinerThanTheFootprintCountTogether) {
   std::size_t checks = 0, finite = 0, single = 0;
   for (int pooling = 0; pooling < 4; ++pooling) {
     const double footprint = 1.2 * kVoxel * (1 << pooling);
-    BeliefGrid grid = grid_of({41, 29, 35});
+    BeliefGrid grid = cut_grid({41, 29, 35});
     const auto voxel = [&] { return any_voxel(grid, random); };
     for (int k = 0; k < 150; ++k) put(grid, voxel(), 1, footprint);
     const HazardConfig::Model model{30.0, 8 * kVoxel, 0.5};
@@ -268,7 +260,7 @@ TEST(HazardField, VoxelsFinerThanTheFootprintCountTogether) {
 }
 
 TEST(HazardField, WithoutEvidenceEverythingIsFar) {
-  const BeliefGrid grid = grid_of({16, 16, 70});
+  const BeliefGrid grid = cut_grid({16, 16, 70});
   const HazardField field(grid.snapshot());
   const HazardConfig::Model model =
       HazardConfig::Model::for_size(0.7);  // the workspace's longest side
@@ -280,7 +272,7 @@ TEST(HazardField, WithoutEvidenceEverythingIsFar) {
 }
 
 TEST(HazardField, TheSizeIsThatOfTheEvidenceUnlessGiven) {
-  BeliefGrid grid = grid_of({64, 64, 64});
+  BeliefGrid grid = cut_grid({64, 64, 64});
   const Index3 base = grid.min_index();
   put(grid, {base.x + 10, base.y + 10, base.z + 10}, 5);
   put(grid, {base.x + 29, base.y + 12, base.z + 10}, 5);
@@ -290,7 +282,7 @@ TEST(HazardField, TheSizeIsThatOfTheEvidenceUnlessGiven) {
 }
 
 TEST(HazardField, RatesFromElsewhere) {
-  BeliefGrid grid = grid_of({16, 16, 16});
+  BeliefGrid grid = cut_grid({16, 16, 16});
   const Index3 base = grid.min_index();
   auto volume = std::make_shared<HazardConfig::Volume>();
   volume->box = VoxelBox::from_dims({base.x + 2, base.y, base.z}, {2, 3, 4});
@@ -303,7 +295,7 @@ TEST(HazardField, RatesFromElsewhere) {
 }
 
 TEST(HazardField, RefusesWhatIsOutOfBounds) {
-  const GridSnapshot snapshot = grid_of({8, 8, 8}).snapshot();
+  const GridSnapshot snapshot = cut_grid({8, 8, 8}).snapshot();
   const auto refuses = [&](const char* what, const HazardConfig& config) {
     test::expect_error(ErrorCode::invalid_argument, what,
                        [&] { (void)HazardField(snapshot, config); });

@@ -10,10 +10,12 @@
 #include <cmath>
 #include <random>
 
+#include "grid/hazard/cut_grid.hpp"
+
 namespace viewgain {
 namespace {
 
-constexpr double kVoxel = 0.01;  // [m]
+using test::kVoxel;
 
 Belief hit(std::uint32_t hits, double sigma) {
   const auto information = static_cast<float>(hits / (sigma * sigma));
@@ -23,12 +25,7 @@ Belief hit(std::uint32_t hits, double sigma) {
 /// A workspace that cuts blocks and cells, with random boxes of free space, whole blocks among
 /// them, and random surface.
 BeliefGrid random_map(Index3 dims, int surface, double sigma, std::mt19937& random) {
-  GridConfig config;
-  config.voxel_size = kVoxel;
-  config.workspace = {{-0.13, 0.07, -1.0},
-                      {-0.13 + dims.x * kVoxel, 0.07 + dims.y * kVoxel, -1.0 + dims.z * kVoxel}};
-  config.prior_sigma = 0.01;
-  BeliefGrid grid(config);
+  BeliefGrid grid = test::cut_grid(dims);
   const auto any = [&](int size) {
     return std::uniform_int_distribution<int>(0, size - 1)(random);
   };

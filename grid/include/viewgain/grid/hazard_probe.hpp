@@ -18,7 +18,7 @@ namespace viewgain {
 /// Thread safety: is_new() may run from many threads; at() only one call at a time.
 class VIEWGAIN_EXPORT HazardProbe {
  public:
-  /// Copies what it needs from the snapshot. Throws like HazardField.
+  /// Copies what it needs from the snapshot. Throws whatever HazardField throws.
   explicit HazardProbe(const GridSnapshot& snapshot, const HazardConfig& config = {});
   ~HazardProbe();
   HazardProbe(HazardProbe&&) noexcept;
@@ -30,7 +30,7 @@ class VIEWGAIN_EXPORT HazardProbe {
   [[nodiscard]] double voxel_size() const;                 ///< [m]
   [[nodiscard]] const VoxelBox& near_box() const;          ///< HazardField::near_box()
 
-  /// What the field says of a voxel.
+  /// The field's values at a voxel.
   struct At {
     double distance = 0;    ///< HazardField::distance() [m]
     double start_rate = 0;  ///< HazardField::start_rate() [1/m]
