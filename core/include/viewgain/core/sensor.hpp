@@ -78,7 +78,8 @@ struct VIEWGAIN_EXPORT Sensor {
   }
 
   /// Throws Error(invalid_argument), naming the field, unless:
-  /// - the camera and range_calibration pass their validate(), and the table has positive ranges
+  /// - the camera and range_calibration pass their validate(), and all measured and corrected
+  ///   ranges of the calibration are positive
   /// - 0 <= min_range < max_range, and working_distance is positive and lies in this interval
   /// - noise parameters are finite and positive; modulation frequency, minimum amplitude and single
   ///   terms of a sum may be 0
