@@ -179,12 +179,11 @@ void calibrate(const Options& options) {
 
 Command add_calibrate(App& program) {
   auto options = std::make_shared<Options>();
-  App* app =
-      program.add_subcommand("calibrate",
-                             "Calibrate a depth camera and write a sensor file. --noise measures "
-                             "the random error from at least 30 frames of a static scene from one "
-                             "pose. --range measures the systematic error from frames of one flat "
-                             "wall, with poses, from at least 8 distances.");
+  App* app = program.add_subcommand(
+      "calibrate",
+      "Calibrate a depth camera and write a sensor file. --noise measures the random error; it "
+      "needs at least 30 frames of a static scene, taken from one pose. --range measures the "
+      "systematic error; it needs frames of one flat wall, with poses, from at least 8 distances.");
   app->add_option("FRAMES_DIR", options->frames, "folder of frames")->required();
   app->add_flag(
       "--noise", options->noise,

@@ -140,10 +140,9 @@ Command add_next(App& program) {
   app->add_option("--top", o.top,
                   "maximum number of views, each with its marginal gain; all: list all possible "
                   "candidates, each with the gain of this view alone");
-  app->add_option(
-      "--out", o.out,
-      "file to write the camera-to-world poses of the views to (.txt, .tum or .npy), best "
-      "first or, with --plan, in the order of the plan");
+  app->add_option("--out", o.out,
+                  "file for the camera-to-world poses of the views (.txt, .tum or .npy), best "
+                  "first or, with --plan, in the order of the plan");
   app->add_flag(
       "--explain", o.explain,
       "print where the rays of each view end; if no view has a gain, print this for up to 32 "

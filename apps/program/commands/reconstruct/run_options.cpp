@@ -20,8 +20,9 @@ constexpr std::size_t kMaxCount = 1'000'000;
 
 void add_output_options(App& app, RunOutputs& outputs) {
   begin_group(app, "Output");
-  add_switch(app, "--save-maps", outputs.save_maps,
-             "write maps/NN.vdb after each view, and with reconstruct the candidates maps/NN.txt");
+  add_switch(
+      app, "--save-maps", outputs.save_maps,
+      "write maps/NN.vdb after each view; reconstruct also writes the candidates maps/NN.txt");
   add_switch(app, "--pictures", outputs.pictures, "draw each view as views/NN.png");
   app.add_option(
       "--report", outputs.report,
@@ -64,7 +65,7 @@ void add_options(App& app, ReconstructOptions& o) {
                  "  random     random views\n"
                  "  frontier   most unknown voxels in view\n"
                  "  fibonacci  evenly around the object\n"
-                 "  oracle     most new coverage, known from the mesh\n");
+                 "  oracle     most new coverage; it knows the mesh\n");
   explain_values(
       app,
       "Sources of candidates for --generator:\n"

@@ -369,13 +369,12 @@ Command add_score(App& program) {
       *app, options->seed,
       "seed for --poses shell:..., for --approximate, and for --race with --gain paper");
   begin_group(*app, "Output");
-  app->add_option(
-      "--out", options->out,
-      "CSV or .npy file to write the scores of all poses that were not dropped to, in input order "
-      "(with --race, only poses scored with all rays; with --set, only the set)");
+  app->add_option("--out", options->out,
+                  "CSV or .npy file for the scores of all poses that were not dropped, in input "
+                  "order (with --race, only poses scored with all rays; with --set, only the set)");
   app->add_option("--picture", options->picture,
                   "PNG file to write, showing the map, the frustum of the best view and the voxels "
-                  "where its rays may end (the likelier, the larger)");
+                  "where its rays may end (drawn larger if more likely)");
   app->add_option(
       "--report", options->report,
       "HTML file to write, showing the map, the candidates coloured by gain, the ranking "
