@@ -21,8 +21,7 @@ namespace viewgain {
 /// of an edge along the chain and n the outward normal of its face. Then t × n points away from the
 /// surface: seen from outside, the surface lies to the left of t.
 struct VIEWGAIN_EXPORT BoundaryLoop {
-  std::vector<std::uint32_t>
-      vertices;  ///< edge i goes from vertex i to i + 1, the last to vertex 0
+  std::vector<std::uint32_t> vertices;   ///< edge i: vertex i to i + 1, the last to vertex 0
   std::vector<std::uint32_t> triangles;  ///< face of edge i
 };
 
