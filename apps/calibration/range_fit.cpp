@@ -141,9 +141,9 @@ RangeFitResult RangeFit::solve() const {
     last = distance;
   }
   if (result.distances < kLeastDistances) {
-    fail_range("the frames were taken at only " + std::to_string(result.distances) +
-               " different distances; at least " + std::to_string(kLeastDistances) +
-               " are required (distances within 2 % count as one)" + named);
+    fail_range("frames from at least " + std::to_string(kLeastDistances) +
+               " different distances are required, not " + std::to_string(result.distances) +
+               " (distances within 2 % count as one)" + named);
   }
   Wall wall;
   wall.normal = Eigen::Vector3d::Zero();

@@ -450,7 +450,8 @@ TEST(Planning, RefusesWhatMakesNoSense) {
   refuse("stop_coverage", [](PlanningConfig& c) { c.stop_coverage = kNan; });
   Script wrong;
   wrong.decisions = {Decision{2, 1, 1}};
-  expect_error(ErrorCode::invalid_argument, "candidate 2, but there are only 2 candidates",
+  expect_error(ErrorCode::invalid_argument,
+               "candidate 2; it must be less than the number of candidates, 2",
                [&wrong] { (void)wrong.run(never_idle()); });
 }
 

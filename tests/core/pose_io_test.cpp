@@ -184,7 +184,7 @@ TEST(Tum, TimestampsComeBackAsTheyWere) {
   EXPECT_EQ(read_tum(path).timestamps, timestamps);
   write_tum(path, read_tum(path).poses, read_tum(path).timestamps);
   EXPECT_EQ(read_tum(path).timestamps, timestamps);
-  expect_error(ErrorCode::invalid_argument, "5 poses, but 4 timestamps",
+  expect_error(ErrorCode::invalid_argument, "poses: 5, timestamps: 4",
                [&] { write_tum(path, poses, std::span(timestamps).first(4)); });
   const std::vector<double> bad(timestamps.size(), NAN);
   expect_error(ErrorCode::invalid_argument, "timestamp 0 is not finite",

@@ -39,7 +39,7 @@ PoseSigma pose_sigma_of(const double* sigmas) {
 Pose rigid_pose_of(const double* matrix) {
   if (!has_lowest_row(matrix)) {
     std::ostringstream text;
-    text << "the lowest row of a pose is " << matrix[12] << ' ' << matrix[13] << ' ' << matrix[14]
+    text << "the last row of a pose is " << matrix[12] << ' ' << matrix[13] << ' ' << matrix[14]
          << ' ' << matrix[15] << "; it must be 0 0 0 1 (matrices are row-major)";
     refuse(text.str());
   }

@@ -201,8 +201,8 @@ vg_status vg_scorer_consistency(const vg_scorer* scorer, vg_consistency* found,
     const FrameConsistency all = scorer->scorer.consistency();
     if (contradicts != nullptr) {
       if (capacity < all.frames.size()) {
-        refuse("capacity is " + std::to_string(capacity) + ", but there are " +
-               std::to_string(all.frames.size()) + " frames");
+        refuse("capacity is " + std::to_string(capacity) +
+               "; it must be at least the number of frames, " + std::to_string(all.frames.size()));
       }
       std::fill_n(contradicts, all.frames.size(), 0);
       for (const std::size_t frame : all.contradicting) contradicts[frame] = 1;

@@ -29,8 +29,8 @@ void write_ply(const std::filesystem::path& path, const PlyArrays& arrays) {
   };
   const auto check_count = [&](std::size_t count, const char* what) {
     if (count == 0 || count == points.size()) return;
-    refuse("there are " + std::to_string(points.size()) + " points, but " + std::to_string(count) +
-           " " + what);
+    refuse(std::string("one value per point is required; points: ") +
+           std::to_string(points.size()) + ", " + what + ": " + std::to_string(count));
   };
   check_count(normals.size(), "normals");
   check_count(sigma.size(), "sigmas");
@@ -56,8 +56,8 @@ void write_ply(const std::filesystem::path& path, const PlyArrays& arrays) {
     append(bytes, std::uint8_t{3});
     for (const std::uint32_t v : triangle) {
       if (v >= points.size()) {
-        refuse("a triangle has vertex " + std::to_string(v) + ", but there are " +
-               std::to_string(points.size()) + " points");
+        refuse("a triangle has vertex " + std::to_string(v) +
+               "; it must be less than the number of points, " + std::to_string(points.size()));
       }
       append(bytes, static_cast<std::int32_t>(v));
     }

@@ -13,6 +13,7 @@
 #include "viewgain/formats/pose_files.hpp"
 #include "viewgain/support/atomic_file.hpp"
 #include "viewgain/support/file_names.hpp"
+#include "viewgain/support/text.hpp"
 #include "viewgain/support/toml_table.hpp"
 
 namespace viewgain {
@@ -50,9 +51,14 @@ ReachRegion::HalfSpace read_half_space(TableReader& reader) {
 
 ReachRegion::Tolerance read_tolerance(TableReader reader) {
   ReachRegion::Tolerance tolerance;
-  if (reader.find("distance") != nullptr) tolerance.distance = reader.number("distance");
+  const auto at_least_0 = [&](const char* key) {
+    const double value = reader.number(key);
+    if (value < 0) reader.fail(key, "must be at least 0, not " + short_text(value));
+    return value;
+  };
+  if (reader.find("distance") != nullptr) tolerance.distance = at_least_0("distance");
   if (reader.find("angle_deg") != nullptr) {
-    tolerance.angle = reader.number("angle_deg") * std::numbers::pi / 180;
+    tolerance.angle = at_least_0("angle_deg") * std::numbers::pi / 180;
   }
   reader.refuse_unknown_keys();
   return tolerance;

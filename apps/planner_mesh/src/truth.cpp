@@ -188,8 +188,8 @@ QualityFigures quality_figures(const GroundTruth& truth, const SurfaceMesh& surf
                                std::span<const FusedPoint> points, double tolerance,
                                std::span<const std::uint8_t> visible) {
   if (visible.size() != truth.samples().size()) {
-    refuse("visible has " + std::to_string(visible.size()) + " entries, but there are " +
-           std::to_string(truth.samples().size()) + " samples");
+    refuse("visible must have one entry per sample; samples: " +
+           std::to_string(truth.samples().size()) + ", entries: " + std::to_string(visible.size()));
   }
   const PointArrays arrays = arrays_of(points);
   const std::vector<double> distances = truth.distances_to(surface.vertices);

@@ -179,16 +179,16 @@ void calibrate(const Options& options) {
 
 Command add_calibrate(App& program) {
   auto options = std::make_shared<Options>();
-  App* app =
-      program.add_subcommand("calibrate",
-                             "Measure a depth camera and write a sensor file. --noise measures how "
-                             "much depths scatter. It needs at least 30 frames of a static scene "
-                             "from one pose. --range measures the systematic range error. It needs "
-                             "frames of one flat wall from at least 8 distances, with poses.");
+  App* app = program.add_subcommand(
+      "calibrate",
+      "Calibrate a depth camera and write a sensor file. --noise measures the random error; it "
+      "needs at least 30 frames of a static scene, taken from one pose. --range measures the "
+      "systematic error; it needs frames of one flat wall, with poses, from at least 8 distances.");
   app->add_option("FRAMES_DIR", options->frames, "folder of frames")->required();
-  app->add_flag("--noise", options->noise,
-                "measure the standard deviations along and across the ray; the scene needs an "
-                "object in front of a wall, but the frames need no poses");
+  app->add_flag(
+      "--noise", options->noise,
+      "measure the standard deviations along and across the ray; the scene must contain an "
+      "object in front of a wall; poses are not needed");
   app->add_flag("--range", options->range,
                 "measure the range error (range_calibration in the sensor file); in some frames, "
                 "rotate the camera by 10 to 30 deg");

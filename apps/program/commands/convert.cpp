@@ -78,9 +78,10 @@ Command add_convert(App& program) {
   App* app = program.add_subcommand(
       "convert",
       "Convert a map between .vdb and the OctoMap formats .ot and .bt. A .bt file can only be "
-      "read. An .ot file holds voxel states and log-odds; beliefs, prior and views are lost. If "
-      "the map's frame is shifted by whole voxels, the tree is shifted too. Any other frame is "
-      "lost, with a warning. A .vdb file also gets covariances and mean positions for viewers.");
+      "read. An .ot file holds voxel states and log-odds; beliefs, prior and views are lost. It "
+      "keeps the map's pose T_world_grid only if this is a shift by whole voxels; otherwise the "
+      "pose is lost, with a warning. A .vdb file also gets covariances and mean positions for "
+      "viewers.");
   app->add_option("IN", options->in, kMapHelp)->required();
   app->add_option("OUT", options->out, "map to write (.vdb or .ot)")->required();
   app->add_option("--workspace", options->workspace,

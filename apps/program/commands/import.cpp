@@ -58,7 +58,7 @@ void check(const Options& options, RecordingFormat format) {
         std::pair("--pose-topic", options.pose_topic)}) {
     if (value.empty() || has_messages(format)) continue;
     refuse(flag, value,
-           "this flag requires a recording of messages; SOURCE has the format " + found);
+           "this flag requires a recording of ROS messages; SOURCE has the format " + found);
   }
 }
 
@@ -166,7 +166,7 @@ Command add_import(App& program) {
                   "format of the recording; auto: detect from its contents")
       ->check(one_of(formats, "format"));
   app->add_option("--sensor", options->sensor,
-                  kSensorHelp + "; also gives the intrinsics if the recording has none");
+                  kSensorHelp + "; its intrinsics are used if the recording has none");
   app->add_option("--intrinsics", options->intrinsics,
                   "fx,fy,cx,cy [px] (default: from the recording, else from the sensor)");
   app->add_option("--depth-topic", options->depth_topic,
@@ -180,16 +180,17 @@ Command add_import(App& program) {
   app->add_option("--pose-topic", options->pose_topic,
                   "TOPIC[,tx,ty,tz,qx,qy,qz,qw]: PoseStamped or Odometry topic of a body, used "
                   "instead of tf, and the camera's pose on this body");
-  app->add_option("--max-time-gap", options->max_time_gap,
-                  "longest time between an image and its pose [s] (default: 0.1, or 0.02 for TUM); "
-                  "the two tf transforms around an image may be twice as far apart");
+  app->add_option(
+      "--max-time-gap", options->max_time_gap,
+      "longest time between an image and its pose [s] (default: 0.1; for TUM, 0.02); the tf "
+      "transforms before and after an image may be up to twice this time apart");
   app->add_option(
       "--depth-scale", options->depth_scale,
       "metres per unit of 16-bit depth images (default: from the recording, else 1e-3)");
   add_mask_options(*app, options->mask, options->confidence);
   app->add_option(
          "--out", options->out,
-         "output folder; frames of an earlier import are replaced, other frames cause an error")
+         "folder to write; frames of an earlier import are replaced, other frames cause an error")
       ->required();
   explain_values(
       *app,

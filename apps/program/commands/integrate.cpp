@@ -303,12 +303,13 @@ Command add_integrate(App& program) {
          "--cloud", options->clouds,
          "point cloud (.pcd or .ply; x, y, z [m]) to integrate instead of frames; may be repeated")
       ->allow_extra_args(false);
-  app->add_option("--origin", options->origin,
-                  "x,y,z: position of the sensor for clouds in the world frame [m]; viewpoint: "
-                  "from VIEWPOINT in each .pcd");
+  app->add_option(
+      "--origin", options->origin,
+      "x,y,z: position of the sensor [m], for clouds in the world frame; viewpoint: the VIEWPOINT "
+      "in each .pcd file");
   app->add_option("--poses", options->poses,
-                  "TUM file of sensor-to-world poses, line i for cloud i; clouds are then in "
-                  "sensor coordinates, and VIEWPOINT is ignored");
+                  "TUM file of sensor-to-world poses, line i for cloud i; clouds must then be in "
+                  "the sensor's frame, and VIEWPOINT is ignored");
   begin_group(*app, "Map");
   app->add_option("--voxel", options->voxel, "voxel size [m] (required without --map)");
   app->add_option("--workspace", options->workspace,
@@ -331,19 +332,20 @@ Command add_integrate(App& program) {
   begin_group(*app, "Map");
   app->add_option("--out", options->out, "map to write (.vdb, or OctoMap .ot)")->required();
   app->add_option("--map", options->map,
-                  "map to extend (.vdb, .ot or .bt); keeps its voxel size, workspace and prior; "
-                  "skips frames that a .vdb already has");
+                  "map to extend (.vdb, .ot or .bt); its voxel size, workspace and prior are kept; "
+                  "frames that a .vdb map already contains are skipped");
   most_need(*app, {"--voxel", "--workspace", "--out", "--map", "--sensor", "--cloud",
                    "--support-plane", "--mask", "--register", "--on-contradiction"});
-  explain_values(*app,
-                 "Files in FRAMES_DIR: those that simulate writes, or for each frame NNNNNN:\n"
-                 "  frame-NNNNNN.depth.png      16 bit: depth along z\n"
-                 "  frame-NNNNNN.pose.txt       4x4 matrix, camera to world [m]\n"
-                 "  camera-intrinsics.txt       3x3 matrix, optional; overrides the sensor's\n"
-                 "                              intrinsics\n"
-                 "  frame-NNNNNN.amplitude.png  16 bit, optional: cos(angle of incidence) /\n"
-                 "                              range^2 [1e-3 m^-2]\n"
-                 "A point cloud marks free space on the lines from its sensor to its points.\n");
+  explain_values(
+      *app,
+      "Files in FRAMES_DIR: those that simulate writes, or for each frame NNNNNN:\n"
+      "  frame-NNNNNN.depth.png      16 bit: depth along z\n"
+      "  frame-NNNNNN.pose.txt       4x4 matrix, camera to world [m]\n"
+      "  camera-intrinsics.txt       3x3 matrix, optional; overrides the sensor's\n"
+      "                              intrinsics\n"
+      "  frame-NNNNNN.amplitude.png  16 bit, optional: cos(angle of incidence) /\n"
+      "                              range^2 [1e-3 m^-2]\n"
+      "With --cloud, the lines from the sensor to the points are marked as free space.\n");
   add_help(*app, kMapGroup,
            "integrate frames --voxel 0.005 --workspace -0.2,-0.2,-0.2,0.2,0.2,0.2 --out map.vdb");
   return command_of(app, options, [app](const auto& given) { integrate(given, *app); });

@@ -131,21 +131,22 @@ Command add_next(App& program) {
   auto options = std::make_shared<Options>();
   App* app = program.add_subcommand(
       "next",
-      "Propose the next-best views for a map. Print the gain of each view and the source of the "
-      "candidate. If no reachable view has a positive gain, the list is empty.");
+      "Propose the next-best views for a map. Print each view's gain and the source of candidates "
+      "that it comes from. If no reachable view has a positive gain, the list is empty.");
   Options& o = *options;
   app->add_option("MAP", o.map, kMapHelp)->required();
   app->add_option("--sensor", o.sensor, kMapSensorHelp);
   add_next_view_options(*app, o.proposal);
   app->add_option("--top", o.top,
                   "maximum number of views, each with its marginal gain; all: list all possible "
-                  "candidates, each with its own gain");
+                  "candidates, each with the gain of this view alone");
   app->add_option("--out", o.out,
-                  "file to write with the camera-to-world poses of the views (.txt, .tum or .npy), "
-                  "best first or in the order of the plan");
-  app->add_flag("--explain", o.explain,
-                "print where the rays of each view end, or of up to 32 candidates if no view has a "
-                "gain (cannot be used with --top all)");
+                  "file for the camera-to-world poses of the views (.txt, .tum or .npy), best "
+                  "first or, with --plan, in the order of the plan");
+  app->add_flag(
+      "--explain", o.explain,
+      "print where the rays of each view end; if no view has a gain, print this for up to 32 "
+      "candidates together (cannot be used with --top all)");
   most_need(*app, {"--top", "--out", "--sensor", "--generator", "--poses", "--gain", "--reach",
                    "--obstacle", "--plan", "--explain"});
   add_help(*app, kViewsGroup, "next map.vdb --sensor sr4000 --top 3 --out next.txt");

@@ -217,12 +217,13 @@ Command add_simulate(App& program) {
   app->add_option("--place", options->place,
                   "place of the mesh in the world: center, x,y,z[,YAW_DEG] or tx,ty,tz,qx,qy,qz,qw "
                   "(default: do not move; see below)");
-  explain_values(*app,
-                 "Values of --place [m], applied after --size and --up:\n"
-                 "  center                move the centre of the bounding box to the origin\n"
-                 "  x,y,z[,YAW_DEG]       rotate around +z, then shift\n"
-                 "  tx,ty,tz,qx,qy,qz,qw  rotate by the quaternion, then shift\n"
-                 "  center,...            first center, then another value, as in center,x,y,z\n");
+  explain_values(
+      *app,
+      "Values of --place [m], applied after --size and --up:\n"
+      "  center                move the centre of the bounding box to the origin\n"
+      "  x,y,z[,YAW_DEG]       rotate around +z, then shift\n"
+      "  tx,ty,tz,qx,qy,qz,qw  rotate by the quaternion, then shift\n"
+      "  center,...            first center, then another of these, as in center,x,y,z\n");
   add_sensing_options(*app, options->sensing);
   begin_group(*app, "Output");
   app->add_option("--frames-per-view", options->frames_per_view,
@@ -230,14 +231,14 @@ Command add_simulate(App& program) {
       ->check(counted(1, 1000));
   app->add_option(
          "--out", options->out,
-         "output folder; frames of an earlier simulate are replaced, other frames cause an error")
+         "folder to write; frames of an earlier simulate are replaced, other frames cause an error")
       ->required();
   most_need(*app, {"--sensor", "--out", "--size", "--place", "--up", "--noise", "--support-plane",
                    "--background"});
   explain_values(*app,
                  "Files in OUT, for frame NNNNNN:\n"
-                 "  frame-NNNNNN.depth.png      16 bit: depth along z in units of 0.1 mm (more if\n"
-                 "                              the sensor's max_range is over 6.5534 m);\n"
+                 "  frame-NNNNNN.depth.png      16 bit: depth along z in units of 0.1 mm (larger\n"
+                 "                              units if max_range is over 6.5534 m);\n"
                  "                              0: invalid, 65535: out of range\n"
                  "  frame-NNNNNN.amplitude.png  16 bit: cos(angle of incidence) / range^2\n"
                  "                              [1e-3 m^-2]; 65535: unknown\n"

@@ -207,9 +207,10 @@ TriangleMesh triangle_mesh(const py::handle& vertices, const py::handle& triangl
       const double number = *index++;
       if (!(number >= 0 && number < static_cast<double>(mesh.vertices.size())) ||
           number != std::floor(number)) {
-        throw py::value_error("triangles has the index " + std::to_string(number) +
-                              ", but there are " + std::to_string(mesh.vertices.size()) +
-                              " vertices");
+        throw py::value_error("triangles contains " + short_text(number) +
+                              "; an index must be a whole number less than the number of "
+                              "vertices, " +
+                              std::to_string(mesh.vertices.size()));
       }
       corner = static_cast<std::uint32_t>(number);
     }

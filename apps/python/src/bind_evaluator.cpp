@@ -201,8 +201,8 @@ WayCost way_of(const py::object& way, std::size_t poses) {
     std::size_t count = 0;
     WayCost table = way_table(way, "way", count);
     if (count == poses) return table;
-    throw py::value_error("way is a table of " + std::to_string(count) + " stops, but there are " +
-                          std::to_string(poses) + " poses");
+    throw py::value_error("way must have one stop per pose; poses: " + std::to_string(poses) +
+                          ", stops: " + std::to_string(count));
   }
   const auto number = [](std::size_t stop) {
     return stop == kTourStart ? std::int64_t{-1} : static_cast<std::int64_t>(stop);

@@ -64,8 +64,8 @@ std::string fault_of(const Pose& pose, std::span<const double> m) {
   }
   const double error = orthonormality_error(pose);
   if (!(error <= kRigid)) {
-    return "has a rotation that deviates by " + short_text(error) +
-           " from orthonormal and right-handed";
+    return "has a rotation matrix that deviates by " + short_text(error) +
+           " from an orthonormal, right-handed matrix";
   }
   return {};
 }

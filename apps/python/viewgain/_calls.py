@@ -22,7 +22,7 @@ def _fault(function, args, kwargs):
             near = difflib.get_close_matches(name, parameters, 1, 0)
             return f"unknown argument {name!r}" + "".join(f"; did you mean {one!r}?" for one in near)
     if len(args) > len(by_place):
-        return f"{len(args)} arguments by position; at most {len(by_place)}, others by keyword"
+        return f"{len(args)} positional arguments are too many; at most {len(by_place)}, and others by keyword"
     given = {**dict(zip((one.arg for one in by_place), args)), **kwargs}
     for one in by_place[:len(by_place) - len(found.defaults)]:
         if one.arg not in given:
@@ -32,7 +32,7 @@ def _fault(function, args, kwargs):
         if kind in _MADE_OF and not hasattr(value, _MADE_OF[kind]) and not (optional and value is None):
             return f"{name} must be {kind}, not {type(value).__name__}"
         if kind == "int" and isinstance(value, int) and value < 0:
-            return f"{name} must not be negative, as {value} is"
+            return f"{name} must be at least 0, not {value}"
     return None
 
 

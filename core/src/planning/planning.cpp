@@ -65,7 +65,8 @@ class Planner {
         timed(record, "score", [&] { return decision_.decide(record.T_world_camera, candidates); });
     if (decision && decision->candidate >= candidates.size()) {
       refuse("planning: decide() returned the candidate " + std::to_string(decision->candidate) +
-             ", but there are only " + std::to_string(candidates.size()) + " candidates");
+             "; it must be less than the number of candidates, " +
+             std::to_string(candidates.size()));
     }
     record.decision = decision;
     if (interrupted()) return StopReason::interrupted;

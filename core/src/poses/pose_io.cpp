@@ -107,8 +107,8 @@ void write_tum(const fs::path& path, std::span<const Pose> poses) {
 void check_writable(const fs::path& path, std::span<const Pose> poses,
                     std::span<const double> timestamps) {
   if (timestamps.size() != poses.size()) {
-    refuse(path.string() + ": there are " + std::to_string(poses.size()) + " poses, but " +
-           std::to_string(timestamps.size()) + " timestamps");
+    refuse(path.string() + ": one timestamp per pose is required; poses: " +
+           std::to_string(poses.size()) + ", timestamps: " + std::to_string(timestamps.size()));
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!(orthonormality_error(poses[i]) <= kMendable)) {

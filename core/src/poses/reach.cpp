@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "viewgain/core/error.hpp"
 #include "viewgain/support/text.hpp"
@@ -94,11 +95,11 @@ void ReachRegion::validate() const {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!std::isfinite(orthonormality_error(poses[i]))) fail("pose", i, "is not a rigid transform");
   }
-  for (const auto& [name, value] :
-       {std::pair("distance", tolerance.distance), std::pair("angle", tolerance.angle)}) {
+  for (const auto& [name, value, unit] : {std::tuple("distance", tolerance.distance, "m"),
+                                          std::tuple("angle", tolerance.angle, "rad")}) {
     if (!(std::isfinite(value) && value >= 0)) {
       refuse(std::string("reach: the ") + name + " tolerance must be at least 0 and finite, not " +
-             short_text(value));
+             short_text(value) + " " + unit);
     }
   }
 }

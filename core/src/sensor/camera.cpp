@@ -163,8 +163,8 @@ std::vector<Eigen::Vector3d> PinholeCamera::ray_table() const {
 std::vector<double> PinholeCamera::solid_angles(std::span<const Eigen::Vector3d> rays) const {
   std::vector<double> angles(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   if (rays.size() != angles.size()) {
-    fail("there are " + std::to_string(rays.size()) + " rays, but " +
-         std::to_string(angles.size()) + " pixels");
+    fail("one ray per pixel is required; rays: " + std::to_string(rays.size()) +
+         ", pixels: " + std::to_string(angles.size()));
   }
   const auto index = [this](int u, int v) {
     return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +

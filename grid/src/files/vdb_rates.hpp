@@ -64,7 +64,7 @@ class RateReader {
     if (box.volume() == 0) {
       const openvdb::Vec3d low = rates_->indexToWorld(active.min().asVec3d());
       const openvdb::Vec3d high = rates_->indexToWorld(active.max().asVec3d());
-      mismatch("all hazard rates lie outside the map, between " + text_of(low) + " and " +
+      mismatch("all hazard rates lie outside the map: they lie between " + text_of(low) + " and " +
                text_of(high) + " m");
     }
   }
@@ -72,9 +72,9 @@ class RateReader {
     return short_text(p.x()) + "," + short_text(p.y()) + "," + short_text(p.z());
   }
   [[noreturn]] void mismatch(const std::string& what) const {
-    throw Error(
-        ErrorCode::invalid_argument,
-        path_.string() + ": " + what + ". Their transform must lead to the world frame, in metres");
+    throw Error(ErrorCode::invalid_argument,
+                path_.string() + ": " + what +
+                    ". The transform of the rates must lead to the world frame, in metres");
   }
 
   [[nodiscard]] static bool is_index(const openvdb::Vec3d& at) {
@@ -96,7 +96,7 @@ class RateReader {
     }
     if (count != 1) {
       fail("the file has " + std::to_string(count) +
-           " float grids; name the grid of rates 'hazard'");
+           " grids of floats; name the grid of hazard rates 'hazard'");
     }
     return found;
   }

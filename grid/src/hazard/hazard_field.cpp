@@ -93,8 +93,9 @@ void HazardConfig::validate() const {
   }
   if (!volume) return;
   if (volume->rates.size() != volume->box.volume()) {
-    refuse("hazard: there are " + std::to_string(volume->rates.size()) +
-           " rates, but the box has " + std::to_string(volume->box.volume()) + " voxels");
+    refuse("hazard: one rate per voxel of the box is required; rates: " +
+           std::to_string(volume->rates.size()) +
+           ", voxels: " + std::to_string(volume->box.volume()));
   }
   check(is_rate(double{volume->outside}), "rate outside the volume must be at least 0 and finite",
         double{volume->outside});

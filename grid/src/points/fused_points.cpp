@@ -33,27 +33,25 @@ constexpr double kRamp = 0.2;           // transition from one sheet to two [vox
 constexpr double kOfSigma = 0.19, kOfScatter = 0.43, kOfVoxel = 0.02;
 
 void check(const FusedPointsConfig& config) {
-  const auto need = [](bool ok, const char* name, double value) {
-    if (!ok) {
-      refuse("fused points: " + std::string(name) + " is " + short_text(value) +
-             ", which is out of bounds");
-    }
+  const auto need = [](bool ok, const std::string& bounds, double value) {
+    if (!ok) refuse("fused points: " + bounds + ", not " + short_text(value));
   };
-  need(config.normal_radius >= 1 && config.normal_radius <= kMaxReach, "normal_radius",
-       config.normal_radius);
-  need(config.column_radius > 0 && config.column_radius <= kMaxReach / 2, "column_radius",
+  need(config.normal_radius >= 1 && config.normal_radius <= kMaxReach,
+       "normal_radius must be in 1.." + short_text(kMaxReach) + " voxels", config.normal_radius);
+  need(config.column_radius > 0 && config.column_radius <= kMaxReach / 2,
+       "column_radius must be positive and at most " + short_text(kMaxReach / 2) + " voxels",
        config.column_radius);
-  need(config.column_sigmas > 0 && std::isfinite(config.column_sigmas), "column_sigmas",
-       config.column_sigmas);
-  need(config.min_distance >= 0 && std::isfinite(config.min_distance), "min_distance",
-       config.min_distance);
+  need(config.column_sigmas > 0 && std::isfinite(config.column_sigmas),
+       "column_sigmas must be positive and finite", config.column_sigmas);
+  need(config.min_distance >= 0 && std::isfinite(config.min_distance),
+       "min_distance must be at least 0 and finite", config.min_distance);
   need(config.min_relative_evidence >= 0 && config.min_relative_evidence <= 1,
-       "min_relative_evidence", config.min_relative_evidence);
-  need(config.scale_sigma >= 0 && std::isfinite(config.scale_sigma), "scale_sigma",
-       config.scale_sigma);
+       "min_relative_evidence must be in 0..1", config.min_relative_evidence);
+  need(config.scale_sigma >= 0 && std::isfinite(config.scale_sigma),
+       "scale_sigma must be at least 0 and finite", config.scale_sigma);
   if (config.floor_sigma) {
-    need(*config.floor_sigma >= 0 && std::isfinite(*config.floor_sigma), "floor_sigma",
-         *config.floor_sigma);
+    need(*config.floor_sigma >= 0 && std::isfinite(*config.floor_sigma),
+         "floor_sigma must be at least 0 and finite", *config.floor_sigma);
   }
 }
 

@@ -48,8 +48,7 @@ inline void check_plane(std::optional<double> height) {
 inline void check_pose_sigma(const PoseSigma& pose_sigma) {
   for (const double sigma : {pose_sigma.translation, pose_sigma.rotation}) {
     if (std::isfinite(sigma) && sigma >= 0) continue;
-    refuse("the standard deviations of a pose must be at least 0 and finite, not " +
-           short_text(sigma));
+    refuse("pose_sigma must be at least 0 and finite, not " + short_text(sigma));
   }
 }
 

@@ -203,14 +203,14 @@ BoundaryRun make_run(const BoundaryLoop& loop, std::uint32_t loop_index, const S
 }
 
 void check_config(const BoundaryConfig& config) {
-  const auto check = [](const char* name, double value, bool valid) {
-    if (!valid) refuse(std::string("boundary: ") + name + " must not be " + short_text(value));
+  const auto check = [](const char* bounds, double value, bool valid) {
+    if (!valid) refuse(std::string("boundary: ") + bounds + ", not " + short_text(value));
   };
-  check("max_view_angle", config.max_view_angle,
+  check("max_view_angle must be positive and at most pi/2 rad", config.max_view_angle,
         config.max_view_angle > 0 && config.max_view_angle <= std::numbers::pi / 2);
-  check("min_run_length", config.min_run_length,
+  check("min_run_length must be at least 0 and finite", config.min_run_length,
         config.min_run_length >= 0 && std::isfinite(config.min_run_length));
-  check("min_loop_length", config.min_loop_length,
+  check("min_loop_length must be at least 0 and finite", config.min_loop_length,
         config.min_loop_length >= 0 && std::isfinite(config.min_loop_length));
 }
 
@@ -222,7 +222,7 @@ std::vector<BoundaryRun> boundary_runs(
     const std::function<bool(std::size_t view, const Eigen::Vector3d& point)>& sees) {
   check_config(config);
   sensor.validate();
-  if (views.empty()) refuse("boundary: there are no views");
+  if (views.empty()) refuse("boundary: at least one view is required");
   const EdgeClassifier classifier(views, sensor, config.max_view_angle, sees);
 
   std::vector<BoundaryRun> runs;

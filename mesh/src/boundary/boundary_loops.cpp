@@ -16,8 +16,8 @@ std::vector<BoundaryEdge> boundary_edges(const SurfaceMesh& surface,
                                          std::span<const std::uint32_t> vertices,
                                          std::span<const std::uint32_t> triangles, bool closed) {
   if (vertices.size() != triangles.size() + (closed ? 0 : 1)) {
-    refuse("boundary: there are " + std::to_string(vertices.size()) + " vertices, but " +
-           std::to_string(triangles.size()) + " edges");
+    refuse("boundary: one edge per vertex is required; vertices: " +
+           std::to_string(vertices.size()) + ", edges: " + std::to_string(triangles.size()));
   }
   for (const std::uint32_t v : vertices) {
     if (v >= surface.vertices.size())

@@ -155,17 +155,16 @@ constexpr double kMaxRegionTurn = std::numbers::pi / 4;
 // Conormals cancel around a whole loop, but not in a third of it.
 constexpr std::size_t kMinPiecesOfClosedRun = 3;
 
-[[noreturn]] void refuse(const std::string& name, double value) {
-  viewgain::refuse("viewpoint estimator: " + name + " must not be " + short_text(value));
+[[noreturn]] void refuse(const std::string& bounds, double value) {
+  viewgain::refuse("viewpoint estimator: " + bounds + ", not " + short_text(value));
 }
 
 template <typename Valid>
-void check_list(const char* name, const std::vector<double>& values, Valid valid) {
-  if (values.empty()) {
-    viewgain::refuse(std::string("viewpoint estimator: the list of ") + name + " is empty");
-  }
+void check_list(const std::string& name, const char* bounds, const std::vector<double>& values,
+                Valid valid) {
+  if (values.empty()) viewgain::refuse("viewpoint estimator: the list " + name + " is empty");
   for (const double value : values) {
-    if (!valid(value)) refuse(name, value);
+    if (!valid(value)) refuse(name + " must be " + bounds, value);
   }
 }
 
@@ -176,17 +175,20 @@ void check_config(const EstimatorConfig& config, double working_distance) {
       {"patch_length", config.patch_length},
       {"region_depth", config.region_depth}};
   for (const auto& [name, value] : lengths) {
-    if (!positive(value)) refuse(name, value);
+    if (!positive(value)) refuse(std::string(name) + " must be positive and finite", value);
   }
-  if (!(config.overlap > 0 && config.overlap < 1)) refuse("overlap", config.overlap);
+  if (!(config.overlap > 0 && config.overlap < 1)) {
+    refuse("overlap must be between 0 and 1", config.overlap);
+  }
   if (!(config.max_turn >= 0 && config.max_turn <= std::numbers::pi)) {
-    refuse("max_turn", config.max_turn);
+    refuse("max_turn must be in 0..pi rad", config.max_turn);
   }
-  check_list("distances", config.distances, positive);
-  check_list("tilts", config.tilts, [](double x) { return std::abs(x) < std::numbers::pi / 2; });
-  check_list("rolls", config.rolls, [](double x) { return std::isfinite(x); });
+  check_list("distances", "positive and finite", config.distances, positive);
+  check_list("tilts", "between -pi/2 and pi/2 rad", config.tilts,
+             [](double x) { return std::abs(x) < std::numbers::pi / 2; });
+  check_list("rolls", "finite", config.rolls, [](double x) { return std::isfinite(x); });
   if (!config.up.allFinite() || config.up.isZero(0)) {
-    viewgain::refuse("viewpoint estimator: up is zero or not finite");
+    viewgain::refuse("viewpoint estimator: up must be finite and not zero");
   }
 }
 

@@ -288,8 +288,8 @@ ErrorStatistics GroundTruth::error(std::span<const std::array<double, 3>> points
 Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> points,
                                      std::span<const SymmetricMatrix3> covariances) const {
   if (points.size() != covariances.size()) {
-    refuse("there are " + std::to_string(points.size()) + " points, but " +
-           std::to_string(covariances.size()) + " covariances");
+    refuse("one covariance per point is required; points: " + std::to_string(points.size()) +
+           ", covariances: " + std::to_string(covariances.size()));
   }
   Consistency result{kNaN, kNaN, kNaN, 0, 0};
   std::vector<double> z2;
@@ -324,8 +324,8 @@ Consistency GroundTruth::consistency(std::span<const std::array<double, 3>> poin
 double coverage(std::span<const double> distances, double radius,
                 std::span<const std::uint8_t> mask) {
   if (!mask.empty() && mask.size() != distances.size()) {
-    refuse("there are " + std::to_string(distances.size()) + " distances, but " +
-           std::to_string(mask.size()) + " mask values");
+    refuse("one mask value per distance is required; distances: " +
+           std::to_string(distances.size()) + ", mask values: " + std::to_string(mask.size()));
   }
   std::size_t counted = 0, covered = 0;
   for (std::size_t i = 0; i < distances.size(); ++i) {

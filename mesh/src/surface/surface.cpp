@@ -25,8 +25,8 @@ namespace viewgain::detail {
 void check_surface(const SurfaceMesh& surface) {
   const std::size_t count = surface.vertices.size();
   if (surface.normals.size() != count) {
-    refuse("surface: there are " + std::to_string(count) + " vertices, but " +
-           std::to_string(surface.normals.size()) + " normals");
+    refuse("surface: one normal per vertex is required; vertices: " + std::to_string(count) +
+           ", normals: " + std::to_string(surface.normals.size()));
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (!vector(surface.vertices[i]).allFinite() || !vector(surface.normals[i]).allFinite()) {
@@ -37,7 +37,7 @@ void check_surface(const SurfaceMesh& surface) {
     for (const std::uint32_t v : surface.triangles[i]) {
       if (v >= count) {
         refuse("surface: triangle " + std::to_string(i) + " refers to vertex " + std::to_string(v) +
-               ", but there are " + std::to_string(count) + " vertices");
+               "; it must be less than the number of vertices, " + std::to_string(count));
       }
     }
   }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// All of the library except mesh/: core, grid, raycast.
+/// Includes the headers of core, grid and raycast: all of the library except mesh.
 
 #include "viewgain/core/box.hpp"
 #include "viewgain/core/camera.hpp"

@@ -32,7 +32,7 @@ Suspicion suspect_camera(const PinholeCamera& camera, const std::vector<Eigen::V
                                   [](const Eigen::Vector3d& ray) { return !ray.allFinite(); });
   if (const double share = static_cast<double>(lost) / static_cast<double>(rays.size());
       share > 0.5) {
-    return {"distortion", "the lens distortion gives no ray for " + percent(share) +
+    return {"distortion", "the lens distortion cannot be inverted for " + percent(share) +
                               " of the pixels. Do k1 k2 p1 p2 k3 belong to this camera?"};
   }
   if (std::max(camera.fx, camera.fy) > 1.1 * std::min(camera.fx, camera.fy)) {

@@ -167,7 +167,7 @@ Suspicion suspect_scale_sigma(const Sensor& sensor) {
   return {"scale_sigma",
           "scale_sigma = " + figure(sensor.scale_sigma) + " means that ranges are " +
               figure(100 * sensor.scale_sigma) +
-              " % wrong. scale_sigma must be a factor, not a percentage or a length"};
+              " % wrong. scale_sigma must be a fraction, not a percentage or a length"};
 }
 
 Suspicion suspect_calibration(const Sensor& sensor) {

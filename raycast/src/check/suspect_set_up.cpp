@@ -65,7 +65,7 @@ Suspicion suspect_obstacle(const Box& bounds, const BeliefGrid& map, const Senso
   if (distance <= far_from_map(sensor) && side <= kHuge * longest(workspace)) return {};
   return {"obstacle_unit", "is " + figure(side) + " m long and " + figure(distance) +
                                " m from the map, which is " + figure(longest(workspace)) +
-                               " m long. Is it in metres?"};
+                               " m long. Is the obstacle in metres?"};
 }
 
 Box obstacle_bounds(const TriangleMesh& mesh) {
@@ -127,7 +127,7 @@ Suspicion suspect_reach(const ReachRegion& reach, const BeliefGrid& map, const S
     if (std::isfinite(part)) distance = std::max(distance, part);
   }
   if (distance <= far_from_map(sensor)) return {};
-  return {"reach_unit", "the nearest reachable place is " + figure(distance) +
+  return {"reach_unit", "the nearest reachable position is " + figure(distance) +
                             " m from the map, but the sensor's range ends at " +
                             figure(sensor.max_range) +
                             " m. Lengths in the reach file must be in metres, not in millimetres"};

@@ -20,8 +20,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check_costs(std::span<const double> costs, std::size_t poses) {
   if (!costs.empty() && costs.size() != poses) {
-    refuse("there are " + std::to_string(costs.size()) + " costs, but " + std::to_string(poses) +
-           " poses");
+    refuse("one cost per pose is required; costs: " + std::to_string(costs.size()) +
+           ", poses: " + std::to_string(poses));
   }
   for (const double cost : costs) {
     if (!std::isfinite(cost)) refuse("a cost is " + short_text(cost) + "; it must be finite");
@@ -31,8 +31,8 @@ void check_costs(std::span<const double> costs, std::size_t poses) {
 void check_tour(const TourConfig& config, std::size_t poses) {
   check_costs(config.costs, poses);
   if (config.first && *config.first >= poses) {
-    refuse("first is pose " + std::to_string(*config.first) + ", but there are only " +
-           std::to_string(poses) + " poses");
+    refuse("first is pose " + std::to_string(*config.first) +
+           "; it must be less than the number of poses, " + std::to_string(poses));
   }
   if (!(config.cost_per_way >= 0 && std::isfinite(config.cost_per_way))) {
     refuse("cost_per_way must be at least 0 and finite, not " + short_text(config.cost_per_way));

@@ -39,8 +39,7 @@ FrameVerdict judged(const Measurements& measurements, const Sensor& sensor) {
   for (const double sigma :
        {measurements.pose_sigma.translation, measurements.pose_sigma.rotation}) {
     if (std::isfinite(sigma) && sigma >= 0) continue;
-    refuse("the standard deviations of a pose must be at least 0 and finite, not " +
-           short_text(sigma));
+    refuse("pose_sigma must be at least 0 and finite, not " + short_text(sigma));
   }
   for (const DepthFrame& frame : measurements.frames) check_identity(frame.identity);
   if (!rigid_pose(measurements.T_world_camera)) return FrameVerdict::lost_pose;

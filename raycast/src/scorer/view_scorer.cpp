@@ -69,8 +69,8 @@ Possible possible_ones(const FeasibilityChecker& checker, std::span<const Pose> 
 void check_costs(std::span<const double> costs, std::size_t poses) {
   if (costs.empty()) return;
   if (costs.size() != poses) {
-    refuse("best: there are " + std::to_string(costs.size()) + " costs, but " +
-           std::to_string(poses) + " poses");
+    refuse("best: one cost per pose is required; costs: " + std::to_string(costs.size()) +
+           ", poses: " + std::to_string(poses));
   }
   for (const double cost : costs) {
     if (!std::isfinite(cost)) refuse("best: a cost is " + short_text(cost) + "; it must be finite");

@@ -141,7 +141,7 @@ static void of_frames(void) {
   CHECK_REFUSED(vg_integrate(integrator, map, depth, NULL, pose, NULL, &report),
                 "vg_integration_report");
   CHECK_REFUSED(vg_integrate(integrator, map, depth, NULL, pose, bad_sigma, NULL),
-                "the standard deviations of a pose must be at least 0 and finite, not -1");
+                "pose_sigma must be at least 0 and finite, not -1");
   pose[0] = NAN;
   CHECK_REFUSED(vg_integrate(integrator, map, depth, NULL, pose, NULL, NULL), "pose");
   pose[0] = 1;

@@ -204,8 +204,7 @@ TEST(CScorer, WrongUseIsRefused) {
   refused(vg_scorer_add(scorer, nullptr, nullptr, pose.data(), nullptr, nullptr),
           VG_INVALID_ARGUMENT, "depth is null");
   refused(vg_scorer_add(scorer, depth.data(), nullptr, pose.data(), negative.data(), nullptr),
-          VG_INVALID_ARGUMENT,
-          "the standard deviations of a pose must be at least 0 and finite, not -1");
+          VG_INVALID_ARGUMENT, "pose_sigma must be at least 0 and finite, not -1");
   refused(vg_scorer_add(scorer, depth.data(), nullptr, pose.data(), nullptr, &update),
           VG_INVALID_ARGUMENT, "vg_map_update");
   const std::array<std::int32_t, 3> far{1000, 0, 0}, dims{1, 1, 1};

@@ -77,7 +77,8 @@ TEST(Formats, WhatIsNotThereIsNoFrame) {
   writer.commit(sphere_poses(1, 0.6), sensor);
   const FrameSequence frames = open_frames(folder.path() / "frames");
   EXPECT_NEAR(load_frame(open_frames(folder.path() / "frames", "", 1e-3), 0).depth[1], 5.F, 1e-5);
-  test::expect_error(ErrorCode::invalid_argument, "frame 1 does not exist; there are 1 frames",
+  test::expect_error(ErrorCode::invalid_argument,
+                     "frame 1 does not exist; the number of frames is 1",
                      [&] { (void)load_frame(frames, 1); });
   for (const double scale : {0.0, -1e-3, std::nan("")}) {
     test::expect_error(ErrorCode::invalid_argument, "depth scale",
@@ -118,7 +119,8 @@ TEST(Formats, FramesAreReadWithTheSensorsTable) {
   ASSERT_EQ(images.images, plain.images);
   EXPECT_TRUE(images.poses.empty());
   EXPECT_EQ(load_frame(images, 0), expected);
-  test::expect_error(ErrorCode::invalid_argument, "frame 0 does not exist; there are 0 frames",
+  test::expect_error(ErrorCode::invalid_argument,
+                     "frame 0 does not exist; the number of frames is 0",
                      [&] { (void)frame_identity(images, 0); });
   std::filesystem::create_directory(folder.path() / "empty");
   test::expect_error(ErrorCode::io, "no frame-NNNNNN.depth.png",
@@ -192,7 +194,7 @@ TEST(Formats, FramesThatCannotBeAreRefusedAndNothingIsWritten) {
     writer.write_frame(2, {3, 2, six, {}});
   });
   refuses("differs in size", [&] { writer.write_frame(1, {2, 3, six, {}}); });
-  refuses("there are 2 poses, but 1 frames", [&] { writer.commit(sphere_poses(2, 1), sensor); });
+  refuses("poses: 2, frames: 1", [&] { writer.commit(sphere_poses(2, 1), sensor); });
   refuses("3 x 2 px, but the sensor has", [&] { writer.commit(sphere_poses(1, 1), sensor); });
   refuses("values", [&] { write_png(folder.path() / "a.png", GrayImage{3, 2, {1, 2, 3}}); });
   refuses("values", [&] { write_png(folder.path() / "a.png", RgbImage{1, 1, {1}}); });

@@ -119,12 +119,12 @@ TEST_F(Ply, BadInputIsRefusedAndLeavesNoFile) {
     test::expect_error(ErrorCode::invalid_argument, path.string() + ": " + what,
                        [&] { write_ply(path, arrays_of(mesh, sigma)); });
   };
-  expect_refused("there are 4 points, but 3 sigmas", three);
+  expect_refused("one value per point is required; points: 4, sigmas: 3", three);
   mesh.triangles[3][1] = 4;
-  expect_refused("a triangle has vertex 4, but there are 4 points", {});
+  expect_refused("a triangle has vertex 4; it must be less than the number of points, 4", {});
   mesh = tetrahedron();
   mesh.normals.pop_back();
-  expect_refused("there are 4 points, but 3 normals", {});
+  expect_refused("one value per point is required; points: 4, normals: 3", {});
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
   test::expect_error(ErrorCode::io, "",
                      [&] { write_ply(folder_ / "no such folder" / "surface.ply", {}); });

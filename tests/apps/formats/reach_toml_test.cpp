@@ -95,7 +95,7 @@ TEST_F(ReachFiles, ErrorsNameFileAndKey) {
       {"poses = 3", "\"poses\" must be a string"},
       {"tolerance = 3", "\"tolerance\" must be a table"},
       {"[tolerance]\nangle = 3", "\"tolerance.angle\" is unknown"},
-      {"[tolerance]\nangle_deg = -3", "the angle tolerance must be at least 0"},
+      {"[tolerance]\nangle_deg = -3", "\"tolerance.angle_deg\" must be at least 0, not -3"},
       {"[[box]", "line 1"}};
   for (const auto& [text, wanted] : cases) {
     for (const std::string& part : {wanted, std::string("reach.toml")}) {

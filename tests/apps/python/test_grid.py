@@ -153,7 +153,7 @@ def test_frames_make_a_map(sensor):
         integrator.integrate(grid, depth, poses[0], amplitude=amplitude[1:])
     with pytest.raises(ValueError, match="orthonormal"):
         integrator.integrate(grid, depth, 2 * poses[0] - np.diag([0, 0, 0, 1]))
-    with pytest.raises(ValueError, match="the standard deviations of a pose must be at least 0 and finite, not -1"):
+    with pytest.raises(ValueError, match="pose_sigma must be at least 0 and finite, not -1"):
         integrator.integrate(grid, depth, poses[0], pose_sigma=(0, -1))
     with pytest.raises(ValueError, match="carve"):
         viewgain.FrameIntegrator(sensor, carve="rays")

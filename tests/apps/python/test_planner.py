@@ -84,7 +84,7 @@ def test_registers_a_frame_against_its_map(sensor, camera, poses):
     variances = np.diag(found.covariance)
     assert np.allclose(found.pose_sigma, np.sqrt([variances[:3].mean(), variances[3:].mean()]))
     assert first.pose_sigma == (0, 0)  # of an empty map's first frame
-    with pytest.raises(ValueError, match="the standard deviations of a pose must be at least 0 and finite, not -1"):
+    with pytest.raises(ValueError, match="pose_sigma must be at least 0 and finite, not -1"):
         planner.add(depth, reported, amplitude=amplitude, pose_sigma=(-1, 0))
     with pytest.raises(ValueError, match="sigma_rotation"):
         planner.register_frame(depth, reported, sigma_rotation=0)

@@ -135,7 +135,7 @@ def test_pickles_have_settings_and_map(sensor, again):
 def test_refuses(sensor):
     scorer = viewgain.ViewScorer(sensor, **SETTINGS)
     depth = frame(sensor, POSES[0])[0]
-    with pytest.raises(ValueError, match="the standard deviations of a pose must be at least 0 and finite, not -1"):
+    with pytest.raises(ValueError, match="pose_sigma must be at least 0 and finite, not -1"):
         scorer.add(depth, POSES[0], pose_sigma=(-1, 0))
     with pytest.raises(ValueError, match="T_world_camera"):
         scorer.add(depth, np.zeros((4, 4)))

@@ -109,8 +109,8 @@ def test_settings_in_other_units(sensor, poses):
             assert words in said(lambda: make(odd))
             assert said(lambda: make(sensor)) == ""
     far = viewgain.ReachRegion(boxes=[[[300, -500, 0], [900, 500, 800]]])
-    for more, words in [({"boxes": [[[400, 0, 0], [500, 50, 50]]]}, "Is it in metres?"),
-                        ({"meshes": [box_mesh([-3000] * 3, [3000] * 3)]}, "Is it in metres?"),
+    for more, words in [({"boxes": [[[400, 0, 0], [500, 50, 50]]]}, "Is the obstacle in metres?"),
+                        ({"meshes": [box_mesh([-3000] * 3, [3000] * 3)]}, "Is the obstacle in metres?"),
                         ({"support_plane": -300.0}, "support plane"), ({"object_size": 160.0}, "object size"),
                         ({"reach": far}, "reachable"), ({"clearance": 20.0}, "clearance"),
                         ({"body_size": [65, 65, 76]}, "body")]:

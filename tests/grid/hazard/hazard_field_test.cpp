@@ -309,7 +309,7 @@ TEST(HazardField, RefusesWhatIsOutOfBounds) {
           {.model = HazardConfig::Model{1.0, 0.1, HUGE_VAL}});
   auto volume = std::make_shared<HazardConfig::Volume>();
   volume->box = VoxelBox::from_dims({0, 0, 0}, {2, 2, 2});
-  refuses("there are 0 rates, but the box has 8 voxels", {.volume = volume});
+  refuses("rates: 0, voxels: 8", {.volume = volume});
   auto negative = std::make_shared<HazardConfig::Volume>(*volume);
   negative->rates.assign(8, -1.0F);
   refuses("rate must be at least 0 and finite, not -1", {.volume = negative});

@@ -220,8 +220,7 @@ TEST(FrameAgreement, WhatIsNoFrameIsRefused) {
   EXPECT_TRUE(agreement.frames(grid).empty());
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const PoseSigma sigma : {PoseSigma{-1, 0}, PoseSigma{0, nan}}) {
-    test::expect_error(ErrorCode::invalid_argument,
-                       "the standard deviations of a pose must be at least 0 and finite",
+    test::expect_error(ErrorCode::invalid_argument, "pose_sigma must be at least 0 and finite",
                        [&] { agreement.look(grid, test::see_plane(sensor, 1), beside(0), sigma); });
   }
   EXPECT_TRUE(agreement.frames(grid).empty());

@@ -192,9 +192,9 @@ TEST(BestViews, AMeasureTakesTheGainsPlace) {
   test::expect_error(ErrorCode::invalid_argument, "finite",
                      [&] { (void)evaluator.best(poses, 1, {.costs = costs}); });
   costs.pop_back();
-  test::expect_error(ErrorCode::invalid_argument, "99 costs, but 100 poses",
+  test::expect_error(ErrorCode::invalid_argument, "costs: 99, poses: 100",
                      [&] { (void)evaluator.best(poses, 1, {.costs = costs}); });
-  test::expect_error(ErrorCode::invalid_argument, "99 costs, but 100 poses",
+  test::expect_error(ErrorCode::invalid_argument, "costs: 99, poses: 100",
                      [&] { (void)evaluator.race(poses, 1, {.costs = costs}); });
 }
 

@@ -281,12 +281,12 @@ TEST(ViewTour, RefusesWhatCannotBe) {
                  [&] { (void)plan_tour(evaluator, made.poses, config); });
   };
   const std::vector<double> few(3, 1.0), bad(kPoses, std::nan(""));
-  refuses({.costs = few}, "3 costs, but 14 poses");
+  refuses({.costs = few}, "costs: 3, poses: 14");
   refuses({.costs = bad}, "nan");
   refuses({.cost_per_way = -1}, "cost_per_way must be at least 0 and finite, not -1");
   refuses({.budget = -1}, "budget");
   refuses({.least_area = std::nan("")}, "least_area");
-  refuses({.first = kPoses}, "first is pose 14, but there are only 14 poses");
+  refuses({.first = kPoses}, "first is pose 14; it must be less than the number of poses, 14");
   refuses({.share = 0}, "share must be in (0, 1], not 0");
   refuses({.share = 1.5}, "share must be in (0, 1], not 1.5");
   refuses({.way = [](std::size_t, std::size_t) { return -1.0; }}, "from the start to 0 is -1");

@@ -292,8 +292,8 @@ TEST(ViewScorer, WhatIsRefusedChangesNothing) {
   const std::string hash = scorer.grid().content_hash();
   const auto before = scorer.scene();
   DepthFrame frame = scene.see(pose);
-  expect_error(ErrorCode::invalid_argument,
-               "the standard deviations of a pose must be at least 0 and finite, not -1", [&] {
+  expect_error(ErrorCode::invalid_argument, "pose_sigma must be at least 0 and finite, not -1",
+               [&] {
                  scorer.add(frame, pose, {-1, 0});
                });
   frame.identity = "?";

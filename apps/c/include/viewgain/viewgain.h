@@ -4,23 +4,23 @@
 #define VIEWGAIN_VIEWGAIN_H
 
 /* viewgain for C99 and for all languages that call C. The functions are in the same library as the
-   C++ interface, and gains are bit-identical.
+   C++ interface, and their gains are bit-identical to those of C++.
 
    Units are metres, radians and nats. A pose is 16 doubles, a row-major 4x4 matrix T_world_camera
    (camera to world); T_world_grid, T_flange_camera and T_reported have the same form. The camera's
-   axes are x right, y down, z forward. A pose is invalid unless all numbers are finite, the lowest
-   row is 0 0 0 1 and the rotation is orthonormal, both to 1e-3. Points and directions (center, eye,
-   target, up, origin) and corners of boxes (min, max, box_min, box_max) are 3 doubles x, y, z.
-   Images (depth, amplitude, labels) are row-major. Dense arrays of voxels (states, labels) are
-   [x][y][z] with z fastest; states are 0 unknown, 1 free, 2 occupied.
+   axes are x right, y down, z forward. A pose is valid only if all numbers are finite, the last row
+   is 0 0 0 1 to within 1e-3, and the rotation is orthonormal to within 1e-3. Points and directions
+   (center, eye, target, up, origin) and corners of boxes (min, max, box_min, box_max) are 3 doubles
+   x, y, z. Images (depth, amplitude, labels) are row-major. Dense arrays of voxels (states, labels)
+   are [x][y][z] with z fastest; states are 0 unknown, 1 free, 2 occupied.
 
    Cost: that of the corresponding C++ function, plus a copy of the arrays. Functions that set up a
    struct take constant time.
 
    Every function that can fail returns a status. If the status is not VG_OK, vg_last_error() gives
-   the reason and names the value. Outputs are then unspecified, unless a function states otherwise;
-   handles are null. Pointers must not be null unless "null" is mentioned; an array of length 0 may
-   be null.
+   the reason and names the value. Handles are then null. Other outputs are unspecified, unless the
+   comment of the function states otherwise. Pointers must not be null unless "null" is mentioned;
+   an array of length 0 may be null.
 
    Structs that a function takes begin with struct_size. First call the struct's _init function with
    the sizeof of the struct: it sets struct_size and the defaults. Then change fields. If a size
@@ -33,8 +33,8 @@
    be used or released again after its release.
 
    Thread safety: scenes, evaluators, checkers and range calibrations may be used from many threads
-   at once. While a function changes a grid, no other function may use that grid. Integrators: one
-   call at a time.
+   at once. While a function changes a grid, no other function may use that grid. An integrator
+   allows one call at a time.
 
    Fork: evaluators work in a child process, which starts its own threads. A child that does not
    exec must end with _exit(), after fflush(NULL) if it wrote anything. exit() or a return from main

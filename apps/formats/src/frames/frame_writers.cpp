@@ -123,8 +123,8 @@ void FramesWriter::write_frame(std::size_t index, const DepthFrame& frame) {
 
 void FramesWriter::commit(const std::vector<Pose>& poses, const Sensor& sensor) {
   if (poses.size() != written_ || written_ == 0) {
-    refuse("there are " + std::to_string(poses.size()) + " poses, but " + std::to_string(written_) +
-           " frames");
+    refuse("one pose per frame and at least one frame are required; poses: " +
+           std::to_string(poses.size()) + ", frames: " + std::to_string(written_));
   }
   const PinholeCamera& camera = sensor.camera;
   if (camera.width != width_ || camera.height != height_) {

@@ -45,8 +45,8 @@ constexpr std::uint16_t kFullScale = 65535;
 
 void check_index(std::size_t index, std::size_t count) {
   if (index < count) return;
-  refuse("frame " + std::to_string(index) + " does not exist; there are " + std::to_string(count) +
-         " frames");
+  refuse("frame " + std::to_string(index) + " does not exist; the number of frames is " +
+         std::to_string(count));
 }
 
 // Reads the numbers of a 3x3 matrix, on any lines.
@@ -160,7 +160,7 @@ void MaskFolder::require_mask_of_any(const std::vector<std::filesystem::path>& i
     return;
   }
   refuse(folder_.string() + ": no mask has the name of a depth image" +
-         (images.empty() ? "" : ", as " + images.front().filename().string()));
+         (images.empty() ? "" : ", for example " + images.front().filename().string()));
 }
 
 std::filesystem::path MaskFolder::file_of(const std::filesystem::path& image) const {

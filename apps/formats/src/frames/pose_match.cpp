@@ -128,10 +128,10 @@ std::string range_text(std::uint64_t first, std::uint64_t last) {
 
 std::string numbers_misfit(const fs::path& dir, const TimedPoses& lines,
                            std::span<const std::uint64_t> numbers, LineNumbers kind) {
-  std::string poses = std::to_string(lines.poses.size()) + " poses";
+  std::string poses = std::to_string(lines.poses.size());
   if (kind.are_whole) {
-    poses += " numbered " + range_text(static_cast<std::uint64_t>(lines.times.front()),
-                                       static_cast<std::uint64_t>(lines.times.back()));
+    poses += ", numbered " + range_text(static_cast<std::uint64_t>(lines.times.front()),
+                                        static_cast<std::uint64_t>(lines.times.back()));
   }
   const std::string first_image = std::to_string(numbers.front());
   std::string cure =
@@ -145,8 +145,8 @@ std::string numbers_misfit(const fs::path& dir, const TimedPoses& lines,
         std::to_string(static_cast<std::uint64_t>(lines.times.front())) +
         ". If the first line belongs to the first image, add first_frame = " + first_image;
   }
-  return (dir / kPoses).string() + ": the file has " + poses + ", but there are " +
-         std::to_string(numbers.size()) + " images numbered " +
+  return (dir / kPoses).string() + ": the poses do not match the images. Poses: " + poses +
+         "; images: " + std::to_string(numbers.size()) + ", numbered " +
          range_text(numbers.front(), numbers.back()) +
          ". It is not known which pose belongs to which image. " + cure + " to " + in(dir);
 }

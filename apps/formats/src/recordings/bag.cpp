@@ -59,7 +59,7 @@ class BagReader {
   void read() {
     read_records();
     warn_of_left_out(path_, without_connection_,
-                     "have no connection record, perhaps because a chunk is damaged", warnings_);
+                     "have no connection record (perhaps a chunk is damaged)", warnings_);
   }
 
  private:

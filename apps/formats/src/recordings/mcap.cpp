@@ -42,8 +42,8 @@ class McapReader {
     read_summary();
     while (read_record()) {
     }
-    warn_of_left_out(path_, without_channel_,
-                     "have no channel record, perhaps because a chunk is damaged", warnings_);
+    warn_of_left_out(path_, without_channel_, "have no channel record (perhaps a chunk is damaged)",
+                     warnings_);
   }
 
  private:

@@ -40,8 +40,8 @@ class MessageImport {
   ImportReport run(const fs::path& out) try {
     read_all([this](const Message& message) { note(message); });
     if (bad_transforms_ > 0) {
-      warnings_.add(std::to_string(bad_transforms_) +
-                    " transforms are left out, because they are damaged or not rigid");
+      warnings_.add("transforms that are damaged or not rigid are left out: " +
+                    std::to_string(bad_transforms_));
     }
     report_.depth_topic = topics_.chosen_depth_topic(source_, config_.depth_topic);
     join_trees();
@@ -58,9 +58,9 @@ class MessageImport {
     });
     say_what_has_no_pose();
     if (stamps_back_ > 0) {
-      warnings_.add(std::to_string(stamps_back_) +
-                    " images are older than the image before them. Either the clock was set "
-                    "back, or the recording holds two runs");
+      warnings_.add("images with an earlier time stamp than the image before them: " +
+                    std::to_string(stamps_back_) +
+                    ". Either the clock was set back, or the file has two recordings");
     }
     if (report_.frames == 0) dropped_.fail_without_frames(source_);
     report_.warnings = warnings_.texts();
@@ -385,7 +385,7 @@ ImportReport import_messages(const fs::path& source, const std::vector<fs::path>
                              const ImportConfig& config) {
   if (!config.masks.empty() || !config.confidences.empty()) {
     refuse(
-        "masks cannot be used with a recording of messages, which has no image files; give the "
+        "masks cannot be used with a recording of ROS messages, which has no image files; give the "
         "masks to the command that reads the imported frames");
   }
   return MessageImport(source, files, format, config).run(out);

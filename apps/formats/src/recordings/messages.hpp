@@ -51,8 +51,8 @@ class Warnings {
 inline void warn_of_left_out(const std::filesystem::path& file, std::size_t count,
                              const std::string& which, Warnings& warnings) {
   if (count == 0) return;
-  warnings.add(file.string() + ": " + std::to_string(count) + " messages are left out; they " +
-               which);
+  warnings.add(file.string() + ": messages that " + which +
+               " are left out: " + std::to_string(count));
 }
 
 /// Visits the messages of one file in order, with constant memory. A truncated file is read up to

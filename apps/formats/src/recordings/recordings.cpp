@@ -59,7 +59,7 @@ std::vector<fs::path> message_files(const fs::path& folder, const std::string& e
 void check(const fs::path& source, const ImportConfig& config) {
   if (config.max_time_gap && !(*config.max_time_gap >= 0)) {
     refuse("the longest time gap is " + short_text(*config.max_time_gap) +
-           " s; it must not be negative");
+           " s; it must be at least 0");
   }
   if (config.depth_scale && !(*config.depth_scale > 0 && *config.depth_scale <= 1)) {
     refuse("the depth scale is " + short_text(*config.depth_scale) +

@@ -72,7 +72,7 @@ void TransformTree::finish(Warnings& warnings) {
     warnings.add("the time stamps from " + viewgain::quoted(edge.parent) + " to " +
                  viewgain::quoted(edge.child) + " go back by " +
                  short_text(static_cast<double>(edge.went_back / 1'000'000) * 1e-3) +
-                 " s. Either the clock was set back, or the recording holds two runs");
+                 " s. Either the clock was set back, or the file has two recordings");
   }
 }
 

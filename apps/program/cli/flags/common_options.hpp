@@ -31,7 +31,7 @@ inline void add_common_options(App& program, CommonOptions& options) {
                   "automatic (chosen per map); affects only the speed")
       ->check(one_of(tracer_names(), "tracer"));
   program.add_option("--save-config", options.save_config,
-                     "TOML file to write with the flags of this call; --config reads it");
+                     "TOML file to which the flags of this call are written; --config reads it");
 }
 
 [[nodiscard]] inline ExecConfig exec_of(const CommonOptions& options) {
@@ -62,8 +62,8 @@ inline const std::string kSensorHelp =
 inline const std::string kMapSensorHelp = kSensorHelp + " (default: the sensor that the map names)";
 
 inline constexpr const char* kBodyHelp =
-    "x,y,z: width, height and depth of the camera's housing [m] (default: from the sensor, else as "
-    "for the SR4000)";
+    "x,y,z: width, height and depth of the camera's housing [m] (default: from the sensor, else of "
+    "the SR4000)";
 
 /// Adds --seed, with the same bounds in every subcommand.
 inline void add_seed_option(App& app, std::uint64_t& seed, const char* of_what) {

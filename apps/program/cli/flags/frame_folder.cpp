@@ -69,14 +69,15 @@ void add_frame_folder_options(App& app, FrameFolderOptions& options) {
   app.add_option("--depth-scale", options.depth_scale,
                  "metres per unit of the depth images (default: from frames.toml; else 1e-4 for "
                  "folders with poses.txt, 1e-3 for others)");
-  app.add_option("--out-of-range", options.out_of_range,
-                 "meaning of depth 65535: carve (free up to max_range) or invalid (default: from "
-                 "frames.toml or sensor; else carve if poses.txt exists)")
+  app.add_option(
+         "--out-of-range", options.out_of_range,
+         "meaning of depth 65535: carve (space is free up to max_range) or invalid (default: from "
+         "frames.toml or the sensor; else carve if poses.txt exists, invalid if not)")
       ->check(one_of({"carve", "invalid"}, "value"));
   add_mask_options(app, options.mask, options.confidence);
   app.add_option("--on-contradiction", options.on_contradiction,
-                 "frames that contradict others: skip (omit those that --register refuses, warn "
-                 "about the rest), keep (requires --register on) or error")
+                 "what to do with frames that contradict others: skip (omit frames that --register "
+                 "refuses, warn about others), keep (requires --register on) or error")
       ->check(one_of({"skip", "keep", "error"}, "value"));
 }
 
@@ -86,7 +87,7 @@ void add_mask_options(App& app, std::string& mask, std::string& confidence) {
       "folder of grayscale mask PNGs named like the depth images; nonzero pixels are ignored");
   app.add_option("--confidence", confidence,
                  "DIR[,LEAST]: folder of grayscale confidence PNGs named like the depth images; "
-                 "pixels below LEAST are ignored (1..255; default: 1)");
+                 "pixels below LEAST (1..255; default: 1) are ignored");
 }
 
 Confidence parse_confidence(const std::string& text) {

@@ -73,9 +73,9 @@ void add_plan_option(App& app, std::string& text) {
       "next", app,
       "Planning ahead with --plan K[,M]:\n"
       "  The views of a plan are ordered along a short path of straight lines. The\n"
-      "  planner replans after M views. It replans earlier if no remaining view is both\n"
-      "  possible and worth taking. next prints the first M views of the plan. model\n"
-      "  does the same without --watch.\n");
+      "  planner replans after M views, or earlier if no remaining view is both\n"
+      "  possible and worth taking. The commands next and model (without --watch)\n"
+      "  print the first M views of the plan.\n");
   app.add_option("--plan", text,
                  "K[,M]: plan K views together and replan after M of them (default: M = K; " +
                      reference + "); 1: no plan");
@@ -218,9 +218,9 @@ std::string outside_text(const NextViews& next, const BeliefGrid& grid) {
     return false;
   });
   if (outside == 0) return {};
-  return std::to_string(outside) + " of " + std::to_string(next.views.size()) +
-         " views lie outside the workspace, where it is unknown whether space is free "
-         "(--workspace, --reach)\n";
+  return "views outside the workspace, where it is unknown whether space is free: " +
+         std::to_string(outside) + " of " + std::to_string(next.views.size()) +
+         " (--workspace, --reach)\n";
 }
 
 std::vector<Pose> poses_of(const NextViews& next) {

@@ -101,7 +101,7 @@ void check(const CostOptions& options, bool has_way) {
   check_at_least_0("--cost-per-metre", options.per_metre);
   if (options.from.empty()) return;
   if (options.per_metre == 0 && !has_way) {
-    refuse("--from", options.from, "requires --cost-per-metre or --plan");
+    refuse("--from", options.from, "the flag requires --cost-per-metre or --plan");
   }
   (void)parse_point("--from", options.from);
 }
@@ -114,11 +114,11 @@ std::vector<double> read_costs(const std::string& file, std::size_t poses) {
     if (reader.words().empty() || reader.words()[0].front() == '#') continue;
     if (reader.words().size() > 1) reader.fail("expected one cost per line");
     costs.push_back(reader.finite_number(0));
-    if (costs.back() < 0) reader.fail("a cost must not be negative");
+    if (costs.back() < 0) reader.fail("a cost must be at least 0");
   }
   if (costs.size() == poses) return costs;
-  refuse(file + ": the file has " + std::to_string(costs.size()) + " costs, but there are " +
-         std::to_string(poses) + " poses");
+  refuse(file + ": the file must have one cost per pose; poses: " + std::to_string(poses) +
+         ", costs: " + std::to_string(costs.size()));
 }
 
 PoseSource make_poses(const PoseOptions& options, std::uint64_t seed) {

@@ -69,12 +69,12 @@ std::optional<double> object_size_of(const std::string& hazard) {
 void add_hazard_option(App& app, std::string& text) {
   const std::string reference = explain_values_in(
       "score", app,
-      "Values of --hazard; size=L can precede one of the others, as in size=0.3,5:\n"
+      "Values of --hazard; RATE or FILE.vdb can follow size=L, as in size=0.3,5:\n"
       "  RATE      one rate for all unknown voxels [1/m]\n"
       "  FILE.vdb  one rate per voxel\n"
       "  size=L    longest side of the object [m] (default: of the part seen so far)\n"
       "  By default, the rate is high near known surface and falls with the distance\n"
-      "  from it. It is lower in front of the surface and behind it.\n");
+      "  from it. It is higher beside the surface than in front of it or behind it.\n");
   app.add_option("--hazard", text,
                  "rate at which rays meet surface in unknown voxels: RATE [1/m], FILE.vdb or "
                  "size=L (requires --gain surface or combined; " +

@@ -46,7 +46,7 @@ void add_hazard_option(App& app, std::string& text);
 [[nodiscard]] Obstacles obstacles_of(const std::vector<std::string>& values);
 
 inline constexpr const char* kObstacleHelp =
-    "known obstacle, which blocks rays and has no gain: mesh file or box x0,y0,z0,x1,y1,z1, world "
+    "obstacle, which blocks rays and has no gain: mesh file or box x0,y0,z0,x1,y1,z1, world "
     "frame [m]; may be repeated";
 
 // Warnings about input that is valid but rarely intended: one line on the error output.

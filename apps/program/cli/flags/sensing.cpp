@@ -64,7 +64,7 @@ SimulatedNoise parse_noise(const std::string& text, bool readings) {
 void add_sensing_options(App& app, SensingOptions& o) {
   begin_group(app, "Simulated camera");
   app.add_option("--support-plane", o.support_plane,
-                 "height z of an infinite table, which hides what is below it [m] (default: none)");
+                 "height z of an infinite table that hides everything below [m] (default: none)");
   const std::string reference = explain_values_in(
       "simulate", app,
       "Values of --noise, separated by commas:\n"
@@ -83,7 +83,7 @@ void add_sensing_options(App& app, SensingOptions& o) {
                  "pose=SIGMA_M/SIGMA_DEG, separated by commas (" +
                      reference + ")");
   app.add_option("--background", o.background,
-                 "radius of a sphere around the origin that stands for the room [m]; 0: no sphere");
+                 "radius of a sphere around the origin that stands for the room [m]; 0: none");
   add_seed_option(app, o.seed, "seed for the noise of depths and poses");
 }
 
@@ -179,9 +179,10 @@ Json ScaleOptions::settings() const {
 
 void add_scale_options(App& app, ScaleOptions& options) {
   begin_group(app, "Scales");
-  app.add_option("--scales", options.scales,
-                 "COARSEST[,FINEST] (0..3): merge voxels that one pixel covers, up to 2^COARSEST "
-                 "per edge; closer views split them down to 2^FINEST");
+  app.add_option(
+      "--scales", options.scales,
+      "COARSEST[,FINEST] (0..3): merge voxels that one pixel covers into cells up to 2^COARSEST "
+      "voxels wide; closer views split them down to 2^FINEST voxels");
   app.add_option(
          "--fine", options.fine,
          "box x0,y0,z0,x1,y1,z1 [m] without merged voxels (requires --scales); may be repeated")

@@ -53,8 +53,8 @@ void add_sensing_options(App& app, SensingOptions& options);
 
 /// Help of --jump-edge-filter in all subcommands.
 inline constexpr const char* kJumpEdgeHelp =
-    "ANGLE_DEG (1..10) or off: remove a pixel as flying if the line to a nearer neighbour is "
-    "within this angle of its ray";
+    "ANGLE_DEG (1..10) or off: remove flying pixels, where the line to a nearer neighbour is "
+    "within this angle of the ray";
 
 /// Parses --jump-edge-filter ANGLE_DEG|off. Throws Error(invalid_argument) for other text; the
 /// filter itself refuses angles outside its bounds.

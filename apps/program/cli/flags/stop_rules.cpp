@@ -14,15 +14,15 @@ void add_stop_option(App& app, std::string& text) {
       "reconstruct", app,
       "Rules of --stop (LIMIT 0 disables a rule, except coverage):\n"
       "  gain      the best view gains less than LIMIT per voxel that it sees\n"
-      "            (--gain paper; default: 1.2 nat; trace: 0.01 of the first value)\n"
-      "  area      the best view's expected new surface is below LIMIT times the\n"
-      "            surface so far, mean of three decisions (--gain surface, combined;\n"
+      "            (--gain paper; default: 1.2 nat, for trace 0.01 of the first value)\n"
+      "  area      the best view's expected new surface, averaged over three decisions,\n"
+      "            is below LIMIT times the surface so far (--gain surface, combined;\n"
       "            default: 0.004)\n"
       "  idle      LIMIT views in a row change entropy and unknown voxels by less than\n"
       "            0.1 % (default: 3)\n"
-      "  promises  LIMIT views in a row show less than a fifth of what was expected\n"
+      "  promises  LIMIT views in a row bring less than a fifth of what was predicted\n"
       "            (default: 3)\n"
-      "  coverage  the run covers a share LIMIT of the visible surface (reconstruct only)\n");
+      "  coverage  a fraction LIMIT of the visible surface is covered (reconstruct only)\n");
   app.add_option("--stop", text,
                  "RULE=LIMIT,...: rules that end the run: gain, area, idle, promises, coverage (" +
                      reference + "); may be repeated")

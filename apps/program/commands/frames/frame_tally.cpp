@@ -37,7 +37,8 @@ std::string refused_text(const FrameCounts& counts) {
       count_of(counts, FrameVerdict::used) + count_of(counts, FrameVerdict::carved);
   if (refused < kFew || refused <= 2 * taken) return {};
   return with_commas(refused) + " of " + with_commas(refused + taken) +
-         " frames contradict the others and were left out (--register on). The number of frames in "
+         " frames contradict the other frames and were left out (--register on). The number of "
+         "frames in "
          "the map is " +
          with_commas(taken) +
          ". Registration corrects only small errors. Are the poses those of the camera? Do they "
@@ -125,7 +126,7 @@ std::string suspicion_of(const FrameFolder& folder) {
 void warn_if_out_of_range(const std::string& cloud, const IntegrationReport& sum) {
   if (sum.readings > 0 || sum.out_of_range == 0) return;
   std::fprintf(stderr,
-               "viewgain: warning: %s: none of %s points is in the sensor's range. Are they in "
+               "viewgain: warning: %s: none of the %s points is in the sensor's range. Are they in "
                "metres?\n",
                cloud.c_str(), with_commas(sum.out_of_range).c_str());
 }

@@ -126,8 +126,8 @@ class CloudSource : public ReadingSource {
     }
     poses_ = load_poses(options.poses);
     if (poses_.poses.size() != files_.size()) {
-      refuse(options.poses + ": the file has " + std::to_string(poses_.poses.size()) +
-             " poses, but there are " + std::to_string(files_.size()) + " clouds");
+      refuse(options.poses + ": the file must have one pose per cloud; clouds: " +
+             std::to_string(files_.size()) + ", poses: " + std::to_string(poses_.poses.size()));
     }
   }
 

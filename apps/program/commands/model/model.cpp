@@ -14,26 +14,27 @@ void add_model_options(App& app, ModelOptions& o) {
   add_frame_map_options(app, o.frames);
   add_registration_option(app, o.registration);
   add_next_view_options(app, o.proposal);
-  app.add_option("--top", o.top,
-                 "maximum number of views to propose, each with its marginal gain (with --plan, M "
-                 "views are proposed)")
+  app.add_option(
+         "--top", o.top,
+         "maximum number of views to propose, each with its marginal gain (with --plan K[,M], "
+         "M views are proposed)")
       ->check(counted(1, 1'000'000));
   add_output_options(app, o.outputs);
   begin_group(app, "Watching a folder");
-  Option* watch =
-      app.add_flag("--watch", o.watch,
-                   "process new frames until a signal or the file FRAMES_DIR/done (requires "
-                   "--workspace; cannot be used with --costs, --from, --resume)");
-  explain_values(
-      app,
-      "With --watch:\n"
-      "  After each frame the program writes state.vdb, next.txt and next.json to OUT.\n"
-      "  next.json states when to stop (--max-views, --stop). If the program was killed,\n"
-      "  the same command continues.\n"
-      "  --watch cannot be used with --pictures, --save-maps or --report.\n");
-  app.add_option("--max-views", o.max_views,
-                 "maximum number of views; then the stop_reason in next.json is max_views "
-                 "(requires --watch)")
+  Option* watch = app.add_flag(
+      "--watch", o.watch,
+      "process new frames until the file FRAMES_DIR/done exists or a signal arrives (requires "
+      "--workspace; cannot be used with --costs, --from, --resume)");
+  explain_values(app,
+                 "With --watch:\n"
+                 "  After each frame, the program writes state.vdb, next.txt and next.json to the\n"
+                 "  folder of --out. next.json states when to stop (--max-views, --stop). If the\n"
+                 "  program was killed, repeat the command to continue.\n"
+                 "  --watch cannot be used with --pictures, --save-maps or --report.\n");
+  app.add_option(
+         "--max-views", o.max_views,
+         "maximum number of views; when it is reached, the stop_reason in next.json is max_views "
+         "(requires --watch)")
       ->check(counted(1, 1'000'000))
       ->needs(watch);
   add_stop_option(app, o.stop);

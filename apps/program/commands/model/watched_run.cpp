@@ -112,8 +112,8 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
   void print_summary(double seconds) const {
     if (is_done_ && count() == 0) {
       const std::string bad = counts_text(watch_->bad());
-      refuse(frames_.string() + ": the folder is done, but no frame is in the map" +
-             (bad.empty() ? "" : "; bad: " + bad));
+      refuse(frames_.string() + ": the file done exists, but no frame is in the map" +
+             (bad.empty() ? "" : "; left out: " + bad));
     }
     if (options_.common.json) {
       Json json = counts();
@@ -225,7 +225,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
   void leave_out(const std::vector<BadFrame>& frames) {
     for (const BadFrame& bad : frames) {
       say(bad.fault.what + " (" + std::string(frame_verdict_name(bad.fault.verdict)) +
-          "); left out");
+          "); the frame is left out");
       // A frame that was taken is in the map, even if its files have changed.
       if (bad.fault.verdict == FrameVerdict::changed) views_.ignore(bad.name);
       if (!map_ || bad.fault.verdict == FrameVerdict::changed) continue;
@@ -276,7 +276,7 @@ class Watching final : private DataAcquisition, private RepresentationUpdate {
     }
     if (!is_in_map(verdict)) {
       watch_->refuse(frame, verdict);
-      say(why + " (" + std::string(frame_verdict_name(verdict)) + "); left out");
+      say(why + " (" + std::string(frame_verdict_name(verdict)) + "); the frame is left out");
       if (!views_.leave_out(name)) return;
       if (verdict == FrameVerdict::contradicts) map_->drop(verdict, frame.T_world_camera);
     } else {

@@ -77,15 +77,14 @@ void add_next_view_options(App& app, ProposalOptions& o) {
                  "sources of candidates, separated by commas; see below (default: boundary, or "
                  "sphere if the map has no surface or no views)")
       ->check(several_of(generator_names(), "generator"));
-  explain_values(
-      app,
-      "Sources of candidates for --generator:\n"
-      "  boundary  in front of open edges of the surface and of places where more\n"
-      "            surface is expected; default --distance: the sensor's working\n"
-      "            distance\n"
-      "  sphere, dome, rings, sequence  sets of poses around --center; at the default\n"
-      "            --distance, the workspace fills the image\n"
-      "  shell     random poses in the shells or boxes of --reach, else around --center\n");
+  explain_values(app,
+                 "Sources of candidates for --generator:\n"
+                 "  boundary  facing open edges of the surface and places where more surface is\n"
+                 "            expected; default --distance: the sensor's working distance\n"
+                 "  sphere, dome, rings, sequence  sets of poses around --center; at the default\n"
+                 "            --distance, the workspace fills the image\n"
+                 "  shell     random poses in the shells or boxes of the --reach file; without\n"
+                 "            --reach, around --center\n");
   app.add_option(
       "--poses", o.poses,
       "TUM or .npy file of camera-to-world poses to choose from; --generator adds more candidates");
@@ -100,9 +99,10 @@ void add_next_view_options(App& app, ProposalOptions& o) {
   app.add_option("--center", o.center,
                  "x,y,z: point that sets of poses look at, world frame [m] (default: the centre of "
                  "the workspace)");
-  app.add_option("--reach", o.reach,
-                 "TOML file of poses that the robot can reach (default: no limit; boundary: the "
-                 "workspace, if it contains all views so far)");
+  app.add_option(
+      "--reach", o.reach,
+      "TOML file of poses that the robot can reach (default: no limit; for boundary, the "
+      "workspace if it contains all views so far)");
   begin_group(app, "Obstacles");
   app.add_option("--body", o.body, kBodyHelp);
   app.add_option("--support-plane", o.support_plane,

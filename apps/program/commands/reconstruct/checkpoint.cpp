@@ -39,7 +39,7 @@ Checkpoint::Checkpoint(RunFolder& folder, const Json& head, bool resume)
         (void)decision(i);
       }
     } catch (const Json::exception& error) {
-      throw Error(ErrorCode::format, file_ + ": not a checkpoint: " + error.what());
+      throw Error(ErrorCode::format, file_ + ": the file is not a checkpoint: " + error.what());
     }
     if (json_.dump() != last.dump()) {
       refuse(file_ +

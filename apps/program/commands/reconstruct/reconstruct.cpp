@@ -188,8 +188,8 @@ Command add_reconstruct(App& program) {
   auto options = std::make_shared<ReconstructOptions>();
   App* app = program.add_subcommand(
       "reconstruct",
-      "Run the loop on a mesh with a simulated camera: take a view, update map and surface, choose "
-      "the next view. The run ends when little is left to gain.");
+      "Run the whole loop on a mesh with a simulated camera: take a view, update map and surface, "
+      "choose the next view. The run ends when little is left to gain.");
   add_options(*app, *options);
   return command_of(app, options, [app](const auto& given) { reconstruct(given, *app); });
 }

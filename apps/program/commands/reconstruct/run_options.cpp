@@ -22,13 +22,12 @@ void add_output_options(App& app, RunOutputs& outputs) {
   begin_group(app, "Output");
   add_switch(
       app, "--save-maps", outputs.save_maps,
-      "write maps/NN.vdb after each view; reconstruct also writes the candidates, maps/NN.txt");
-  add_switch(app, "--pictures", outputs.pictures, "draw each view, views/NN.png");
-  app.add_option("--report", outputs.report,
-                 "on: write report.html for a browser; RUN: also show the curves of another run; "
-                 "off: no report");
-  app.add_flag("--resume", outputs.resume,
-               "continue this call after an interruption (kill, signal, full disk)");
+      "write maps/NN.vdb after each view; reconstruct also writes the candidates maps/NN.txt");
+  add_switch(app, "--pictures", outputs.pictures, "draw each view as views/NN.png");
+  app.add_option(
+      "--report", outputs.report,
+      "on: write report.html; RUN: also show the curves of the run in this folder; off: no report");
+  app.add_flag("--resume", outputs.resume, "continue this call after an interruption");
   app.add_option("--out", outputs.out, "folder to write")->required();
 }
 
@@ -50,7 +49,7 @@ void add_options(App& app, ReconstructOptions& o) {
                  "tx,ty,tz,qx,qy,qz,qw: start pose of the camera [m] (default: 27 deg above the "
                  "object; --seed sets the azimuth)");
   app.add_option("--distance", o.distance,
-                 "distance from the object's centre to the start pose and to sets of poses [m] "
+                 "distance of start pose and sets of poses from the object's centre [m] "
                  "(default: see below)");
   app.add_option("--policy", o.policy, "rule that chooses views (see below)")
       ->check(one_of(policy_names(), "policy"));
@@ -61,24 +60,24 @@ void add_options(App& app, ReconstructOptions& o) {
   explain_values(app,
                  "Views that --policy chooses:\n"
                  "  gain       highest expected gain\n"
-                 "  kriegel    open edges of the surface, in the order left, right, top, bottom\n"
+                 "  kriegel    open edges of the surface: left, right, top, then bottom\n"
                  "  sequence   8 views of a turntable, then one from above; or --poses\n"
                  "  random     random views\n"
                  "  frontier   most unknown voxels in view\n"
                  "  fibonacci  evenly around the object\n"
-                 "  oracle     most new coverage of the mesh, which this policy knows\n");
+                 "  oracle     most new coverage; it knows the mesh\n");
   explain_values(
       app,
       "Sources of candidates for --generator:\n"
       "  boundary  in front of open edges of the surface\n"
-      "  sphere, dome, rings, shell, sequence  sets of poses around the object. The\n"
-      "            default --distance is the working distance, or more for large objects.\n"
+      "  sphere, dome, rings, shell, sequence  sets of poses around the object; default\n"
+      "            --distance: the working distance, or more for large objects.\n"
       "            With --reach, shell fills the shells or boxes of the reach file\n");
   app.add_option("--poses", o.poses,
-                 "TUM or .npy file of poses for --policy sequence, taken in order after the start "
-                 "(default: a turntable)");
+                 "TUM or .npy file of poses for --policy sequence, after the start pose (default: "
+                 "a turntable)");
   app.add_option("--count", o.count,
-                 "number of poses for sphere, dome or shell (default: 500; fibonacci: "
+                 "number of poses for sphere, dome or shell (default: 500; --policy fibonacci: "
                  "--max-views), or for rings (48, 80, 288 or 864; default: 48)")
       ->check(counted(1, kMaxCount));
   app.add_option("--gain", o.gain,
@@ -89,7 +88,7 @@ void add_options(App& app, ReconstructOptions& o) {
   begin_group(app, "Gain");
   app.add_option("--criterion", o.criterion,
                  "criterion for entropy and the gain paper: log_diagonal, log_determinant [nat] or "
-                 "trace [m^2] (cannot be used with --gain combined)")
+                 "trace [m^2], which cannot be used with --gain combined")
       ->check(one_of(criterion_names(), "criterion"));
   begin_group(app, "Stopping");
   app.add_option("--max-views", o.max_views, "maximum number of views")
@@ -100,7 +99,7 @@ void add_options(App& app, ReconstructOptions& o) {
                  "larger of 0.005 and a voxel)");
   begin_group(app, "Views");
   app.add_option("--cost-per-metre", o.cost_per_metre,
-                 "cost L per metre: rank by gain - L * distance [nat/m; m^2/m for --gain surface]");
+                 "L: rank by gain - L * distance [nat/m; m^2/m for --gain surface]");
   add_plan_option(app, o.plan);
   begin_group(app, "Obstacles");
   app.add_option("--reach", o.reach,

@@ -100,7 +100,8 @@ Json beside_json(const RunOutputs& outputs) {
   const bool has_views = run.is_object() && run.contains("settings") && run.contains("per_view") &&
                          run["per_view"].is_array() && !run["per_view"].empty();
   if (!has_views || !run.contains("format") || !run["format"].is_number_unsigned()) {
-    throw Error(ErrorCode::format, file.string() + ": this is not the folder of a run");
+    throw Error(ErrorCode::format,
+                file.string() + ": the file is invalid; --report requires the folder of a run");
   }
   check_format(file.string(), run);
   return {{"name", beside}, {"settings", run["settings"]}, {"per_view", run["per_view"]}};

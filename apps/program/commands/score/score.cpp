@@ -313,28 +313,31 @@ Command add_score(App& program) {
   begin_group(*app, "Gain");
   app->add_option("--gain", options->gain,
                   "paper (entropy removed) [nat], surface (new surface) [m^2], combined [nat], or "
-                  "gains of the literature, separated by commas (the first ranks)")
+                  "gains of the literature, separated by commas (the first one ranks the poses)")
       ->check(several_of(all_gain_names(), "gain"));
   add_hazard_option(*app, options->hazard);
   begin_group(*app, "Obstacles");
-  app->add_option("--support-plane", options->support_plane,
-                  "height z of a table [m]; it ends rays (gains surface, combined), and the camera "
-                  "stays above it (--feasible on) (default: none)");
+  app->add_option(
+      "--support-plane", options->support_plane,
+      "height z of a table [m] (default: none); with --gain surface or combined, rays end there; "
+      "with --feasible on, the camera stays above it");
   app->add_option("--obstacle", options->obstacles, kObstacleHelp)->allow_extra_args(false);
   app->add_option("--reach", options->reach,
                   "TOML file of poses that the robot can reach; other poses are dropped");
-  add_switch(*app, "--feasible", options->feasible,
-             "drop poses where the camera's housing could touch something, that are too near, or "
-             "where the map already has a view");
+  add_switch(
+      *app, "--feasible", options->feasible,
+      "drop poses where the camera's housing could touch something, where surface is too near, or "
+      "where the map already has a view");
   app->add_option("--body", options->body, kBodyHelp);
   begin_group(*app, "Gain");
   app->add_option("--criterion", options->criterion,
                   "criterion of the gain paper: log_diagonal (as published) [nat], log_determinant "
                   "[nat] or trace [m^2]")
       ->check(one_of(criterion_names(), "criterion"));
-  app->add_option("--weight", options->weights,
-                  "x0,y0,z0,x1,y1,z1,W: multiply the gain of voxels in this box by W >= 0 (grid "
-                  "coordinates [m]); in overlaps, the last box counts; may be repeated")
+  app->add_option(
+         "--weight", options->weights,
+         "x0,y0,z0,x1,y1,z1,W: multiply the gain of voxels in this box (grid frame [m]) by W >= 0; "
+         "where boxes overlap, the last box counts; may be repeated")
       ->allow_extra_args(false);
   app->add_option("--prior-sigma", options->prior_sigma,
                   "standard deviation of an unknown voxel [m] (default: from the map)");
@@ -343,9 +346,10 @@ Command add_score(App& program) {
   app->add_option("--top", options->top, "number of poses to print, best first")
       ->check(counted(0, 1'000'000'000));
   auto* selection = app->add_option_group("selection", "at most one of; default: score all poses");
-  selection->add_flag("--race", options->race,
-                      "estimate all poses from few rays, then score the best with all rays; rarely "
-                      "misses the best (cannot be used with --approximate, --set)");
+  selection->add_flag(
+      "--race", options->race,
+      "estimate all gains with few rays, then score the best poses with all rays; rarely "
+      "misses the best pose (cannot be used with --approximate, --set)");
   selection
       ->add_option("--approximate", options->approximate,
                    "trace at most this share of each view's rays, and estimate gains with their "
@@ -357,22 +361,24 @@ Command add_score(App& program) {
                    "(cannot be used with --race, --approximate)")
       ->check(counted(1, 1'000'000));
   selection->require_option(0, 1);
-  app->add_option("--deadline", options->deadline,
-                  "time limit for --race [s]; then prints the best ranking found so far (requires "
-                  "--race; default: none)");
+  app->add_option(
+      "--deadline", options->deadline,
+      "time limit for --race [s], after which the best ranking found so far is printed (requires "
+      "--race; default: none)");
   add_seed_option(
       *app, options->seed,
       "seed for --poses shell:..., for --approximate, and for --race with --gain paper");
   begin_group(*app, "Output");
   app->add_option("--out", options->out,
-                  "CSV or .npy file to write with the scores of all possible poses in input order "
-                  "(--race: those scored with all rays; --set: the set)");
+                  "CSV or .npy file for the scores of all poses that were not dropped, in input "
+                  "order (with --race, only poses scored with all rays; with --set, only the set)");
   app->add_option("--picture", options->picture,
-                  "PNG file to write with the map, the frustum of the best view and the voxels "
-                  "where its rays may end (larger: more likely)");
-  app->add_option("--report", options->report,
-                  "HTML file to write with the map, the candidates coloured by gain, the ranking "
-                  "and what the best views see");
+                  "PNG file to write, showing the map, the frustum of the best view and the voxels "
+                  "where its rays may end (drawn larger if more likely)");
+  app->add_option(
+      "--report", options->report,
+      "HTML file to write, showing the map, the candidates coloured by gain, the ranking "
+      "and what the best views see");
   most_need(*app, {"--sensor", "--gain", "--top", "--out", "--reach", "--feasible", "--race",
                    "--report"});
   add_help(*app, kViewsGroup,

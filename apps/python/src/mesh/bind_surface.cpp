@@ -138,8 +138,9 @@ SurfaceMesh surface_of_points(const py::object& positions, const py::object& tow
   if (!toward_free.is_none()) {
     const auto hints = points(toward_free, "toward_free");
     if (hints.size() != where.size()) {
-      throw py::value_error("toward_free has " + std::to_string(hints.size()) +
-                            " rows, but there are " + std::to_string(where.size()) + " points");
+      throw py::value_error(
+          "toward_free must have one row per point; points: " + std::to_string(where.size()) +
+          ", rows: " + std::to_string(hints.size()));
     }
     for (std::size_t i = 0; i < where.size(); ++i) oriented[i].toward_free = hints[i];
   }

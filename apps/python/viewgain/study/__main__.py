@@ -29,9 +29,9 @@ def _arguments(words):
                         help="TOML file with the lists objects, policies, seeds, sensors and voxels [m], and with max_views; optional keys: sizes [m] "
                              "(a list), against, tolerance [m], flags and kept_candidates")
     parser.add_argument("--out", metavar="DIR", type=pathlib.Path, required=True, help="folder to write results to")
-    parser.add_argument("--jobs", type=int, metavar="N", help="number of parallel runs on this machine (default: one per thread)")
+    parser.add_argument("--jobs", type=int, metavar="N", help="number of parallel runs on this machine (default: number of the processor's threads)")
     parser.add_argument("--scheduler", metavar="ADDRESS",
-                        help="Dask scheduler (tcp://HOST:8786) whose workers do the runs; each worker needs the program and the files at the same paths")
+                        help="Dask scheduler (tcp://HOST:8786) whose workers do the runs; they need the program and the files at the same paths")
     parser.add_argument("--program", metavar="PATH", help="path of the program viewgain (default: next to this package, else on PATH)")
     parser.add_argument("--quiet", action="store_true", help="do not print progress")
     options = parser.parse_args(words)

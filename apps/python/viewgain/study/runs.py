@@ -102,6 +102,11 @@ def version_of(program: str) -> str:
     return found[1]
 
 
+def _fault(error):
+    """What is wrong, for a person: the text of a KeyError is only its key."""
+    return f"the key {error} is missing" if isinstance(error, KeyError) else str(error)
+
+
 def make_run(words, title, kept, beside, is_own=False, folder=None, children=None):
     """Makes one run in a temporary folder inside `folder` (default: the system's), and removes that folder. Returns run.json as a dict,
     candidates, and the duration of the run [s]. Candidates are up to `kept` per view, evenly sampled, as TUM lines whose time stamp is the
@@ -117,7 +122,7 @@ def make_run(words, title, kept, beside, is_own=False, folder=None, children=Non
         except FileNotFoundError:
             raise RunError(f"{title}: {words[0]} wrote no run.json to the folder of --out", 2) from None
         except (LookupError, TypeError, ValueError) as error:
-            raise RunError(f"{title}: the run.json of {words[0]} is invalid: {type(error).__name__}: {error}", 2) from None
+            raise RunError(f"{title}: run.json is invalid: {_fault(error)}", 2) from None
         lines = []
         for path in sorted(pathlib.Path(work, "run/maps").glob("*.txt"), key=lambda path: int(path.stem)) if kept else []:
             poses = [line.split(maxsplit=1)[1] for line in path.read_text().splitlines() if line and not line.startswith("#")]
@@ -322,7 +327,7 @@ def _row_of(spec, run, record, max_views):
             raise ValueError(f"viewgain {made_by} made this run, not viewgain {run.configuration['version']}")
         return row_of(run, record, max_views)
     except (AttributeError, LookupError, TypeError, ValueError) as error:
-        raise RunError(f"{spec.title(run)}: run.json is invalid: {type(error).__name__}: {error}", 2) from None
+        raise RunError(f"{spec.title(run)}: run.json is invalid: {_fault(error)}", 2) from None
 
 
 def _keep(folder, run: Run, record, candidates):
@@ -340,7 +345,7 @@ def _row(path, run, max_views):
             raise ValueError("its configuration differs from the spec")
         return row_of(run, record, max_views)
     except (AttributeError, LookupError, TypeError, ValueError) as error:
-        raise SpecError(f"{path}: {type(error).__name__}: {error}; remove the folder of this file and repeat the call") from error
+        raise SpecError(f"{path}: the file is invalid: {_fault(error)}; remove the folder of this file and repeat the call") from error
 
 
 def _time_text(seconds):

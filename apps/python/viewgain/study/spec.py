@@ -290,7 +290,7 @@ def read_spec(path, version: str = "") -> Spec:
             reader.fail(key, f"contains {twice!r} twice")
     count = len(sensors) * len(voxels) * len(sizes) * len(objects) * len(seeds) * len(policies)
     if count > _MOST_RUNS:
-        reader.fail("seeds", f"make {count:,} runs together with the other lists; the maximum is {_MOST_RUNS:,}")
+        reader.fail("seeds", f"and the other lists make {count:,} runs together; the maximum is {_MOST_RUNS:,}")
 
     shared = {"version": version, "format": _FORMAT, "max_views": max_views, "tolerance": tolerance, "kept_candidates": kept,
               "flags": [_flag_identity(flag) for flag in flags]}

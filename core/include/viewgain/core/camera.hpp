@@ -11,9 +11,10 @@
 
 namespace viewgain {
 
-/// Pinhole camera with OpenCV's distortion model. Optical frame: x right, y down, z forward. Pixel
-/// (0,0) has its centre at (0,0), as in OpenCV. A value type. Members require a camera that passes
-/// validate() and check nothing unless stated otherwise.
+/// Pinhole camera with OpenCV's distortion model. The camera frame has x right, y down and z
+/// forward. As in OpenCV, the centre of the first pixel has the pixel coordinates (0, 0). A value
+/// type. Members require a camera that passes validate(). They do not check their arguments unless
+/// stated otherwise.
 struct VIEWGAIN_EXPORT PinholeCamera {
   int width = 0;                       ///< [px]
   int height = 0;                      ///< [px]
@@ -24,19 +25,18 @@ struct VIEWGAIN_EXPORT PinholeCamera {
   /// Whether any coefficient differs from 0.
   [[nodiscard]] bool has_distortion() const { return distortion != std::array<double, 5>{}; }
 
-  /// Throws Error(invalid_argument) naming the field unless sizes are in 1..16384, there are at
-  /// most 2^24 pixels, focal lengths are positive and all numbers are finite. A table of rays takes
-  /// 24 bytes per pixel.
+  /// Throws Error(invalid_argument) naming the field unless width and height are in 1..16384, there
+  /// are at most 2^24 pixels, the focal lengths are positive and all numbers are finite.
   void validate() const;
 
-  /// Direction (x, y, 1) in the camera frame of the ray through pixel coordinates (u, v) [px], with
-  /// the distortion removed. Iterates to 1e-12. NaN if the distortion model folds between the
-  /// optical axis and this pixel, so that the pixel has no ray. Without distortion the result is
-  /// exact and cheap.
+  /// Direction (x, y, 1), in the camera frame, of the ray through the pixel coordinates (u, v)
+  /// [px]. Inverts the distortion by iteration, to 1e-12. Without distortion the result is exact
+  /// and cheap. NaN if the pixel has no ray, because the distortion model is not invertible between
+  /// the optical axis and this pixel.
   [[nodiscard]] Eigen::Vector3d ray(double u, double v) const;
 
-  /// Pixel coordinates (u, v) [px] of the camera-frame point p [m], with distortion; NaN unless p.z
-  /// > 0. As in OpenCV, a strong distortion can fold a point far outside the view into the image.
+  /// Pixel coordinates (u, v) [px] of the camera-frame point p [m], with distortion. NaN unless p.z
+  /// > 0. As in OpenCV, strong distortion can map a point far outside the view into the image.
   /// Inline, because the alignment of an Eigen Vector2d depends on the caller's compiler flags.
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_camera) const {
     Eigen::Vector2d pixel;
@@ -46,20 +46,21 @@ struct VIEWGAIN_EXPORT PinholeCamera {
   /// As above, written to u and v.
   void project(const Eigen::Vector3d& p_camera, double& u, double& v) const;
 
-  /// Whether the camera-frame point p [m] projects into the image: p.z > 0, its pixel coordinates
-  /// lie in [-0.5, width - 0.5) x [-0.5, height - 0.5), and it lies on the ray of those
-  /// coordinates. The last condition excludes points that the distortion folds into the image.
-  /// Ignores occlusion and the sensor's range limits.
+  /// Whether the camera-frame point p [m] projects into the image. This requires that p.z > 0, that
+  /// its pixel coordinates lie in [-0.5, width - 0.5) x [-0.5, height - 0.5), and that it lies on
+  /// the ray of these coordinates. The last condition excludes points that only strong distortion
+  /// maps into the image. Ignores occlusion and the sensor's range limits.
   [[nodiscard]] bool sees(const Eigen::Vector3d& p_camera) const;
 
-  /// ray() of every pixel centre: directions (x, y, 1) in the camera frame, row-major, width *
-  /// height entries. Cost: one ray() per pixel.
+  /// ray() of every pixel centre: width * height directions (x, y, 1) in the camera frame,
+  /// row-major. Cost: one ray() and 24 bytes per pixel.
   [[nodiscard]] std::vector<Eigen::Vector3d> ray_table() const;
 
-  /// Solid angle of every pixel [sr], row-major; 0 for a pixel without a ray. For a ray at angle α
-  /// to the optical axis it is cos³α / (fx fy). With distortion it is cos³α |∂(x, y) / ∂(u, v)|,
-  /// where the derivatives are differences between neighbouring pixels. `rays` must be the result
-  /// of ray_table(). Throws Error(invalid_argument) for a wrong number of rays.
+  /// Solid angle of every pixel [sr], row-major; 0 for a pixel without a ray. Let α be the angle
+  /// between the pixel's ray and the optical axis. Without distortion the solid angle is cos³α /
+  /// (fx fy). With distortion it is cos³α |∂(x, y) / ∂(u, v)|, with finite differences between
+  /// neighbouring pixels. `rays` must be the result of ray_table(). Throws Error(invalid_argument)
+  /// for a wrong number of rays.
   [[nodiscard]] std::vector<double> solid_angles(std::span<const Eigen::Vector3d> rays) const;
 
   bool operator==(const PinholeCamera&) const = default;

@@ -10,13 +10,13 @@
 
 namespace viewgain {
 
-/// Symmetric 3x3 matrix, six numbers in the order of the map files: the diagonal, then xy, xz, yz.
-/// Used for information matrices Λ = Σ⁻¹ [m⁻²] and covariances Σ [m²]; each use states the frame. A
-/// value type. Members check nothing and never throw.
+/// Symmetric 3x3 matrix, stored as its diagonal, then xy, xz, yz, as in the map files. Used for
+/// covariances Σ [m²] and information matrices Λ = Σ⁻¹ [m⁻²]. Each use states the coordinate frame.
+/// A value type. Members do not check their arguments and never throw.
 struct VIEWGAIN_EXPORT SymmetricMatrix3 {
-  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;  ///< its entries [m⁻² or m²]
+  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;  ///< entries [m⁻² or m²]
 
-  /// The unit matrix times `scale`, in the matrix's unit.
+  /// The identity matrix times `scale` [m⁻² or m²].
   [[nodiscard]] static SymmetricMatrix3 identity(double scale = 1.0) {
     return {scale, scale, scale, 0, 0, 0};
   }
@@ -33,8 +33,8 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
     xx += o.xx, yy += o.yy, zz += o.zz, xy += o.xy, xz += o.xz, yz += o.yz;
     return *this;
   }
-  /// Entrywise sum. Adding two information matrices fuses independent measurements: eq. (4) of the
-  /// paper.
+  /// Entrywise sum. The sum of two information matrices fuses independent measurements (eq. (4) of
+  /// Foix et al. 2012).
   friend SymmetricMatrix3 operator+(SymmetricMatrix3 a, const SymmetricMatrix3& b) {
     return a += b;
   }
@@ -47,21 +47,21 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   [[nodiscard]] SymmetricMatrix3 operator*(double s) const {
     return {xx * s, yy * s, zz * s, xy * s, xz * s, yz * s};
   }
-  /// Sum of the diagonal, in the unit of the matrix.
+  /// Sum of the diagonal [m⁻² or m²].
   [[nodiscard]] double trace() const { return xx + yy + zz; }
-  /// Determinant by expansion along the first row, in the cube of the matrix's unit [m⁻⁶ or m⁶].
+  /// Determinant [m⁻⁶ or m⁶], by expansion along the first row.
   [[nodiscard]] double determinant() const {
     return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
   }
-  /// Inverse, for condition numbers up to 1e10. Uses cofactors where they are accurate to about
-  /// 1e-12, otherwise a factorisation. NaN unless the matrix is positive definite.
+  /// Inverse, for condition numbers up to 1e10. NaN unless the matrix is positive definite. Uses
+  /// cofactors if they are accurate to about 1e-12, otherwise a factorisation.
   [[nodiscard]] SymmetricMatrix3 inverse() const {
     double ignored;
     return inverse(ignored);
   }
-  /// The inverse, and the determinant of this matrix [m⁻⁶ or m⁶].
+  /// As above. Also sets `determinant` to that of this matrix [m⁻⁶ or m⁶].
   [[nodiscard]] SymmetricMatrix3 inverse(double& determinant) const {
-    // determinant / (xx yy zz) is in (0, 1] and bounds the cancellation in cofactors.
+    // The ratio determinant / (xx yy zz) is in (0, 1]. It bounds the cancellation in the cofactors.
     constexpr double kWellScaled = 1e-4;
     const double c_xx = yy * zz - yz * yz, c_zz = xx * yy - xy * xy;
     const double c_xy = xz * yz - xy * zz;
@@ -104,9 +104,9 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   }
 };
 
-/// Information of one reading (one measured depth) whose ray has the unit direction d: Λ_r = a I +
-/// (b - a) d dᵀ with a = σ_lat⁻² and b = σ_ax⁻², in the frame of d (apps/docs/guide/equations.md).
-/// Checks nothing: sigmas of 0 give infinities.
+/// Information matrix of one reading (one measured depth), in the frame of d, the unit direction of
+/// its ray: Λ_r = a I + (b - a) d dᵀ. Here a = σ_lat⁻² and b = σ_ax⁻²
+/// (apps/docs/guide/equations.md). Arguments are not checked; sigmas of 0 give infinities.
 [[nodiscard]] inline SymmetricMatrix3 measurement_information(const Eigen::Vector3d& d,
                                                               const MeasurementSigmas& sigmas) {
   const double a = 1.0 / (sigmas.lateral * sigmas.lateral);

@@ -12,10 +12,11 @@
 
 namespace viewgain {
 
-/// Measure of the uncertainty of a voxel's position, computed from Σ = Λ⁻¹.
+/// Measure of the uncertainty of the surface position in a voxel, whose covariance is Σ = Λ⁻¹. In
+/// this library, "entropy" means this measure. "The paper" is Foix et al. (2012).
 enum class Criterion : std::uint8_t {
-  log_diagonal,  ///< ½ Σ_k ln Σ_kk in grid axes [nat]: eqs. (3) and (6) of the paper, with the
-                 ///< factor ½ of eq. (2)
+  log_diagonal,  ///< ½ Σ_k ln Σ_kk along the grid axes [nat]: eqs. (3) and (6) of the paper, with
+                 ///< the factor ½ of eq. (2)
   log_determinant,  ///< ½ ln det Σ [nat]: eq. (2); independent of the coordinate frame
   trace,            ///< tr Σ [m²]: A-optimality; independent of the coordinate frame
 };
@@ -29,12 +30,14 @@ enum class Criterion : std::uint8_t {
 /// Parses a name. Throws Error(invalid_argument) listing the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT Criterion parse_criterion(std::string_view name);
 
-/// H(Λ) under the criterion [nat, or m² for trace]. Λ [m⁻²] must be positive definite (unchecked).
+/// Entropy H(Λ) [nat; m² with trace]. `information` is Λ [m⁻²]. It must be positive definite, which
+/// is not checked.
 [[nodiscard]] VIEWGAIN_EXPORT double entropy(const SymmetricMatrix3& information,
                                              Criterion criterion);
 
-/// H(before) - H(before + added) >= 0 [nat, or m² for trace]. `added` must be positive semidefinite
-/// (unchecked). Uses a single logarithm of a ratio, so small gains stay accurate.
+/// H(before) - H(before + added) >= 0 [nat; m² with trace]. Both are information matrices [m⁻²].
+/// `before` must be positive definite and `added` positive semidefinite, which is not checked.
+/// Small differences are accurate, because they are computed as one logarithm of a ratio.
 [[nodiscard]] VIEWGAIN_EXPORT double entropy_reduction(const SymmetricMatrix3& before,
                                                        const SymmetricMatrix3& added,
                                                        Criterion criterion);

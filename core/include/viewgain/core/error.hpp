@@ -9,7 +9,7 @@
 
 namespace viewgain {
 
-/// Kind of error; the message names the value, line or file.
+/// Kind of error. The message of the Error names the value, line or file.
 enum class ErrorCode {
   invalid_argument,  ///< a value outside its documented range
   io,                ///< a file cannot be opened, read or written
@@ -18,11 +18,11 @@ enum class ErrorCode {
   backend,           ///< Embree or OpenVDB reported a failure
 };
 
-/// The only exception type of the library. Set-up and file functions throw it; scoring a pose never
-/// does. A value type.
+/// The only exception type that the library defines. Constructors and functions that read or write
+/// files throw it. Scoring an invalid pose does not throw. A value type.
 class VIEWGAIN_EXPORT Error : public std::runtime_error {
  public:
-  /// `message` names the offending value. Both arguments are unchecked.
+  /// `message` names the offending value.
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
   /// The kind of error.
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }

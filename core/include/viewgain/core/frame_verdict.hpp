@@ -13,16 +13,16 @@ namespace viewgain {
 
 /// How a frame was used for a map, or why it was not used.
 enum class FrameVerdict : std::uint8_t {
-  used,              ///< its readings are in the map; before integration: no fault was found
-  carved,            ///< in the map, but it showed only free space
-  lost_pose,         ///< its pose is not a rigid transform of finite numbers
+  used,              ///< in the map; before its integration: no fault was found
+  carved,            ///< in the map, but it shows only free space
+  lost_pose,         ///< its pose is not a rigid transform with finite numbers
   no_pose,           ///< it has no pose
-  unreadable,        ///< a file is missing, truncated, damaged or of another kind
-  wrong_size,        ///< its image or mask differs in size from the sensor
-  nothing_in_range,  ///< all pixels are invalid
+  unreadable,        ///< a file is missing, damaged or not an image
+  wrong_size,        ///< its image or mask does not have the sensor's size
+  nothing_in_range,  ///< no pixel measured anything
   outside,           ///< it shows nothing of the workspace
-  contradicts,       ///< after registration it contradicts the map or the other frames
-  changed,           ///< another frame already had its number or its image
+  contradicts,       ///< even after registration it contradicts the map or other frames
+  changed,           ///< its number or its image was already used by another frame
   no_mask,           ///< its mask never arrived
   not_metres,        ///< nearly all depths are beyond 10 times the sensor's max_range
 };
@@ -33,26 +33,26 @@ inline constexpr std::array<std::string_view, 12> kFrameVerdictNames{
     "unreadable",  "wrong_size", "nothing_in_range", "outside",
     "contradicts", "changed",    "no_mask",          "not_metres"};
 
-/// Name of the verdict. Throws std::out_of_range for an invalid value.
+/// Name of a verdict. Throws std::out_of_range for an invalid value.
 [[nodiscard]] constexpr std::string_view frame_verdict_name(FrameVerdict verdict) {
   return kFrameVerdictNames.at(static_cast<std::size_t>(verdict));
 }
 
-/// Whether the frame changed the map. Constant time; never throws.
+/// Whether a frame with this verdict changed the map. Constant time; never throws.
 [[nodiscard]] constexpr bool is_in_map(FrameVerdict verdict) noexcept {
   return verdict <= FrameVerdict::carved;
 }
 
-/// Number of frames per verdict. A verdict that is missing has no frames.
+/// Number of frames per verdict. Verdicts without frames are missing.
 using FrameCounts = std::map<FrameVerdict, std::size_t>;
 
-/// Count of one verdict. Never throws.
+/// Number of frames with this verdict. Never throws.
 [[nodiscard]] inline std::size_t count_of(const FrameCounts& counts, FrameVerdict verdict) {
   const auto found = counts.find(verdict);
   return found == counts.end() ? 0 : found->second;
 }
 
-/// Numbers of frames that are not in the map, by name of the verdict.
+/// Number of frames that are not in the map, per name of the verdict.
 [[nodiscard]] inline std::map<std::string, std::size_t> bad_frames(const FrameCounts& counts) {
   std::map<std::string, std::size_t> bad;
   for (const auto& [verdict, count] : counts) {

@@ -13,28 +13,29 @@
 
 namespace viewgain {
 
-/// Removes flying pixels, which mix two surfaces at a depth discontinuity (after May et al.,
-/// "Three-dimensional mapping with time-of-flight cameras", J. Field Robotics 26, 2009). Removes a
-/// reading p if one of its 8 neighbours, q, is nearer to the camera and the line from p to q is
-/// nearly parallel to p's ray: their angle is below the threshold. Compares with the depths before
-/// filtering. Thread safety: const members may run from many threads.
+/// Removes flying pixels: readings (measured depths) that mix two surfaces at a depth
+/// discontinuity. The method is that of May et al. ("Three-dimensional mapping with time-of-flight
+/// cameras", J. Field Robotics 26, 2009). A reading p is removed if it has a neighbour q, among its
+/// 8, that meets two conditions. q is nearer to the camera, and the angle between p's ray and the
+/// line from p to q is below a threshold. All comparisons use the unfiltered depths. Thread safety:
+/// const members may run from many threads.
 class VIEWGAIN_EXPORT JumpEdgeFilter {
  public:
-  /// Which pixels count as flying.
+  /// Defines which pixels count as flying.
   struct Config {
-    double angle = 5.0 * std::numbers::pi / 180;  ///< threshold, in 1°..10° [rad]
-    bool two_sided = false;  ///< as published: compare with nearer and farther neighbours alike
+    double angle = 5.0 * std::numbers::pi / 180;  ///< threshold [rad], 1° to 10°
+    bool two_sided = false;  ///< also compare with farther neighbours, as published
   };
 
-  /// Computes the undistorted rays once. Throws Error(invalid_argument) for an invalid camera or an
-  /// angle outside its bounds.
+  /// Computes the ray of each pixel once. Throws Error(invalid_argument) for an invalid camera or
+  /// an angle outside its bounds.
   JumpEdgeFilter(const PinholeCamera& camera, const Config& config);
   /// Uses the default configuration.
   explicit JumpEdgeFilter(const PinholeCamera& camera) : JumpEdgeFilter(camera, Config{}) {}
 
-  /// Sets flying pixels to DepthFrame::kInvalid and their amplitude to 0; returns their number.
-  /// Throws Error(invalid_argument) if frame and camera differ in size. Cost: one pass over the
-  /// pixels and their 8 neighbours.
+  /// Sets the depth of flying pixels to DepthFrame::kInvalid and their amplitude to 0. Returns
+  /// their number. Throws Error(invalid_argument) if frame and camera differ in size. Cost: one
+  /// pass over the pixels and their 8 neighbours.
   std::size_t apply(DepthFrame& frame) const;
 
  private:

@@ -10,12 +10,13 @@
 
 namespace viewgain {
 
-/// Rigid transform. For a camera, T_world_camera maps points of the optical frame (x right, y down,
-/// z forward) to the world. Twelve doubles, the rows of [R | t] with t in metres. Unlike those of
-/// Eigen::Isometry3d, its size and alignment do not depend on compiler flags, so it can cross
-/// library boundaries. A value type. Members check nothing and never throw.
+/// Rigid transform. The pose of a camera is T_world_camera, which maps points of the camera frame
+/// (x right, y down, z forward) to the world frame. A pose has twelve doubles, the rows of [R | t],
+/// with t in metres. Its size and alignment do not depend on compiler flags, so it can cross
+/// library boundaries; Eigen::Isometry3d cannot. A value type. Members do not check their arguments
+/// and never throw.
 struct VIEWGAIN_EXPORT Pose {
-  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< [R | t], row-major, t in [m]
+  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< [R | t], row-major; t in [m]
 
   /// The identity.
   Pose() = default;
@@ -27,7 +28,7 @@ struct VIEWGAIN_EXPORT Pose {
     }
   }
 
-  /// From a rotation matrix and a translation [m], unchecked.
+  /// From a rotation matrix, which is not checked, and a translation [m].
   Pose(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) m[static_cast<std::size_t>(4 * r + c)] = R(r, c);
@@ -61,7 +62,7 @@ struct VIEWGAIN_EXPORT Pose {
     return {rotation() * other.rotation(), rotation() * other.translation() + translation()};
   }
 
-  /// Inverse; the rotation must be orthonormal.
+  /// The inverse transform. The rotation must be orthonormal.
   [[nodiscard]] Pose inverse() const {
     const Eigen::Matrix3d R_inverse = rotation().transpose();
     return {R_inverse, -(R_inverse * translation())};
@@ -71,24 +72,26 @@ struct VIEWGAIN_EXPORT Pose {
 };
 static_assert(sizeof(Pose) == 96 && alignof(Pose) == 8);
 
-/// Deviation of the rotation from orthonormal and right-handed: the largest absolute entry of RᵀR -
-/// I, dimensionless, or infinity if any number is not finite or det R <= 0.
+/// How far R is from a rotation matrix: the largest absolute entry of RᵀR - I, dimensionless.
+/// Infinity if any number is not finite or det R <= 0. "A pose that is rigid within 1e-3" means a
+/// pose for which this error is at most 1e-3.
 [[nodiscard]] VIEWGAIN_EXPORT double orthonormality_error(const Pose& pose);
 
-/// Nearest rotation (polar decomposition by SVD) with the same translation. Deterministic. Returns
-/// a pose with a number that is not finite unchanged. Never throws.
+/// The pose with the nearest rotation matrix (polar decomposition by SVD) and the same translation.
+/// If a number is not finite, returns the pose unchanged. Deterministic. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT Pose orthonormalized(const Pose& pose);
 
-/// The rigid transform used for a given pose: the pose itself if orthonormality_error() is at most
-/// 1e-9, orthonormalized() if it is at most kMaxPoseError, otherwise none. Never throws.
+/// The rigid transform that the library uses for a pose. If orthonormality_error() is at most 1e-9,
+/// it is the pose itself. If the error is at most kMaxPoseError, it is orthonormalized(). Otherwise
+/// it is empty, and the pose is invalid. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Pose> rigid_pose(const Pose& pose);
 inline constexpr double kMaxPoseError = 1e-3;  ///< largest orthonormality_error() that is repaired
 
-/// T_world_camera of a camera at `eye` [m] whose optical axis passes through `target` [m]. Image up
-/// (minus y) is as close as possible to `up`, a vector of any length. If the view direction is
-/// parallel to `up`, +x of the world replaces it, or +y if that is parallel too. Throws
-/// Error(invalid_argument) if eye equals target, up is zero, or a number is not finite. Orthonormal
-/// to 1e-15.
+/// T_world_camera of a camera at `eye` [m] whose optical axis passes through `target` [m]. The
+/// image's up direction (minus y) is as close as possible to `up`, a vector of any length. If the
+/// view direction is parallel to `up`, +x of the world replaces `up`; if it is parallel to +x too,
+/// +y does. The rotation is orthonormal to 1e-15. Throws Error(invalid_argument) if eye equals
+/// target, up is zero, or a number is not finite.
 [[nodiscard]] VIEWGAIN_EXPORT Pose look_at(const Eigen::Vector3d& eye,
                                            const Eigen::Vector3d& target,
                                            const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());

@@ -13,51 +13,51 @@ namespace viewgain {
 
 struct DepthFrame;
 
-/// Table of a camera's systematic, distance-dependent range error, as measured and subtracted in
-/// ref. [7] of the paper (Fuchs and Hirzinger, CVPR 2008). A value type. Members require a table
-/// that passes validate() and check nothing unless stated otherwise.
+/// Table of a camera's systematic range error, which depends on the range (Fuchs and Hirzinger,
+/// CVPR 2008). A value type. Members require a table that passes validate(). They do not check
+/// their arguments unless stated otherwise.
 struct VIEWGAIN_EXPORT RangeCalibration {
-  /// (measured range, measured minus true range) [m], by increasing measured range. Empty: no
-  /// correction.
+  /// Rows of measured range and its error, measured minus true range [m], in order of increasing
+  /// measured range. Empty: no correction.
   std::vector<std::array<double, 2>> table{};
 
-  /// Throws Error(invalid_argument) unless all numbers are finite and measured ranges increase
+  /// Throws Error(invalid_argument) unless all numbers are finite and the measured ranges increase
   /// strictly.
   void validate() const;
 
-  /// `measured_range` [m] minus its error, which is interpolated linearly and constant beyond the
-  /// ends.
+  /// `measured_range` [m] minus its error. The error is interpolated linearly in the table, and is
+  /// constant beyond its ends.
   [[nodiscard]] double corrected(double measured_range) const;
 
-  /// Corrects all readings of the frame along their rays. A reading with a corrected range that is
-  /// not positive becomes invalid; other pixels, amplitudes and known depths do not change. Throws
-  /// Error(invalid_argument) if frame and camera differ in size. Cost: 30 ns per pixel, 0.5 µs with
-  /// lens distortion.
+  /// Corrects all readings (measured depths) of the frame along their rays. If a corrected range is
+  /// not positive, the pixel becomes invalid. Other pixels, amplitudes and known depths do not
+  /// change. Throws Error(invalid_argument) if frame and camera differ in size. Cost: 30 ns per
+  /// pixel; with lens distortion 0.5 µs.
   void correct(const PinholeCamera& camera, DepthFrame& frame) const;
 
   bool operator==(const RangeCalibration&) const = default;
 };
 
-/// RangeCalibration::correct() for many frames of one camera: computes the rays once and gives
-/// bit-identical results. Immutable; may be used from many threads at once.
+/// Corrects many frames of one camera. Results are bit-identical to those of
+/// RangeCalibration::correct(), but the rays are computed only once. Immutable; may be used from
+/// many threads at once.
 class VIEWGAIN_EXPORT RangeCorrector {
  public:
-  /// Throws Error(invalid_argument) like PinholeCamera::validate() and
-  /// RangeCalibration::validate(). Cost: 8 bytes and 10 ns per pixel, 0.4 µs with lens distortion;
-  /// constant without a table.
+  /// Throws whatever PinholeCamera::validate() and RangeCalibration::validate() throw. Cost: 8
+  /// bytes and 10 ns per pixel; with lens distortion 0.4 µs. Constant if the table is empty.
   RangeCorrector(const PinholeCamera& camera, RangeCalibration calibration);
 
   /// The camera.
   [[nodiscard]] const PinholeCamera& camera() const noexcept { return camera_; }
-  /// The table.
+  /// The calibration table.
   [[nodiscard]] const RangeCalibration& calibration() const noexcept { return calibration_; }
 
-  /// Corrects all readings of the frame along their rays. A reading with a corrected range that is
-  /// not positive becomes invalid; other pixels, amplitudes and known depths do not change. Throws
-  /// Error(invalid_argument) if frame and camera differ in size. Cost: 10 ns per pixel, with or
-  /// without lens distortion.
+  /// Corrects all readings (measured depths) of the frame along their rays. If a corrected range is
+  /// not positive, the pixel becomes invalid. Other pixels, amplitudes and known depths do not
+  /// change. Throws Error(invalid_argument) if frame and camera differ in size. Cost: 10 ns per
+  /// pixel, with or without lens distortion.
   void correct(DepthFrame& frame) const;
-  /// Corrects depths [m] alone, row-major, width * height of them, as in DepthFrame::depth.
+  /// As above, for width * height depths [m] in row-major order, as in DepthFrame::depth.
   void correct(std::span<float> depth) const;
 
  private:

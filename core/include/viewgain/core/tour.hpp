@@ -13,32 +13,33 @@
 
 namespace viewgain {
 
-/// Index that stands for the current camera pose.
+/// Index that stands for the start of the tour, which is the current camera pose.
 inline constexpr std::size_t kTourStart = std::numeric_limits<std::size_t>::max();
 
-/// Cost of the path between two stops, in a unit of your choice: for example metres, or the seconds
-/// that an arm needs. `from` can be kTourStart. At least 0; infinity means that there is no path.
+/// Cost of the path from one stop to another, at least 0. Infinity means that there is no path. The
+/// unit is your choice, for example metres, or seconds that an arm needs. `from` can be kTourStart.
 using WayCost = std::function<double(std::size_t from, std::size_t to)>;
 
-/// An order of stops, each visited once, without return to the start.
+/// An order in which to visit stops, each once, without return to the start.
 struct VIEWGAIN_EXPORT Tour {
-  std::vector<std::size_t> stops;  ///< all stops, or empty if no order avoids infinite costs
-  /// Cost from the start through all stops, in the unit of WayCost; infinity: no order was found.
+  std::vector<std::size_t> stops;  ///< all stops in order; empty if every order has infinite cost
+  /// Total cost from the start through all stops, in the unit of WayCost. Infinity if `stops` is
+  /// empty because no order was found.
   double cost = 0;
-  bool is_exact = true;  ///< whether the order is proven optimal
+  bool is_exact = true;  ///< whether the order is known to be optimal
 
-  static constexpr std::size_t kMostExact = 12;  ///< stops
+  static constexpr std::size_t kMostExact = 12;  ///< up to this many stops, the order is optimal
 };
 
-/// Order of the stops 0..count-1 with a low cost. Up to Tour::kMostExact stops, it is the optimum,
-/// by dynamic programming (1 ms for 12 stops). For more stops, cheapest insertion is improved by
-/// 2-opt and Or-opt moves of up to three stops, in about count³ steps. Costs may depend on the
-/// direction. Deterministic. Calls `cost` count² times in the calling thread, and rethrows its
-/// exceptions. Throws Error(invalid_argument) for a cost that is negative or NaN.
+/// An order of the stops 0..count-1 with a low cost. Up to Tour::kMostExact stops, it is optimal,
+/// by dynamic programming (1 ms for 12 stops). For more stops, the result of cheapest insertion is
+/// improved by 2-opt and Or-opt moves of up to three stops, in about count³ steps. Costs may depend
+/// on the direction. Deterministic. Calls `cost` count² times on the calling thread, and rethrows
+/// its exceptions. Throws Error(invalid_argument) if a cost is negative or NaN.
 [[nodiscard]] VIEWGAIN_EXPORT Tour order_stops(std::size_t count, const WayCost& cost);
 
-/// Straight-line distance between camera centres [m]. Copies the poses; the result may be called
-/// from many threads at once.
+/// A WayCost that returns the straight-line distance between camera centres [m]. Copies the poses.
+/// The result may be called from many threads at once.
 [[nodiscard]] VIEWGAIN_EXPORT WayCost straight_ways(const Pose& T_world_camera_start,
                                                     std::span<const Pose> T_world_camera);
 

@@ -10,14 +10,16 @@
 
 namespace viewgain {
 
-/// Triangle soup as plain arrays, in any frame. Functions that take a mesh check its indices.
+/// Triangle mesh as plain arrays, in any frame. Triangles need not be connected. Functions that
+/// take a mesh check its indices.
 struct VIEWGAIN_EXPORT TriangleMesh {
-  std::vector<std::array<double, 3>> vertices;          ///< [m], or in a file's own unit
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three vertex indices each
+  std::vector<std::array<double, 3>> vertices;          ///< [m], or in the unit of the file
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three indices of vertices each
 };
 
-/// Outward faces of a box, two triangles each. Corner i is at max along x if bit 0 of i is set,
-/// along y with bit 1, along z with bit 2.
+/// The faces of a box, as two outward triangles each. The indices are those of the box's corners.
+/// Corner i is at max.x if bit 0 of i is set, at max.y if bit 1 is set, and at max.z if bit 2 is
+/// set; otherwise it is at the minimum.
 inline constexpr std::array<std::array<std::uint32_t, 3>, 12> kBoxTriangles{{{0, 2, 1},
                                                                              {1, 2, 3},
                                                                              {4, 5, 6},

@@ -13,13 +13,14 @@
 
 namespace viewgain {
 
-/// Mode and group of a file, for the file that replaces it.
+/// Mode and group of a file, to give them to the file that replaces it.
 class VIEWGAIN_EXPORT Permissions {
  public:
-  /// Takes mode and group from the result of stat().
+  /// `status`: result of stat() for the file.
   explicit Permissions(const struct stat& status) noexcept;
-  /// Sets them on an open file, as far as this process may. If it may not set the group, the file's
-  /// group gets only the permissions of others, so that nobody gains a permission.
+  /// Sets mode and group of an open file, given by its descriptor, as far as this process is
+  /// allowed to. If it may not set the group, the group gets only the permissions that all other
+  /// users have, so that nobody gains a permission.
   void give(int file) const noexcept;
 
  private:
@@ -27,31 +28,32 @@ class VIEWGAIN_EXPORT Permissions {
   gid_t group_;
 };
 
-/// A file that appears completely or not at all, even after a power cut. Data go to
-/// temporary_path(), in the target's folder. commit() syncs this file and renames it to the target;
-/// without commit() the destructor removes it. Use write(), or give temporary_path() to a writer
-/// that needs a name. TemporaryNames defines the name. The next writer of the same target removes
-/// what a killed process left. In a folder of SyncedTogether that object does the sync, and
-/// leftovers stay.
+/// Writes a file so that it appears completely or not at all, even after a power cut. Data go to a
+/// temporary file in the target's folder; TemporaryNames defines its name. Use write(), or give
+/// temporary_path() to a writer that needs a name. commit() syncs the temporary file and renames it
+/// to the target. Without commit(), the destructor removes it. The next writer of the same target
+/// removes the leftovers of killed processes. In a folder of a SyncedTogether, that object does the
+/// sync, and leftovers stay.
 ///
-/// A replacement is private until commit(), which gives it the mode and group of the replaced file.
-/// A new file has the mode from the umask.
+/// If the target exists, only this user can read the temporary file, until commit() gives it the
+/// mode and group of the target. If the target is new, its mode follows from the umask.
 ///
-/// A symbolic link stays, and its target is replaced or created. Pipes, devices and names of open
-/// files of this process (/dev/stdout, /dev/fd/N) are written in place, at the current position. A
-/// pipe is opened once, by the first write().
+/// If the target is a symbolic link, the file that it points to is replaced or created. Pipes,
+/// devices and names of open files of this process (/dev/stdout, /dev/fd/N) are written directly,
+/// at the current position. A pipe is opened once, by the first write().
 ///
-/// Every failure throws Error(io) that names the target. Thread safety: distinct objects may be
-/// used from distinct threads. Cost: bytes are written once; commit() waits for the disk.
+/// All members throw Error(io) that names the target if they fail. Thread safety: different objects
+/// may be used from different threads. Cost: bytes are written once; commit() waits for the disk.
 class VIEWGAIN_EXPORT AtomicFile {
  public:
-  /// Creates the empty temporary file, so that a target that cannot be written fails at once.
+  /// Creates the empty temporary file. Fails at once if the target cannot be written.
   explicit AtomicFile(const std::filesystem::path& target);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// The existing file to write to. Only for targets that are regular files or do not exist yet.
+  /// Path of the temporary file, which exists. Call it only for targets that are regular files or
+  /// do not exist yet.
   [[nodiscard]] const std::filesystem::path& temporary_path() const noexcept { return temporary_; }
 
   /// Appends bytes.
@@ -61,8 +63,8 @@ class VIEWGAIN_EXPORT AtomicFile {
   /// SyncedTogether.
   void sync();
 
-  /// Makes the file appear. Call it once, after everything is written and other writers have closed
-  /// the file.
+  /// Makes the file appear under its name. Call it once, when everything is written and other
+  /// writers have closed the file.
   void commit();
 
  private:
@@ -78,19 +80,19 @@ class VIEWGAIN_EXPORT AtomicFile {
   bool committed_ = false;
 };
 
-/// Removes the temporary files of all AtomicFile objects of this process (at most 64). For a signal
-/// handler that then ends the program; safe in a signal handler. Afterwards their writers fail, or
-/// their data are lost.
+/// Removes the temporary files of all AtomicFile objects of this process (at most 64). Async-signal
+/// safe: for a signal handler that then ends the program. Data of these objects are lost, and their
+/// members may fail.
 VIEWGAIN_EXPORT void remove_temporary_files() noexcept;
 
-/// Whether the name refers to an open file of this process, like /dev/stdout and /dev/fd/N, which
-/// AtomicFile writes in place. Never throws.
+/// Whether the name refers to an open file of this process, like /dev/stdout and /dev/fd/N.
+/// AtomicFile writes such files directly. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool is_open_file(const std::filesystem::path& path) noexcept;
 
-/// Waits until the names in the folder are on the disk, if the file system supports that.
+/// Waits until the entries of the folder are on the disk, if the file system supports that.
 VIEWGAIN_EXPORT void sync_folder(const std::filesystem::path& folder) noexcept;
 
-/// Writes the whole contents at once. Errors and cost: see AtomicFile.
+/// Writes a file with AtomicFile. Errors and cost are those of AtomicFile.
 VIEWGAIN_EXPORT void write_file_atomically(const std::filesystem::path& target,
                                            std::string_view contents);
 

@@ -13,27 +13,28 @@
 
 namespace viewgain {
 
-/// Arguments of mix64() in steps of this give SplitMix64's sequence.
+/// Increment of the state of SplitMix64.
 inline constexpr std::uint64_t kMixStep = 0x9E3779B97F4A7C15ULL;
 
-/// SplitMix64's finaliser: a bijection in which every input bit flips half of the output bits.
+/// The finaliser of SplitMix64, a bijection. A change of one input bit changes about half of the
+/// output bits.
 [[nodiscard]] constexpr std::uint64_t finalize64(std::uint64_t x) {
   x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
   x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
   return x ^ (x >> 31U);
 }
 
-/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a good hash of a counter, so that random choices
-/// are the same on every machine and do not depend on the order in which they are made.
+/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014), used as a hash of a counter. Random choices made
+/// with it do not depend on the machine or on their order.
 [[nodiscard]] constexpr std::uint64_t mix64(std::uint64_t x) { return finalize64(x + kMixStep); }
 
-/// The upper 53 bits as a number in [0, 1).
+/// Converts the upper 53 bits to a number in [0, 1).
 [[nodiscard]] constexpr double unit_number(std::uint64_t bits) {
   return static_cast<double>(bits >> 11U) * 0x1.0p-53;
 }
 
-/// A 64-bit hash of a sequence of 64-bit words, the same on every machine, to identify contents.
-/// Not cryptographic.
+/// A 64-bit hash of a sequence of 64-bit words, for identifying contents. It is the same on every
+/// machine, and not cryptographic.
 class Hash64 {
  public:
   void add(std::uint64_t word) {
@@ -41,7 +42,7 @@ class Hash64 {
     ++count_;
   }
   void add_number(double number) { add(std::bit_cast<std::uint64_t>(number)); }
-  /// Adds bytes as little-endian words, and their number.
+  /// Adds the bytes as little-endian words, and then their number.
   void add_bytes(std::string_view bytes) {
     const auto word_at = [&](std::size_t at, std::size_t count) {
       std::uint64_t word = 0;
@@ -57,7 +58,7 @@ class Hash64 {
   }
 
   [[nodiscard]] std::uint64_t value() const { return finalize64(state_ ^ count_); }
-  /// 16 hexadecimal digits.
+  /// The hash as 16 hexadecimal digits.
   [[nodiscard]] std::string hex() const {
     std::string text(16, '0');
     for (std::size_t i = 0; i < 16; ++i) {
@@ -71,7 +72,7 @@ class Hash64 {
   std::uint64_t count_ = 0;
 };
 
-/// The 16 digits of a text.
+/// The hash of a text as 16 hexadecimal digits.
 [[nodiscard]] inline std::string hash_of(std::string_view text) {
   Hash64 hash;
   hash.add_bytes(text);

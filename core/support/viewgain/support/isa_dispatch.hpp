@@ -7,8 +7,9 @@
 #include "viewgain/support/isa.hpp"
 
 /// @file
-/// For sources that Highway compiles once per instruction set, after HWY_ONCE. VIEWGAIN_OF_ISA(isa,
-/// function) is the version of the function for `isa`, or for the lowest set of the build.
+/// For source files that Highway compiles once per instruction set. Use the macro after HWY_ONCE.
+/// VIEWGAIN_OF_ISA(isa, function) is the version of the function for `isa`, or if the build has
+/// none, for the lowest set of the build.
 
 #if HWY_TARGETS & HWY_AVX3
 #define VIEWGAIN_IF_AVX512(isa, function) (isa) == ::viewgain::Isa::avx512 ? N_AVX3::function:

@@ -11,14 +11,15 @@ namespace viewgain {
 /// A parameter of a noise model.
 template <typename Model>
 struct NoiseField {
-  const char* name;  ///< in files and in Python
+  const char* name;  ///< name in files and in Python
   double Model::*member;
-  bool optional = false;     ///< in files: if missing, the model's default is used
-  bool unsaid_at_0 = false;  ///< in files: omitted if 0
-  bool may_be_0 = optional;  ///< otherwise positive; Sensor::validate() checks the sum
+  bool optional = false;     ///< may be missing in files; the model's default is then used
+  bool unsaid_at_0 = false;  ///< files omit the parameter if it is 0
+  bool may_be_0 = optional;  ///< if false, it must be positive; Sensor::validate() checks sums
 };
 
-/// Name of a model in files, and its parameters in the order of C's vg_sensor::noise.
+/// Name of a model in files, and its parameters in the order of vg_sensor::noise of the C
+/// interface.
 template <typename Model>
 struct NoiseLayout;
 template <>
@@ -67,11 +68,11 @@ struct NoiseLayout<ConstantNoise> {
        {"sigma_lateral", &ConstantNoise::sigma_lateral}}};
 };
 
-/// All models with their defaults, in the order of their numbers.
+/// All models with their default parameters, in the order of NoiseModel.
 inline const std::array<NoiseModel, 5> kNoiseModels{
     ShotNoise{}, StructuredLightNoise{}, StereoNoise{}, QuadraticNoise{}, ConstantNoise{}};
 
-/// Calls f(double&, field) for each parameter.
+/// Calls f(double& value, const NoiseField& field) for each parameter of the model.
 template <typename F>
 void for_each_parameter(NoiseModel& noise, F&& f) {
   std::visit(

@@ -19,11 +19,11 @@
 
 namespace viewgain::detail {
 
-/// A number in a binary file.
+/// Type of a number in a file.
 struct ScalarType {
   enum class Kind : std::uint8_t { floating, signed_integer, unsigned_integer };
   Kind kind = Kind::floating;
-  std::size_t size = 4;  ///< 1, 2, 4 or 8 [bytes]; 4 or 8 for floating point
+  std::size_t size = 4;  ///< 1, 2, 4 or 8 bytes; for floating point 4 or 8
 
   /// Whether decode() supports this type.
   [[nodiscard]] bool is_known() const {
@@ -32,7 +32,7 @@ struct ScalarType {
   }
 };
 
-/// The value of `type.size` bytes; 64-bit integers are rounded to double precision.
+/// The number in the first `type.size` bytes. 64-bit integers are rounded to double precision.
 [[nodiscard]] inline double decode(const char* bytes, ScalarType type, bool big_endian = false) {
   std::uint64_t word = 0;
   for (std::size_t i = 0; i < type.size; ++i) {
@@ -52,7 +52,7 @@ struct ScalarType {
 struct PlyProperty {
   std::string_view name;
   ScalarType type;
-  std::optional<ScalarType> count;  ///< type of the count of a list
+  std::optional<ScalarType> count;  ///< for lists: the type of the number of entries
 };
 
 struct PlyElement {
@@ -60,7 +60,8 @@ struct PlyElement {
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
 
-  /// Index of a property; empty if there is none of that name and kind.
+  /// Index of the property with this name that is a list or a scalar, as `is_list` says; empty if
+  /// there is none.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view property, bool is_list) const {
     const auto found = std::find_if(properties.begin(), properties.end(), [&](const auto& p) {
       return p.name == property && p.count.has_value() == is_list;
@@ -90,8 +91,7 @@ class PlyRow {
   std::vector<std::size_t> ends_;
 };
 
-/// The numbers of an ASCII file one by one. A row begins and ends with a line, but may have several
-/// lines.
+/// Reads the numbers of an ASCII file one by one. A row is one line or several whole lines.
 class PlyAsciiNumbers {
  public:
   explicit PlyAsciiNumbers(LineReader& line) : line_(line) {}
@@ -112,7 +112,7 @@ class PlyAsciiNumbers {
     return value;
   }
   void require(double count, ScalarType) const {
-    // A number has at least one character, and all except the last are followed by another.
+    // A number has at least one character, and a separator follows all numbers except the last.
     const std::size_t most = line_.words().size() - word_ + line_.rest().size() / 2 + 1;
     if (count > static_cast<double>(most)) line_.fail("a list is longer than the rest of the file");
   }
@@ -176,10 +176,10 @@ class PlyBinaryNumbers {
   bool big_endian_;
 };
 
-/// A PLY file, ASCII or binary of either byte order: its header, then its elements row by row.
-/// Memory is allocated for actual data only, not for the counts that a file states. `bytes` must
-/// outlive this object; `name` is the file's name in messages. Throws Error(format) that names the
-/// file and, in text, the line.
+/// Reads a PLY file, ASCII or binary of either byte order: its header, then its elements row by
+/// row. Allocates memory only for data that the file contains, whatever counts the header states.
+/// `bytes` are the contents of the file and must outlive this object. `name` is the file's name in
+/// messages. Throws Error(format) that names the file and, in ASCII files, the line.
 class PlyFile {
  public:
   PlyFile(std::string_view bytes, std::string name) : line_(std::move(name), bytes) {
@@ -188,13 +188,13 @@ class PlyFile {
 
   [[nodiscard]] const std::vector<PlyElement>& elements() const { return elements_; }
 
-  /// For faults of the header that the caller finds.
+  /// Throws Error(format), for faults of the header that the caller finds.
   [[noreturn]] void fail(const std::string& what) const { line_.fail(what); }
   /// Number of the last line read, 0 in binary files.
   [[nodiscard]] std::size_t line() const { return format_ == Format::ascii ? line_.line() : 0; }
 
   /// Calls take(index of the element, PlyRow) for each row of the first `count` elements, in the
-  /// file's order; call it once. If these are all elements, nothing may follow them.
+  /// order of the file. If these are all elements, throws if the file continues. Call it once.
   template <typename Take>
   void read(std::size_t count, Take&& take) {
     if (format_ == Format::ascii) {

@@ -4,7 +4,7 @@
 
 namespace viewgain {
 
-/// Tells the core that this thread looks at a flag in a loop. 10 to 50 ns.
+/// Hint to the CPU core that this thread waits in a loop. Takes 10 to 50 ns.
 inline void relax() {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();

@@ -8,7 +8,7 @@
 
 namespace viewgain {
 
-/// Throws std::bad_alloc if this many more bytes cannot be allocated now. Allocates nothing. Call
+/// Throws std::bad_alloc if this many bytes cannot be allocated now. Allocates nothing itself. Call
 /// it before code that ends the process when memory runs out. Thread safe.
 VIEWGAIN_EXPORT void check_room(std::size_t bytes);
 

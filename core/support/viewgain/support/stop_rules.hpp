@@ -13,40 +13,41 @@
 
 namespace viewgain {
 
-/// State of the stopping rules during a run. A value type, so that a run can be saved.
+/// State of the stopping rules (PlanningConfig) during a run, for saving and continuing the run. A
+/// value type. Gains are in nats, with Criterion::trace in m².
 struct VIEWGAIN_EXPORT StopMemory {
   std::size_t views = 0;             ///< number of views taken
   std::size_t idle_views = 0;        ///< number of consecutive idle views up to now
-  double entropy_removed = 0;        ///< state after the last view [nat, or m² for trace]
-  std::uint64_t unknown_voxels = 0;  ///< likewise
+  double entropy_removed = 0;        ///< ModelProgress::entropy_removed after the last view
+  std::uint64_t unknown_voxels = 0;  ///< ModelProgress::unknown_voxels after the last view
   std::size_t decisions = 0;         ///< number of decisions
-  /// Gain per voxel of the first decision with a gain above 0 [nat, m² for trace]. NaN: none yet,
-  /// or the limit is absolute.
+  /// Decision::gain_per_voxel of the first decision with a gain above 0. NaN: none yet, or
+  /// PlanningConfig::stop_gain is absolute.
   double first_gain_per_voxel = std::numeric_limits<double>::quiet_NaN();
-  /// Decision::best_area divided by the surface, for the last three decisions; decision i is at i %
-  /// 3.
+  /// Decision::best_area divided by the surface area, for the last three decisions. Decision i is
+  /// at index i % 3.
   std::array<double, 3> area_shares{};
-  /// Prediction for the next view [m²].
+  /// Decision::area of the view that was chosen last [m²].
   double promised_area = std::numeric_limits<double>::quiet_NaN();
-  double promised_gain = std::numeric_limits<double>::quiet_NaN();  ///< likewise [nat, m²]
-  std::size_t broken_promises = 0;                                  ///< the last ones in a row
+  double promised_gain = std::numeric_limits<double>::quiet_NaN();  ///< its Decision::gain
+  std::size_t broken_promises = 0;  ///< number of consecutive ones up to now
 };
 
-/// The stopping rules of PlanningConfig, step by step, as in active_view_planning(), for other
-/// loops. Thread safety: one call at a time. Members other than the constructor check nothing;
-/// calls take constant time.
+/// The stopping rules of active_view_planning(), for other loops. Thread safety: one call at a
+/// time. Members other than the constructor do not check their arguments, and take constant time.
 class VIEWGAIN_EXPORT StopRules {
  public:
-  /// `memory`: state of a run to continue. Throws Error(invalid_argument) if max_views is 0 or a
-  /// limit is not finite.
+  /// `memory` is the state of the run to continue. Throws Error(invalid_argument) if max_views is 0
+  /// or a limit is not finite.
   explicit StopRules(const PlanningConfig& config, const StopMemory& memory = {});
 
-  /// After a view went into the model: the first of coverage, max_views, idle and promises that
-  /// applies.
+  /// Call it when a view is in the model. Returns the first of coverage, max_views, idle and
+  /// promises that applies.
   [[nodiscard]] std::optional<StopReason> after_view(const ModelProgress& progress);
 
-  /// After a choice among the remaining candidates: no_candidates or unreachable if none was
-  /// chosen, else gain, area or cost. `surface_area` [m²]: that of ModelProgress.
+  /// Call it after the choice of the next view. If no candidate was chosen, returns no_candidates
+  /// or unreachable. Otherwise returns gain, area or cost if the rule applies. `surface_area` [m²]
+  /// is that of ModelProgress.
   [[nodiscard]] std::optional<StopReason> after_decision(
       const std::optional<DecisionMaking::Decision>& decision, const Proposal& proposal,
       double surface_area);
@@ -64,8 +65,8 @@ class VIEWGAIN_EXPORT StopRules {
   StopMemory memory_;
 };
 
-/// unreachable if candidates were dropped as unreachable, otherwise no_candidates. Checks nothing;
-/// takes constant time.
+/// Returns unreachable if candidates were dropped as unreachable, otherwise no_candidates. Constant
+/// time.
 [[nodiscard]] VIEWGAIN_EXPORT StopReason nowhere_to_go(const Proposal& proposal);
 
 }  // namespace viewgain

@@ -8,19 +8,20 @@
 
 namespace viewgain {
 
-/// A folder that is synced as a whole, before it gets its name, instead of file by file. While this
-/// object exists, an AtomicFile in the folder, or below, neither syncs nor removes leftovers.
-/// Thread safety: distinct objects may be used from distinct threads. Cost of a sync: one system
-/// call, which waits for all pending writes of the file system; if that fails, one per file.
+/// A new folder whose files are synced to the disk all together instead of one by one, before the
+/// folder is renamed to its final name. While this object exists, an AtomicFile in the folder or
+/// its subfolders neither syncs nor removes leftovers of killed processes. Thread safety: different
+/// objects may be used from different threads. Cost of a sync: one system call, which waits for all
+/// pending writes of the file system. If this call fails, there is one call per file.
 class VIEWGAIN_EXPORT SyncedTogether {
  public:
-  /// The folder must exist, and its path must be absolute and without links.
+  /// The folder must exist. Its path must be absolute and have no symbolic links.
   explicit SyncedTogether(const std::filesystem::path& folder);
   ~SyncedTogether();
   SyncedTogether(const SyncedTogether&) = delete;
   SyncedTogether& operator=(const SyncedTogether&) = delete;
 
-  /// Waits until all files in the folder, and their names, are on the disk. Throws Error(io) that
+  /// Waits until all files in the folder and their names are on the disk. Throws Error(io) that
   /// names the file or folder that cannot be written.
   void sync() const;
 
@@ -29,7 +30,7 @@ class VIEWGAIN_EXPORT SyncedTogether {
   int file_ = -1;  // open from the start, so that sync() also reports earlier failures
 };
 
-/// Whether the file lies in the folder of a SyncedTogether.
+/// Whether the file lies in the folder of a SyncedTogether object, or below it.
 [[nodiscard]] bool are_synced_together(const std::filesystem::path& file);
 
 }  // namespace viewgain

@@ -14,27 +14,27 @@
 #include "viewgain/core/export.hpp"
 
 /// @file
-/// Text of files and messages. Numbers do not depend on the process's locale. Functions that make
-/// text take any value and never throw.
+/// Reads and writes text of files and messages. The form of numbers does not depend on the locale
+/// of the process. Functions that return text accept any value and never throw.
 
 namespace viewgain {
 
-/// The shortest text that reads back as the same number; "nan", "inf" or "-inf" if it is not
-/// finite.
+/// The shortest text that reads back as the same number. For numbers that are not finite: "nan",
+/// "inf" or "-inf".
 [[nodiscard]] VIEWGAIN_EXPORT std::string short_text(double value);
 /// As above.
 [[nodiscard]] VIEWGAIN_EXPORT std::string short_text(float value);
 
-/// With up to 17 significant digits, so that it reads back as the same double.
+/// Text with up to 17 significant digits, which reads back as the same double.
 [[nodiscard]] VIEWGAIN_EXPORT std::string exact_text(double value);
 
-/// A word from a file, for a message: in quotes, printable, at most 32 characters.
+/// A word from a file as it appears in a message: in quotes, printable, at most 32 characters.
 [[nodiscard]] VIEWGAIN_EXPORT std::string quoted(std::string_view word);
 
-/// The lines of a text, or of a binary file's header, from the front, cut into words at blanks. A
-/// byte order mark before the first is skipped. Lines end at \n or \r\n, or all at \r if the first
-/// does. Failures name file and line. Thread safety: one call at a time. Cost: one pass over the
-/// text.
+/// Reads the lines of a text, or of a binary file's header, and splits them into words at blanks.
+/// Skips a byte order mark at the beginning. Lines end with \n or \r\n; if the first line ends with
+/// \r, all do. Errors name file and line. Thread safety: one call at a time. Cost: one pass over
+/// the text.
 class VIEWGAIN_EXPORT LineReader {
  public:
   /// `name` is the file's name in messages; `bytes` must outlive the reader.
@@ -42,24 +42,25 @@ class VIEWGAIN_EXPORT LineReader {
 
   /// Moves to the next line; false at the end.
   bool next();
-  /// Words of the last line read, in order; valid until the next call of next().
+  /// Words of the current line, in order. Valid until the next call of next().
   [[nodiscard]] const std::vector<std::string_view>& words() const { return words_; }
   /// The text after the current line.
   [[nodiscard]] std::string_view rest() const { return rest_; }
   /// The file's name, for messages.
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Number of the last line read, from 1.
+  /// Number of the current line, from 1.
   [[nodiscard]] std::size_t line() const { return line_; }
 
-  /// Throws Error(format): "file:line: what".
+  /// Throws Error(format) with the message "file:line: what".
   [[noreturn]] void fail(const std::string& what) const;
-  /// The word as a number, NaN and infinities included; fails otherwise.
+  /// Word number `word` of the current line, from 0, as a number. NaN and infinities are allowed.
+  /// Calls fail() if it is not a number.
   [[nodiscard]] double number(std::size_t word) const;
-  /// Like number(), for a word that need not be in the current line.
+  /// As number(), for any text.
   [[nodiscard]] double number_of(std::string_view word) const;
-  /// The word as a finite number; fails otherwise.
+  /// As number(). Calls fail() if it is not finite.
   [[nodiscard]] double finite_number(std::size_t word) const;
-  /// The word as a whole number from 0 to `most`; fails otherwise.
+  /// As number(), for a whole number. Calls fail() if it is not in 0..most.
   [[nodiscard]] std::uint64_t count(std::size_t word, std::uint64_t most) const;
 
  private:
@@ -72,8 +73,8 @@ class VIEWGAIN_EXPORT LineReader {
   char line_end_ = '\n';
 };
 
-/// Edit distance: number of letters to add, remove, change or swap with a neighbour. A letter is
-/// not changed again after a swap.
+/// Edit distance of two words: number of letters to add, remove, change or swap with a neighbour.
+/// Letters that were swapped are not changed again (optimal string alignment).
 [[nodiscard]] inline std::size_t edits_between(std::string_view a, std::string_view b) {
   std::vector<std::size_t> two_back(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -92,8 +93,9 @@ class VIEWGAIN_EXPORT LineReader {
   return row[b.size()];
 }
 
-/// The name that was probably meant: the one with the fewest edits, at most one per three letters,
-/// or one that begins with the given text. Empty if none is near. Ties go to the first.
+/// The name that was probably meant by `given`: the one with the smallest edit distance, at most
+/// one edit per three letters. A name that begins with `given` counts as one edit. The first of
+/// several equal names is returned. Empty if no name is near.
 [[nodiscard]] inline std::optional<std::string> nearest_name(
     std::string_view given, const std::vector<std::string>& names) {
   std::optional<std::string> nearest;
@@ -106,22 +108,22 @@ class VIEWGAIN_EXPORT LineReader {
   return nearest;
 }
 
-/// "; did you mean NAME?", or nothing.
+/// Text for a message: "; did you mean NAME?" with nearest_name(), or nothing.
 [[nodiscard]] inline std::string did_you_mean(std::string_view given,
                                               const std::vector<std::string>& names) {
   const std::optional<std::string> nearest = nearest_name(given, names);
   return nearest ? "; did you mean " + *nearest + "?" : std::string();
 }
 
-/// "a, b, c"
+/// The names as text: "a, b, c".
 [[nodiscard]] inline std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(name);
   return text;
 }
 
-/// Index of a name in `names`. Throws Error(invalid_argument) with `what` that lists the valid
-/// names.
+/// Index of a name in `names`. If it is missing, throws Error(invalid_argument) that lists the
+/// valid names; `what` says what they are.
 [[nodiscard]] inline std::size_t place_of_name(std::string_view name,
                                                const std::vector<std::string>& names,
                                                std::string_view what) {

@@ -8,12 +8,13 @@
 
 namespace viewgain {
 
-/// TOML text of a number that reads back exactly, and of a quoted string on one line.
+/// TOML text of a number, which reads back exactly (toml_float), or of a string, quoted on one line
+/// (toml_string).
 [[nodiscard]] VIEWGAIN_EXPORT std::string toml_float(double value);
 [[nodiscard]] VIEWGAIN_EXPORT std::string toml_string(const std::string& value);
 
-/// The key `format` of sensors and reach regions. Increases when readers of this version would
-/// misread the file.
+/// Value of the key `format` in TOML files of sensors and reach regions. It increases when the
+/// format changes in a way that existing programs would misread.
 inline constexpr int kTomlFormat = 1;
 
 }  // namespace viewgain

@@ -29,75 +29,78 @@ struct GridAccess;
 struct GridStorage;
 }  // namespace detail
 
-/// Layout of a map; by default for an object at the origin. A value type.
+/// Layout of a map. The default suits an object at the origin. A value type.
 struct VIEWGAIN_EXPORT GridConfig {
-  double voxel_size = 0.005;  ///< voxel size V [m]
-  /// Grid frame [m]; extended to whole voxels, see BeliefGrid.
+  double voxel_size = 0.005;  ///< edge V of a voxel [m]
+  /// The part of space that is mapped, grid frame [m]. Extended to whole voxels, see BeliefGrid.
   Box workspace{{-0.25, -0.25, -0.25}, {0.25, 0.25, 0.25}};
   Pose T_world_grid{};  ///< pose of the grid frame in the world
-  /// Standard deviation sigma_0 [m] of an unknown voxel; defaults to default_prior_sigma() of the
-  /// map's sensor.
+  /// Standard deviation sigma_0 of the surface position in an unknown voxel [m]. Unset:
+  /// default_prior_sigma() with the map's sensor.
   std::optional<double> prior_sigma{};
 };
 
-/// The belief grid: the state of a workspace, voxel by voxel.
+/// The belief grid: a map of a workspace, voxel by voxel.
 ///
-/// Voxel (i,j,k) covers [i,i+1) x [j,j+1) x [k,k+1) times V in the grid frame. The workspace is
-/// extended to whole voxels. A face within 1e-6 voxels of a voxel boundary counts as lying on it.
-/// At first all voxels are unknown, which takes little memory. A known voxel has a log-odds in
-/// steps of 0.05 within [-2, 3.5]. If the log-odds is above 0, the voxel is occupied, otherwise
-/// free. Readings (measured depths) that end in a voxel hit it. A voxel that was hit has a Belief,
-/// and keeps the belief if it becomes free.
+/// In the grid frame, voxel (i,j,k) covers [i,i+1) x [j,j+1) x [k,k+1) times the voxel size V. The
+/// workspace is extended to whole voxels; a face within 1e-6 voxels of a voxel boundary counts as
+/// lying on it. At first all voxels are unknown, which takes little memory. A known voxel has a
+/// log-odds in [-2, 3.5], in steps of 0.05. It is occupied if the log-odds is above 0, otherwise
+/// free. A reading (one measured depth) hits the voxel in which it ends. A voxel that was hit has a
+/// Belief, and keeps it if it becomes free.
 ///
-/// Each leaf of 8³ voxels has a scale s, initially 0 and at most 3. It is divided into cells of 2^s
-/// voxels per edge. All voxels of a cell share one state, log-odds and belief
+/// A leaf is a block of 8³ voxels. It has a scale s, initially 0 and at most 3, and is divided into
+/// cells of 2^s voxels per edge. All voxels of a cell share one state, log-odds and belief
 /// (apps/docs/guide/scales.md).
 ///
-/// Thread safety: const members may run from many threads at once, but not during a non-const one.
-/// Snapshots are independent of the grid. Members that look at one voxel take constant time.
+/// Thread safety: const members may run from many threads at once, but not while a non-const member
+/// runs. Members that look at one voxel take constant time. The argument `region` of members is a
+/// box in the grid frame [m], whose bounds may be infinite.
 class VIEWGAIN_EXPORT BeliefGrid {
  public:
-  /// A known voxel, for set() and for_each_occupied().
+  /// A known voxel and its data, for set() and for_each_occupied().
   struct VoxelValue {
-    Index3 voxel;                    ///< in the workspace; for a visited cell, its lowest voxel
-    float log_odds = 0;              ///< set() rounds it to the nearest step of 0.05 and clamps it
-    std::optional<Belief> belief{};  ///< empty: no belief; set() then removes an existing one
+    Index3 voxel;        ///< voxel of the workspace; for_each_occupied(): lowest of its cell
+    float log_odds = 0;  ///< set() rounds it to a step of 0.05 and clamps it
+    std::optional<Belief> belief{};  ///< empty: none, and set() removes an existing one
   };
 
-  /// Voxel counts of a map or a part of it, and the removed entropy that measures progress in Foix
-  /// et al. (2012).
+  /// Voxel counts of a map or of a part of it, and the removed entropy, which measures progress
+  /// (Foix et al. 2012).
   struct Statistics {
     std::uint64_t unknown = 0;   ///< voxels never observed
     std::uint64_t free = 0;      ///< voxels known to be free
     std::uint64_t occupied = 0;  ///< voxels known to be occupied
-    std::uint64_t bytes = 0;     ///< memory of the whole map: tree, beliefs and bookkeeping
-    /// Sum over occupied voxels of H(Λ_0) - H(Λ_0 + Λ_v) [nat, or m² for trace]; a cell of scale s
-    /// counts as 4^s voxels that share its Λ.
+    std::uint64_t bytes = 0;     ///< memory of the whole map
+    /// Sum over occupied voxels of H(Λ_0) - H(Λ_0 + Λ_v) [nat; m² with Criterion::trace]. Λ_0 is
+    /// the prior information, Λ_v that of the Belief and H the entropy() (core/criterion.hpp). A
+    /// cell of scale s counts as 4^s voxels, among which its Λ_v is divided.
     double entropy_removed = 0;
-    /// Number of readings that ended in the map or part. Their voxels may be free by now.
+    /// Number of readings that ended in the map or part, including those in voxels that are free by
+    /// now.
     std::uint64_t hits = 0;
   };
 
-  /// `sensor`: the map's sensor, which determines prior_sigma if that is not set. Throws
-  /// Error(invalid_argument) naming the value if voxel_size is below 2e-5 m, voxel_size or
-  /// prior_sigma is not positive and finite, the workspace is not finite or is inside out, or
-  /// T_world_grid is not a rigid transform (1e-9). Throws Error(capacity) above 65,536 voxels along
-  /// an axis, 2^40 voxels, or indices of ±2^30.
+  /// Makes an unknown map. `sensor` only sets the default of prior_sigma. Throws
+  /// Error(invalid_argument), naming the value, if voxel_size is below 2e-5 m, voxel_size or
+  /// prior_sigma is not positive and finite, the workspace is empty or not finite, or T_world_grid
+  /// is not rigid within 1e-9 (orthonormality_error()). Throws Error(capacity) above 65,536 voxels
+  /// along an axis, 2^40 voxels in total, or indices beyond ±2^30.
   explicit BeliefGrid(const GridConfig& config, const Sensor& sensor = {});
   ~BeliefGrid();
   BeliefGrid(BeliefGrid&&) noexcept;
   BeliefGrid& operator=(BeliefGrid&&) noexcept;
 
-  /// Makes a map from a dense array of states, [x][y][z] with z fastest, one per voxel of the
-  /// workspace: 0 unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief). Because
-  /// beliefs are missing, GainModel::paper rewards measuring occupied voxels again; the other gains
-  /// do not. Throws Error(invalid_argument) for another size or state. Also throws whatever the
+  /// Makes a map from an array of states, [x][y][z] with z fastest, one per voxel of the workspace:
+  /// 0 unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief). Because beliefs are
+  /// missing, GainModel::paper rewards measuring occupied voxels again; other gains do not. Throws
+  /// Error(invalid_argument) if the array has another size or state. Also throws whatever the
   /// constructor throws. Cost: one pass over the array.
   [[nodiscard]] static BeliefGrid from_states(const GridConfig& config,
                                               std::span<const std::uint8_t> states,
                                               const Sensor& sensor = {});
 
-  /// A deep copy. Cost: a copy of the tree; beliefs are copied when they change.
+  /// A deep copy. Cost: a copy of the states. Beliefs are copied on write.
   [[nodiscard]] BeliefGrid clone() const;
 
   [[nodiscard]] double voxel_size() const noexcept;  ///< [m]
@@ -106,116 +109,114 @@ class VIEWGAIN_EXPORT BeliefGrid {
   [[nodiscard]] double prior_sigma() const noexcept;  ///< [m]
   [[nodiscard]] Index3 min_index() const noexcept;    ///< lowest voxel of the workspace
   [[nodiscard]] Index3 dims() const noexcept;         ///< voxels along x, y, z
-  [[nodiscard]] Box workspace() const noexcept;       ///< extended to the lattice, grid frame [m]
+  [[nodiscard]] Box workspace() const noexcept;       ///< extended to whole voxels, grid frame [m]
   /// Number of voxels in the workspace.
   [[nodiscard]] std::uint64_t voxel_count() const noexcept;
 
-  /// The voxel that contains a point of the world [m]; empty outside the workspace or if the point
-  /// is not finite.
+  /// The voxel that contains a point in the world frame [m]. Empty if the point lies outside the
+  /// workspace or is not finite.
   [[nodiscard]] std::optional<Index3> index_of(const Eigen::Vector3d& p_world) const;
-  /// Centre of a voxel in the world [m]; any voxel of the lattice.
+  /// Centre of a voxel in the world frame [m]. The voxel may lie outside the workspace.
   [[nodiscard]] Eigen::Vector3d center(Index3 voxel) const;
 
-  /// State of a voxel; unknown outside the workspace, where a voxel has neither log-odds nor
-  /// belief.
+  /// State of a voxel; unknown outside the workspace.
   [[nodiscard]] VoxelState state(Index3 voxel) const;
-  /// Log-odds of a voxel; empty if unknown.
+  /// Log-odds of a voxel; empty if the voxel is unknown.
   [[nodiscard]] std::optional<float> log_odds(Index3 voxel) const;
-  /// Belief of a voxel; empty if it was never hit.
+  /// Belief of a voxel; empty if the voxel was never hit.
   [[nodiscard]] std::optional<Belief> belief(Index3 voxel) const;
   /// Scale of the leaf that contains the voxel; 0 outside the workspace.
   [[nodiscard]] int scale(Index3 voxel) const;
 
-  /// Writes the states of all voxels to a dense array, [x][y][z] with z fastest. Throws
-  /// Error(invalid_argument) unless the size is voxel_count(). Cost: one pass over the array.
+  /// Writes the states of all voxels to an array, as in from_states(). Throws
+  /// Error(invalid_argument) unless its size is voxel_count(). Cost: one pass over the array.
   void copy_states(std::span<std::uint8_t> states) const;
 
   /// Sets one voxel of the workspace, for importers and tests. If no belief is given, an existing
-  /// one is removed. Throws Error(invalid_argument) without a change if the voxel lies outside the
-  /// workspace, the log-odds is NaN, or the belief is impossible: a number that is not finite,
-  /// information that is not positive semidefinite, or a position Λ⁻¹η more than 2^28 voxels away.
-  /// Rounding errors of the information are repaired.
+  /// one is removed. Throws Error(invalid_argument), and changes nothing, if the voxel lies outside
+  /// the workspace, the log-odds is NaN or the belief is invalid. In a valid belief, all numbers
+  /// are finite, the information is positive semidefinite up to rounding errors, which are
+  /// repaired, and the mean position Λ⁻¹η is at most 2^28 voxels away.
   void set(Index3 voxel, float log_odds, const std::optional<Belief>& belief = {});
-  /// Sets many voxels, with the same result as one by one in order, but faster. If one is invalid,
-  /// none is set. Cost: sorting by blocks, and a copy of each changed block.
+  /// Sets many voxels at once. The result is as if they were set one after the other. If one is
+  /// invalid, none is set. Cost: sorting by leaves, and a copy of each changed leaf.
   void set(std::span<const VoxelValue> voxels);
 
-  /// Resets voxels whose centres lie in a region of the grid frame [m] to unknown, without log-odds
-  /// and belief. Bounds may be infinite. The region is extended to whole cells of the map's largest
-  /// scale. Views and hazard counters remain. Use it after objects have moved, and for maps that
-  /// follow a robot. Returns the number of voxels that were known. Throws Error(invalid_argument)
-  /// for a bound that is NaN or a region inside out. Cost: one pass over the map's blocks.
+  /// Makes voxels whose centres lie in the region unknown again, without log-odds and belief. The
+  /// region is extended to whole cells of the map's largest scale. Views and hazard counters
+  /// remain. Use it when objects have moved, and for maps that follow a robot. Returns the number
+  /// of voxels that were known. Throws Error(invalid_argument) if a bound is NaN or a minimum
+  /// exceeds its maximum. Cost: one pass over the map's leaves.
   std::uint64_t forget(const Box& region);
 
-  /// Sets the voxels of a lattice box from a dense array of states, [x][y][z] with z fastest, as in
-  /// from_states(); for planners with their own growing map. A voxel that already has the state
-  /// does not change; others get the log-odds of from_states() and no belief. Changed leaves get
-  /// scale 0 (resample()). Returns the number of changed voxels; only these cost time in
-  /// VoxelScene::update(). Throws Error(invalid_argument) without a change if the box is not inside
-  /// the workspace, and for another size or state. Cost: one pass over the array.
+  /// Sets the voxels of a box from an array of states, as in from_states(). For planners with their
+  /// own growing map. Voxels that already have the state do not change, and cost no time in
+  /// VoxelScene::update(). The others lose their belief. Changed leaves get scale 0. Returns the
+  /// number of changed voxels. Throws Error(invalid_argument), and changes nothing, if the box is
+  /// not inside the workspace or the array has another size or state. Cost: one pass over the
+  /// array.
   std::uint64_t update_box(const VoxelBox& box, std::span<const std::uint8_t> states);
 
-  /// Sets the scale of the leaves that a region of the grid frame [m] touches; bounds may be
-  /// infinite. A leaf that the workspace cuts off gets the largest scale that fits. When cells
-  /// merge, their beliefs add up, and the new cell is occupied if one of the old cells was. When a
-  /// cell is split, its belief goes to the new cell that contains the mean of its readings. The
-  /// other parts of an occupied cell become unknown. Returns the number of changed leaves. Throws
-  /// Error(invalid_argument) for a NaN or a scale outside 0..3. Cost: one pass over the map.
+  /// Sets the scale of all leaves that the region touches. If a leaf is only partly inside the
+  /// workspace, it gets the largest scale that fits. When cells merge, their beliefs add up, and
+  /// the new cell is occupied if one of the old cells was. When a cell is split, its belief goes to
+  /// the new cell that contains the mean of its readings. The rest of an occupied cell becomes
+  /// unknown. Returns the number of changed leaves. Throws Error(invalid_argument) if a bound is
+  /// NaN or the scale is outside 0..3. Cost: one pass over the map.
   std::uint64_t resample(const Box& region, int scale);
 
-  /// Visits occupied voxels, one per cell. Leaves come in the order of snapshot().leaves, the
-  /// voxels of a leaf in the order [x][y][z] with z fastest. Equal maps give the same order. The
-  /// visit must not change the grid. Cost: a snapshot.
+  /// Calls `visit` for the lowest voxel of each occupied cell. Leaves come in the order of
+  /// snapshot().leaves, and the voxels of a leaf in the order [x][y][z] with z fastest. Equal maps
+  /// give the same order. `visit` must not change the grid. Cost: a snapshot.
   void for_each_occupied(const std::function<void(const VoxelValue&)>& visit) const;
 
-  /// Visits all beliefs, including those of free voxels, block by block in a fixed order. Within a
-  /// block the order is [x][y][z] with z fastest.
+  /// Calls `visit` for each belief, including those of free voxels, leaf by leaf in a fixed order.
+  /// Within a leaf the order is [x][y][z] with z fastest.
   void for_each_belief(const std::function<void(Index3, const Belief&)>& visit) const;
 
   /// T_world_camera of every integrated frame, in order.
   [[nodiscard]] const std::vector<Pose>& views() const noexcept;
-  /// Appends a view. Throws Error(invalid_argument) if the pose is not rigid (1e-3; smaller
-  /// deviations are orthonormalised).
+  /// Appends a pose to views(), after repairing it with rigid_pose(). Throws
+  /// Error(invalid_argument) if the pose is not rigid within 1e-3.
   void append_view(const Pose& T_world_camera);
 
-  /// Counters of frames for the hazard of unknown space (HazardCalibration).
+  /// Counts from frames that correct the hazard of unknown space (HazardCalibration).
   [[nodiscard]] const HazardCounters& hazard_counters() const noexcept;
-  /// Replaces the counters. Throws Error(invalid_argument) for a count that is negative or above
-  /// 2^40.
+  /// Replaces the counters. Throws Error(invalid_argument) if a count is negative or above 2^40.
   void set_hazard_counters(const HazardCounters& counters);
 
-  /// Where the map comes from. FrameIntegrator and CloudIntegrator record sensor and frames;
-  /// save_vdb() and clone() keep them. Notes are not part of content_hash().
+  /// The origin of the map: its sensor and frames, which FrameIntegrator and CloudIntegrator
+  /// record. save_vdb() and clone() keep the notes. content_hash() ignores them.
   [[nodiscard]] const MapNotes& notes() const noexcept;
-  /// Replaces the notes. Throws Error(invalid_argument) for an invalid identity of a frame
-  /// (DepthFrame::identity), and if MapNotes::others contains the name "sensor" or "frames".
+  /// Replaces the notes. Throws Error(invalid_argument) if the identity of a frame is invalid
+  /// (DepthFrame::identity), or MapNotes::others contains the name "sensor" or "frames".
   void set_notes(MapNotes notes);
 
-  /// Statistics of the map; the criterion applies to the removed entropy. Deterministic. Cost: one
-  /// pass over the map's blocks.
+  /// Statistics of the map. `criterion` selects the entropy. Deterministic. Cost: one pass over the
+  /// map's leaves.
   [[nodiscard]] Statistics statistics(Criterion criterion = Criterion::log_diagonal) const;
-  /// Statistics of the voxels whose centres lie in a half-open region of the grid frame [m]. The
-  /// belief of a cell larger than a voxel counts if the centre of the cell's lowest voxel lies in
-  /// the region. Bounds may be infinite. Throws Error(invalid_argument) if a bound is NaN.
+  /// Statistics of the voxels whose centres lie in the region, Box::contains(). The belief of a
+  /// cell counts if the centre of the cell's lowest voxel lies in the region. Throws
+  /// Error(invalid_argument) if a bound is NaN.
   [[nodiscard]] Statistics statistics(const Box& region,
                                       Criterion criterion = Criterion::log_diagonal) const;
-  /// Mean position uncertainty [m] of the region's occupied voxels with a belief: √(tr(Λ_v⁻¹ +
-  /// e²/12 I) / 3), where e is the edge of the cell. A cell of scale s has the weight 4^s, because
-  /// its area is 4^s times that of a voxel. NaN if there are no such voxels. Throws like
-  /// statistics(). Cost: one pass over the occupied voxels.
+  /// Mean of √(tr(Λ_v⁻¹ + e²/12 I) / 3), the uncertainty of the surface position [m], over the
+  /// region's occupied cells with a belief. e is the edge of a cell. A cell of scale s has the
+  /// weight 4^s, because its area is 4^s times that of a voxel. NaN if there are no such cells.
+  /// Throws Error(invalid_argument) if a bound is NaN. Cost: one pass over the occupied voxels.
   [[nodiscard]] double mean_sigma(const Box& region) const;
 
-  /// Hash of states, log-odds, beliefs, layout, prior, views and, if present, hazard counters and
-  /// scales; 16 hexadecimal digits. Equal maps have the same hash, independent of thread count,
-  /// save and load, and tree topology.
+  /// Hash of the map's contents, as 16 hexadecimal digits. Covers states, log-odds, beliefs,
+  /// scales, layout, prior, views and hazard counters. Maps with equal contents have the same hash,
+  /// whatever the number of threads, and after saving and loading.
   [[nodiscard]] std::string content_hash() const;
 
-  /// The data that a VoxelScene needs. Immutable and independent of later changes to the grid;
-  /// beliefs are shared and copied on write. Cost: one pass over the leaves that are not free.
+  /// The data that a VoxelScene needs. Immutable, and independent of later changes to the grid.
+  /// Beliefs are copied on write. Cost: one pass over the leaves that are not completely free.
   [[nodiscard]] GridSnapshot snapshot() const;
-  /// The same result, but faster: leaves in regions of 32³ voxels that did not change since
-  /// `before` are copied from `before`. `before` must come from this grid or the grid it was cloned
-  /// from; any other snapshot has no effect.
+  /// As above, but faster: copies regions of 32³ voxels from `before` if they did not change since.
+  /// `before` must be a snapshot of this grid, or of the grid that it was cloned from. Any other
+  /// snapshot has no effect.
   [[nodiscard]] GridSnapshot snapshot(const GridSnapshot& before) const;
 
  private:

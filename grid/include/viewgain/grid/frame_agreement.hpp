@@ -17,39 +17,40 @@
 namespace viewgain {
 class DisplacementFit;
 
-/// Agreement of a frame with the others, counted on a sample of its readings (measured depths).
+/// How well a frame agrees with the other frames, measured on a sample of its readings (measured
+/// depths).
 struct VIEWGAIN_EXPORT FrameContradiction {
-  std::size_t readings = 0;   ///< readings of this frame in the workspace, on a smooth surface
-  std::size_t in_free = 0;    ///< number of these in space that other frames saw as free
-  std::size_t others = 0;     ///< readings of earlier frames that this frame sees, or sees past
-  std::size_t seen_past = 0;  ///< number of these in space that this frame shows as free
-  /// Readings of earlier frames that project onto flat parts of this one.
+  std::size_t readings = 0;  ///< sampled readings of this frame in the workspace, on smooth surface
+  std::size_t in_free = 0;   ///< number of them in space that other frames saw as free
+  std::size_t others = 0;    ///< readings of earlier frames in this frame's view, and not hidden
+  std::size_t seen_past = 0;  ///< number of them in space that this frame sees as free
+  /// Readings of earlier frames that project onto flat parts of this frame.
   std::size_t compared = 0;
-  /// Distance between this frame's surface and the same surface in earlier frames [m]. It is the
-  /// RMS along the normals, without the part that noise explains. 0 if too few readings were
-  /// compared.
+  /// RMS distance between this frame's surface and the same surface in earlier frames, along the
+  /// normals and without the part that noise explains [m]. 0 if too few readings were compared.
   double displacement = 0;
-  /// Displacement that the declared errors explain [m]. These are the errors of a reading (at most
-  /// 0.35 % of the range), of the scale, and of the poses of both frames.
+  /// The displacement that the stated uncertainties explain [m]. These are the uncertainty of a
+  /// reading (at most 0.35 % of the range), the scale error, and the uncertainty of the poses of
+  /// both frames.
   double expected = 0;
-  /// An earlier frame with the same image from another pose, if any.
+  /// Index of an earlier frame with the same image but another pose, if any.
   std::optional<std::size_t> same_image_as{};
 
-  /// in_free / readings; 0 without readings.
+  /// in_free / readings; 0 if there are no readings.
   [[nodiscard]] double share_in_free() const {
     return readings == 0 ? 0 : static_cast<double>(in_free) / static_cast<double>(readings);
   }
-  /// seen_past / others; 0 without others.
+  /// seen_past / others; 0 if there are no such readings.
   [[nodiscard]] double share_seen_past() const {
     return others == 0 ? 0 : static_cast<double>(seen_past) / static_cast<double>(others);
   }
 };
 
-/// Compares frames while they go into a map. Counts the readings in space that other frames saw as
-/// free, and measures how far apart the surfaces of different frames lie. A reading is in free
-/// space if its voxel and all voxels within three standard deviations along its ray are free. This
-/// is checked twice, before the reading's frame is integrated and after all frames. The reading
-/// counts if it is in free space at one of these times.
+/// Compares frames while they are integrated into a map. Counts the readings in space that other
+/// frames saw as free, and measures how far apart the surfaces of different frames lie. A reading
+/// is in free space if its voxel and all voxels within three standard deviations along its ray are
+/// free. It counts if it is in free space either before its frame is integrated or when all frames
+/// are.
 ///
 /// Thread safety: one call at a time. Deterministic. Cost: 0.3 ms per frame; at most 4 MB.
 /// @code
@@ -62,18 +63,19 @@ struct VIEWGAIN_EXPORT FrameContradiction {
 /// @endcode
 class VIEWGAIN_EXPORT FrameAgreement {
  public:
-  /// `support_plane`: as in IntegrationConfig. Throws Error(invalid_argument) if the sensor is
-  /// invalid.
+  /// `support_plane` [m] is the height z of a table, as in IntegrationConfig. Throws
+  /// Error(invalid_argument) if the sensor is invalid.
   explicit FrameAgreement(const Sensor& sensor, std::optional<double> support_plane = {});
 
-  /// Takes a frame that is about to be integrated into the map `before`. Flying pixels must be
-  /// removed and known depths marked. `pose_sigma`: as in FrameIntegrator::integrate(). Throws
-  /// Error(invalid_argument), and changes nothing, for a frame of another size, a pose that is not
-  /// rigid, and a sigma that is negative or not finite.
+  /// Call it before a frame is integrated. `before` is the map at that time. The frame must already
+  /// be filtered (JumpEdgeFilter) and have its known depths (ObstacleView). `pose_sigma` is as in
+  /// FrameIntegrator::integrate(). Throws Error(invalid_argument), and changes nothing, if the
+  /// frame does not have the sensor's size, the pose is not rigid within 1e-3, or a sigma is
+  /// negative or not finite.
   void look(const BeliefGrid& before, const DepthFrame& frame, const Pose& T_world_camera,
             const PoseSigma& pose_sigma = {});
 
-  /// Results, one per call of look(). `after` must be the map with all frames.
+  /// The results, one per call of look(). `after` must be the map with all these frames.
   [[nodiscard]] std::vector<FrameContradiction> frames(const BeliefGrid& after) const;
 
  private:
@@ -81,8 +83,8 @@ class VIEWGAIN_EXPORT FrameAgreement {
     Eigen::Vector3d p_world;
     Eigen::Vector3f ray;           ///< unit, world
     float axial = 0, lateral = 0;  ///< standard deviations along and across the ray [m]
-    MeasurementSigmas of_pose{};   ///< of these, the part common to all readings of a frame
-    Eigen::Vector3f normal;        ///< surface normal away from the camera, world; 0: not flat
+    MeasurementSigmas of_pose{};   ///< of these, the part that all readings of a frame share
+    Eigen::Vector3f normal;  ///< surface normal away from the camera, world; 0: not on a flat part
     std::uint32_t frame = 0;
     bool in_free = false;
   };
@@ -92,9 +94,9 @@ class VIEWGAIN_EXPORT FrameAgreement {
     Pose T_world_camera{};
   };
 
-  /// Standard deviations of a frame's readings, including its pose and the scale.
+  /// Standard deviations of a frame's readings, including those of pose and scale.
   [[nodiscard]] MeasurementSigmas sigmas(double range, const PoseSigma& pose_sigma) const;
-  /// Readings of smooth surface in the workspace, at every stride-th pixel of rows and columns.
+  /// Readings on smooth surface in the workspace, at every stride-th pixel of rows and columns.
   [[nodiscard]] std::vector<Reading> sampled(const BeliefGrid& map, const DepthFrame& frame,
                                              const Pose& T_world_camera,
                                              const PoseSigma& pose_sigma, std::size_t stride) const;
@@ -117,9 +119,9 @@ class VIEWGAIN_EXPORT FrameAgreement {
   std::optional<double> support_plane_;
   std::vector<Eigen::Vector3d> rays_;
   std::vector<FrameContradiction> frames_;
-  std::vector<Reading> kept_;  ///< of all frames; thinned out as their number grows
+  std::vector<Reading> kept_;  ///< of all frames; fewer per frame as their number grows
   std::size_t keep_every_ = 1;
-  std::vector<Image> images_;  ///< the latest ones that differ
+  std::vector<Image> images_;  ///< the latest different images
 };
 
 }  // namespace viewgain

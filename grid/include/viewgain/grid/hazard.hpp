@@ -28,50 +28,50 @@ class OpenDirections;
 }  // namespace detail
 
 /// Settings of the hazard: the rate [1/m] at which a ray through unknown voxels meets the surface.
-/// A rate of 0 means that there is no surface, so no ray ends there. If a ray reaches known surface
-/// from behind, the back of this surface is expected in the unknown voxels just passed, where their
-/// rates are positive. Rates below 1e-30 /m are 0 in single precision.
+/// Where the rate is 0, there is no surface and no ray ends. If a ray reaches known surface from
+/// behind, its back is expected in the last unknown voxels before it, unless their rate is 0. Rates
+/// below 1e-30 /m are rounded to 0.
 struct VIEWGAIN_EXPORT HazardConfig {
-  /// Model of the hazard as a function of the location relative to known surface
+  /// Model of the hazard, which depends on the location relative to known surface
   /// (apps/docs/guide/surface_gain.md): h(d, s, o) = far_rate + near_rate c(s) g(o) exp(-d /
-  /// decay_length). Beyond 5 decay lengths the hazard is far_rate. c is continuation() and g is
-  /// openness().
+  /// decay_length). Beyond 5 decay lengths it is far_rate. c is continuation() and g is openness().
   /// - d: distance to known surface
-  /// - s: sine of the elevation of the location above the tangent plane at the nearest point of
-  ///   known surface; 1 is straight towards free space
-  /// - o: fraction of the 26 directions to neighbouring cells in which free space begins within 2.2
-  ///   decay lengths, nearer than any occupied voxel
+  /// - s: sine of the location's elevation above the tangent plane at the nearest point of known
+  ///   surface; 1 is straight towards free space
+  /// - o: openness, the fraction of the 26 directions to neighbouring hazard cells (HazardField) in
+  ///   which free space begins within 2.2 decay lengths, and before any occupied voxel
   ///
-  /// Members check nothing; validate() does.
+  /// Members do not check their arguments; validate() checks the rates.
   struct Model {
     double near_rate = 231;       ///< h_0 [1/m]
     double decay_length = 0.016;  ///< lambda [m]
     double far_rate = 0.029;      ///< h_inf [1/m]
 
     static constexpr double kCut = 5.0;        ///< [decay lengths]
-    static constexpr double kOpenReach = 2.2;  ///< reach of the directions of o [decay lengths]
+    static constexpr double kOpenReach = 2.2;  ///< length of the directions of o [decay lengths]
 
-    /// Start values for an object whose longest side is `size` [m]: fitted to seven objects of 0.35
-    /// m (perf/hazard/fit.py) and scaled with the size.
+    /// Start values, for an object whose longest side is `size` [m]. They were fitted to seven
+    /// objects of 0.35 m (perf/hazard/fit.py) and are scaled with the size.
     [[nodiscard]] static Model for_size(double size) {
       return {81.0 / size, 0.0457 * size, 0.01 / size};
     }
-    /// A constant `rate` [1/m]; `size` [m] sets the size of the hazard cells.
+    /// A constant rate [1/m]. `size` [m] only sets the decay length, and with it the edge of the
+    /// hazard cells.
     [[nodiscard]] static Model constant(double rate, double size) {
       return {0.0, 0.0457 * size, rate};
     }
 
-    /// c(s): surfaces continue in their direction and bend away from free space rather than into
-    /// it. A fitted function, piecewise linear in steps of 1/5 of s. It is 1 at -0.4 and less
-    /// elsewhere.
+    /// c(s), the effect of the direction: surfaces continue, and bend away from free space rather
+    /// than into it. Fitted, and piecewise linear in steps of 1/5 of s. It is 1 at s = -0.4 and
+    /// less elsewhere.
     [[nodiscard]] static VIEWGAIN_EXPORT double continuation(double sine_of_elevation);
 
-    /// g(o): surface lies between free space and hidden space. Voxels with free space in nearly all
-    /// directions are gaps in free space; voxels with none lie deep inside. A fitted function,
-    /// piecewise linear in steps of 1/13 of o.
+    /// g(o), the effect of the openness: surface lies between free and hidden space. A location
+    /// with free space in nearly all directions is a gap in free space; one with none lies deep
+    /// inside. Fitted, and piecewise linear in steps of 1/13 of o.
     [[nodiscard]] static VIEWGAIN_EXPORT double openness(double share_of_directions);
 
-    /// Hazard [1/m] at this distance from known surface [m]; `shape` is c g.
+    /// Hazard [1/m]. `distance` [m] is d and `shape` is c(s) g(o).
     [[nodiscard]] double rate(double distance, double shape = 1.0) const {
       return distance <= kCut * decay_length
                  ? far_rate + near_rate * shape * std::exp(-distance / decay_length)
@@ -79,84 +79,83 @@ struct VIEWGAIN_EXPORT HazardConfig {
     }
     bool operator==(const Model&) const = default;
   };
-  /// External rates that replace the model's, for example from a prior of the object's shape.
+  /// Rates from elsewhere that replace the model's, for example from a prior of the object's shape.
   struct Volume {
-    VoxelBox box;              ///< voxels of the grid's lattice
-    std::vector<float> rates;  ///< [1/m], [x][y][z] with z fastest: box.volume() rates
-    float outside = 0;         ///< [1/m]
+    VoxelBox box;              ///< the voxels, on the grid's lattice
+    std::vector<float> rates;  ///< rates of the box's voxels [1/m], [x][y][z] with z fastest
+    float outside = 0;         ///< rate outside the box [1/m]
   };
 
-  /// Longest side of the object [m]. Default: the longest side of the box around the surface seen
-  /// so far, or of the workspace if no surface was seen.
+  /// Longest side of the object [m]. Unset: the longest side of the bounding box of the surface
+  /// seen so far, or of the workspace if no surface was seen.
   std::optional<double> object_size{};
-  std::optional<Model> model{};  ///< defaults to Model::for_size
+  std::optional<Model> model{};  ///< unset: Model::for_size(object_size)
   /// Rates per voxel that replace the model; null: none.
   std::shared_ptr<const Volume> volume{};
-  /// Corrects the start values by counts from the frames so far (GridSnapshot::hazard). Has no
-  /// effect if `model` or `volume` is set. The counts refer to distances in decay lengths, so
-  /// object_size should be the same for all scenes of a map.
+  /// Whether counts from the frames so far (HazardCounters) correct the start values. Has no effect
+  /// if `model` or `volume` is set. The counts are per distance in decay lengths, so object_size
+  /// should be the same for all scenes of a map.
   bool calibrated = true;
 
-  /// Throws Error(invalid_argument) naming the value for a size or decay length that is not
-  /// positive and finite, a rate that is negative or not finite, or a volume whose number of rates
-  /// does not match its box.
+  /// Throws Error(invalid_argument), naming the value, if a size or decay length is not positive
+  /// and finite, a rate is negative or not finite, or the number of rates in the volume is not that
+  /// of the voxels in its box.
   void validate() const;
 };
 
-/// A constant rate [1/m] in the workspace of a map. `object_size` [m] sets the size of the hazard
-/// cells and defaults to the workspace's longest side. Throws Error(invalid_argument) for an object
-/// size that is not positive and finite; HazardConfig::validate() checks the rate. Constant time.
+/// Settings for a constant `rate` [1/m] in a map. `object_size` [m] sets the edge of the hazard
+/// cells. Default: the longest side of the workspace. Throws Error(invalid_argument) if object_size
+/// is not positive and finite. The rate is not checked. Constant time.
 [[nodiscard]] VIEWGAIN_EXPORT HazardConfig constant_hazard(double rate, const BeliefGrid& grid,
                                                            std::optional<double> object_size = {});
 
-/// Hazard of a map in its current state. Immutable; all members may be called from many threads.
+/// Hazard of a map in its current state. Immutable; members may be called from many threads. They
+/// accept any voxel, never throw, and take constant time.
 ///
-/// Rates are constant in hazard cells: cubes of 1, 2, 4 or 8 voxels per edge, about 0.28 decay
-/// lengths wide. The distance of a cell is measured to the nearest cell with evidence, between the
-/// cells' centres. A cell has evidence if it contains an occupied voxel with at least 3 hits. If
-/// voxels are finer than the footprint, the cubes of pooling_of() take the place of voxels.
-/// Distances above 5 decay lengths or 127 cells count as infinite; this limit is called the cut.
-/// The surface normal points to where more of the surrounding 7³ cells are free.
-/// HazardCounters::factor() scales the start values, separately for each class of distance. Rates
-/// of a HazardConfig::volume are per voxel. Members accept any voxel, never throw, and take
-/// constant time.
+/// Rates are computed per hazard cell: a cube of 1, 2, 4 or 8 voxels per edge, about 0.28 decay
+/// lengths wide. Rates from HazardConfig::volume are per voxel. A cell has evidence if it contains
+/// an occupied voxel with at least 3 readings (Belief::hits). If voxels are smaller than the
+/// footprint, the cubes of pooling_of() replace voxels here. The distance of a cell to known
+/// surface is that of its centre to the centre of the nearest cell with evidence. Beyond the cut,
+/// which is 5 decay lengths or 127 cells, it counts as infinite. The surface normal points to where
+/// more of the surrounding 7³ cells are free. HazardCounters::factor() scales the start values per
+/// class of distance.
 class VIEWGAIN_EXPORT HazardField {
  public:
-  /// Computes exact distances in the box of cells with evidence, extended by the cut, on the
-  /// threads of `exec`; results do not depend on their number. Cost: some milliseconds per million
-  /// cells (perf/README.md). Needs about 20 bytes per cell during the call and 4 bytes afterwards.
-  /// Throws Error(capacity) above 2³¹ cells. Also throws whatever HazardConfig::validate() and
-  /// thread_count() throw.
+  /// Computes the rates of all cells within the cut of evidence, on the threads of `exec`. Results
+  /// do not depend on the number of threads. Throws Error(capacity) above 2³¹ cells. Also throws
+  /// whatever HazardConfig::validate() and thread_count() throw. Cost: some milliseconds per
+  /// million cells (perf/README.md). Needs about 20 bytes per cell during the call and 4 bytes
+  /// afterwards.
   explicit HazardField(const GridSnapshot& snapshot, const HazardConfig& config = {},
                        const ExecConfig& exec = {});
 
-  /// The start values, or HazardConfig::model if it was set. Because of the map's counters, rates
-  /// can differ from the start values.
+  /// HazardConfig::model if it was set, otherwise the start values (Model::for_size()). The
+  /// counters of the map can make rates differ from the start values.
   [[nodiscard]] const HazardConfig::Model& model() const { return model_; }
-  /// Rate beyond the cut [1/m]; with a volume, outside its box.
+  /// Rate beyond the cut [1/m]. With a volume: rate outside its box.
   [[nodiscard]] float far_rate() const { return far_rate_; }
-  /// Whether rates follow the map's counters. They do not with a given model or volume, or if
-  /// `calibrated` is off.
+  /// Whether the counters of the map correct the rates. False if HazardConfig sets a model or
+  /// volume, or if `calibrated` is false.
   [[nodiscard]] bool follows_counters() const { return follows_counters_; }
-  /// Binary logarithm of the edge of the hazard cells [voxels]; 0 with a volume.
+  /// Binary logarithm of the edge of a hazard cell in voxels; 0 with a volume.
   [[nodiscard]] int cell_shift() const { return volume_ ? 0 : shift_; }
   [[nodiscard]] double voxel_size() const { return voxel_size_; }  ///< [m]
 
-  /// Distance from a voxel's cell to the nearest cell with evidence [m]; infinity beyond the cut.
+  /// Distance of a voxel's cell to known surface [m]; infinity beyond the cut.
   [[nodiscard]] double distance(Index3 voxel) const {
     const std::size_t cell = cell_of(voxel);
     return cell == kBeyond || squared_[cell] == kNoDistance
                ? std::numeric_limits<double>::infinity()
                : std::sqrt(static_cast<double>(squared_[cell])) * voxel_size_ * (1 << shift_);
   }
-  /// Factor c g of a voxel that is not free: HazardConfig::Model::continuation() times openness(),
-  /// in steps of 1/16384; 1 beyond the cut. If several cells with evidence are equally near, one of
-  /// them is used.
+  /// Factor c(s) g(o) of HazardConfig::Model for a voxel that is not free, in steps of 1/16384; 1
+  /// beyond the cut. If several cells with evidence are equally near, one of them determines s.
   [[nodiscard]] double shape(Index3 voxel) const {
     const std::size_t cell = cell_of(voxel);
     return cell == kBeyond ? 1.0 : shapes_[cell] / kShapeUnit;
   }
-  /// Rate in a voxel that is not free [1/m], in the single precision that rays use.
+  /// Rate in a voxel that is not free [1/m]. Rays use this value.
   [[nodiscard]] float rate(Index3 voxel) const {
     if (volume_) return volume_rate(voxel);
     const std::size_t cell = cell_of(voxel);
@@ -164,20 +163,21 @@ class VIEWGAIN_EXPORT HazardField {
     const std::array<float, 2>& rates = rates_[squared_[cell]];
     return rates[0] + rates[1] * static_cast<float>(shapes_[cell]);
   }
-  /// Rate of the model alone, without the counters [1/m].
+  /// Rate of the model without the correction by counters [1/m].
   [[nodiscard]] double start_rate(Index3 voxel) const {
     return model_.rate(distance(voxel), shape(voxel));
   }
   [[nodiscard]] const Pooling& pooling() const { return pooling_; }  ///< pooling of the map
-  /// Whether surface in this voxel counts as new: more than 1.2 pooling lengths from known surface.
+  /// Whether surface in this voxel counts as new. True if its cell is more than 1.2 pooling lengths
+  /// from known surface.
   [[nodiscard]] bool is_new(Index3 voxel) const {
     const std::size_t cell = cell_of(voxel);
     return cell == kBeyond || squared_[cell] > most_known_;
   }
 
-  /// Box of the voxels within the cut of any evidence; empty if there is none.
+  /// Box of the voxels within the cut of evidence; empty if no cell has evidence.
   [[nodiscard]] const VoxelBox& near_box() const { return near_box_; }
-  /// Rates given instead of the model's, or null.
+  /// HazardConfig::volume, or null.
   [[nodiscard]] const HazardConfig::Volume* volume() const { return volume_.get(); }
 
  private:

@@ -10,12 +10,12 @@
 
 namespace viewgain {
 
-/// Where a map comes from. A value type.
+/// The origin of a map. A value type.
 struct VIEWGAIN_EXPORT MapNotes {
-  /// The sensor of all readings, as written by sensor_toml(); map_sensor() of viewgain::formats
-  /// reads it. Empty: several sensors, or an unknown one.
+  /// The sensor of all readings, as text from sensor_toml(). map_sensor() of viewgain::formats
+  /// reads it. Empty if there are several sensors, or the sensor is unknown.
   std::string sensor{};
-  /// DepthFrame::identity of each frame in the map that has one.
+  /// DepthFrame::identity of the frames in the map.
   std::set<std::string> frames{};
   /// Notes of other programs, by name.
   std::map<std::string, std::string> others{};

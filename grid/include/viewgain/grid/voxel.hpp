@@ -12,31 +12,33 @@
 
 namespace viewgain {
 
-/// Voxel state; dense arrays use these numbers in all languages.
+/// State of a voxel, a cube of the map. In all languages, arrays of states contain these numbers.
 enum class VoxelState : std::uint8_t { unknown = 0, free = 1, occupied = 2 };
 
-/// Index of a voxel on the grid's lattice. The lattice starts at the origin of the grid frame.
+/// Index of a voxel on the lattice of a grid. Voxel (0, 0, 0) has its lowest corner at the origin
+/// of the grid frame.
 struct VIEWGAIN_EXPORT Index3 {
-  std::int32_t x = 0, y = 0, z = 0;  ///< of the voxel [x, x+1) × [y, y+1) × [z, z+1), in voxels
+  std::int32_t x = 0, y = 0, z = 0;  ///< the voxel covers [x, x+1) × [y, y+1) × [z, z+1), in voxels
   bool operator==(const Index3&) const = default;
 };
 
-/// The voxel that contains a point `p` [voxels], whose coordinates must be below 2^31.
+/// The voxel that contains the point `p`, which is in the grid frame and in units of voxels. The
+/// absolute values of its coordinates must be below 2^31.
 [[nodiscard]] inline Index3 voxel_of(const Eigen::Vector3d& p) {
-  const auto rounded_down = [](double value) {  // a call of std::floor takes longer
+  const auto rounded_down = [](double value) {  // faster than std::floor
     const auto towards_zero = static_cast<std::int32_t>(value);
     return towards_zero - (value < towards_zero ? 1 : 0);
   };
   return {rounded_down(p.x()), rounded_down(p.y()), rounded_down(p.z())};
 }
 
-/// A box of voxels, [min, max); empty if a side is not positive. Members accept any voxel and never
-/// throw.
+/// A box of voxels. It contains `min` but not `max`, and is empty if a side is not positive.
+/// Members accept any voxel and never throw.
 struct VIEWGAIN_EXPORT VoxelBox {
   Index3 min;  ///< lowest voxel
-  Index3 max;  ///< one past the highest
+  Index3 max;  ///< one past the highest voxel, on each axis
 
-  /// The box of dims voxels along x, y, z, starting at the lowest voxel.
+  /// The box with lowest voxel `min` and `dims` voxels along x, y and z.
   [[nodiscard]] static VoxelBox from_dims(Index3 min, Index3 dims) {
     return {min, {min.x + dims.x, min.y + dims.y, min.z + dims.z}};
   }
@@ -46,8 +48,8 @@ struct VIEWGAIN_EXPORT VoxelBox {
     return v.x >= min.x && v.x < max.x && v.y >= min.y && v.y < max.y && v.z >= min.z &&
            v.z < max.z;
   }
-  /// The voxel of the box that contains a point `p` [voxels] (grid frame, divided by the voxel
-  /// size); empty if the point lies outside or is not finite.
+  /// The voxel of the box that contains the point `p`, which is in the grid frame and in units of
+  /// voxels. Empty if the point lies outside the box or is not finite.
   [[nodiscard]] std::optional<Index3> voxel_at(const Eigen::Vector3d& p) const {
     if (!(p.x() >= min.x && p.x() < max.x && p.y() >= min.y && p.y() < max.y && p.z() >= min.z &&
           p.z() < max.z)) {
@@ -72,8 +74,9 @@ struct VIEWGAIN_EXPORT VoxelBox {
   bool operator==(const VoxelBox&) const = default;
 };
 
-/// Centre of a voxel in the grid frame [m]; its edge is voxel_size [m]. If a scale is given, the
-/// centre of the cell that starts at the voxel and has 2^scale voxels per edge. Checks nothing.
+/// Centre, in the grid frame [m], of the cell of 2^scale voxels per edge whose lowest voxel is
+/// `voxel`. With scale 0 it is the centre of the voxel. voxel_size [m] is the edge of a voxel.
+/// Arguments are not checked.
 [[nodiscard]] inline Eigen::Vector3d voxel_center(Index3 voxel, double voxel_size, int scale = 0) {
   return (Eigen::Vector3d(voxel.x, voxel.y, voxel.z).array() + 0.5 * (1 << scale)) * voxel_size;
 }

@@ -17,38 +17,42 @@
 
 namespace viewgain {
 
-/// How well the frames of a map agree.
+/// How well the frames of a map agree. A reading is one measured depth.
 struct VIEWGAIN_EXPORT FrameConsistency {
   std::vector<FrameContradiction> frames{};  ///< one per frame in the map, in order
-  /// Number of readings (measured depths) in space that other frames saw as free.
+  /// Number of sampled readings in space that other frames saw as free.
   std::size_t in_free = 0;
-  std::size_t seen_past = 0;   ///< number of readings of earlier frames that later frames see past
-  double share_in_free = 0;    ///< in_free as a share of all readings
-  double share_seen_past = 0;  ///< seen_past as a share of the readings of earlier frames
+  /// Number of readings of earlier frames in space that later frames saw as free.
+  std::size_t seen_past = 0;
+  double share_in_free = 0;  ///< in_free as a fraction of the sampled readings
+  /// seen_past as a fraction of the readings of earlier frames in view.
+  double share_seen_past = 0;
   /// Median of FrameContradiction::displacement over the frames [m]; NaN if no frame could be
   /// compared.
   double displacement = 0;
   double expected = 0;  ///< median of FrameContradiction::expected [m]
-  /// Frames that contradict the others, ascending; empty unless something is suspected.
+  /// Indices of frames that contradict the others, ascending; empty unless something is suspected.
   std::vector<std::size_t> contradicting{};
-  Suspicion suspicion{};  ///< likely cause; its kind is empty if the frames agree
+  Suspicion suspicion{};  ///< likely cause of a disagreement; kind is empty if the frames agree
 };
 
-/// Collects data while frames go into a map, to decide whether they agree. Thread safety: one call
-/// at a time. Cost: 0.4 ms per frame; keeps about twelve images.
+/// Decides whether the frames of a map agree, from data that it collects while they are integrated.
+/// Thread safety: one call at a time. Cost: 0.4 ms per frame, and memory for about twelve images.
 class VIEWGAIN_EXPORT FrameCheck {
  public:
-  /// `support_plane`: as in IntegrationConfig. Throws Error(invalid_argument) if the sensor is
-  /// invalid.
+  /// `support_plane` [m] is the height z of a table, as in IntegrationConfig. Throws
+  /// Error(invalid_argument) if the sensor is invalid.
   explicit FrameCheck(const Sensor& sensor, std::optional<double> support_plane = {});
 
-  /// Records a frame and its pose, even if it cannot be used. Ignores frames of another size.
+  /// Records a frame and its pose. Call it for every frame, even if it cannot be integrated.
+  /// Ignores frames that do not have the sensor's size.
   void see(const DepthFrame& frame, const Pose& T_world_camera);
-  /// Records a frame that is about to go into the map, like FrameAgreement::look().
+  /// Calls FrameAgreement::look(). Call it before a frame is integrated; `before` is the map at
+  /// that time.
   void look(const BeliefGrid& before, const DepthFrame& frame, const Pose& T_world_camera,
             const PoseSigma& pose_sigma = {});
 
-  /// Result for all frames so far; `after` must be the map with these frames. Cost:
+  /// The result for all frames so far. `after` must be the map with these frames. Cost: that of
   /// suspect_frames().
   [[nodiscard]] FrameConsistency result(const BeliefGrid& after) const;
 
@@ -56,13 +60,13 @@ class VIEWGAIN_EXPORT FrameCheck {
   Sensor sensor_;
   std::optional<double> support_plane_;
   FrameAgreement agreement_;
-  std::vector<Pose> sequence_;  ///< of all recorded frames
+  std::vector<Pose> sequence_;  ///< poses of all recorded frames
   std::vector<DepthFrame> kept_;
-  std::vector<std::size_t> places_;  ///< of those in the sequence
+  std::vector<std::size_t> places_;  ///< indices of kept_ in sequence_
   std::size_t keep_every_ = 1;
 };
 
-/// Text such as "3, 5-9" for ascending frames 3 and 5 to 9.
+/// Numbers as a text of ranges, such as "3, 5-9". They must be ascending.
 [[nodiscard]] VIEWGAIN_EXPORT std::string ranges_text(const std::vector<std::size_t>& numbers);
 
 }  // namespace viewgain

@@ -15,28 +15,28 @@
 
 namespace viewgain {
 
-/// All obstacles as one mesh, boxes first with twelve triangles each. Throws
-/// Error(invalid_argument) like VoxelScene::build(). Cost: a copy of the meshes.
+/// All obstacles as one mesh: first the boxes, with twelve triangles each, then the meshes. Throws
+/// Error(invalid_argument) for invalid obstacles. Cost: a copy of the meshes.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh mesh_of(const Obstacles& obstacles);
 
-/// Finds where a camera's pixels hit known obstacles, such as the walls of a bin, so that these
-/// obstacles stay out of the map.
+/// Finds the pixels of a camera that show known obstacles, such as the walls of a bin, so that the
+/// obstacles do not become part of the map.
 ///
 /// Thread safety: one call at a time.
 class VIEWGAIN_EXPORT ObstacleView {
  public:
-  /// Removes the lens distortion once. Throws Error(invalid_argument) for an invalid sensor or
-  /// invalid obstacles, Error(backend) if Embree fails.
+  /// Computes the rays of all pixels once. Throws Error(invalid_argument) for an invalid sensor or
+  /// invalid obstacles, and Error(backend) if Embree fails.
   ObstacleView(const Obstacles& obstacles, const Sensor& sensor, const ExecConfig& exec = {});
   ~ObstacleView();
   ObstacleView(ObstacleView&&) noexcept;
   ObstacleView& operator=(ObstacleView&&) noexcept;
 
-  /// Sets DepthFrame::known_depth for a frame from T_world_camera: the depth of the first obstacle
-  /// on each pixel's ray, minus a margin of kKnownSigmas along the obstacle's normal. The depths
-  /// are empty if there are no obstacles. Throws Error(invalid_argument) for a pose that is
-  /// not rigid (1e-3). Also throws whatever check_frame_size() throws. Cost: about 0.2 µs per pixel
-  /// and thread.
+  /// Sets DepthFrame::known_depth for a frame from T_world_camera. It is the depth of the first
+  /// obstacle on each pixel's ray, minus a margin of kKnownSigmas standard deviations along the
+  /// obstacle's normal. It is left empty if there are no obstacles. Throws Error(invalid_argument)
+  /// if the pose is not rigid within 1e-3. Also throws whatever check_frame_size() throws. Cost:
+  /// about 0.2 µs per pixel and thread.
   void mark(DepthFrame& frame, const Pose& T_world_camera) const;
 
  private:

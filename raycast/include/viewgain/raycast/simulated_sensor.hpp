@@ -16,58 +16,61 @@
 
 namespace viewgain {
 
-/// Surroundings and errors of the simulation. By default there is only the mesh.
+/// Surroundings and errors of a simulated camera. By default there are none.
 struct VIEWGAIN_EXPORT SimulationConfig {
-  /// Diffuse sphere around the world's origin that stands for the room [m]; 0: none.
+  /// Radius of a diffuse sphere around the world's origin that simulates the room [m]; 0: none.
   double background_radius = 0;
-  /// Adds Gaussian noise along the ray, from the sensor's model, and noise of the amplitude.
+  /// Adds noise to the amplitudes, and Gaussian noise along the ray, according to the sensor's
+  /// noise model.
   bool noise = false;
-  /// Seed of the noise; together with the frame index it determines every pixel.
+  /// Seed of the noise.
   std::uint64_t seed = 1;
-  /// Rays per pixel: sub_rays x sub_rays, 1..16. For sensors with a modulation frequency, the
-  /// returns of a pixel mix as complex phasors, which creates flying pixels at depth edges. Other
-  /// sensors use the centre ray only.
+  /// A pixel has sub_rays x sub_rays rays; 1 to 16. For sensors with a modulation frequency, the
+  /// returns of a pixel's rays are added as complex phasors, which creates flying pixels at depth
+  /// edges. Other sensors use only the centre ray.
   int sub_rays = 1;
   /// Shifts all rays of a pixel by one random offset across the ray. The offset is Gaussian in both
-  /// directions, with the noise model's lateral standard deviation. The reading (measured depth) is
+  /// directions, with the lateral sigma of the noise model. The reading (measured depth) is
   /// reported on the unshifted ray. Independent of `noise`.
   bool lateral_noise = false;
-  /// Relative error of all ranges in all frames, like an error of the camera's calibration:
-  /// measured ranges are 1 + scale_error times the true ones. In (-1, 1).
+  /// Relative error of all ranges, like that of a wrong calibration: measured ranges are 1 +
+  /// scale_error times the true ones. In (-1, 1).
   double scale_error = 0;
-  /// Wraps ranges to [0, c / (2 modulation_frequency)) if a pixel has a single ray; c is the speed
-  /// of light. If a pixel has several rays, ranges always wrap, because the sum of the returns only
-  /// has a phase.
+  /// Wraps ranges to [0, unambiguous_range()). If a pixel has several rays, its range always wraps,
+  /// because only the phase of the sum is known.
   bool ambiguity = false;
   std::optional<double> support_plane{};  ///< height z of an infinite diffuse table [m], world
-  /// Other diffuse objects, such as known obstacles; null: none.
+  /// Further diffuse objects, such as known obstacles; null: none.
   std::shared_ptr<const SurfaceScene> surroundings{};
 };
 
-/// A depth camera in front of a triangle mesh. Thread safety: acquire() is const and may run from
-/// many threads; results do not depend on their number. Cost of acquire(): sub_rays² rays per
+/// Simulates a depth camera in front of a triangle mesh. Thread safety: acquire() may run from many
+/// threads. Results do not depend on the number of threads. Cost of acquire(): sub_rays² rays per
 /// pixel, on all threads. The constructor calls PinholeCamera::ray() per pixel.
 class VIEWGAIN_EXPORT SimulatedSensor {
  public:
-  /// What the rays of one pixel hit, without noise.
+  /// What the rays of one pixel hit, without noise. A return is a ray that hits something.
   struct PixelTruth {
-    float min_range = 0;      ///< smallest of all returns [m]; 0 if there is none
-    float max_range = 0;      ///< largest of all returns [m]
-    float nearest_range = 0;  ///< the return nearest to the reading [m]; 0 if there is no reading
-    int returns = 0;          ///< number of rays that hit something
+    float min_range = 0;  ///< smallest range of the returns [m]; 0 if there are none
+    float max_range = 0;  ///< largest range of the returns [m]; 0 if there are none
+    /// Range of the return nearest to the reading [m]; 0 if there is no reading.
+    float nearest_range = 0;
+    int returns = 0;  ///< number of returns
   };
 
-  /// Throws Error(invalid_argument) for an invalid sensor or a configuration value out of bounds.
+  /// Throws Error(invalid_argument) if the sensor is invalid or a value of `config` is out of
+  /// bounds.
   SimulatedSensor(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
                   const SimulationConfig& config = {}, const ExecConfig& exec = {});
   ~SimulatedSensor();
   SimulatedSensor(SimulatedSensor&&) noexcept;
   SimulatedSensor& operator=(SimulatedSensor&&) noexcept;
 
-  /// The depth frame from T_world_camera, with amplitudes (0 without a reading). Pixels below
-  /// min_range or the sensor's least amplitude are invalid; pixels without a hit or beyond
-  /// max_range are out of range. `frame_index` selects the noise: equal seed, index and pose give
-  /// equal frames. Throws Error(invalid_argument) for a pose that is not rigid (1e-3).
+  /// The depth frame from T_world_camera, with amplitudes, which are 0 where there is no reading.
+  /// Pixels are invalid if their range is below min_range or their amplitude is below that of the
+  /// noise model. Pixels are out of range if their ray hits nothing up to max_range. `frame_index`
+  /// selects the noise: the same seed, index and pose give the same frame. Throws
+  /// Error(invalid_argument) if the pose is not rigid within 1e-3.
   [[nodiscard]] DepthFrame acquire(const Pose& T_world_camera, std::uint64_t frame_index = 0) const;
 
   /// As above, and what the rays of each pixel hit, row-major.

@@ -14,43 +14,43 @@
 
 namespace viewgain {
 
-/// A triangle mesh for ray tracing, for simulated depth and pictures. Immutable; owns a copy of the
-/// mesh. Embree traces in single precision relative to the centre of the mesh, so a distant world
-/// origin does not matter. Thread safety: const members may run from many threads. Cost of the
-/// constructor: Embree's BVH, O(n log n) of the triangles.
+/// A triangle mesh for ray tracing, for simulated depths and pictures. Immutable; owns its mesh.
+/// Embree traces in single precision relative to the centre of the mesh, so a distant origin of the
+/// frame does not matter. Thread safety: const members may run from many threads. Cost of the
+/// constructor: Embree's bounding volume hierarchy, O(n log n) for n triangles.
 class VIEWGAIN_EXPORT SurfaceScene {
  public:
   /// A ray to trace, mesh frame.
   struct Ray {
     Eigen::Vector3d origin = Eigen::Vector3d::Zero();            ///< [m]
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();        ///< unit length
-    double max_range = std::numeric_limits<double>::infinity();  ///< hits beyond are ignored [m]
+    double max_range = std::numeric_limits<double>::infinity();  ///< ignores farther hits [m]
   };
   /// Intersection of a ray with the mesh.
   struct Hit {
-    /// Distance along the ray [m]; infinity: miss.
+    /// Distance along the ray [m]; infinity if the ray hits nothing.
     double range = std::numeric_limits<double>::infinity();
-    std::uint32_t triangle = 0;  ///< index of the triangle; 0 for a miss
+    std::uint32_t triangle = 0;  ///< index of the triangle; 0 if there is none
     /// Unit normal of the triangle, mesh frame, by the right-hand rule of its vertices.
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
 
   /// Throws Error(invalid_argument) for an empty mesh, a vertex that is not finite or an index out
-  /// of range; Error(backend) if Embree fails.
+  /// of range. Throws Error(backend) if Embree fails.
   explicit SurfaceScene(TriangleMesh mesh, const ExecConfig& exec = {});
   ~SurfaceScene();
   SurfaceScene(SurfaceScene&&) noexcept;
   SurfaceScene& operator=(SurfaceScene&&) noexcept;
 
-  /// First hits in (0, max_range], hit i for ray i. A ray with NaN, or from more than 1e18 m away,
-  /// hits nothing; rays are otherwise unchecked. Traces 4 to 16 rays together; consecutive rays
-  /// should therefore be similar. Cost: O(log n) of the triangles per ray.
+  /// First hits of rays in (0, max_range]; hit i is that of ray i. A ray with NaN, or from more
+  /// than 1e18 m away, hits nothing. Rays are not checked further. 4 to 16 rays are traced
+  /// together, so consecutive rays should be similar. Cost: O(log n) per ray for n triangles.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
   /// First hit of one ray.
   [[nodiscard]] Hit intersect(const Ray& ray) const;
 
-  /// Whether each ray hits anything in (0, max_range], as for shadows. Faster than first hits, for
-  /// rays in any order. Unchecked.
+  /// Whether each ray hits anything in (0, max_range], as for shadows. Faster than intersect(), for
+  /// rays in any order. Rays are not checked.
   void block(std::span<const Ray> rays, std::span<bool> blocked) const;
 
   /// The triangles of the scene.

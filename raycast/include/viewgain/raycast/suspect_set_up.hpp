@@ -18,80 +18,83 @@
 #include "viewgain/raycast/voxel_scene.hpp"
 
 /// @file
-/// Checks for values that are allowed but rarely meant, mostly lengths in millimetres.
-/// Suspicion::what states the value and the likely unit. A Suspicion with an empty kind means that
-/// nothing is suspected. All functions only compare numbers, throw nothing for valid input, and may
-/// run from many threads.
+/// Checks for values that are allowed but probably wrong, mostly lengths in millimetres instead of
+/// metres. A comment "Kind x" states Suspicion::kind if the check fails; otherwise the kind is
+/// empty. Suspicion::what states the value and the likely unit. The functions do not throw for
+/// valid arguments, unless stated otherwise. They may run from many threads.
 
 namespace viewgain {
 
-/// Compares a sensor's values with each other and with the voxel size [m], if given. Kinds:
+/// Compares the values of a sensor with each other and, if given, with the voxel size [m]. Kinds:
 /// field_of_view, range_unit, noise_unit, time_unit, frequency_unit, pose_sigma_unit, scale_sigma,
-/// calibration_unit, body_unit, mounting_unit. Most likely first. Cost: some microseconds.
+/// calibration_unit, body_unit, mounting_unit. The most likely suspicion comes first. Cost: some
+/// microseconds.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<Suspicion> suspect_sensor(
     const Sensor& sensor, std::optional<double> voxel_size = {});
 
-/// Whether the suspicion alone can explain that frames disagree (field_of_view, range_unit).
+/// Whether this suspicion (field_of_view or range_unit) can explain why frames disagree.
 [[nodiscard]] VIEWGAIN_EXPORT bool explains_frames(const Suspicion& suspicion);
 
-/// Compares the uncertainty of poses with the working distance and the voxel size [m]; kind
+/// Compares the uncertainty of poses with the working distance [m] and the voxel size [m]. Kind
 /// pose_sigma_unit.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_pose_sigma(const PoseSigma& sigma,
                                                            double working_distance,
                                                            std::optional<double> voxel_size = {});
 
-/// Compares the map's workspace and voxel size with the sensor's range; kind workspace_unit.
+/// Compares the map's workspace and voxel size with the range of the sensor. Kind workspace_unit.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_workspace(const BeliefGrid& map,
                                                           const Sensor& sensor);
 
-/// Whether an obstacle with these bounds [m, world] is too far away for views of the map, or 100
-/// times as long as the map. Kind obstacle_unit; `what` has no subject ("is 900 m long ...").
+/// Suspects an obstacle that is too far away for views of the map, or 100 times as long as the map.
+/// `bounds` are those of the obstacle, world frame [m]. Kind obstacle_unit. `what` has no subject,
+/// for example "is 900 m long ...".
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_obstacle(const Box& bounds, const BeliefGrid& map,
                                                          const Sensor& sensor);
-/// Bounds of a mesh, for suspect_obstacle(); without vertices a box at the origin. O(vertices).
+/// Bounding box of a mesh, for suspect_obstacle(). If the mesh has no vertices, it is a box at the
+/// origin. O(vertices).
 [[nodiscard]] VIEWGAIN_EXPORT Box obstacle_bounds(const TriangleMesh& mesh);
 
-/// Whether most views of a map lie inside solid obstacles, such as a closed mesh of the room's
-/// walls, so that no view is possible. Kind views_in_obstacle. Builds a BVH of the obstacles.
-/// Throws like VoxelScene::build().
+/// Suspects obstacles if most views lie inside solid ones, such as a closed mesh of the room's
+/// walls, so that no view is possible. Kind views_in_obstacle. Throws whatever VoxelScene::build()
+/// throws. Cost: builds a bounding volume hierarchy of the obstacles.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_solid_obstacles(const Obstacles& obstacles,
                                                                 std::span<const Pose> views);
 
-/// Whether the map is out of sight from all boxes, shells and poses of the region. Kind reach_unit.
-/// O(parts).
+/// Suspects a region if the map is out of sight from all its boxes, shells and poses. Kind
+/// reach_unit. Cost: linear in their number.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_reach(const ReachRegion& reach,
                                                       const BeliefGrid& map, const Sensor& sensor);
 
-/// Whether a table at height z [m] is too far from the map to be seen by its views. Kind
+/// Suspects a table at height z [m] that is too far from the map to be seen from its views. Kind
 /// plane_unit.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_support_plane(double z, const BeliefGrid& map,
                                                               const Sensor& sensor);
 
-/// Whether an object with this longest side [m] is 10 times as long as the workspace, or smaller
-/// than a voxel. Kind object_size_unit.
+/// Suspects an object that is 10 times as long as the workspace, or smaller than a voxel. `size` is
+/// its longest side [m]. Kind object_size_unit.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_object_size(double size, const BeliefGrid& map);
 
-/// Whether a clearance [m] around the body exceeds any body. Kind clearance_unit.
+/// Suspects a clearance [m] that is larger than any camera body. Kind clearance_unit.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_clearance(double clearance);
 
-/// Whether most poses look past the map's workspace: more than half of up to a hundred of them. A
-/// quick check before suspect_poses(). Ignores poses that are not rigid. Cost: 50 microseconds per
-/// pose.
+/// Whether more than half of the poses look past the map's workspace. Tries up to a hundred poses,
+/// and ignores poses that are not rigid. A quick check before suspect_poses(). Cost: 50
+/// microseconds per pose.
 [[nodiscard]] VIEWGAIN_EXPORT bool mostly_look_away(const GridSnapshot& map, const Sensor& sensor,
                                                     std::span<const Pose> T_world_camera);
 
-/// Whether a frame sees nothing of the map at its pose, but would see the workspace under a common
-/// mistake in poses or depths. The kinds are those of suspect_frames(), which compares several
+/// Suspects a mistake in pose or depths if the frame shows nothing of the map's workspace, but
+/// would do so with the mistake corrected. Kinds: those of suspect_frames(), which compares several
 /// frames. Cost: 0.2 ms.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_frame(const Sensor& sensor, const DepthFrame& frame,
                                                       const Pose& T_world_camera,
                                                       const BeliefGrid& map);
 
-/// Whether masks remove too much. `unmasked` and `masked` are the same frames before and after
-/// masking. Suspects masks that remove 95 % of the measured depths in the map's workspace (without
-/// a map: everywhere), or the middle of the images and little else. Kind masks. Throws
-/// Error(invalid_argument) for spans of different lengths. Also throws whatever check_frame_size()
-/// throws. Cost: one pass over the pixels.
+/// Suspects masks that remove 95 % of the measured depths in the map's workspace, or the middle of
+/// the images and little else. If `map` is null, all measured depths count. `unmasked` and `masked`
+/// are the same frames before and after masking. Kind masks. Throws Error(invalid_argument) if the
+/// spans differ in length. Also throws whatever check_frame_size() throws. Cost: one pass over the
+/// pixels.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_masks(const Sensor& sensor,
                                                       std::span<const DepthFrame> unmasked,
                                                       std::span<const DepthFrame> masked,

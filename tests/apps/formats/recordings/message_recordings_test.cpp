@@ -215,8 +215,7 @@ TEST_F(MessageRecordings, WhatIsBrokenIsNamed) {
   some.add(kTopic, "sensor_msgs/msg/Image", cut.put(std::uint32_t{5}));
   some.transform("/tf", 100.35, "base", "link", {0, 0, 0, 0, 0, 0, 2});
   some.transform("/tf", 100.35, "link", "link", kStill);
-  const json report =
-      import(some, {}, "2 transforms are left out, because they are damaged or not rigid");
+  const json report = import(some, {}, "transforms that are damaged or not rigid are left out: 2");
   EXPECT_EQ(report["frames"], kImages);
   EXPECT_EQ(report["bad"], (json{{"unreadable", 3}, {"wrong_size", 1}}));
   EXPECT_EQ(report["warnings"].size(), 2);
@@ -233,8 +232,9 @@ TEST_F(MessageRecordings, WhatIsSuspiciousIsSaid) {
   (void)import(wrong, {}, "Is is_bigendian wrong?");
   McapText back = good();
   add_images(back);
-  EXPECT_EQ(import(back, {}, "1 images are older than the image before them")["frames"],
-            2 * kImages);
+  EXPECT_EQ(
+      import(back, {}, "images with an earlier time stamp than the image before them: 1")["frames"],
+      2 * kImages);
   McapText twice = good();
   add_transforms(twice);
   (void)import(twice, {}, "the time stamps from 'base' to 'link' go back by 1 s");
@@ -291,7 +291,7 @@ TEST_F(MessageRecordings, FlagsAndFilesThatDoNotFitAreRefused) {
   };
   expect_refused({{import("rec.mcap", {"--format", "tum"}), "has the format mcap"},
                   {import("rec.mcap", {"--mask", "none"}),
-                   "masks cannot be used with a recording of messages"},
+                   "masks cannot be used with a recording of ROS messages"},
                   {import("rec.mcap", {"--depth-scale", "2"}), "between 0 and 1"},
                   {import("rec.mcap", {"--depth-scale", "-1"}), "--depth-scale"},
                   {import("both"), "two kinds, .mcap and .bag"},

@@ -202,7 +202,7 @@ TEST_F(TransformsJson, WhatCannotBeReadIsNamed) {
   }
   write("scene/transforms.json", good().dump());
   expect_refused(call({"--world", "map"}),
-                 "--world map: this flag requires a recording of messages");
+                 "--world map: this flag requires a recording of ROS messages");
   fs::remove(dir / "scene/depth/0.png");
   fs::create_symlink("/etc/passwd", dir / "scene/depth/0.png");
   expect_refused(call(), "the link leads out of the recording");

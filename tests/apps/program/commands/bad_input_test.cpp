@@ -112,7 +112,7 @@ TEST_F(BadInputTest, Scores) {
                   {with({"--gain", "surface", "--hazard", "-1"}), "--hazard -1"},
                   {with({"--gain", "surface", "--hazard", "rates"}), "--hazard"},
                   {with({"--gain", "surface", "--hazard", "none.VDB"}), "none.VDB"},
-                  {with({"--gain", "surface", "--hazard", "map.vdb"}), "float grids"},
+                  {with({"--gain", "surface", "--hazard", "map.vdb"}), "grids of floats"},
                   {{"score", "map.vdb", "--sensor", "small.toml", "--poses", "sphere:10,0.6",
                     "--gain", "surface", "--hazard", "p.vdb", "--out", "p.vdb"},
                    "would overwrite a file of --hazard p.vdb"},

@@ -173,9 +173,9 @@ TEST_F(CalibrateRange, WhatDoesNotTellItIsRefusedOrNamed) {
   const std::vector<View> good = views;
   expect_refused_fit("the wall is not flat", 0.05);
   views.resize(7);
-  expect_refused_fit("at only 7 different distances; at least 8 are required");
+  expect_refused_fit("at least 8 different distances are required, not 7");
   views.assign(20, good[3]);
-  expect_refused_fit("at only 1 different distances");
+  expect_refused_fit("different distances are required, not 1");
 
   RangeFit turned(sensor), saturated(sensor);
   DepthFrame bright = frame_of(good[0], &error_at);

@@ -204,7 +204,7 @@ TEST_F(ForeignMaps, WrongUseIsRefused) {
   expect_refused(with_cloud({"--origin", "0,0"}), "--origin");
   expect_refused(with_cloud({"--origin", "0,0,0", "--poses", "poses.txt"}), "--poses");
   expect_refused(with_cloud({"--poses", "poses.txt"}),
-                 "the file has 2 poses, but there are 1 clouds");
+                 "the file must have one pose per cloud; clouds: 1, poses: 2");
   expect_refused(with_cloud({"--origin", "0,0,0", "--depth-scale", "1"}), "--depth-scale");
   expect_refused(with_cloud({"--origin", "0,0,90"}), "no cloud has a point in the sensor's range");
   expect_refused(integrate({"frames", "--origin", "0,0,0"}), "requires --cloud");

@@ -132,7 +132,7 @@ TEST_F(Implausible, FlagsInOtherUnits) {
   }
   for (const Strings& call : commands(false)) {
     expect_said(test::joined(call, {"--obstacle", "400,-500,-300,500,500,-250"}),
-                "Is it in metres?");
+                "Is the obstacle in metres?");
   }
   for (const Strings& call : commands(false)) {
     expect_said(test::joined(call, {"--support-plane", "-300"}), "--support-plane: ");
@@ -146,7 +146,7 @@ TEST(RefusedFrames, AreSaidWhereRegistrationLeavesOutMost) {
                               {FrameVerdict::contradicts, refused},
                               {FrameVerdict::wrong_size, 50}});
   };
-  EXPECT_NE(said(1, 13).find("13 of 14 frames contradict the others"), std::string::npos);
+  EXPECT_NE(said(1, 13).find("13 of 14 frames contradict the other frames"), std::string::npos);
   EXPECT_NE(said(1, 3), "");
   EXPECT_EQ(said(1, 2), "");
   EXPECT_EQ(said(10, 10), "");  // as of a recorded room that overlaps little

@@ -233,7 +233,7 @@ TEST_F(Next, NextChoosesAmongGivenPosesByTheirWorth) {
   expect_refused_with(
       {"next", "run/map.vdb", "--sensor", "tof.toml"},
       {{{"--costs", "costs.txt"}, "--poses"},
-       {{"--poses", "mine.txt", "--costs", "few.txt"}, "2 costs, but there are 30 poses"},
+       {{"--poses", "mine.txt", "--costs", "few.txt"}, "one cost per pose; poses: 30, costs: 2"},
        {{"--poses", "mine.txt", "--costs", "word.txt"}, "word.txt:2"},
        {{"--poses", "mine.txt", "--count", "7"}, "--generator"},
        {{"--plan", "0"}, "--plan"},

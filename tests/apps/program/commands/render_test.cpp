@@ -276,7 +276,7 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
   write("none/run.json", "{\"settings\": {}}");
   expect_refused({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
                   "0.01", "--out", "third", "--report", "none"},
-                 "none/run.json: this is not the folder of a run");
+                 "none/run.json: the file is invalid; --report requires the folder of a run");
   json newer = run_json;
   newer["format"] = 2;
   write("none/run.json", newer.dump());

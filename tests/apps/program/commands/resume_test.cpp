@@ -283,10 +283,11 @@ TEST_F(Resume, AnothersCheckpointIsRefusedAndStays) {
   std::size_t cases = 0;
   for (const auto& [text, word] :
        {std::pair{newer.dump(), "has format 7; this program reads up to format 1"},
-        std::pair{cut.dump(), "checkpoint.json: not a checkpoint: "},
-        std::pair{real_format.dump(), "checkpoint.json: not a checkpoint: "},
-        std::pair{real.dump(), "checkpoint.json: not a checkpoint: "},
-        std::pair{good.substr(0, good.size() / 2), "checkpoint.json: not a checkpoint: "}}) {
+        std::pair{cut.dump(), "checkpoint.json: the file is not a checkpoint: "},
+        std::pair{real_format.dump(), "checkpoint.json: the file is not a checkpoint: "},
+        std::pair{real.dump(), "checkpoint.json: the file is not a checkpoint: "},
+        std::pair{good.substr(0, good.size() / 2),
+                  "checkpoint.json: the file is not a checkpoint: "}}) {
     write(name, text);
     expect_refused(run_of("out"), word);
     ++cases;

@@ -70,7 +70,7 @@ TEST_F(ScoreCandidates, ObstaclesFarFromTheMapAreNamed) {
                                                  {"room_mm.off", true}}) {
     const std::string said = run(arguments({"--obstacle", box})).err;
     EXPECT_EQ(said.find("--obstacle " + box) != std::string::npos, is_far) << said;
-    EXPECT_EQ(said.find("Is it in metres?") != std::string::npos, is_far) << said;
+    EXPECT_EQ(said.find("Is the obstacle in metres?") != std::string::npos, is_far) << said;
   }
 }
 
@@ -189,12 +189,13 @@ TEST_F(ScoreCandidates, CostsRank) {
   EXPECT_EQ(line.substr(0, 18), "index,worth,gain,e");
   EXPECT_EQ(line.substr(line.find(",tx")), ",tx,ty,tz,qx,qy,qz,qw");
   write("few.txt", "1\n2\n");
-  expect_refused_with(arguments({}), {{{"--costs", "few.txt"}, "2 costs, but there are 40 poses"},
-                                      {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"},
-                                      {{"--cost-per-metre", "1", "--set", "2"}, "--set"},
-                                      {{"--from", "0,0,1"}, "--from 0,0,1"},
-                                      {{"--from", "0,0", "--cost-per-metre", "1"}, "--from 0,0"},
-                                      {{"--costs", "costs.txt", "--out", "costs.txt"}, "--costs"}});
+  expect_refused_with(arguments({}),
+                      {{{"--costs", "few.txt"}, "one cost per pose; poses: 40, costs: 2"},
+                       {{"--cost-per-metre", "-1"}, "--cost-per-metre -1"},
+                       {{"--cost-per-metre", "1", "--set", "2"}, "--set"},
+                       {{"--from", "0,0,1"}, "--from 0,0,1"},
+                       {{"--from", "0,0", "--cost-per-metre", "1"}, "--from 0,0"},
+                       {{"--costs", "costs.txt", "--out", "costs.txt"}, "--costs"}});
 }
 
 TEST_F(ScoreCandidates, InfoTellsOfAPart) {

@@ -201,14 +201,13 @@ exec {program} reconstruct "$@"
     assert len(rows_in("out")) == 6
 
 
-@pytest.mark.parametrize("text, name", [("", "the run.json of sh"), ("[]", "the run.json of sh"), ("{}", "run.json"),
-                                        ('{"seconds": {}}', "run.json"), ("\\377", "the run.json of sh")])
-def test_a_run_that_is_none_is_refused_at_once(folder, program, text, name):
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"seconds": {}}', "\\377"])
+def test_a_run_that_is_none_is_refused_at_once(folder, program, text):
     (folder / "mine.sh").write_text(f"""for word in "$@"; do case "$word" in --out=*) out=${{word#--out=}};; esac; done
 mkdir "$out" && printf '{text}' >"$out/run.json"
 """)
     (folder / "spec.toml").write_text(SPEC.replace('"frontier"', '{name = "mine", command = "sh mine.sh"}'))
-    assert f"cube, mine, seed 1: {name} is invalid: " in study("spec.toml", "--out", "out", code=2, program=program)
+    assert "cube, mine, seed 1: run.json is invalid: " in study("spec.toml", "--out", "out", code=2, program=program)
     assert not (folder / "out").exists()
 
 

@@ -194,7 +194,7 @@ def test_what_is_wrong_is_named_with_its_line(folder, old, new, words):
 
 
 def test_too_many_runs_and_missing_files(folder):
-    with pytest.raises(SpecError, match="line 4: seeds make 1,200,000 runs.*the maximum is 1,000,000$"):
+    with pytest.raises(SpecError, match="line 4: seeds and the other lists make 1,200,000 runs.*the maximum is 1,000,000$"):
         spec_of(changed("seeds = [3, 1]", f"seeds = {list(range(50_000))}"))
     with pytest.raises(SpecError, match="none.toml"):
         read_spec("none.toml")

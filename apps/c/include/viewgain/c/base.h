@@ -19,8 +19,7 @@
 extern "C" {
 #endif
 
-/* Increases with every removal or change, including sizes of structs; new functions do not count.
- */
+/* Increases when a function or struct is removed or changed. New functions do not increase it. */
 #define VG_ABI_VERSION 2
 VG_API int32_t vg_abi_version(void); /* version of the library */
 VG_API const char* vg_version(void); /* "major.minor.patch" of the library */
@@ -44,9 +43,9 @@ enum {
    next failed call; truncated after 1,023 bytes. */
 VG_API const char* vg_last_error(void);
 
-/* Observes and stops a long call. The function is called before each pose and once after the last,
-   from any thread, but never concurrently. If it returns nonzero while work is left, the call ends
-   soon with VG_STOPPED. It must not throw or jump out. */
+/* Observes and stops a long call. `poll` is called before each pose and once after the last, from
+   any thread, but never concurrently. If it returns nonzero while work is left, the call ends soon
+   with VG_STOPPED. It must not throw or jump out. */
 typedef struct vg_watch {
   size_t struct_size; /* set by _init() */
   /* `done` of `total` poses have been scored (vg_evaluate and similar calls), eliminated or scored
@@ -54,7 +53,7 @@ typedef struct vg_watch {
   int32_t (*poll)(size_t done, size_t total, void* user);
   void* user; /* may be null */
 } vg_watch;
-VG_API void vg_watch_init(vg_watch* watch, size_t struct_size); /* the defaults */
+VG_API void vg_watch_init(vg_watch* watch, size_t struct_size); /* sets the defaults */
 
 #ifdef __cplusplus
 }

@@ -35,15 +35,17 @@ typedef struct vg_scene_config {
   /* Constant rate at which a ray meets the surface in unknown voxels [1/m]; NaN (the default):
      depends on the distance to seen surface. */
   double hazard_rate;
-  /* Instead of hazard_rate, one of: a rate per voxel [1/m], in the order of vg_grid_states(); a
-     .vdb file of rates, its float grid "hazard" or its only one. */
+  /* Two alternatives to hazard_rate, of which at most one may be set: hazard_rates, one rate per
+     voxel [1/m] in the order of vg_grid_states(); hazard_file, a .vdb file whose float grid
+     "hazard", or whose only float grid, contains rates. */
   const float* hazard_rates;
   size_t hazard_count;     /* dims[0] * dims[1] * dims[2] */
   const char* hazard_file; /* null: none */
 } vg_scene_config;
-VG_API void vg_scene_config_init(vg_scene_config* config, size_t struct_size); /* the defaults */
+/* Sets the defaults. */
+VG_API void vg_scene_config_init(vg_scene_config* config, size_t struct_size);
 
-/* config null: no surroundings. */
+/* Builds a scene. If config is null, it has no surroundings. */
 VG_API vg_status vg_scene_build(const vg_grid* grid, const vg_scene_config* config,
                                 vg_scene** scene);
 
@@ -84,7 +86,7 @@ typedef struct vg_weight_region {
    sweep over cells from near to far. */
 enum { VG_TRACER_AUTOMATIC = 0, VG_TRACER_EMBREE = 1, VG_TRACER_SWEEP = 2 };
 
-/* Settings that affect the gain, and num_threads and tracer. */
+/* Settings of an evaluator. All except num_threads and tracer affect the gain. */
 typedef struct vg_evaluator_config {
   size_t struct_size;              /* set by _init() */
   int32_t criterion;               /* VG_LOG_DIAGONAL */
@@ -100,10 +102,10 @@ typedef struct vg_evaluator_config {
                                 is the default */
   int32_t tracer;            /* VG_TRACER_AUTOMATIC; does not affect gains */
 } vg_evaluator_config;
-/* The defaults. */
+/* Sets the defaults. */
 VG_API void vg_evaluator_config_init(vg_evaluator_config* config, size_t struct_size);
 
-/* config null: the defaults. */
+/* Creates an evaluator. If config is null, the defaults apply. */
 VG_API vg_status vg_evaluator_create(const vg_scene* scene, const vg_sensor* sensor,
                                      const vg_evaluator_config* config, vg_evaluator** evaluator);
 
@@ -158,15 +160,15 @@ VG_API vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* 
 
 /* ---- Choosing views ---- */
 
-/* The k best poses, exact: scores all poses; best first, ties to the lower index. `indices` and
-   `gains` (or null) have room for k. *found is the number of chosen poses, which is less than k if
-   fewer poses are valid. VG_STOPPED: the best *found poses so far. */
+/* The k best poses, found by scoring all poses: best first, ties in the order of their indices.
+   `indices` and `gains` have room for k; gains may be null. *found is the number of chosen poses,
+   which is less than k if fewer poses are valid. VG_STOPPED: the best *found poses so far. */
 VG_API vg_status vg_best(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          size_t* indices, double* gains, size_t* found, const vg_watch* watch);
 
 /* The k best poses with high probability, faster: compares poses with about 400 of their rays, and
    scores the best in full. `seed` selects the rays with VG_GAIN_PAPER; the other gains ignore it.
-   `indices`, `gains` and *found as in vg_best(). Deterministic for a seed and any number of
+   `indices`, `gains` and *found are as in vg_best(). Deterministic for a seed and any number of
    threads. deadline: time limit of the call [s], >= 0, or INFINITY. At most half of it goes to
    comparing poses. After the deadline the result is the best of the poses scored in full, with
    VG_OK. */
@@ -174,7 +176,7 @@ VG_API vg_status vg_race(const vg_evaluator* evaluator, const double* poses, siz
                          double deadline, uint64_t seed, size_t* indices, double* gains,
                          size_t* found, const vg_watch* watch);
 
-/* Up to k poses with a large gain together, in the order chosen. `gains` are marginal gains: the
+/* Up to k poses whose joint gain is large, in the order chosen. `gains` are marginal gains: the
    increase over the earlier poses. VG_STOPPED: the poses chosen so far. */
 VG_API vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses, size_t count,
                              size_t k, size_t* indices, double* gains, size_t* found,
@@ -186,8 +188,8 @@ VG_API vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses,
 enum { VG_HIT_NONE = 0, VG_HIT_UNKNOWN = 1, VG_HIT_OCCUPIED = 2, VG_HIT_OBSTACLE = 3 };
 
 /* Where the rays of a pose end: depth along the optical axis [m], +infinity where a ray hits
-   nothing, and what it hits (VG_HIT_, or null). count must be image_width * image_height. An
-   invalid pose is VG_INVALID_ARGUMENT. */
+   nothing, and what it hits (VG_HIT_; labels may be null). count must be image_width *
+   image_height. Returns VG_INVALID_ARGUMENT for an invalid pose. */
 VG_API vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_world_camera[16],
                                 float* depth, uint8_t* labels, size_t count);
 
@@ -202,9 +204,9 @@ typedef struct vg_contribution {
 } vg_contribution;
 
 /* Explains a gain: one entry per voxel in which rays end or can end, largest gain first; the gains
-   add up to the view's. Writes at most `capacity` entries and their number to *found; with
-   VG_GAIN_PAPER never more than rays_per_pose. contribution_size is sizeof(vg_contribution). None
-   for a camera in an occupied voxel; an invalid pose is VG_INVALID_ARGUMENT. */
+   add up to the view's. Writes at most `capacity` entries; *found is the number of all, with
+   VG_GAIN_PAPER at most rays_per_pose. contribution_size is sizeof(vg_contribution). A camera in an
+   occupied voxel has no entries. Returns VG_INVALID_ARGUMENT for an invalid pose. */
 VG_API vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_camera[16],
                                   vg_contribution* contributions, size_t contribution_size,
                                   size_t capacity, size_t* found);
@@ -222,7 +224,8 @@ typedef struct vg_ray_outcomes {
 } vg_ray_outcomes;
 /* Prepares `outcomes` for a call. */
 VG_API void vg_ray_outcomes_init(vg_ray_outcomes* outcomes, size_t struct_size);
-/* Outcomes of one pose. An invalid pose is VG_INVALID_ARGUMENT. Costs two traces of the pose. */
+/* Outcomes of one pose. Returns VG_INVALID_ARGUMENT for an invalid pose. Costs two traces of the
+   pose. */
 VG_API vg_status vg_outcomes(const vg_evaluator* evaluator, const double T_world_camera[16],
                              vg_ray_outcomes* outcomes);
 
@@ -249,11 +252,12 @@ typedef struct vg_feasibility_config {
   size_t struct_size;         /* set by _init() */
   double body_size[3];        /* width, height, depth of the housing, in this order [m]; 0.065
                                  0.065 0.076 */
-  int32_t has_flange;         /* nonzero: uses T_flange_camera; 0: the camera is in the */
-  double T_flange_camera[16]; /* middle of the body's front face */
+  int32_t has_flange;         /* nonzero: uses T_flange_camera; 0: the camera is in the middle of
+                                 the body's front face */
+  double T_flange_camera[16]; /* from the camera's frame to the flange's; identity */
   double clearance;           /* margin around the body on each side [m]; 0 */
-  double taken_distance;      /* views closer than this [m]; 0.010 */
-  double taken_angle;         /* and this similar in direction are the same [rad]; 2 degrees */
+  double taken_distance;      /* two views are the same if they are nearer than this [m]; 0.010 */
+  double taken_angle;         /* and their rotations differ by less than this [rad]; 2 degrees */
   const vg_sensor* sensor;    /* null (the default): no view is too near; read during create */
   double max_near_share;      /* share of the rays; 0.2 */
   /* Whether the robot can reach the camera pose: nonzero if so. Null (the default): everywhere.
@@ -262,10 +266,10 @@ typedef struct vg_feasibility_config {
   void* user;          /* may be null */
   int32_t num_threads; /* 0: all; 1: the calling thread; does not affect results */
 } vg_feasibility_config;
-/* The defaults. */
+/* Sets the defaults. */
 VG_API void vg_feasibility_config_init(vg_feasibility_config* config, size_t struct_size);
 
-/* config null: the defaults. */
+/* Creates a checker. If config is null, the defaults apply. */
 VG_API vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibility_config* config,
                                        vg_feasibility** feasibility);
 
@@ -296,10 +300,11 @@ VG_API vg_status vg_dome_poses(size_t count, double radius, const double center[
 VG_API vg_status vg_look_at(const double eye[3], const double target[3], const double up[3],
                             double T_world_camera[16]);
 
-/* The order of `count` stops with the cheapest path through all of them, in a unit of your choice;
-   exact up to 12 stops. costs has count + 1 rows of `count`: row i, column j from stop i to stop j;
-   the last row from the current pose. At least 0; infinity: no path. `stops` has room for count. If
-   no order is found, *cost (or null) is infinity and `stops` is unchanged. */
+/* Orders `count` stops so that the path through all of them is the cheapest; exact up to 12 stops.
+   costs, in any unit, has count + 1 rows of `count` numbers. Row i, column j is the cost from stop
+   i to stop j; the last row is from the current pose. Costs are at least 0; infinity means no path.
+   `stops` has room for count. If no order is found, *cost (or null) is infinity and `stops` is
+   unchanged. */
 VG_API vg_status vg_order_stops(const double* costs, size_t count, size_t* stops, double* cost);
 
 #ifdef __cplusplus

@@ -27,8 +27,8 @@ enum {
   VG_NOISE_CONSTANT = 4          /* sigma_axial, sigma_lateral */
 };
 
-/* Meaning of the value 65535 in a depth image: as usual for the layout of its folder, free up to
-   max_range, or no reading. */
+/* Meaning of the value 65535 in a depth image. BY_LAYOUT: the default of the folder's layout;
+   CARVE: space is free up to max_range; INVALID: no reading. */
 enum { VG_OUT_OF_RANGE_BY_LAYOUT = 0, VG_OUT_OF_RANGE_CARVE = 1, VG_OUT_OF_RANGE_INVALID = 2 };
 
 /* A depth camera. Pixel (0,0) has its centre at (0,0), as in OpenCV. If the camera has a table of
@@ -61,20 +61,20 @@ VG_API vg_status vg_default_prior_sigma(double voxel_size, const vg_sensor* sens
    threads at once. */
 typedef struct vg_range_calibration vg_range_calibration;
 
-/* Makes a calibration for the sensor's camera from a table of `rows` x 2 numbers, row-major: a
-   measured range, and measured minus true range [m], by increasing measured range. The error is
-   interpolated linearly and constant beyond the ends. VG_INVALID_ARGUMENT naming the value: no row,
-   a number that is not finite, measured ranges that do not increase, a measured or corrected range
-   that is not positive, or an invalid sensor. Costs 8 bytes and 10 ns per pixel, 0.4 us with lens
-   distortion. */
+/* Makes a calibration for the sensor's camera from a table of `rows` x 2 numbers, row-major: each
+   row holds a measured range, and the measured minus the true range [m]. Measured ranges increase.
+   The error is interpolated linearly and constant beyond the ends. Returns VG_INVALID_ARGUMENT,
+   with a message that names the value, for no row, a number that is not finite, measured ranges
+   that do not increase, a measured or corrected range that is not positive, or an invalid sensor.
+   Costs 8 bytes and 10 ns per pixel, or 0.4 us with lens distortion. */
 VG_API vg_status vg_range_calibration_create(const vg_sensor* sensor, const double* table,
                                              size_t rows, vg_range_calibration** calibration);
 
 /* Corrects a frame in place along the rays of its pixels, bit-identical to C++: `depth` along the
    optical axis [m], row-major, width * height values of the sensor, 0 invalid, +infinity out of
    range. A reading with a corrected range that is not positive becomes 0; other pixels do not
-   change. Call it once per frame: a second call would correct it again. Costs 10 ns per pixel, with
-   or without lens distortion. */
+   change. Call it once per frame: a second call would correct the frame again. Costs 10 ns per
+   pixel, with or without lens distortion. */
 VG_API vg_status vg_range_calibration_correct(const vg_range_calibration* calibration,
                                               float* depth);
 VG_API void vg_range_calibration_release(vg_range_calibration* calibration); /* null: no effect */
@@ -92,7 +92,7 @@ typedef struct vg_grid_config {
   double T_world_grid[16];       /* identity */
   double prior_sigma;            /* standard deviation of an unknown voxel [m] */
 } vg_grid_config;
-VG_API void vg_grid_config_init(vg_grid_config* config, size_t struct_size); /* the defaults */
+VG_API void vg_grid_config_init(vg_grid_config* config, size_t struct_size); /* sets the defaults */
 
 /* An empty map: all voxels of the workspace are unknown. */
 VG_API vg_status vg_grid_create(const vg_grid_config* config, vg_grid** grid);
@@ -139,35 +139,35 @@ VG_API vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t cou
 /* The value of all three parts of an index if there is no voxel. */
 enum { VG_NO_VOXEL = INT32_MIN };
 
-/* The voxels that contain points of the world, 3 numbers each [m]: 3 indices each, on the lattice
-   (subtract min_index for arrays), or VG_NO_VOXEL for a point outside the workspace or not finite.
- */
+/* The voxels that contain points, which have 3 numbers each, world [m]. Each voxel gets 3 indices
+   on the lattice; subtract min_index to get array indices. For a point outside the workspace or not
+   finite, all three are VG_NO_VOXEL. */
 VG_API vg_status vg_grid_index_of(const vg_grid* grid, const double* points, size_t count,
                                   int32_t* voxels);
 
-/* Centres of voxels in the world, 3 numbers each [m]; any voxels of the lattice (3 indices each).
- */
+/* Centres of voxels, 3 numbers each, world [m]. The voxels may be any of the lattice, 3 indices
+   each. */
 VG_API vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t count,
                                 double* centers);
 
-/* Sets voxels of the workspace (3 indices each, on the lattice) in order, all or none. A log-odds
-   above 0 makes a voxel occupied, otherwise free; it is rounded to the nearest step of 0.05 and
-   clamped to -2..3.5. Beliefs are removed. VG_INVALID_ARGUMENT: a voxel outside the workspace or a
-   log-odds of NaN. */
+/* Sets voxels of the workspace (3 indices each, on the lattice) in order. A log-odds above 0 makes
+   a voxel occupied, any other makes it free. The log-odds is rounded to the nearest step of 0.05
+   and clamped to -2..3.5. Beliefs are removed. Returns VG_INVALID_ARGUMENT, without changes, for a
+   voxel outside the workspace or a log-odds of NaN. */
 VG_API vg_status vg_grid_set(vg_grid* grid, const int32_t* voxels, const float* log_odds,
                              size_t count);
 
 /* Resets voxels whose centres lie in a box of the grid frame [m] to unknown; bounds may be
-   infinite. Views remain. *forgotten, or null: the number of voxels that were known.
-   VG_INVALID_ARGUMENT: a bound that is NaN. */
+   infinite. Views remain. *forgotten (may be null) is the number of voxels that were known. Returns
+   VG_INVALID_ARGUMENT for a bound that is NaN. */
 VG_API vg_status vg_grid_forget(vg_grid* grid, const double min[3], const double max[3],
                                 uint64_t* forgotten);
 
-/* Sets the voxels of a lattice box, starting at its lowest voxel `first`, from labels, [x][y][z]
-   with z fastest, as in vg_grid_from_labels; for planners with their own growing map. Voxels that
-   already have the state do not change; the others lose their beliefs. *changed, or null: the
-   number of changed voxels. VG_INVALID_ARGUMENT, without changes: a box that is not inside the
-   workspace, an invalid label. */
+/* Sets the voxels of a box from labels, [x][y][z] with z fastest, as in vg_grid_from_labels.
+   `first` is the lowest voxel of the box, on the lattice. For planners with their own growing map.
+   Voxels that already have the state do not change; the others lose their beliefs. *changed (may be
+   null) is the number of changed voxels. Returns VG_INVALID_ARGUMENT, without changes, for a box
+   that is not inside the workspace or an invalid label. */
 VG_API vg_status vg_grid_update_box(vg_grid* grid, const int32_t first[3], const int32_t dims[3],
                                     const uint8_t* labels, uint64_t* changed);
 
@@ -179,18 +179,18 @@ VG_API vg_status vg_grid_scale(const vg_grid* grid, const int32_t* voxels, size_
 /* Sets the scale of the leaves of 8^3 voxels that a box of the grid frame [m] touches; bounds may
    be infinite. When cells merge, their hits and information add up. When a cell is split, the new
    cell that contains the mean of its readings gets them all; the rest of an occupied cell becomes
-   unknown. *changed, or null: the number of changed leaves. VG_INVALID_ARGUMENT: a bound that is
-   NaN, a scale outside 0..3. */
+   unknown. *changed (may be null) is the number of changed leaves. Returns VG_INVALID_ARGUMENT for
+   a bound that is NaN or a scale outside 0..3. */
 VG_API vg_status vg_grid_resample(vg_grid* grid, const double min[3], const double max[3],
                                   int32_t scale, uint64_t* changed);
 
-/* The occupied voxels, for larger cells their lowest voxel, 3 indices each, on the lattice; equal
-   maps give the same order. Writes at most `capacity` of them and their number to *found. log_odds
-   or null. */
+/* The occupied voxels, 3 indices each, on the lattice; a larger cell is given by its lowest voxel.
+   Equal maps give the same order. Writes at most `capacity` of them; *found is the number of all.
+   log_odds may be null. */
 VG_API vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds,
                                   size_t capacity, size_t* found);
 
-/* Hash of the map, 16 hexadecimal digits and a 0; equal maps have equal hashes. */
+/* Hash of the map, 16 hexadecimal digits and a terminating zero; equal maps have equal hashes. */
 VG_API vg_status vg_grid_hash(const vg_grid* grid, char hash[17]);
 
 /* ---- Depth frames ---- */
@@ -217,7 +217,7 @@ typedef struct vg_integrator_config {
   size_t fine_count;    /* number of boxes, 6 numbers each */
   int32_t finest;       /* smallest scale outside the boxes, at most coarsest */
 } vg_integrator_config;
-/* The defaults. */
+/* Sets the defaults. */
 VG_API void vg_integrator_config_init(vg_integrator_config* config, size_t struct_size);
 
 /* Counts of one frame. */
@@ -233,14 +233,15 @@ typedef struct vg_integration_report {
 /* Prepares `report` for a call. */
 VG_API void vg_integration_report_init(vg_integration_report* report, size_t struct_size);
 
-/* Creates an integrator. config null: the defaults. */
+/* Creates an integrator. If config is null, the defaults apply. */
 VG_API vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_config* config,
                                       vg_integrator** integrator);
 
 /* Integrates one frame: `depth` along the optical axis [m], row-major, width * height values, 0
-   invalid, +infinity out of range; `amplitude` [1/m^2] of the same size, or null; `pose_sigma` [m],
-   [rad], the uncertainty of this pose in addition to the sensor's, or null; `report` or null. An
-   invalid pose or sigma is VG_INVALID_ARGUMENT, and the map does not change. */
+   invalid, +infinity out of range. `amplitude` [1/m^2] has the same size. `pose_sigma` [m], [rad]
+   is the uncertainty of this pose, in addition to the sensor's. `amplitude`, `pose_sigma` and
+   `report` may be null. For an invalid pose or sigma, returns VG_INVALID_ARGUMENT, and the map does
+   not change. */
 VG_API vg_status vg_integrate(vg_integrator* integrator, vg_grid* grid, const float* depth,
                               const float* amplitude, const double T_world_camera[16],
                               const double pose_sigma[2], vg_integration_report* report);

@@ -48,10 +48,11 @@ typedef struct vg_scorer_config {
   const double* fine;         /* as in vg_integrator_config */
   size_t fine_count;          /* number of boxes */
 } vg_scorer_config;
-/* The defaults. */
+/* Sets the defaults. */
 VG_API void vg_scorer_config_init(vg_scorer_config* config, size_t struct_size);
 
-/* An empty map. config null: the defaults. Copies its arguments. */
+/* Creates a scorer with an empty map. If config is null, the defaults apply. Arguments are copied.
+ */
 VG_API vg_status vg_scorer_create(const vg_sensor* sensor, const vg_scorer_config* config,
                                   vg_scorer** scorer);
 /* Continues a file of vg_scorer_save(), or another .vdb map of viewgain, whose layout and prior
@@ -103,8 +104,8 @@ VG_API vg_status vg_scorer_forget(vg_scorer* scorer, const double min[3], const 
 VG_API vg_status vg_scorer_evaluate(const vg_scorer* scorer, const double* poses, size_t count,
                                     double* gains, const vg_watch* watch);
 /* The k best poses with high probability, best first, like vg_race(). If body_size is set, only
-   feasible poses are chosen. costs: one per pose, subtracted from its gain, in the gain's unit, or
-   null. deadline: time limit of the call [s], as in vg_race(); INFINITY: none. */
+   feasible poses are chosen. costs: one per pose, subtracted from its gain, in the gain's unit; may
+   be null. deadline: time limit of the call [s], as in vg_race(); INFINITY: none. */
 VG_API vg_status vg_scorer_best(const vg_scorer* scorer, const double* poses, size_t count,
                                 size_t k, const double* costs, double deadline, size_t* indices,
                                 double* gains, size_t* found, const vg_watch* watch);
@@ -133,7 +134,7 @@ VG_API void vg_consistency_init(vg_consistency* found, size_t struct_size);
 
 /* Compares the frames that were added since the scorer was made or loaded. `contradicts` may be
    null; otherwise it has room for `capacity` entries, at least one per frame, and an entry is
-   nonzero for a frame that contradicts the others. Takes 50 ms, 0.5 s if frames disagree. */
+   nonzero for a frame that contradicts the others. Takes 50 ms, or 0.5 s if frames disagree. */
 VG_API vg_status vg_scorer_consistency(const vg_scorer* scorer, vg_consistency* found,
                                        int32_t* contradicts, size_t capacity);
 

@@ -24,9 +24,9 @@ namespace viewgain {
 
 /// A folder of masks that exclude pixels of depth images, for example of the arm that carries the
 /// camera. A mask is a grayscale PNG of 1 to 8 bits with the depth image's name and size; nonzero
-/// pixels are ignored. Alternatively a folder of confidences from the camera: pixels below the
-/// least confidence are ignored. Thread safety: const members may run from many threads. Cost of
-/// mask_of(): reads a file, O(pixels).
+/// pixels are ignored. Alternatively, a folder of confidence images from the camera: pixels below
+/// the least confidence are ignored. Thread safety: const members may run from many threads. Cost
+/// of mask_of(): reads a file, O(pixels).
 class VIEWGAIN_EXPORT MaskFolder {
  public:
   /// With `least_confidence` the images are confidences. Throws Error(io) naming the folder if it

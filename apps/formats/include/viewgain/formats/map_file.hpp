@@ -50,8 +50,8 @@ struct VIEWGAIN_EXPORT LostInTree {
   bool T_world_grid = false;     ///< see octomap_keeps_frame
 };
 
-/// Writes a .ot if the name ends in .ot, otherwise a .vdb, which loses nothing. Atomic. Throws like
-/// save_vdb(), save_octomap() and check_map_name().
+/// Writes a .ot if the name ends in .ot, otherwise a .vdb, which loses nothing. Atomic. Throws
+/// whatever save_vdb(), save_octomap() and check_map_name() throw.
 VIEWGAIN_EXPORT LostInTree save_map(const BeliefGrid& grid, const std::filesystem::path& path,
                                     const VdbWriteConfig& config = {});
 

@@ -29,13 +29,13 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 ///
 /// Keeps the states occupied, free and unknown. Log-odds of a `.ot` are rounded to steps of 0.05
 /// and clamped to [-2, 3.5] without changing the state; a `.bt` gives 3.5 and -2. The map has no
-/// beliefs (see BeliefGrid::from_states()) and no views. A pruned leaf that is free needs little
-/// memory, an occupied one a block per 8³ voxels.
+/// beliefs (see BeliefGrid::from_states()) and no views. A pruned free leaf needs little memory,
+/// but a pruned occupied leaf needs a block per 8³ voxels.
 ///
 /// Throws Error(io) if the file cannot be read; Error(format) with the file and the line or byte if
 /// it is truncated, has a wrong number of nodes, an invalid value, or no known voxel and no
 /// workspace; Error(capacity) with the file if it is too large or pruned leaves have more than 2^27
-/// occupied voxels; Error(invalid_argument) like the constructor of BeliefGrid.
+/// occupied voxels. Also throws whatever the constructor of BeliefGrid throws.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_octomap(const std::filesystem::path& path,
                                                       const OctomapConfig& config = {});
 /// As above for a file's contents; `name` is the file name in messages.

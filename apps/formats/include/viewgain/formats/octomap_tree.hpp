@@ -25,7 +25,7 @@ namespace viewgain {
 
 /// A belief grid from the tree, like load_octomap(). The tree's own occupancy threshold replaces
 /// config.occupied_from. Needs 5 bytes per node for a temporary copy. Thread safety: only reads the
-/// tree. Throws like load_octomap(). Cost: O(nodes).
+/// tree. Throws whatever load_octomap() throws. Cost: O(nodes).
 [[nodiscard]] inline BeliefGrid grid_from_octree(const octomap::OcTree& tree,
                                                  OctomapConfig config = {}) {
   config.occupied_from = tree.getOccupancyThresLog();
@@ -109,7 +109,7 @@ inline std::uint64_t update_from_octree(BeliefGrid& grid, const octomap::OcTree&
 }
 
 /// The tree that save_octomap() would write, with OctoMap's default settings except the resolution.
-/// Throws like save_octomap(). Cost: O(nodes).
+/// Throws whatever save_octomap() throws. Cost: O(nodes).
 [[nodiscard]] inline std::unique_ptr<octomap::OcTree> octree_from_grid(const BeliefGrid& grid) {
   std::istringstream file(octomap_bytes(grid));
   file.imbue(std::locale::classic());

@@ -42,7 +42,7 @@ struct VIEWGAIN_EXPORT Gray8Image {
                                                       int height);
 
 /// Reads a grayscale PNG of 1 to 8 bits of exactly this size. Values are raw, extended to 8 bits.
-/// Throws like read_gray_png().
+/// Throws whatever read_gray_png() throws.
 [[nodiscard]] VIEWGAIN_EXPORT Gray8Image read_gray8_png(const std::filesystem::path& path,
                                                         int width, int height);
 

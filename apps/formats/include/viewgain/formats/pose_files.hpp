@@ -17,7 +17,8 @@ namespace viewgain {
 
 /// Reads TUM text (read_tum()) or a .npy array: rows with the columns tx, ty, tz, qx, qy, qz, qw
 /// and optionally timestamp, or (n, 4, 4) matrices; float64 or float32, C or Fortran order. Default
-/// timestamps are 0, 1, 2, ... Throws like read_tum(); messages about a .npy file name the row.
+/// timestamps are 0, 1, 2, ... Throws whatever read_tum() throws; messages about a .npy file name
+/// the row.
 [[nodiscard]] VIEWGAIN_EXPORT PoseList load_poses(const std::filesystem::path& path);
 
 /// Writes a file for load_poses(): TUM text for .txt and .tum; for .npy rows with timestamp, tx,

@@ -9,7 +9,7 @@
 #include "viewgain/core/reach.hpp"
 
 /// @file
-/// Files of reachable regions. Each call reads or writes them once, O(parts).
+/// Files of reachable regions. Each call reads or writes each file once. Cost: O(parts).
 
 namespace viewgain {
 

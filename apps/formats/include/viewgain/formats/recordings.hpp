@@ -70,7 +70,7 @@ struct VIEWGAIN_EXPORT ImportReport {
   double depth_scale = 0;           ///< of the written images [m per unit]
   std::string world{};              ///< tf frame of the poses; empty without tf
   std::string depth_topic{};        ///< empty without topics
-  /// About data that was read only in part, and about assumptions.
+  /// Warnings about data that was read only in part, and about assumptions.
   std::vector<std::string> warnings{};
 };
 

@@ -25,9 +25,9 @@ class TemporaryNames;
 /// one per file if the target exists.
 class VIEWGAIN_EXPORT StagedFolder {
  public:
-  /// Creates the hidden folder, and missing parents of the target. If `taken_up` is given, resumes
-  /// instead the hidden folder of an ended process that contains a file of this name, and removes
-  /// unfinished files there. Throws Error(io).
+  /// Creates the hidden folder, and missing parents of the target. If `taken_up` is given, and the
+  /// hidden folder of an ended process contains a file of this name, resumes that folder instead
+  /// and removes unfinished files in it. Throws Error(io).
   explicit StagedFolder(const std::filesystem::path& target, const char* taken_up = nullptr);
   /// Removes everything that commit() has not moved, and the created parents if they are empty.
   ~StagedFolder();
@@ -62,8 +62,8 @@ class VIEWGAIN_EXPORT StagedFolder {
   std::atomic<bool> is_kept_ = false;
 };
 
-/// For a program that a signal ends: removes the hidden folders of all StagedFolder objects of this
-/// process that are not kept, and the parents created for them. Writers fail afterwards. Not for
+/// Removes the hidden folders of all StagedFolder objects of this process that are not kept, and
+/// the parents created for them. For a program that a signal ends. Writers fail afterwards. Not for
 /// use in a signal handler, because it takes a lock.
 VIEWGAIN_EXPORT void remove_staged_folders() noexcept;
 

@@ -36,8 +36,8 @@ enum class ClassicGain : std::uint8_t {
   average_entropy,    ///< mean of H over the crossed voxels [nat]
   rear_side_voxel,    ///< rays whose last voxel in front of a surface is unknown [rays]
   rear_side_entropy,  ///< Σ P H over the unknown voxels in front of such a surface [nat]
-  proximity_count,  ///< Σ over unknown voxels, larger the nearer they are behind a measured surface
-                    ///< [voxels]
+  proximity_count,    ///< unknown voxels behind a measured surface; nearer ones have a larger
+                      ///< weight [voxels]
   /// From two fractions of the rays: those that hit a surface, and those that reach space hidden by
   /// one. Dimensionless.
   area_factor,
@@ -103,8 +103,8 @@ class VIEWGAIN_EXPORT ClassicMap {
   [[nodiscard]] const VoxelScene& scene() const noexcept;
   /// Steps of an unknown voxel behind a measured surface; 0: unknown.
   [[nodiscard]] int occlusion_steps(Index3 voxel) const;
-  /// Whether the voxel is unknown, with a free and an occupied one among its 26 neighbours in the
-  /// workspace.
+  /// Whether the voxel is unknown, and its 26 neighbours in the workspace include a free and an
+  /// occupied voxel.
   [[nodiscard]] bool is_surface_frontier(Index3 voxel) const;
   /// Memory in addition to the scene's.
   [[nodiscard]] std::uint64_t bytes() const noexcept;

@@ -53,8 +53,8 @@ class VIEWGAIN_EXPORT FrameAlignment {
   [[nodiscard]] const std::vector<FrameRegistration>& registrations() const;
 
   /// Aligns a frame with a map, independently of add(). The first frame of an empty map stays as
-  /// reported, with zero covariance. Throws like add(). Cost: fused_points() of the part that the
-  /// frame can show, and 10 to 60 ms on two cores.
+  /// reported, with zero covariance. Throws whatever add() throws. Cost: fused_points() of the part
+  /// that the frame can show, and 10 to 60 ms on two cores.
   [[nodiscard]] FrameRegistration register_frame(const BeliefGrid& grid, DepthFrame frame,
                                                  const Pose& T_reported,
                                                  const PoseSigma& sigma = kUsualPoseSigma) const;

@@ -92,8 +92,8 @@ struct VIEWGAIN_EXPORT Ranking {
                                                              const RankConfig& config);
 
 /// The k best poses, k >= 1. Feasibility is not checked. Ties go to the earlier pose. Invalid poses
-/// are omitted and, if config.together is set, poses without marginal gain as well. Throws
-/// Error(invalid_argument) like view_costs() and GainEvaluator::best().
+/// are omitted and, if config.together is set, poses without marginal gain as well. Throws whatever
+/// view_costs() and GainEvaluator::best() throw.
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_views(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  std::size_t k, const RankConfig& config,
@@ -116,7 +116,7 @@ VIEWGAIN_EXPORT void keep_worth(const GainEvaluator& evaluator, const PlanAhead&
                                 double surface_area, Proposal& planned);
 
 /// Scores the views that remain from an earlier plan, each on its own, and keeps their order.
-/// Throws like plan_views().
+/// Throws whatever plan_views() throws.
 [[nodiscard]] VIEWGAIN_EXPORT Ranking rank_in_turn(const GainEvaluator& evaluator,
                                                    std::span<const Pose> T_world_camera,
                                                    RankConfig config,

@@ -45,7 +45,7 @@ class VIEWGAIN_EXPORT SimulatedAcquisition : public DataAcquisition {
                                                  const PoseSigma& sigma, std::uint64_t seed);
 
 /// DATAACQUISITION that reports slightly wrong poses. Thread safety: one call at a time. Throws
-/// like its camera and reported_pose(); costs the same as its camera.
+/// whatever its camera and reported_pose() throw. Costs the same as its camera.
 class VIEWGAIN_EXPORT MisreportedAcquisition : public DataAcquisition {
  public:
   /// Keeps a reference to the camera. acquire() checks the sigmas.

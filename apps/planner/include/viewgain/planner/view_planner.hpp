@@ -95,8 +95,8 @@ class VIEWGAIN_EXPORT ViewPlanner {
 
   /// Estimates the camera pose from the frame and the map; see FrameAlignment. Changes nothing. If
   /// the frame is registered, add() it at the estimated pose; with too little overlap, at the
-  /// reported pose; if it is refused, drop() it. Throws Error(invalid_argument) like
-  /// FrameAlignment::register_frame().
+  /// reported pose; if it is refused, drop() it. Throws whatever FrameAlignment::register_frame()
+  /// throws.
   [[nodiscard]] FrameRegistration register_frame(const DepthFrame& frame, const Pose& T_reported,
                                                  const PoseSigma& sigma = kUsualPoseSigma) const;
 
@@ -122,8 +122,8 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// The possible candidates from the reach region's poses, the sets and the generations, in this
   /// order (see ViewProposer). Also gives the number of dropped candidates per reason. If an
   /// earlier plan has views left that are still good, only these are returned; their generator is
-  /// kPlanned. Valid until the next add() or propose(). Earlier rankings become invalid. Throws
-  /// Error(invalid_argument), like rank(), if no frame so far could be used, because the set-up is
+  /// kPlanned. Valid until the next add() or propose(). Earlier rankings become invalid. Like
+  /// rank(), throws Error(invalid_argument) if no frame so far could be used, because the set-up is
   /// then probably wrong.
   const Proposal& propose();
   /// Dropped candidates of the last proposal, in order; valid as long as the proposal.

@@ -54,8 +54,8 @@ struct VIEWGAIN_EXPORT ProposerConfig {
 /// thread safe.
 class VIEWGAIN_EXPORT ViewProposer {
  public:
-  /// The reach region's list of poses, if any, becomes the set "reach". Throws like
-  /// FeasibilityChecker.
+  /// The reach region's list of poses, if any, becomes the set "reach". Throws whatever
+  /// FeasibilityChecker throws.
   ViewProposer(std::shared_ptr<const VoxelScene> scene, ProposerConfig config,
                const ExecConfig& exec = {});
 

@@ -21,8 +21,8 @@ namespace viewgain {
 /// trace per view, then constant time per point.
 class VIEWGAIN_EXPORT ViewSight {
  public:
-  /// Throws like the constructor of GainEvaluator. `views`: T_world_camera; queries use their
-  /// indices.
+  /// Throws whatever the constructor of GainEvaluator throws. `views`: T_world_camera; queries use
+  /// their indices.
   ViewSight(std::shared_ptr<const VoxelScene> scene, const Sensor& sensor,
             std::span<const Pose> views, const ExecConfig& exec);
 

@@ -36,7 +36,7 @@ struct VIEWGAIN_EXPORT BoundaryViewsConfig {
 [[nodiscard]] VIEWGAIN_EXPORT EstimatorConfig default_estimator(double spacing);
 
 /// default_estimator() for the surface of a map with this voxel_size [m], at the sensor's working
-/// distance. Throws like it.
+/// distance. Throws whatever default_estimator() throws.
 [[nodiscard]] VIEWGAIN_EXPORT BoundaryViewsConfig default_boundary(const Sensor& sensor,
                                                                    double voxel_size);
 
@@ -53,10 +53,10 @@ boundary_views(const SurfaceMesh& surface, const std::shared_ptr<const VoxelScen
 
 /// VIEWPOINTSGENERATION at the surface boundaries of a map, recomputed for each proposal, for
 /// ViewPlanner::add_generation(). If there are fewer than 200 candidates, adds hazard_views(),
-/// because new surface can also be expected away from any boundary. Does not check feasibility. For
-/// a map without surface or views, such as an OctoMap, the candidates are a sphere around the
-/// workspace. Thread safety: one call at a time. Cost: fused_points(), reconstruct_surface(),
-/// estimate_views() and hazard_views().
+/// because new surface is also expected at places that are not near a boundary. Does not check
+/// feasibility. For a map without surface or views, such as an OctoMap, the candidates are a sphere
+/// around the workspace. Thread safety: one call at a time. Cost: fused_points(),
+/// reconstruct_surface(), estimate_views() and hazard_views().
 class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
  public:
   /// Recomputes the surface of a map, such as that of ViewPlanner::scorer(), for each proposal. The
@@ -67,7 +67,7 @@ class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
   BoundaryGeneration(const SurfaceModel& model, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
 
-  /// Proposes these candidates. Throws like boundary_views().
+  /// Proposes these candidates. Throws whatever boundary_views() throws.
   Proposal generate(const Pose& T_world_camera) override;
 
   /// Details of the last proposal.
@@ -91,8 +91,8 @@ struct VIEWGAIN_EXPORT GenerationConfig {
 };
 
 /// Default settings of all loops: boundary candidates from default_boundary(), no sets, feasibility
-/// of the sensor's body, unlimited reach. voxel_size [m] is the map's. Throws like
-/// default_boundary().
+/// of the sensor's body, unlimited reach. voxel_size [m] is the map's. Throws whatever
+/// default_boundary() throws.
 [[nodiscard]] VIEWGAIN_EXPORT GenerationConfig default_generation(const Sensor& sensor,
                                                                   double voxel_size);
 
@@ -101,12 +101,12 @@ struct VIEWGAIN_EXPORT GenerationConfig {
 /// and FeasibilityChecker::check() of all candidates.
 class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
  public:
-  /// The model must outlive this object. Throws like FeasibilityChecker.
+  /// The model must outlive this object. Throws whatever FeasibilityChecker throws.
   CandidateGeneration(const SurfaceModel& model, const GenerationConfig& config,
                       const ExecConfig& exec);
 
   /// Poses of the sets and boundary views that are possible under the rules of ViewProposer. Throws
-  /// like boundary_views().
+  /// whatever boundary_views() throws.
   Proposal generate(const Pose& T_world_camera) override;
 
   /// The possible poses of one set.

@@ -68,9 +68,9 @@ class VIEWGAIN_EXPORT RegisteredChoice {
   RegisteredChoice(const SurfaceModel& model, const Sensor& sensor, std::string gain,
                    const ExecConfig& exec);
 
-  /// Gain of each pose, in the gain's unit. Unless `all` is set, only the 32 best poses by about
-  /// 400 rays each are scored with all rays; the others are NaN. Throws like
-  /// GainFamily::evaluator().
+  /// Gain of each pose, in the gain's unit. Unless `all` is set, scores only 32 poses with all
+  /// rays: the best according to about 400 rays each. The gains of other poses are then NaN. Throws
+  /// whatever GainFamily::evaluator() throws.
   [[nodiscard]] std::vector<double> gains(std::span<const Pose> T_world_camera, bool all) const;
 
  private:
@@ -104,15 +104,15 @@ class VIEWGAIN_EXPORT OracleChoice {
   /// Index of the candidate after which the map's points cover the most samples. Simulates one
   /// noise-free frame into a copy of the map for each of the 8 candidates that see the most
   /// uncovered samples of the mesh, unoccluded and at less than 72°. Ties go to the lower index.
-  /// Requires at least one candidate (unchecked). Throws like covered_after(). Cost: some seconds
-  /// for a thousand candidates.
+  /// Requires at least one candidate (unchecked). Throws whatever covered_after() throws. Cost:
+  /// some seconds for a thousand candidates.
   [[nodiscard]] std::size_t next(std::span<const Candidate> candidates) const;
 
   /// Number of uncovered samples that each candidate sees, weighted by 1 / (1 + σ_ax(t) / V) for a
   /// sample at range t, where V is the voxel size. Cost: up to two rays per sample and candidate.
   [[nodiscard]] std::vector<double> uncovered_in_view(std::span<const Candidate> candidates) const;
-  /// Number of samples that the map's points cover after a frame from the pose. Throws like
-  /// SimulatedSensor::acquire(). Cost: a simulated frame and a copy of the map.
+  /// Number of samples that the map's points cover after a frame from the pose. Throws whatever
+  /// SimulatedSensor::acquire() throws. Cost: a simulated frame and a copy of the map.
   [[nodiscard]] std::size_t covered_after(const Pose& T_world_camera) const;
 
  private:
@@ -151,8 +151,8 @@ struct VIEWGAIN_EXPORT PolicyConfig {
 };
 
 /// set_stop_rules() for the gain of a policy. Policies without a gain, or with a registered gain,
-/// do not stop on gain or area; for these, Error(invalid_argument) is thrown for a value above 0.
-/// `stop_gain` [nat, m² for trace]; `stop_area` is a fraction of the surface.
+/// do not stop on gain or area. For these policies, throws Error(invalid_argument) if a value is
+/// above 0. `stop_gain` [nat, m² for trace]; `stop_area` is a fraction of the surface.
 VIEWGAIN_EXPORT void set_stop_rules(PlanningConfig& planning, const PolicyConfig& policy,
                                     std::optional<double> stop_gain,
                                     std::optional<double> stop_area);

@@ -47,12 +47,12 @@ struct VIEWGAIN_EXPORT SurfaceModelConfig {
 /// (perf/results/loop.md).
 class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
  public:
-  /// If `truth` is null, there are no quality figures. Throws like ViewScorer.
+  /// If `truth` is null, no quality figures are computed. Throws whatever ViewScorer throws.
   SurfaceModel(const Sensor& sensor, const SurfaceModelConfig& config,
                std::shared_ptr<const Truth> truth, const ExecConfig& exec);
 
-  /// Starts from an existing map, and computes its surface and scene. Throws like ViewScorer and
-  /// fused_points().
+  /// Starts from an existing map, and computes its surface and scene. Throws whatever ViewScorer
+  /// and fused_points() throw.
   SurfaceModel(BeliefGrid grid, const Sensor& sensor, const SurfaceModelConfig& config,
                const ExecConfig& exec);
 
@@ -62,12 +62,13 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   ModelProgress update(const Measurements& measurements) override;
 
   /// Rebuilds the model from these measurements in order, after their poses were corrected. Cost:
-  /// one update of the map per view; quality is computed once. Throws like update(); the previous
-  /// model is then lost.
+  /// one update of the map per view; quality is computed once. Throws whatever update() throws; the
+  /// previous model is then lost.
   ModelProgress rebuild(std::span<const Measurements> measurements);
 
   /// The points that the model would have after these measurements. Does not change the model.
-  /// Throws like ViewScorer::add(). Cost: a copy of the map, and update() without the surface.
+  /// Throws whatever ViewScorer::add() throws. Cost: a copy of the map, and update() without the
+  /// surface.
   [[nodiscard]] std::vector<FusedPoint> points_after(const Measurements& measurements) const;
 
   /// The map behind the surface.
@@ -108,11 +109,11 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
 class VIEWGAIN_EXPORT RegisteredModel : public RepresentationUpdate {
  public:
   /// `model` must be empty; a reference is kept. `sigma`: uncertainty of each reported pose. Throws
-  /// Error(invalid_argument) like FrameAlignment.
+  /// whatever FrameAlignment throws.
   RegisteredModel(SurfaceModel& model, const PoseSigma& sigma, const ExecConfig& exec = {});
 
-  /// The stages are those of SurfaceModel::update(), plus register. Throws like
-  /// FrameAlignment::add() and SurfaceModel::rebuild().
+  /// The stages are those of SurfaceModel::update(), plus register. Throws whatever
+  /// FrameAlignment::add() and SurfaceModel::rebuild() throw.
   ModelProgress update(const Measurements& measurements) override;
 
   /// Current registration of each view.

@@ -50,8 +50,8 @@ struct VIEWGAIN_EXPORT Stage {
 
 /// A pose (T_world_camera) that looks at the object's centre from `distance` [m] and 27° above, at
 /// an azimuth that depends on the seed. If that pose is out of reach or not above support_plane
-/// (world z [m]), returns the nearest possible pose among 2,562 on the sphere and the region's
-/// list. Throws Error(invalid_argument) if there is none.
+/// (world z [m]), returns the nearest possible pose among 2,562 on the sphere and the poses listed
+/// in `reach`. Throws Error(invalid_argument) if there is none.
 [[nodiscard]] VIEWGAIN_EXPORT Pose default_start(const Stage& stage, double distance,
                                                  std::uint64_t seed, const ReachRegion& reach,
                                                  const std::optional<double>& support_plane);
@@ -118,8 +118,8 @@ VIEWGAIN_EXPORT void mark_seen(const SurfaceScene& scene, const SurfaceScene* su
 /// 10,000 samples times 2,563 poses, two rays each.
 class VIEWGAIN_EXPORT Truth {
  public:
-  /// Determines the visible samples. The scene must not be null. Throws like GroundTruth, and
-  /// rethrows exceptions of the region's predicate.
+  /// Determines the visible samples. The scene must not be null. Throws whatever GroundTruth and
+  /// the region's predicate throw.
   Truth(std::shared_ptr<const SurfaceScene> scene, const Sensor& sensor,
         const VisibilityConfig& config, const ExecConfig& exec);
 
