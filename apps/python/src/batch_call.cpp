@@ -117,13 +117,14 @@ void bind_control(py::module_& module) {
 Parameters
 ----------
 progress : callable, optional
-    Called with ``(done, total)`` on the calling thread about every 50 ms and at the end; for an
-    empty batch with ``(0, 0)``. The call stops if the result is false but not ``None`` (``False``,
-    ``numpy.False_``, 0). An exception also stops the call, which then raises it.
+    Called with ``(done, total)`` on the calling thread, about every 50 ms and at the end; for an
+    empty batch with ``(0, 0)``. If it returns ``False`` (or another false value except ``None``),
+    the call stops. If it raises an exception, the call stops and raises it.
 
 Notes
 -----
-A stopped control stays stopped: make a new one for each call. Ctrl-C works with or without one.)");
+A control that was stopped stays stopped, so make a new one for each call. Ctrl-C also works without
+a control.)");
   refuse_pickling(type);
   type.def(py::init([](py::object progress) {
              if (!progress.is_none() && PyCallable_Check(progress.ptr()) == 0) {
@@ -136,10 +137,10 @@ A stopped control stays stopped: make a new one for each call. Ctrl-C works with
            "progress"_a = py::none())
       .def(
           "stop", [](Control& control) { control.stop.request_stop(); },
-          "Ask the running call to return early with its results so far. Any thread may call it.")
+          "Asks the running call to return early with its results so far. Any thread may call it.")
       .def_property_readonly(
           "stopped", [](const Control& control) { return control.stop.stop_requested(); },
-          "bool: True if a stop was requested.")
+          "bool: whether a stop was requested")
       .def("__repr__", [](const Control& control) {
         return control.stop.stop_requested() ? "BatchControl(stopped)" : "BatchControl()";
       });

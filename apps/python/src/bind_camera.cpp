@@ -45,16 +45,17 @@ triangles : array_like, (m, 3)
     Indices.
 sensor : Sensor
 background_radius : float
-    Radius of a diffuse sphere around the origin that stands for the room [m]; 0: none.
+    Radius of a diffuse sphere around the world's origin that simulates the room [m]; 0: none.
 noise : bool
-    Add Gaussian noise along the ray and noise of the amplitude, from the sensor's model.
+    Add noise to the amplitudes, and Gaussian noise along the ray, according to the sensor's noise
+    model.
 lateral_noise : bool
-    Shift rays sideways by a Gaussian with the model's lateral sigma.
+    Shift rays sideways by a Gaussian offset with the lateral sigma of the noise model.
 scale_error : float
     Relative error of all ranges: measured ranges are 1 + scale_error times the true ones.
 sub_rays : int
-    Traces sub_rays**2 rays per pixel, 1 to 16; the returns mix for sensors with a modulation
-    frequency.
+    Trace sub_rays**2 rays per pixel; 1 to 16. For sensors with a modulation frequency, their
+    returns mix at depth edges. Other sensors use only the centre ray.
 seed : int
     Seed of the noise.
 support_plane : float, optional
@@ -65,8 +66,8 @@ num_threads : int
 Notes
 -----
 ``acquire`` may run in many threads at once and releases the GIL. Cost of a frame: linear in pixels
-and sub_rays**2, 2 ms for 176x144 pixels on two threads. The cost of the constructor grows with the
-number of triangles.)");
+and in sub_rays**2. It is 2 ms for 176x144 pixels and one ray per pixel, on two threads. The cost of
+the constructor grows with the number of triangles.)");
   refuse_pickling(type);
   type.def(py::init([](const py::object& vertices, const py::object& triangles,
                        const Given<Sensor>& of, double background_radius, bool noise,
@@ -102,7 +103,7 @@ number of triangles.)");
                          image_array(frame.amplitude, frame.height, frame.width));
           },
           "T_world_camera"_a, "frame_index"_a = 0,
-          R"(The frame from a pose. Equal seed, index and pose give equal frames.
+          R"(The frame from a pose. The same seed, index and pose give the same frame.
 
 Parameters
 ----------
@@ -155,13 +156,13 @@ void bind_camera(py::module_& module) {
   auto type = bound_class<PinholeCamera>(module, "PinholeCamera",
                                          R"(Pinhole camera with OpenCV's distortion model.
 
-The camera's optical frame has x right, y down, z forward; pixel (0, 0) has its centre at (0, 0).
-Immutable; equal by value.
+The camera frame has x right, y down and z forward. The centre of the first pixel has the pixel
+coordinates (0, 0). Immutable. Cameras are equal if their values are.
 
 Parameters
 ----------
 width, height : int
-    [px], 1 to 16384; at most 2**24 pixels.
+    Size of the image [px], each 1 to 16384; at most 2**24 pixels.
 fx, fy : float
     Focal lengths [px].
 cx, cy : float
@@ -184,7 +185,8 @@ distortion : sequence of float, (5,), optional
 Parameters
 ----------
 K : array_like, (3, 3)
-    Rows fx 0 cx, 0 fy cy, 0 0 1 [px], to 1e-9; skew raises ValueError.
+    Rows fx 0 cx, 0 fy cy, 0 0 1 [px]. Raises ValueError if the 0 and 1 entries differ by more than
+    1e-9, for example because of skew.
 width, height : int
     [px]
 distortion : sequence of float, (5,), optional
@@ -213,15 +215,15 @@ PinholeCamera)")
             for (const Eigen::Vector3d& ray : table) out = std::copy_n(ray.data(), 3, out);
             return rays;
           },
-          R"(Directions (x, y, 1) of all pixel centres, camera frame, without distortion.
+          R"(Directions (x, y, 1) of the rays of all pixels, camera frame.
 
-Cost: about 15 ns per pixel, with distortion 0.3 µs.
+Cost: about 15 ns per pixel; with distortion 0.3 µs.
 
 Returns
 -------
 ndarray, (height, width, 3), float64
-    Camera frame; multiplied with a depth [m] they are points. NaN where the distortion model has no
-    solution.)")
+    A direction times a depth [m] is a point in the camera frame [m]. NaN if the pixel has no ray,
+    because the distortion model is not invertible there.)")
       .def(
           "project",
           [](const PinholeCamera& camera, const py::object& points_camera) {
@@ -250,7 +252,7 @@ points : array_like, (..., 3)
 Returns
 -------
 ndarray, (..., 2), float64
-    (u, v) [px]; NaN behind the camera.)")
+    (u, v) [px]; NaN for points behind the camera.)")
       .def(
           "__eq__", [](const PinholeCamera& a, const PinholeCamera& b) { return a == b; },
           py::is_operator())

@@ -310,13 +310,13 @@ void bind_evaluator(py::module_& module) {
            "control"_a = py::none(), kApproximateDoc)
       .def_property_readonly(
           "rays_per_pose", [](const Evaluator& self) { return self.evaluator.rays_per_pose(); },
-          "int: one per pixel of every pixel_stride-th row")
+          "int: number of rays of a view")
       .def_property_readonly(
           "num_threads", [](const Evaluator& self) { return self.evaluator.num_threads(); },
           "int: number of threads of a batch")
       .def_property_readonly(
           "prior_sigma", [](const Evaluator& self) { return self.evaluator.prior_sigma(); },
-          "float: standard deviation of an unknown voxel [m]")
+          "float: standard deviation of the surface position in an unknown voxel [m]")
       .def_property_readonly(
           "gain",
           [](const Evaluator& self) {
@@ -325,7 +325,7 @@ void bind_evaluator(py::module_& module) {
           "str")
       .def_readonly("criterion", &Evaluator::criterion, "str")
       .def_readonly("pixel_stride", &Evaluator::pixel_stride, "int")
-      .def_readonly("scene", &Evaluator::scene, "VoxelScene: the scene it was made with")
+      .def_readonly("scene", &Evaluator::scene, "VoxelScene: the scene of the evaluator")
       .def_readonly("sensor", &Evaluator::sensor, "Sensor")
       .def("__repr__", [](const Evaluator& self) {
         std::ostringstream text;

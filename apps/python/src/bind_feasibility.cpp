@@ -91,29 +91,32 @@ void bind_reach(py::module_& module) {
       bound_class<ReachRegion>(module, "ReachRegion",
                                R"(Region of camera poses that a robot can reach, world frame.
 
-A pose is reachable if it meets every condition that is given: its centre lies in one of the boxes,
-in one of the shells and in all half-spaces; it is one of the poses; and the predicate returns true.
+Each parameter that is given is a condition, and a reachable pose meets all of them. The camera
+centre lies in one of the boxes, in one of the shells and in all half-spaces. The pose is one of
+poses, within the tolerance. The predicate returns true.
 
 Parameters
 ----------
 boxes : array_like, (n, 2, 3), optional
-    Lowest and highest corners, world [m].
+    Lowest and highest corners, world frame [m].
 shells : array_like, (n, 5), optional
-    Centre x y z, smallest and largest radius, world [m].
+    Spaces between two spheres: centre x y z, smallest and largest radius, world frame [m].
 half_spaces : array_like, (n, 4), optional
-    Normal and offset [m], world: normal . p >= offset.
+    Normal x y z and offset [m], world frame. A half-space has the points p with normal . p >=
+    offset.
 poses : array_like, (n, 4, 4), optional
     T_world_camera.
 distance, angle : float
-    Tolerance for two poses to be the same [m], [rad].
+    Tolerance for poses: largest distance between the camera centres [m], and largest rotation
+    [rad].
 predicate : callable, optional
     Takes T_world_camera (4, 4) and returns a truth value. Its exceptions pass through.
 
 Notes
 -----
-Regions without a predicate are equal by value and can be pickled; a region with a predicate only
-equals itself. Holds the GIL, except to read and write files. Cost: about 10 ns per part and
-pose.)");
+Regions without a predicate are equal if their values are, and can be pickled. A region with a
+predicate only equals itself. Holds the GIL, except for reading and writing files. Cost: about 10 ns
+per pose and condition.)");
   pickle_as_call(type, &keywords_of);
   type.def(py::init(&region_of), py::kw_only(), "boxes"_a = py::none(), "shells"_a = py::none(),
            "half_spaces"_a = py::none(), "poses"_a = py::none(), "distance"_a = tolerance.distance,
@@ -129,7 +132,7 @@ pose.)");
             }
             return scalar_or_array(inside);
           },
-          "T_world_camera"_a, R"(Whether poses are reachable; invalid poses are not.
+          "T_world_camera"_a, R"(Whether poses are reachable. Invalid poses are not.
 
 Parameters
 ----------
@@ -179,36 +182,38 @@ void bind_feasibility(py::module_& module) {
 
   const FeasibilityConfig defaults;
   auto type = bound_class<FeasibilityChecker>(module, "FeasibilityChecker",
-                                              R"(Checks which camera poses are possible in a scene.
+                                              R"(Checks which camera poses are feasible in a scene.
 
-The sensor's housing is a box. It must not overlap voxels that are not free, obstacles or the
-scene's support plane. The pose must be reachable and not taken yet. Space outside the workspace
-counts as free. Arguments after the scene are keyword-only.
+The housing of the sensor (its body) is a box. It must not overlap voxels that are not free,
+obstacles or the scene's support plane. The pose must be within reach, and differ from the poses of
+views so far. Space outside the workspace counts as free. Arguments after the scene are
+keyword-only.
 
 Parameters
 ----------
 scene : VoxelScene
 body_size : array_like, (3,), optional
-    Width, height, depth of the housing, flange frame [m]; default: the sensor's, or an SR4000's.
-    The housing is centred on the flange's z axis and extends from z = 0 to its depth. Without
-    T_flange_camera the camera is in the middle of the front face.
+    Width, height and depth of the housing, flange frame [m]; default: the sensor's, or if it has
+    none, the SR4000's. The housing is centred on the z axis of the flange frame and extends from z
+    = 0 to its depth.
 T_flange_camera : array_like, (4, 4), optional
-    Mounting of the camera on the flange; default: the sensor's.
+    Pose of the camera in the frame of the robot's flange; default: the sensor's. If it is unknown,
+    the camera looks out of the middle of the front face.
 clearance : float
     Margin around the body on each side [m].
 reach : ReachRegion, optional
 sensor : Sensor, optional
-    If given, rejects views where much of the image would be nearer than its min_range.
+    If given, views of this sensor are also checked for surface that is nearer than its min_range.
 max_near_share : float
-    Of the rays that end in the map, the largest fraction that may end nearer than min_range.
+    Largest fraction of rays that may end nearer than min_range, among those that end in the map.
 num_threads : int
-    For arrays of poses; 0: all hardware threads. The predicate of ``reach`` is called by one thread
-    at a time.
+    Number of threads for arrays of poses; 0: all hardware threads. The predicate of ``reach`` is
+    called by one thread at a time.
 
 Notes
 -----
-Methods may run in many threads at once and release the GIL. Cost: 0.5 to 1 µs per pose; with a
-sensor 10 to 50 µs for an SR4000 close to the map.)");
+Methods may run in many threads at once and release the GIL. Cost: 0.5 to 1 µs per pose. With a
+sensor, poses close to the map take 10 to 50 µs for an SR4000.)");
   refuse_pickling(type);
   type.def(py::init([](const Given<Scene>& scene, const py::object& body_size,
                        const py::object& T_flange_camera, double clearance,
@@ -241,7 +246,7 @@ sensor 10 to 50 µs for an SR4000 close to the map.)");
             const WithoutGil without_gil;
             return self.with_scene(scene->scene);
           },
-          "scene"_a, R"(A checker for another scene, to follow a growing map.
+          "scene"_a, R"(A checker for another scene, for example of a growing map.
 
 This checker does not change. Cost: some microseconds.
 
@@ -264,7 +269,7 @@ FeasibilityChecker)")
             }
             return scalar_or_array(good);
           },
-          "T_world_camera"_a, "taken"_a = py::none(), R"(Whether poses are possible.
+          "T_world_camera"_a, "taken"_a = py::none(), R"(Whether poses are feasible.
 
 Parameters
 ----------
@@ -283,7 +288,7 @@ ndarray, (...), bool
             return scalar_or_array(codes_of(self, T_world_camera, taken));
           },
           "T_world_camera"_a, "taken"_a = py::none(),
-          R"(Why poses are impossible: the first reason that applies.
+          R"(Why poses are not feasible: the first reason that applies.
 
 Parameters
 ----------

@@ -124,15 +124,15 @@ void bind_toml(py::module_& module) {
           [](const py::object& given) {
             return outside_gil([file = preset_or_file(given)] { return load_sensor(file); });
           },
-          "preset_or_file"_a, R"(A sensor from a .toml file, or a preset by its name.
+          "preset_or_file"_a, R"(A sensor from a .toml file, or a preset.
 
 Runs without the GIL. Cost: 0.1 ms.
 
 Parameters
 ----------
 preset_or_file : str or path-like
-    A name that ends in .toml is a file, such as one written by ``save`` or the program's
-    ``simulate``.
+    A name that ends in .toml is a file, for example from ``save`` or from the program's
+    ``simulate``. Any other name is a preset.
 
 Returns
 -------
@@ -173,7 +173,7 @@ ReachRegion)")
             outside_gil([&, file = writable_file(path)] { write_reach_toml(file, self); });
           },
           "path"_a,
-          R"(Writes a .toml file; poses go to NAME.poses.txt next to it, replacing an existing file.
+          R"(Writes NAME.toml and, if the region has poses, NAME.poses.txt. Replaces existing files.
 
 A region with a predicate raises ValueError.
 
@@ -188,11 +188,11 @@ path : path-like
 void bind_frames(py::module_& module) {
   auto type = bound_class<FrameSequence>(
       module, "FrameSequence",
-      R"(A folder of depth frames, read on access. Made by ``read_frames``.
+      R"(A folder of depth frames, which are read on access. Made by ``read_frames``.
 
-``frames[i]`` and iteration give a ``Frame``. Its depth is corrected with the sensor's
-range_calibration. Its pose is NaN if it is missing or invalid. ``ViewPlanner.add_frame`` reads,
-checks and adds a frame.
+``frames[i]`` and iteration return a ``Frame``. Its depth is corrected with the sensor's
+range_calibration. Its pose is NaN if the pose is missing or invalid. ``ViewPlanner.add_frame``
+reads, checks and adds a frame.
 
 Notes
 -----
@@ -221,9 +221,9 @@ Returns
 -------
 Frame)")
       .def_readonly("sensor", &FrameSequence::sensor,
-                    "Sensor: of the frames, with the folder's intrinsics if it has any")
+                    "Sensor: sensor of the frames, with the intrinsics of the folder if it has any")
       .def_readonly("depth_scale", &FrameSequence::depth_scale,
-                    "float: metres per unit of the images")
+                    "float: metres per unit of the depth images")
       .def_property_readonly(
           "poses", [](const FrameSequence& self) { return pose_array(self.poses); },
           "ndarray, (n, 4, 4), float64: T_world_camera")
@@ -238,40 +238,42 @@ Frame)")
              "depth_scale"_a = py::none(), "out_of_range"_a = py::none(),
              R"(Opens a folder of depth frames.
 
-Reads all poses and no image, without the GIL. Cost: linear in the frames.
+Reads the poses, but no images yet, without the GIL. Cost: linear in the number of frames.
 
 Parameters
 ----------
 folder : path-like
-    Contains frame-NNNNNN.depth.png (16 bit), and either poses.txt (TUM) and sensor.toml, as written
-    by the program's ``simulate``, or frame-NNNNNN.pose.txt and camera-intrinsics.txt, as in
-    recordings. frames.toml, if present, states how to read them. A UserWarning lists assumptions.
+    Contains frame-NNNNNN.depth.png (16 bit), and one of two layouts. The program's ``simulate``
+    writes poses.txt (TUM) and sensor.toml. Recordings have frame-NNNNNN.pose.txt and
+    camera-intrinsics.txt. A file frames.toml can state how to read the images. A UserWarning lists
+    what was assumed.
 sensor : str or path-like, optional
-    A preset's name or a .toml file; default: the folder's own.
+    Name of a preset, or a .toml file; default: the sensor of the folder.
 depth_scale : float, optional
-    Metres per unit; default: from frames.toml, else 1e-4 with poses.txt and 1e-3 with pose files.
+    Metres per unit of the images; default: that of frames.toml, otherwise 1e-4 with poses.txt and
+    1e-3 with pose files.
 out_of_range : {"carve", "invalid"}, optional
-    Meaning of 65535 in a depth image: free up to max_range, or no reading; default: from
-    frames.toml or the sensor's file, else "carve" with poses.txt and "invalid" with pose files.
+    Meaning of 65535 in a depth image. "carve": free up to max_range. "invalid": no measured depth.
+    Default: that of frames.toml or the sensor's file, otherwise "carve" with poses.txt and
+    "invalid" with pose files.
 
 Returns
 -------
 FrameSequence)");
 
   module.def("suspect_frames", &suspicions, "sensor"_a, "frames"_a,
-             R"(Probable mistakes in units, conventions or intrinsics of frames of one scene.
+             R"(Probable mistakes in the units, conventions or intrinsics of frames of one scene.
 
-Compares the surfaces of a dozen frames, as given and as they would be under common mistakes,
-including other focal lengths. Ignores frames without overlap. Runs without the GIL. Cost: up to 0.7
-s.
+Compares the surfaces of a dozen frames as given, and with each common mistake corrected. Ignores
+frames without overlap. Runs without the GIL. Cost: up to 0.7 s.
 
 Parameters
 ----------
 sensor : Sensor
     For example ``frames.sensor`` of ``read_frames``.
 frames : sequence of frames
-    A FrameSequence, or pairs (depth, T_world_camera) as for ``ViewPlanner.add``, except that depths
-    may be in any unit. Frames without a rigid pose are ignored.
+    A FrameSequence, or pairs (depth, T_world_camera) as for ``ViewPlanner.add``. Here depths may be
+    in any unit. Frames without a rigid pose are ignored.
 
 Returns
 -------
@@ -286,15 +288,15 @@ void bind_files(py::module_& module) {
   bind_frames(module);
   module.def(
       "read_poses", [](const py::object& path) { return pose_array(pose_list_of(path).poses); },
-      "path"_a, R"(Poses of a file: TUM text (time tx ty tz qx qy qz qw), or a .npy.
+      "path"_a, R"(Reads poses from TUM text (time tx ty tz qx qy qz qw) or from a .npy file.
 
 Runs without the GIL. Cost: 1 µs per pose.
 
 Parameters
 ----------
 path : path-like
-    .npy: rows with tx, ty, tz, qx, qy, qz, qw and optionally timestamp, or (n, 4, 4) matrices,
-    float64 or float32. Any other name: TUM text.
+    A name that ends in .npy is a file with rows tx, ty, tz, qx, qy, qz, qw and optionally
+    timestamp, or with (n, 4, 4) matrices, in float64 or float32. Any other name is TUM text.
 
 Returns
 -------
@@ -305,7 +307,7 @@ ndarray, (n, 4, 4), float64)");
         const PoseList list = pose_list_of(path);
         return named("TimedPoses", pose_array(list.poses), to_array_1d<double>(list.timestamps));
       },
-      "path"_a, R"(Poses of a file and their times; see ``read_poses``.
+      "path"_a, R"(Reads poses and their times from a file; see ``read_poses``.
 
 Parameters
 ----------
@@ -315,7 +317,7 @@ Returns
 -------
 TimedPoses)");
   module.def("write_poses", &write_poses, "path"_a, "T_world_camera"_a, "timestamps"_a = py::none(),
-             R"(Writes poses as TUM text or .npy, according to the name's ending. Atomic.
+             R"(Writes poses as TUM text or .npy, according to the ending of the name. Atomic.
 
 Runs without the GIL. Cost: 2 µs per pose.
 

@@ -54,7 +54,7 @@ py::tuple order_stops_of(const py::object& costs) {
 
 // Parts of the docstrings that all lattices share.
 constexpr const char* kCenter = R"(center : array_like, (3,)
-    World frame [m].
+    Centre of the lattice, world frame [m].
 )";
 constexpr const char* kReturns = R"(
 Returns
@@ -95,37 +95,36 @@ eyes : array_like, (..., 3)
 target : array_like, (3,) or the shape of eyes
     Point on each optical axis, world frame [m].
 up : array_like, (3,)
-    Direction of image up, as closely as possible, in the world frame; of any length.
+    Direction in the world frame that points up in the images, as closely as possible; any length.
 
 Returns
 -------
 ndarray, (..., 4, 4), float64
     T_world_camera.)");
   module.def("order_stops", &order_stops_of, "costs"_a,
-             R"(The order of k stops with the cheapest path through all of them.
+             R"(An order of k stops with a cheap path through all of them.
 
-Exact up to 12 stops, a local optimum beyond. Deterministic. Holds the GIL. Cost: about 1 ms for 12
-stops.
+Up to 12 stops, the path is the cheapest. For more stops, it is a local optimum. Deterministic.
+Holds the GIL. Cost: about 1 ms for 12 stops.
 
 Parameters
 ----------
 costs : array_like, (k + 1, k)
-    Row i, column j: cost of the path from stop i to stop j in a unit of your choice, such as metres
-    or seconds. The last row has the costs from the current pose. At least 0; inf: no path. The
-    diagonal of the first k rows is ignored.
+    Row i and column j have the cost of the path from stop i to stop j, in a unit of your choice
+    such as metres or seconds. The last row has the costs from the current pose. Costs are at least
+    0; inf means that there is no path. The diagonal is ignored.
 
 Returns
 -------
 stops : ndarray, (k,), int64
     All stops in order; empty if every order has infinite cost.
 cost : float
-    Total cost; inf if no order was found.)");
+    Cost of the whole path; inf if no order was found.)");
   def_lattice<sphere_poses>(
       module, "sphere_poses",
-      "Fibonacci lattice on a sphere, looking at its centre, image up = world up.");
-  def_lattice<dome_poses>(
-      module, "dome_poses",
-      "The upper half of the lattice of ``sphere_poses``, with ``count`` poses.");
+      "Fibonacci lattice on a sphere, looking at its centre, with world up as image up.");
+  def_lattice<dome_poses>(module, "dome_poses",
+                          "Fibonacci lattice on the upper half of a sphere; see ``sphere_poses``.");
   module.def(
       "orbit_poses",
       [](std::size_t count, double radius, double elevation, double start,
@@ -161,9 +160,9 @@ step : float, optional
 radius : float
     [m]
 height : float
-    Above the centre [m].
+    Height above the centre [m].
 tilt : float
-    Downward tilt [rad].
+    Angle below the horizontal [rad].
 start : float
     Azimuth of the first pose [rad].
 )")
@@ -189,7 +188,7 @@ radius : float
             shell_poses(count, min_radius, max_radius, seed, vector3(center, "center")));
       },
       "count"_a, "min_radius"_a, "max_radius"_a, py::kw_only(), "seed"_a = 1, "center"_a = kOrigin,
-      doc_of("Uniform in the volume between two spheres, looking at the centre.",
+      doc_of("Random poses in the volume between two spheres, looking at the centre. Uniform.",
              R"(count : int
 min_radius, max_radius : float
     [m]

@@ -70,35 +70,39 @@ HazardConfig hazard_of(const SharedGrid& shared, std::optional<double> object_si
 
 void bind_scene(py::module_& module) {
   auto type = bound_class<Scene>(module, "VoxelScene",
-                                 R"(An immutable snapshot of a grid for ray tracing.
+                                 R"(An immutable scene for ray tracing.
 
-Later changes to the grid do not affect it. Any number of evaluators and threads may share a scene.
+It has the unknown and occupied voxels of a grid, and obstacles. Later changes of the grid do not
+affect it. Any number of evaluators and threads may share a scene.
 
 Parameters
 ----------
 grid : BeliefGrid
 boxes : array_like, (n, 2, 3), optional
-    Known obstacles, which block rays and have no gain: lowest and highest corners, world frame [m].
+    Known obstacles: lowest and highest corners, world frame [m]. They block rays and have no gain.
 meshes : iterable of (vertices, triangles), optional
-    Obstacles as triangles: (n, 3), world frame [m], and (m, 3) indices.
+    Known obstacles as triangle meshes: vertices (n, 3) in the world frame [m], and triangles (m, 3)
+    of vertex indices.
 support_plane : float, optional
-    Height z of an infinite table [m]. Bodies stay above it. It ends rays of the gains "surface" and
-    "combined".
+    Height z of an infinite table, world frame [m]. The camera's body must stay above it. With gain
+    "surface" and "combined", rays end at it.
 object_size : float, optional
-    Longest side of the object [m], for the surface gain; default: that of its seen part.
+    Longest side of the object [m], for gain "surface" and "combined"; default: that of the part
+    seen so far.
 hazard : float, path or array_like, the grid's shape, optional
-    Rate at which a ray meets the surface in unknown voxels [1/m], for the surface and combined
-    gains: one number, one number per voxel, or a .vdb file with a float grid "hazard" or only one
-    float grid. Default: from the location relative to known surface.
+    Hazard: the rate at which a ray meets the surface in unknown voxels [1/m], for gain "surface"
+    and "combined". A number, an array with one rate per voxel, or a .vdb file whose float grid
+    "hazard", or only float grid, has the rates. Default: a model that depends on the location
+    relative to known surface.
 num_threads : int
-    Threads of the build; 0: all hardware threads.
+    Number of threads; 0: all hardware threads.
 
 Notes
 -----
-Releases the GIL while building. A scene can have at most 2**23 blocks of voxels. Cost: about 0.2 ms
-per 1,000 blocks that are not free, and some ms when an evaluator of the surface or combined gain
-first uses the scene. ``update`` is several times faster if little has changed; properties take
-constant time.)");
+Releases the GIL while it builds the scene. A scene can have at most 2**23 blocks of voxels. Cost:
+about 0.2 ms per 1,000 blocks that are not free, and some ms when an evaluator with gain "surface"
+or "combined" first uses the scene. ``update`` is several times faster if little has changed.
+Properties take constant time.)");
   refuse_pickling(type);
   type.def(py::init([](const Given<SharedGrid>& grid, const py::object& boxes,
                        const py::iterable& meshes, std::optional<double> support_plane,
@@ -121,23 +125,23 @@ constant time.)");
             });
           },
           "grid"_a, py::kw_only(), "num_threads"_a = 0,
-          R"(The scene of the current grid with the same surroundings; this scene does not change.
+          R"(The scene of the current grid, with the same surroundings. This scene does not change.
 
-Copies regions of 32**3 voxels that are unchanged.
+Copies regions of 32**3 voxels that did not change.
 
 Parameters
 ----------
 grid : BeliefGrid
-    The scene's grid, or any other.
+    The grid of the scene, or any other grid.
 num_threads : int
-    Threads of the build; 0: all hardware threads.
+    Number of threads; 0: all hardware threads.
 
 Returns
 -------
 VoxelScene)")
       .def_property_readonly(
           "isa", [](const Scene& self) { return std::string(self.scene->isa()); },
-          "str: instruction set of the tracer")
+          "str: instruction set with which rays are traced")
       .def_property_readonly(
           "primitive_count", [](const Scene& self) { return self.scene->primitive_count(); },
           "int: number of voxel blocks that are not free")

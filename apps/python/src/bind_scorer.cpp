@@ -252,10 +252,10 @@ void bind_scorer(py::module_& module) {
           "path"_a, kScorerSaveDoc)
       .def_property_readonly(
           "scene", [](const Scorer& self) { return Scene{self.get().scene()}; },
-          "VoxelScene: the current scene; later frames do not change it")
-      .def_property_readonly(
-          "evaluator", &evaluator_of,
-          "GainEvaluator: evaluator of the current scene; later frames do not change it")
+          "VoxelScene: the current scene; later changes of the map do not affect it")
+      .def_property_readonly("evaluator", &evaluator_of,
+                             "GainEvaluator: evaluator of the current scene; later changes of the "
+                             "map do not affect it")
       .def_property_readonly(
           "grid",
           [](const Scorer& self) {

@@ -59,33 +59,39 @@ void bind_model(py::module_& module, const char* name, const char* doc,
 
 void bind_noise(py::module_& module) {
   bind_model<ShotNoise>(
-      module, "ShotNoise", R"(Time-of-flight shot noise.
+      module, "ShotNoise", R"(Shot noise of a time-of-flight camera.
 
 ``axial = reference_sigma * (t / reference_range) * sqrt(reference_integration_time /
-integration_time) / sqrt(max(cos, 0.1))``, ``lateral = t / fx``; t is the range along the ray [m].
+integration_time) / sqrt(max(cos, 0.1))``, ``lateral = t / fx``. axial and lateral are standard
+deviations along and across the ray [m], t is the range along the ray [m], and cos is the cosine of
+the angle of incidence.
 
 Parameters
 ----------
-reference_sigma, reference_range : float
+reference_sigma : float
+    Axial sigma at the reference range and frontal incidence [m].
+reference_range : float
     [m]
-reference_integration_time, integration_time : float
-    [s]
+reference_integration_time : float
+    Integration time with which the reference was measured [s].
+integration_time : float
+    Integration time of the sensor [s].
 modulation_frequency : float
-    Modulation frequency of the light [Hz]; 0: ranges are unambiguous.
+    Modulation frequency of the light [Hz]; 0: no ambiguity of ranges.
 min_amplitude : float
-    cos / t**2 below which a reading is invalid [1/m**2].)",
-      {"float: sigma along the ray at the reference [m]", "float: reference range [m]",
+    Amplitude cos / t**2 below which a pixel is invalid [1/m**2].)",
+      {"float: axial sigma at the reference range [m]", "float: reference range [m]",
        "float: integration time of the reference [s]", "float: integration time [s]",
-       "float: modulation frequency of the light [Hz]; 0: ranges are unambiguous",
-       "float: cos / t**2 below which a reading is invalid [1/m**2]"});
+       "float: modulation frequency of the light [Hz]; 0: no ambiguity of ranges",
+       "float: amplitude cos / t**2 below which a pixel is invalid [1/m**2]"});
 
   bind_model<StructuredLightNoise>(module, "StructuredLightNoise",
                                    R"(Structured light (Nguyen, Izadi, Lovell, 2012).
 
-``axial = offset + quadratic * (z - vertex)**2``, plus
-``grazing / sqrt(z) * theta**2 / (pi/2 - theta)**2`` beyond 60 degrees; ``lateral = (lateral_px +
-lateral_grazing_px * theta / (pi/2 - theta))
-* z / fx``; z is the range along the ray [m].
+``axial = offset + quadratic * (t - vertex)**2``; if theta is above 60 degrees, plus
+``grazing / sqrt(t) * theta**2 / (pi/2 - theta)**2``.
+``lateral = (lateral_px + lateral_grazing_px * theta / (pi/2 - theta)) * t / fx``.
+t is the range along the ray [m] and theta the angle of incidence [rad].
 
 Parameters
 ----------
@@ -129,7 +135,7 @@ linear : float
       {"float: [m]", "float: [1/m]", "float: [1]"});
 
   bind_model<ConstantNoise>(module, "ConstantNoise",
-                            R"(Constant sigmas; equal ones make an isotropic sensor.
+                            R"(Constant sigmas. If both are equal, the noise is isotropic.
 
 Parameters
 ----------
@@ -176,7 +182,7 @@ std::optional<std::string> name_of(const std::optional<Sensor::OutOfRange>& mean
 void bind_sensors(py::module_& module) {
   auto type = bound_class<Sensor>(
       module, "Sensor",
-      R"(A depth camera: intrinsics, range limits, noise. Immutable. All parameters are keyword-only.
+      R"(A depth camera: intrinsics, range limits and noise. Immutable. Parameters are keyword-only.
 
 Parameters
 ----------
@@ -184,32 +190,33 @@ camera : PinholeCamera
 min_range, max_range : float
     Along the ray [m].
 working_distance : float
-    Intended distance [m].
+    Intended distance from the surface [m].
 noise : ShotNoise or StructuredLightNoise or StereoNoise or QuadraticNoise or ConstantNoise
 name : str, optional
-    For reports.
+    Name in reports.
 T_flange_camera : array_like, (4, 4), optional
-    Mounting on the robot's flange: from the camera frame to the flange frame.
+    Pose of the camera in the frame of the robot's flange: maps points from the camera frame to the
+    flange frame.
 body_size : sequence of float, (3,), optional
-    Width, height, depth of the housing, flange frame [m].
+    Width, height and depth of the housing, flange frame [m].
 range_calibration : array_like, (n, 2), optional
-    Systematic error: rows of measured range and measured minus true range [m], by increasing
-    measured range. ``read_frames`` subtracts it.
+    Systematic range error: rows of measured range and its error, measured minus true range [m], in
+    order of increasing measured range. ``read_frames`` subtracts the error.
 pose_sigma : sequence of float, (2,), optional
-    Standard deviations of the poses of frames: of the camera centre, per axis [m], and of the
-    rotation about it, per component of the rotation vector [rad]. Maps and gains add this
+    Uncertainty of the poses of frames: standard deviation of each coordinate of the camera centre
+    [m], and of each component of the rotation vector about it [rad]. Maps and gains add this
     uncertainty to each measured depth.
 scale_sigma : float, optional
-    Standard deviation of a scale error, a relative error that all ranges share, so that more
-    readings do not reduce it; see ``BeliefGrid.points``.
+    Standard deviation of a relative error that all ranges share, so that more readings do not
+    reduce it; see ``BeliefGrid.points``.
 out_of_range : str, optional
-    Meaning of 65535 in the sensor's depth images: carve (free up to max_range) or invalid (no
-    reading); default: depends on the layout of their folder.
+    Meaning of 65535 in the sensor's depth images. "carve": free up to max_range. "invalid": no
+    measured depth. Default: depends on the layout of their folder, see ``read_frames``.
 
 Notes
 -----
-Sensors are equal by value and can be pickled. Invalid noise parameters raise ValueError. Holds the
-GIL. Cost: some µs, and linear in the rows of range_calibration.)");
+Sensors are equal if their values are, and can be pickled. Invalid noise parameters raise
+ValueError. Holds the GIL. Cost: some µs, and linear in the rows of range_calibration.)");
   pickle_by_attributes(type, {"camera", "min_range", "max_range", "working_distance", "noise",
                               "name", "T_flange_camera", "body_size", "range_calibration",
                               "pose_sigma", "scale_sigma", "out_of_range"});
@@ -252,10 +259,11 @@ GIL. Cost: some µs, and linear in the rows of range_calibration.)");
             if (!sensor.T_flange_camera) return py::none();
             return to_array(*sensor.T_flange_camera);
           },
-          "ndarray, (4, 4), float64, or None: from the camera's frame to the flange's")
+          "ndarray, (4, 4), float64, or None: maps points from the camera frame to the flange "
+          "frame")
       .def_readonly(
           "body_size", &Sensor::body_size,
-          "list of float, (3,), or None: width, height, depth of the housing, flange frame [m]")
+          "list of float, (3,), or None: width, height and depth of the housing, flange frame [m]")
       .def_property_readonly(
           "range_calibration",
           [](const Sensor& sensor) { return to_object(sensor.range_calibration); },
@@ -268,10 +276,10 @@ GIL. Cost: some µs, and linear in the rows of range_calibration.)");
           "(float, float): standard deviations of the poses of frames [m], [rad]; zeros: poses are "
           "exact")
       .def_readonly("scale_sigma", &Sensor::scale_sigma,
-                    "float: relative sigma of one factor common to all ranges; 0: none")
+                    "float: standard deviation of a relative error that all ranges share; 0: none")
       .def_property_readonly(
           "out_of_range", [](const Sensor& sensor) { return name_of(sensor.out_of_range); },
-          "str or None: meaning of 65535 in its depth images: carve or invalid")
+          "str or None: meaning of 65535 in depth images, carve or invalid")
       .def(
           "corrected",
           [](const Sensor& sensor, const py::object& depth) {
@@ -280,19 +288,19 @@ GIL. Cost: some µs, and linear in the rows of range_calibration.)");
             return image_array(frame.depth, frame.height, frame.width);
           },
           "depth"_a,
-          R"(A depth image corrected with range_calibration, as from ``read_frames``.
+          R"(A depth image, corrected with range_calibration.
 
-Cost: 30 ns per pixel, with distortion 0.5 µs.
+``read_frames`` does this for its frames. Cost: 30 ns per pixel; with distortion 0.5 µs.
 
 Parameters
 ----------
 depth : array_like, (height, width)
-    Along the optical axis [m], as from the camera.
+    Along the optical axis [m], as the camera measured it.
 
 Returns
 -------
 ndarray, (height, width), float32
-    Along the optical axis [m]; 0 where there is no reading.)")
+    Along the optical axis [m]; 0 where nothing was measured.)")
       .def(
           "sigmas",
           [](const Sensor& sensor, double t, double cos_incidence) {
@@ -300,12 +308,12 @@ ndarray, (height, width), float32
             return named("Sigmas", sigmas.axial, sigmas.lateral);
           },
           "t"_a, "cos_incidence"_a = 1.0,
-          R"(Standard deviations of a reading at range t along the ray.
+          R"(Standard deviations of a reading (one measured depth).
 
 Parameters
 ----------
 t : float
-    [m], >= 0; not limited to the sensor's range.
+    Range along the ray [m], >= 0; may exceed the sensor's limits.
 cos_incidence : float
     Cosine of the angle between ray and surface normal; 1: frontal.
 
@@ -346,10 +354,10 @@ Sensor)");
         return default_prior_sigma(voxel_size, *sensor);
       },
       "voxel_size"_a, "sensor"_a,
-      R"(Default standard deviation of an unknown voxel's position [m].
+      R"(Default standard deviation of the surface position in an unknown voxel [m].
 
 ``max(voxel_size / 2, 2 * axial sigma at the working distance)``, so that unknown space is never
-more certain than one reading.
+more certain than one measured depth.
 
 Parameters
 ----------

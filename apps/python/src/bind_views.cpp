@@ -95,7 +95,7 @@ void bind_views(py::module_& module, py::class_<Evaluator>& evaluator) {
   module.attr("HIT_KIND_NAMES") = py::make_tuple("none", "unknown", "occupied", "obstacle");
   evaluator
       .def("trace", &trace_array, "T_world_camera"_a,
-           R"(Where the rays of a view end. Cost: 0.7 ms for 176x144 pixels.
+           R"(Where each ray of a view ends. Cost: 0.7 ms for 176x144 pixels.
 
 Parameters
 ----------
@@ -104,14 +104,13 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 ndarray, (height', width'), structured
-    One per ray; the size is the image size divided by the stride, rounded up. Fields: kind (index
-    into ``HIT_KIND_NAMES``), voxel (int32, 3; on the lattice), range along the ray [m] (inf:
-    nothing was hit).)")
-      .def(
-          "depth", &depth, "T_world_camera"_a,
-          R"(The depth image of a view of the map: each ray ends in the first voxel that is not free.
+    One entry per ray. height' and width' are those of the image divided by pixel_stride, rounded
+    up. Fields: kind (index into ``HIT_KIND_NAMES``: what the ray ends in), voxel (int32, 3: index
+    on the grid's lattice), range (along the ray [m]; inf if the ray ends nowhere).)")
+      .def("depth", &depth, "T_world_camera"_a,
+           R"(Depth image of a view of the map. Each ray ends in the first voxel that is not free.
 
-Unknown voxels end rays too. Cost: that of ``trace``, and with lens distortion its removal.
+Rays also end in unknown voxels. Cost: that of ``trace``, and with lens distortion, its removal.
 
 Parameters
 ----------
@@ -120,11 +119,11 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 ndarray, (height', width'), float32
-    Along the optical axis [m]; inf: nothing was hit. Size as for ``trace``.)")
+    Along the optical axis [m]; inf if the ray ends nowhere. The size is that of ``trace``.)")
       .def("contributions", &contributions, "T_world_camera"_a,
-           R"(Explains a gain: the contribution of each voxel.
+           R"(The contribution of each voxel to the gain of a view.
 
-Runs on the calling thread. Cost: 3 times ``evaluate`` for this pose.
+Runs on the calling thread. Cost: 3 times that of ``evaluate`` for this pose.
 
 Parameters
 ----------
@@ -133,12 +132,15 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 ndarray, (n,), structured
-    Fields: voxel (int32, 3; on the lattice, subtract the grid's ``min_index`` for arrays), state,
-    rays (number of rays that end in the voxel; surface and combined gains: that reach it),
-    expected_rays (surface and combined gains: the sum of their probabilities), gain in the unit of
-    ``evaluate``. Largest gain first; the gains add up to that of the view.)")
+    Largest gain first. The gains add up to the gain of the view. Fields: voxel (int32, 3: index on
+    the grid's lattice; subtract the grid's ``min_index`` to index arrays), state (``VoxelState``),
+    rays (number of rays that end in the voxel; with gain "surface" and "combined", number of rays
+    that reach it), expected_rays (expected number of rays that end in it), gain (contribution, in
+    the unit of ``evaluate``).)")
       .def("outcomes", &outcomes, "T_world_camera"_a,
-           R"(Where a view's rays end, to explain its gain. Cost: twice ``trace``.
+           R"(Counts where the rays of a view end, to explain its gain.
+
+Cost: twice that of ``trace``.
 
 Parameters
 ----------
@@ -147,30 +149,31 @@ T_world_camera : array_like, (4, 4)
 Returns
 -------
 RayOutcomes
-    The other counts add up to ``rays``.)")
+    Its other counts add up to ``rays``.)")
       .def("evaluate_own", &evaluate_own, "T_world_camera"_a, "measure"_a, py::kw_only(),
            "control"_a = py::none(),
-           R"(A custom gain: computes a number from the voxels that a view's rays hit.
+           R"(A custom gain, computed by a function from the voxels in which a view's rays end.
 
-Calls the function for one view after the other, with the GIL; C++'s ViewMeasure is faster. Cost:
-1.4 times ``evaluate``, and one call of the function per pose.
+Calls the function for one view after the other, with the GIL. ViewMeasure of the C++ library is
+faster. Cost: 1.4 times that of ``evaluate``, and one call of the function per pose.
 
 Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)
 measure : callable
-    Takes T_world_camera (4, 4) and the hits of a view, a structured array (n,) with one row per ray
-    that ends in a voxel: voxel (int32, 3), state, readings (number of measured depths that ended in
-    the voxel), information (float32, 6: xx yy zz xy xz yz [1/m**2]), ray (pixel number, row-major,
-    strided), range along the ray [m], direction (unit, world frame). Returns a float. Its
-    exceptions pass through.
+    Takes T_world_camera (4, 4) and a structured array (n,) with one row per ray that ends in a
+    voxel. Returns a float. Its exceptions pass through. Fields of the array: voxel (int32, 3: index
+    on the grid's lattice), state (``VoxelState``), readings (number of measured depths that ended
+    in the voxel), information (float32, 6: their information matrix, xx yy zz xy xz yz [1/m**2]),
+    ray (index of the ray, row-major), range (along the ray [m]), direction (unit vector of the ray,
+    world frame).
 control : BatchControl, optional
 
 Returns
 -------
 ndarray, (...), float64
-    Results of measure. For invalid poses (NaN) and cameras in an occupied voxel (0), measure is not
-    called. A single pose gives a scalar.)");
+    Results of measure. NaN for invalid poses and 0 for cameras in an occupied voxel, without a call
+    of measure. A single pose gives a scalar.)");
 }
 
 }  // namespace viewgain::python

@@ -7,41 +7,42 @@ namespace viewgain::python {
 // Docstrings of the class GainEvaluator.
 
 inline constexpr const char* kEvaluatorDoc =
-    R"(Scores camera poses against a scene by expected information gain.
+    R"(Scores camera poses in a scene by expected information gain.
 
-Results are bit-identical to those of C++, for any number of threads. Poses are ``T_world_camera``
-arrays (..., 4, 4) that map the optical frame (x right, y down, z forward) to the world [m].
-C-contiguous float64 is read in place; other real dtypes are converted once.
+Poses are ``T_world_camera``, arrays (..., 4, 4) that map the camera frame (x right, y down, z
+forward) to the world [m]. C-contiguous float64 arrays are used without a copy; other real dtypes
+are converted once. Results are bit-identical to those of C++, for any number of threads.
 
 Parameters
 ----------
 scene : VoxelScene
 sensor : Sensor
 gain : {"combined", "surface", "paper"}
-    What a view's gain measures: expected new surface and refinement of known surface [nat],
-    expected new surface [m**2], or entropy removed [nat].
+    What the gain of a view measures. "combined": expected new surface, and refinement of known
+    surface [nat]. "surface": expected new surface [m**2]. "paper": entropy removed [nat].
 criterion : {"log_diagonal", "log_determinant", "trace"}
-    Measure of uncertainty of the paper's gain; gains are in nats, with trace in m**2. The combined
-    gain always uses log_diagonal; trace raises ValueError with it.
+    Measure of entropy for gain "paper", whose unit is m**2 with "trace". Gain "combined" always
+    uses "log_diagonal", and raises ValueError with "trace".
 pixel_stride : int
-    Traces every s-th pixel of every s-th row.
+    s: traces every s-th pixel of every s-th row.
 prior_sigma : float, optional
-    Standard deviation of an unknown voxel [m]; default: the map's.
+    Standard deviation of the surface position in an unknown voxel [m]; default: the map's.
 min_range, max_range : float, optional
-    Along the ray [m]; default: the sensor's. Voxels nearer than min_range have no gain, but known
-    surface there blocks rays.
+    Limits of the range along the ray [m]; default: the sensor's. Voxels nearer than min_range have
+    no gain, but known surface there blocks rays.
 weights : iterable of (box, weight), optional
-    Task weights >= 0 of parts of the workspace: boxes (2, 3) in the grid frame [m]. The last box
-    that contains a voxel's centre counts; outside all boxes the weight is 1.
+    Task weights of parts of the workspace. A box is (2, 3) in the grid frame [m], and a weight is
+    at least 0. For each voxel, the last box that contains its centre counts. Outside all boxes the
+    weight is 1.
 refinement_weight : float, optional
-    Weight of refinement relative to new surface; only with "combined". Default: 1.
+    Weight of refinement relative to new surface, only for gain "combined"; default: 1.
 posterior_entropy : bool
-    Also compute the field posterior_entropy in ``evaluate_detailed``; only with "paper"; about 4 %
-    slower.
+    Whether ``evaluate_detailed`` computes its field posterior_entropy, only for gain "paper". Takes
+    about 4 % longer.
 tracer : {"automatic", "embree", "sweep"}
-    How to find the voxels that rays hit. "sweep" visits cells from near to far. "embree" uses a
-    BVH, which must be built first. "automatic" builds it for scenes that get many views of under
-    100 rays. Does not affect results.
+    How to find the voxels in which rays end. "sweep" visits cells of the map from near to far.
+    "embree" builds a bounding volume hierarchy and uses it. "automatic" uses "embree" for scenes
+    that get many views of under 100 rays, otherwise "sweep". Does not affect results.
 num_threads : int
     0: all hardware threads.
 
@@ -49,17 +50,17 @@ Notes
 -----
 Methods may run in many threads at once and release the GIL; Ctrl-C ends a batch.
 
-Cost: linear in poses and rays per pose. With the paper's gain, two threads score about 4,800 poses
-of 176x144 pixels per second in a map of 128**3 voxels; with the surface gain a quarter of that,
-with the combined gain a fifth. The constructor removes the lens distortion once: 1 ms for 176x144
-pixels. Properties take constant time.)";
+Cost: linear in poses and rays per pose. With gain "paper", two threads score about 4,800 poses of
+176x144 pixels per second in a map of 128**3 voxels. With gain "surface" they score a quarter of
+that, and with "combined" a fifth. The constructor computes the rays of all pixels, in 1 ms for
+176x144 pixels. Properties take constant time.)";
 
 inline constexpr const char* kWithSceneDoc =
-    R"(An evaluator for another scene, to follow a growing map.
+    R"(An evaluator for another scene, for example of a growing map.
 
-The new evaluator has the sensor, settings and threads of this one, which does not change. Results
-are those of a new evaluator for that scene, with the new map's ``prior_sigma`` unless it was given.
-Cost: some microseconds; some milliseconds with the surface or combined gain if the scene is new.
+It has the sensor, settings and threads of this evaluator, which does not change. ``prior_sigma`` is
+that of the new map, unless it was set. Cost: some microseconds. With gain "surface" or "combined",
+it is some milliseconds if the scene was not used before.
 
 Parameters
 ----------
@@ -79,18 +80,18 @@ Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)
 strict : bool
-    Raise ValueError for an invalid pose (not finite, or not rigid within 1e-3) instead of returning
-    the gain NaN.
+    If true, an invalid pose raises ValueError. Otherwise its gain is NaN. A pose is invalid if it
+    is not finite, or not rigid within 1e-3.
 control : BatchControl, optional
 
 Returns
 -------
 ndarray, (...), float64
-    [nat]; with trace or the surface gain [m**2]. NaN for invalid poses, and for poses that a stop
-    left out. A single pose gives a scalar.)";
+    [nat]; with gain "surface" or criterion "trace" [m**2]. NaN for invalid poses, and for poses
+    that were not scored because of a stop. A single pose gives a scalar.)";
 
 inline constexpr const char* kEvaluateDetailedDoc =
-    R"(The expected gains of poses in detail.
+    R"(The expected gains of poses with all their parts.
 
 Parameters
 ----------
@@ -100,15 +101,16 @@ T_world_camera, strict, control
 Returns
 -------
 ndarray, (...), structured
-    Fields with all gains: gain, rays, hits, status (index into ``VIEW_STATUS_NAMES``). Paper:
-    exploration and refinement (the parts of the gain from unknown and from occupied voxels),
-    posterior_entropy if enabled, unknown_voxels and occupied_voxels (numbers of distinct voxels;
-    the latter also with combined). Surface and combined: area (expected new surface [m**2]).
-    Combined: refinement_saturated (refinement of known surface [nat]). Fields of other gains are
-    NaN, or 0 for counts. A single pose gives a scalar.)";
+    Fields for all gains: gain, rays (number of rays), hits (number of rays that end in a voxel),
+    status (index into ``VIEW_STATUS_NAMES``). Fields for "paper": exploration (gain from unknown
+    voxels), refinement (gain from occupied voxels), posterior_entropy (if enabled), unknown_voxels
+    (number of unknown voxels in which rays end). Field for "paper" and "combined": occupied_voxels
+    (the same for occupied voxels). Field for "surface" and "combined": area (expected new surface
+    [m**2]). Field for "combined": refinement_saturated (refinement of known surface [nat]). Fields
+    for other gains are NaN, or 0 for numbers. A single pose gives a scalar.)";
 
 inline constexpr const char* kBestDoc =
-    R"(The k best poses, exact: scores all poses.
+    R"(The k best poses. Scores all poses.
 
 Parameters
 ----------
@@ -117,44 +119,45 @@ k : int
 costs : array_like, (n,), optional
     Costs to subtract from the gains, in their unit.
 measure : callable, optional
-    Custom gain that replaces the evaluator's, as in ``evaluate_own``; called for one view at a
-    time.
+    Custom gain that replaces the evaluator's, as in ``evaluate_own``. It is called for one view at
+    a time.
 control : BatchControl, optional
     A stop returns the best so far.
 
 Returns
 -------
 BestViews
-    Best first, ties to the lower index. Fewer than k if fewer poses are valid.)";
+    Best first; if gains are equal, the lower index comes first. Fewer than k if fewer poses are
+    valid.)";
 
 inline constexpr const char* kRaceDoc =
-    R"(The k best poses with high probability; see ``best``.
+    R"(The k best poses with high probability. Faster than ``best``.
 
-Scores all poses with about 400 of their rays, and then the best of them in full: max(24, 4 k, 5 %),
-or 1.6 % with the surface and combined gains. Cost: about a sixth of ``best`` for 500 poses or more,
-less for larger images.
+The first stage estimates the gains of all poses from about 400 of their rays. The second stage
+scores the best of them with all rays: at least 24 poses, at least 4 k, and at least 1.6 % of all
+poses (5 % with gain "paper"). Cost: about a sixth of ``best`` for 500 poses or more; less for
+larger images.
 
 Parameters
 ----------
 T_world_camera, k, costs, measure, control
-    As ``best``; the measure is first called with few rays.
+    As ``best``. In the first stage, measure is called with the hits of few rays.
 deadline : float, optional
-    Time limit of the call [s], at least 0. At most half of it goes to the first stage. Threads
-    finish their current views.
+    Time limit of the call [s], at least 0. The first stage gets at most half of it. After the
+    limit, threads finish their current views.
 seed : int
-    Selects the rays of the first stage with the paper's gain; ignored with the other gains.
+    Selects the rays of the first stage with gain "paper"; other gains ignore it.
 
 Returns
 -------
 BestViews)";
 
 inline constexpr const char* kBestSetDoc =
-    R"(Up to k poses with a large gain together, chosen greedily.
+    R"(A set of up to k poses with a large gain together, chosen greedily.
 
-With the gains "surface" and "combined", surface that several poses are expected to show counts
-once.
+With gain "surface" and "combined", surface that several poses are expected to show counts once.
 
-Cost: up to k times some calls of ``evaluate``, and memory for the voxels that rays hit.
+Cost: up to k times that of some calls of ``evaluate``, and memory for the voxels in which rays end.
 
 Parameters
 ----------
@@ -168,43 +171,45 @@ Returns
 ViewSet)";
 
 inline constexpr const char* kPlanTourDoc =
-    R"(Poses with a large gain together, as in ``best_set``, and a short path through them.
+    R"(A set of poses with a large gain together, and a short path through them.
 
-Chooses each view by its marginal gain minus its costs: its own cost, and that of the detour to it.
-Views that cost more than they gain are left out, except the first. Cost: ``best_set``, and two
-calls of way per pose and stop.
+Chooses the poses one after the other, as ``best_set`` does, by their marginal gain minus costs. The
+marginal gain is the increase of the set's gain. The costs are that of the pose itself and that of
+the detour to it. Except for the first, poses that cost more than they gain are omitted. Cost:
+``best_set``, and two calls of way per pose and chosen pose.
 
 Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)
 way : callable or array_like, (n + 1, n), optional
-    ``way(i, j)`` returns the cost of the path from pose i to pose j, in a unit of your choice such
-    as seconds. i = -1 is the current pose; inf means that there is no path. Or a table of these
-    costs, with the row of the current pose last. Default: paths cost nothing.
+    Costs of paths, in a unit of your choice such as seconds. As a callable, ``way(i, j)`` returns
+    the cost of the path from pose i to pose j, where i = -1 is the current pose. As a table, row i
+    and column j have this cost, and the last row is that of the current pose. inf means that there
+    is no path. Default: paths cost nothing.
 max_stops : int, optional
-    Default: no limit.
+    Largest number of poses; default: no limit.
 first : int, optional
-    This pose is chosen first, whatever its gain and cost.
+    Index of a pose that is chosen first, whatever its gain and cost.
 cost_per_way : float
     Cost per unit of way, in the gain's unit.
 budget : float, optional
     Limit of the total path cost, in the unit of way.
 per_way : bool
-    Choose by gain per path cost instead of gain minus cost. Use it with a budget.
+    If true, chooses by marginal gain divided by path cost instead. Use it with a budget.
 costs : array_like, (n,), optional
     Cost of each pose itself, subtracted from its gain.
 least_area : float
-    Minimum new surface [m**2] of each stop after the first; ignored with gain "paper".
+    Minimum expected new surface [m**2] of each pose after the first; gain "paper" ignores it.
 control : BatchControl, optional
     A stop returns a tour of the poses chosen so far.
 
 Returns
 -------
 ViewTour
-    Views in the order of the path.)";
+    The poses in the order of the path.)";
 
 inline constexpr const char* kApproximateDoc =
-    R"(Estimates of the gains from some of each view's rays.
+    R"(Estimates of gains from some of each view's rays.
 
 Cost: a third of ``evaluate`` at the default share, less for smaller shares.
 
@@ -212,12 +217,12 @@ Parameters
 ----------
 T_world_camera : array_like, (..., 4, 4)
 share : float
-    Largest fraction of a view's rays to trace, in (0, 1]; 1 gives the exact gain with standard
-    error 0.
+    Largest fraction of a view's rays to trace, in (0, 1]. With 1, gains are exact and standard
+    errors 0.
 seed : int
     Selects the rays.
 control : BatchControl, optional
-    Poses after a stop have NaN.
+    After a stop, the remaining poses have NaN.
 
 Returns
 -------

@@ -49,9 +49,9 @@ void leave_at_exit() {
 void bind_errors(py::module_& module) {
   error_type =
       PyErr_NewExceptionWithDoc("viewgain.Error",
-                                "A file has wrong contents, a data structure is too small, or "
-                                "Embree or OpenVDB failed.\nWrong arguments raise ValueError; "
-                                "files that cannot be read or written raise OSError.",
+                                "A file has invalid contents, a data structure is too small, or "
+                                "Embree or OpenVDB failed.\nInvalid arguments raise ValueError. "
+                                "Files that cannot be read or written raise OSError.",
                                 PyExc_RuntimeError, nullptr);
   if (error_type == nullptr) throw py::error_already_set();
   module.attr("Error") = py::handle(error_type);

@@ -9,8 +9,8 @@ namespace viewgain::python {
 inline constexpr const char* kScorerDoc =
     R"(Takes depth frames or labelled voxels and returns gains of camera poses.
 
-Keeps a map, its scene and its evaluator up to date. ``add`` frames, or ``set`` labels; then
-``evaluate`` poses, or ask for the ``best``.
+Contains a map, and keeps its scene and evaluator up to date. ``add`` frames, or ``set`` labels.
+Then ``evaluate`` poses, or ask for the ``best``.
 
 Parameters
 ----------
@@ -23,31 +23,33 @@ workspace : array_like, (2, 3), optional
 T_world_grid : array_like, (4, 4), optional
     Pose of the grid frame in the world; default: identity.
 prior_sigma : float, optional
-    Standard deviation of the surface in an unknown voxel [m]; default: ``default_prior_sigma``.
+    Standard deviation of the surface position in an unknown voxel [m]; default:
+    ``default_prior_sigma``.
 support_plane : float, optional
-    Height z of the table [m]. Measured depths of the table mark free space, but never make a voxel
-    occupied.
+    Height z of the table, world frame [m]. Measured depths of the table mark free space, but make
+    no voxel occupied.
 boxes : array_like, (n, 2, 3), optional
-    Known obstacles: lowest and highest corners, world frame [m]. They block rays and bodies.
-    Measured depths of obstacles only mark free space.
+    Known obstacles: lowest and highest corners, world frame [m]. They block rays and the camera's
+    body. Measured depths of obstacles mark free space, but make no voxel occupied.
 meshes : iterable of (vertices, triangles), optional
-    Obstacles as triangles: (n, 3), world frame [m], and (m, 3) indices.
+    Known obstacles as triangle meshes: vertices (n, 3) in the world frame [m], and triangles (m, 3)
+    of vertex indices.
 gain : {"combined", "surface", "paper"}
     "combined": expected new surface, and refinement of known surface [nat]. "surface": expected new
     surface [m**2]. "paper": entropy removed [nat].
 criterion : {"log_diagonal", "log_determinant", "trace"}
-    Used by gain "paper". "trace" cannot be used with gain "combined".
+    Measure of entropy for gain "paper". "trace" cannot be used with gain "combined".
 pixel_stride : int
-    Every s-th pixel of every s-th row is a ray.
+    s: traces every s-th pixel of every s-th row.
 weights : iterable of (box, weight)
     Task weights, as in ``GainEvaluator``.
 refinement_weight : float, optional
     As in ``GainEvaluator``.
 object_size : float, optional
-    Longest side of the object [m]; default: that of its seen part.
+    Longest side of the object [m]; default: that of the part seen so far.
 body_size : array_like, (3,), optional
-    Width, height, depth of the camera's housing, flange frame [m]; default: the sensor's. With a
-    body, ``best`` omits poses where it has no room.
+    Width, height and depth of the camera's housing (its body), flange frame [m]; default: the
+    sensor's. If the size is known, ``best`` omits poses at which the body has no room.
 clearance : float
     Margin around the body [m].
 jump_edges : bool
@@ -59,8 +61,8 @@ fine : array_like, (n, 2, 3), optional
 finest : int
     As in ``FrameIntegrator``.
 map : BeliefGrid or path-like, optional
-    A map to continue, which is copied, or its file: a .vdb of ``save`` or another map, or an
-    OctoMap .ot or .bt. Cannot be combined with voxel_size, workspace and T_world_grid.
+    A map to start from. A BeliefGrid is copied. A file is a .vdb map, for example from ``save``, or
+    an OctoMap .ot or .bt. Cannot be used with voxel_size, workspace and T_world_grid.
 tracer : {"automatic", "embree", "sweep"}
     Tracer, as in ``GainEvaluator``. Does not affect results.
 num_threads : int
@@ -68,15 +70,16 @@ num_threads : int
 
 Notes
 -----
-``evaluate``, ``best``, ``scene`` and ``evaluator`` may run in any thread at any time. During a
-change of the map they use the map before or after that change. ``save``, ``consistency`` and
-``grid`` wait until a running change ends. The GIL is released. Pickles hold settings and map, but
-not the frames that ``consistency`` compares. Cost of a change: that of changing the map, and some
-milliseconds for the scene.)";
+``evaluate``, ``best``, ``scene`` and ``evaluator`` may run in any thread at any time. While the map
+changes, they use the map before or after the change. ``save``, ``consistency`` and ``grid`` wait
+for the end of the change. The GIL is released. Pickles contain settings and map, but not the frames
+that ``consistency`` compares. Cost of a change: that of changing the map, and some milliseconds for
+the scene.)";
 
 inline constexpr const char* kScorerAddDoc = R"(Adds a depth frame to the map.
 
-Removes flying pixels, marks known obstacles and updates the hazard of unknown space.
+Also removes flying pixels, marks known obstacles and updates the hazard, which is the rate at which
+rays meet the surface in unknown space.
 
 Parameters
 ----------
@@ -84,7 +87,8 @@ depth : array_like, (height, width), floating point
     As in ``FrameIntegrator.integrate``.
 T_world_camera : array_like, (4, 4)
 pose_sigma : array_like, (2,), optional
-    Uncertainty of this pose in addition to the sensor's pose_sigma [m], [rad].
+    Uncertainty of this pose in addition to the sensor's pose_sigma: standard deviations of
+    translation [m] and rotation [rad].
 amplitude : array_like, (height, width), floating point, optional
     As in ``FrameIntegrator.integrate``.
 
@@ -93,15 +97,16 @@ Returns
 MapUpdate
     Its verdict states whether the frame could be used.)";
 
-inline constexpr const char* kScorerSetDoc = R"(Labels a box of voxels.
+inline constexpr const char* kScorerSetDoc = R"(Sets the states of the voxels in a box.
 
-Labelled voxels add no refinement to the gain. Cost: one pass over the labels, and the scene's
-update.
+Labelled voxels add no refinement to the gain. Cost: one pass over the labels, and an update of the
+scene.
 
 Parameters
 ----------
 first : array_like, (3,), whole numbers
-    Lowest voxel of the box, on the grid's lattice.
+    Index of the lowest voxel of the box, on the grid's lattice; ``BeliefGrid.min_index`` for the
+    corner of the workspace.
 labels : array_like, (nx, ny, nz), whole numbers
     0 unknown, 1 free, 2 occupied.
 
@@ -111,12 +116,12 @@ int
     Number of changed voxels.)";
 
 inline constexpr const char* kScorerForgetDoc =
-    R"(Resets the voxels of a region to unknown, for example after objects have moved.
+    R"(Makes the voxels of a region unknown again, for example when objects have moved.
 
 Parameters
 ----------
 region : array_like, (2, 3)
-    Lowest and highest corner, grid frame [m]; may be infinite.
+    Lowest and highest corner, grid frame [m]. Bounds may be infinite.
 
 Returns
 -------
@@ -125,7 +130,7 @@ int
 
 inline constexpr const char* kScorerEvaluateDoc = R"(The gain of each pose on the current map.
 
-Cost and Ctrl-C: as ``GainEvaluator.evaluate``.
+Ctrl-C ends the call. Cost: that of ``GainEvaluator.evaluate``.
 
 Parameters
 ----------
@@ -133,7 +138,7 @@ T_world_camera : array_like, (..., 4, 4)
 measure : callable, optional
     Custom gain, as in ``GainEvaluator.evaluate_own``.
 strict : bool
-    Raise ValueError for an invalid pose.
+    If true, an invalid pose raises ValueError.
 control : BatchControl, optional
 
 Returns
@@ -142,9 +147,10 @@ ndarray, (...), float64
     NaN for an invalid pose.)";
 
 inline constexpr const char* kScorerBestDoc =
-    R"(The k best poses with high probability, in two stages: as ``GainEvaluator.race``.
+    R"(The k best poses with high probability; see ``GainEvaluator.race``.
 
-With a body, omits poses where the body has no room, or where over 20 % of the view is too near.
+If body_size is known, omits poses at which the body has no room or over 20 % of the view is nearer
+than the sensor's min_range.
 
 Parameters
 ----------
@@ -165,28 +171,28 @@ BestViews
 inline constexpr const char* kScorerConsistencyDoc =
     R"(How well the frames added so far agree.
 
-Cost: 50 ms; 0.5 s if frames disagree.
+Cost: 50 ms; 0.5 s if they disagree.
 
 Returns
 -------
 FrameConsistency)";
 
 inline constexpr const char* kScorerLoadDoc =
-    R"(A scorer that continues a file, as with ``map``.
+    R"(A scorer that starts from a map file; the same as the argument ``map``.
 
 Parameters
 ----------
 path : path-like
-    A .vdb of ``save`` or another map, or an OctoMap .ot or .bt.
+    A .vdb map, for example from ``save``, or an OctoMap .ot or .bt.
 *args, **settings
-    As for the class: the sensor, and settings other than the map's layout.
+    Arguments of the class: the sensor, and settings other than the map's layout.
 
 Returns
 -------
 ViewScorer)";
 
 inline constexpr const char* kScorerSaveDoc =
-    R"(Writes the map as a .vdb file, atomically; ``load`` continues it.
+    R"(Writes the map as a .vdb file, atomically. ``load`` starts a scorer from it.
 
 Parameters
 ----------

@@ -11,25 +11,25 @@
 >>> gains = scorer.evaluate(poses)                              # (500,), nat
 >>> best = scorer.best(poses, 3).indices                        # best first
 
-Frames and units: a pose is ``T_world_camera``, a 4x4 matrix that maps points of the camera's optical frame (x right, y down, z forward) to the
-world. 3x4 matrices and rows of tx ty tz qx qy qz qw are also accepted, as float32 or float64 in any memory order. Lengths are in metres, gains
-in nats. Surfaces and the whole reconstruction loop are in ``viewgain.mesh``, which is GPL-3.0-or-later. ``viewgain.plot`` draws with
-matplotlib.
+Frames and units: a pose is ``T_world_camera``, a 4x4 matrix that maps points from the camera frame (x right, y down, z forward) to the world
+frame. 3x4 matrices and rows of tx ty tz qx qy qz qw are also accepted, as float32 or float64 in any memory order. Lengths are in metres, and
+gains in nats unless stated otherwise. ``viewgain.mesh``, which is GPL-3.0-or-later, has surfaces and the whole reconstruction loop.
+``viewgain.plot`` draws with matplotlib.
 
-Errors: ``ValueError`` names an argument that has the wrong shape, is not numeric, is masked or is out of bounds, or a pose that is invalid.
-``TypeError`` names an argument of the wrong class and how to get an object of the right class. ``OSError`` (``FileNotFoundError``) names a file
-that cannot be opened or written. ``viewgain.Error`` names a file that is damaged or of another kind, or a size that a data structure does not
+Errors: ``ValueError`` names an argument with a wrong shape, an argument that is not numeric, masked or out of bounds, or an invalid pose.
+``TypeError`` names an argument of the wrong class, and how to get an object of the right class. ``OSError``, such as ``FileNotFoundError``,
+names a file that cannot be opened or written. ``viewgain.Error`` names a file with invalid contents, or a size that a data structure does not
 support. Exceptions of your functions pass through. Docstrings list further exceptions.
 """
 
 import importlib.util as _util
 
 try:
-    import numpy as _numpy  # here, so that the extension does not fail without saying why
+    import numpy as _numpy  # here, because the extension would fail without stating the reason
 except ImportError as error:
     raise ImportError(f"viewgain needs numpy, which cannot be imported: {error}") from error
 
-if _util.find_spec("viewgain._viewgain") is None:  # a source folder: viewgain.study needs none
+if _util.find_spec("viewgain._viewgain") is None:  # in a source folder; viewgain.study does not need the extension
 
     def __getattr__(name):
         if name.startswith("__"):

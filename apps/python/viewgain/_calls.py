@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""One-line messages for wrong calls, instead of pybind11's list of all signatures and arguments."""
+"""One-line messages for invalid calls, instead of pybind11's list of all signatures and arguments."""
 import ast
 import difflib
 import functools
@@ -12,7 +12,7 @@ _MADE_OF = {"int": "__index__", "float": "__float__", "bool": "__bool__", "str":
 
 
 def _fault(function, args, kwargs):
-    """The fault of a call without self, if a short message can state it."""
+    """A short message about what is wrong with a call; None if there is none. The arguments exclude self."""
     head = function.__doc__.partition("\n")[0].rpartition(" -> ")[0]  # pybind11 begins docstrings with the signature
     found = ast.parse(f"def {head}: ...").body[0].args
     by_place = [one for one in found.args if one.arg != "self"]
@@ -52,7 +52,7 @@ def _explained(function, name, method):
 
 
 def explain(module):
-    """Wraps the functions of an extension module and the methods of its classes."""
+    """Wraps the functions of an extension module, and the methods of its classes, so that they raise these messages."""
     for name, one in list(vars(module).items()):
         if isinstance(one, types.BuiltinFunctionType):
             setattr(module, name, _explained(one, name, False))

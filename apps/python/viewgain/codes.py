@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Names of the codes in arrays. Each is an int, so it compares equal to array values."""
+"""Names of the codes that arrays contain. Each is an int, so it can be compared with values of arrays."""
 from enum import IntEnum
 
 from ._viewgain import HIT_KIND_NAMES, INFEASIBILITY_NAMES, VIEW_STATUS_NAMES
@@ -25,4 +25,4 @@ ViewStatus, ViewStatus.__doc__ = _enumeration(
 HitKind, HitKind.__doc__ = _enumeration(
     "HitKind", HIT_KIND_NAMES, 'What a ray ends in: ``trace()["kind"]``.')
 Infeasibility, Infeasibility.__doc__ = _enumeration(
-    "Infeasibility", INFEASIBILITY_NAMES, "Why a pose is impossible: ``FeasibilityChecker.reasons()``; NONE: it is possible.")
+    "Infeasibility", INFEASIBILITY_NAMES, "Why a pose is not feasible: ``FeasibilityChecker.reasons()``; NONE: it is feasible.")

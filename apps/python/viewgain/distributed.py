@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Scores poses on many machines with Dask (Debian: python3-distributed). The workers need this package.
+"""Scores poses on many machines with Dask (Debian: python3-distributed). The Dask workers need this package.
 
 >>> import distributed, viewgain, viewgain.distributed                     # doctest: +SKIP
 >>> with distributed.Client("tcp://scheduler:8786") as client:
@@ -27,7 +27,7 @@ def _evaluate(scorer: ViewScorer, poses: NDArray[np.float64], measure: Any) -> N
 
 
 def _rows(poses: ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
-    """The poses as a list, and the leading shape."""
+    """The poses as an array with one leading axis, and the shape of the original leading axes."""
     array = np.asarray(poses, np.float64)
     pose = array.shape[-1:] if array.shape[-1:] == (7,) else array.shape[-2:]
     if pose not in ((7,), (3, 4), (4, 4)):
@@ -37,7 +37,8 @@ def _rows(poses: ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
 
 
 def _answers(client: distributed.Client, scorer: ViewScorer, chunks: dict[int, NDArray[np.float64]], measure: Any):
-    """Yields number and gains of each finished chunk; sends the map to each worker once. Omits chunks lost with their workers."""
+    """Yields the number and the gains of each finished chunk. Sends the map to each worker once. Omits chunks that were lost with
+    their workers."""
     try:
         (shared,) = client.scatter([scorer], broadcast=True, hash=False)
     except (TimeoutError, distributed.TimeoutError) as error:
@@ -59,39 +60,39 @@ def evaluate(client: distributed.Client, map: Union[BeliefGrid, str, os.PathLike
              progress: Optional[Callable[[int, int], None]] = None, **gain: Any) -> NDArray[np.float64]:
     """The gain of each pose on a map, computed by the workers of a Dask cluster.
 
-    The gains are in the order of the poses, and do not depend on the number of workers. They are bit-identical to
-    ``ViewScorer.evaluate`` if all machines have the same CPU model and C library. If a worker dies, its chunks go to the others.
-    Cost: the map is read here and sent to each worker once; each pose sends at most 128 bytes and returns 8.
+    The gains are in the order of the poses, and do not depend on the number of workers. They are bit-identical to those of
+    ``ViewScorer.evaluate`` if all machines have the same CPU model and C library. If a worker dies, other workers do its chunks.
+    Cost: the map is read on this machine and sent to each worker once. For each pose, at most 128 bytes are sent and 8 returned.
 
     Parameters
     ----------
     client : distributed.Client
     map : BeliefGrid or path-like
-        A file is read on this machine; workers need not see it.
+        A file is read on this machine; workers need no access to it.
     poses : array_like, (..., 4, 4), (..., 3, 4) or (..., 7)
         T_world_camera.
     sensor : Sensor, or the name of a preset or .toml file
     chunk_size : int, optional
-        Number of poses per task; default: about four tasks per thread of the cluster, at most 4096 poses each.
+        Number of poses per task. Default: at most 4096, such that there are about four tasks per thread of the cluster.
     measure : callable, optional
-        A gain of your own, as in ``ViewScorer.evaluate``.
+        Custom gain, as in ``ViewScorer.evaluate``.
     progress : callable, optional
         Called with the number of poses scored so far and the number of all poses.
     **gain
-        As in ``ViewScorer``: gain, criterion, pixel_stride, weights, boxes, meshes, ...; num_threads is the number per task, by
-        default 1.
+        Further arguments of ``ViewScorer``: gain, criterion, pixel_stride, weights, boxes, meshes, ... num_threads is the number of
+        threads per task; default: 1.
 
     Returns
     -------
     ndarray, (...), float64
-        NaN for a bad pose.
+        NaN for an invalid pose.
 
     Raises
     ------
     viewgain.Error
-        If workers are lost again and again.
+        If chunks are lost with their workers four times.
     ValueError, TypeError, OSError
-        As ``ViewScorer``, before anything is sent.
+        As ``ViewScorer``. They are raised before anything is sent.
     """
     if not isinstance(client, distributed.Client):
         raise TypeError(f"client must be a distributed.Client, not {type(client).__name__}")

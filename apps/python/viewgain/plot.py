@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of poses, gains and maps with matplotlib, which is imported on the first drawing.
+"""Plots of poses, gains and maps with matplotlib, which is imported by the first call.
 
-Each function draws into ``axes``, by default those of a new figure, and returns the axes. Call them from one thread, because
-matplotlib's pyplot requires it.
+Each function draws into the matplotlib axes ``axes``, or by default into a new figure, and returns the axes. Call them from one
+thread, because matplotlib's pyplot requires it.
 """
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ def _image(axes: Any, image: np.ma.MaskedArray, label: str) -> Any:
 
 def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (0.0, 0.0, 0.0),
           label: str = "expected gain [nat]", axes: Any = None) -> Any:
-    """Values of poses around a centre over azimuth and elevation; marks the best. Omits poses with NaN.
+    """Plots the values of poses around a centre over azimuth and elevation. Marks the largest value. Omits poses with NaN.
 
     Parameters
     ----------
     T_world_camera : array_like, (n, 4, 4)
     values : array_like, (n,)
-        In the unit that the label names [nat].
+        For example the gains of the poses; NaN is allowed.
     center : array_like, (3,)
         Point from which azimuth and elevation are measured, world frame [m].
     label : str
-        What the values are.
+        What the values are, with their unit.
     """
     poses, numbers = np.asarray(T_world_camera, float), np.asarray(values, float)
     if poses.ndim != 3 or poses.shape[1:] != (4, 4) or numbers.shape != poses.shape[:1]:
@@ -67,7 +67,7 @@ def gains(T_world_camera: ArrayLike, values: ArrayLike, *, center: ArrayLike = (
 
 
 def depth(image: ArrayLike, *, axes: Any = None) -> Any:
-    """A depth image; pixels that are 0, infinite or NaN are white.
+    """Plots a depth image. Pixels that are 0, infinite or NaN are white.
 
     Parameters
     ----------
@@ -81,14 +81,15 @@ def depth(image: ArrayLike, *, axes: Any = None) -> Any:
 
 
 def contributions(evaluator: GainEvaluator, T_world_camera: ArrayLike, *, axes: Any = None) -> Any:
-    """Contribution of each ray of a view to the gain. The gain of a voxel is divided among the rays that end in it.
+    """Plots the contribution of each ray of a view to the gain. The gain of a voxel is divided equally among the rays that end in
+    it.
 
-    Cost: 4 times ``GainEvaluator.evaluate`` for the pose, and a Python step per ray.
+    Cost: 4 times that of ``GainEvaluator.evaluate`` for the pose, and a Python step per ray.
 
     Parameters
     ----------
     evaluator : GainEvaluator
-        With the paper's gain, because rays of other gains do not end in one voxel.
+        Must have gain "paper", because with other gains a ray does not end in one voxel.
     T_world_camera : array_like, (4, 4)
     """
     if evaluator.gain != "paper":

@@ -11,15 +11,15 @@ _Image = NDArray[np.float32]
 
 
 def named(module: str) -> Any:
-    """Class decorator for named tuples. Sets the module, takes the fields' docstrings from their annotations, and makes ``result["field"]``
-    return a field, as with numpy's structured arrays."""
+    """Class decorator for named tuples. Sets the module, and takes the docstrings of fields from their annotations. Makes
+    ``result["field"]`` return a field, as for numpy's structured arrays."""
 
     def finish(result: Any) -> Any:
         result.__module__ = module
         annotations = dict(result.__annotations__)
         for name, annotation in annotations.items():
             getattr(result, name).__doc__ = annotation.__metadata__[0]
-            annotations[name] = annotation.__origin__  # signatures are of the types alone
+            annotations[name] = annotation.__origin__  # signatures show only the types
         result.__annotations__ = result.__new__.__annotations__ = annotations
 
         def item(self: Any, key: Any) -> Any:
@@ -47,13 +47,13 @@ class Sigmas(NamedTuple):
 class IntegrationReport(NamedTuple):
     """Counts of ``integrate``, from ``FrameIntegrator`` and ``CloudIntegrator``."""
 
-    readings: Annotated[int, "Pixels or points whose range is within the sensor's limits."]
-    plane_readings: Annotated[int, "Pixels or points that show the support plane or a known object; not counted as readings."]
-    out_of_range: Annotated[int, "Pixels or points that are free up to max_range."]
-    invalid: Annotated[int, "Pixels or points without information."]
-    readings_inside: Annotated[int, "Readings that lie in the workspace."]
-    voxels_hit: Annotated[int, "Voxels that contain readings."]
-    voxels_crossed: Annotated[int, "Voxels that rays cross and that contain no readings."]
+    readings: Annotated[int, "Number of pixels or points whose range is within the sensor's limits."]
+    plane_readings: Annotated[int, "Number of pixels or points that show the support plane or a known object; not counted as readings."]
+    out_of_range: Annotated[int, "Number of pixels or points that are free up to max_range."]
+    invalid: Annotated[int, "Number of pixels or points that measured nothing."]
+    readings_inside: Annotated[int, "Number of readings that lie in the workspace."]
+    voxels_hit: Annotated[int, "Number of voxels that readings hit."]
+    voxels_crossed: Annotated[int, "Number of voxels that were crossed, but not hit."]
 
 
 @named("viewgain")
@@ -68,14 +68,14 @@ class Suspicion(NamedTuple):
 class FrameConsistency(NamedTuple):
     """How well frames agree, from ``consistency`` of ``ViewScorer`` and ``ViewPlanner``."""
 
-    share_in_free: Annotated[float, "Fraction of all readings (measured depths) in space that other frames saw as free."]
-    share_seen_past: Annotated[float, "Fraction of readings of earlier frames that later frames see past."]
+    share_in_free: Annotated[float, "Fraction of readings (measured depths) that lie in space that other frames saw as free."]
+    share_seen_past: Annotated[float, "Fraction of readings of earlier frames that lie in space that later frames saw as free."]
     contradicting: Annotated[tuple, "Indices of the frames that contradict the others; empty unless something is suspected."]
     suspicion: Annotated[Optional[Suspicion], "Likely cause; None: the frames agree."]
     in_free: Annotated[_Floats, "(N,), float64: share_in_free of each frame in the map."]
     seen_past: Annotated[_Floats, "(N,), float64: share_seen_past of each frame."]
     displacement: Annotated[float, "Median displacement of the frames relative to earlier ones [m]; NaN if none could be compared."]
-    expected: Annotated[float, "Displacement that the declared errors explain [m]."]
+    expected: Annotated[float, "Displacement that the stated uncertainties explain [m]."]
     displacements: Annotated[_Floats, "(N,), float64: displacement of each frame; NaN if it shares too little surface with others."]
 
 
@@ -84,53 +84,53 @@ class RayOutcomes(NamedTuple):
     """Where a view's rays end, from ``GainEvaluator.outcomes`` and ``ViewPlanner.outcomes``."""
 
     rays: Annotated[int, "Number of rays of the view."]
-    unknown: Annotated[int, "Reach unknown space: possible new surface."]
-    known_surface: Annotated[int, "End on known surface after free space."]
-    obstacle: Annotated[int, "End on an obstacle or, except with gain \"paper\", on the support plane."]
-    too_near: Annotated[int, "Hit known surface or an obstacle nearer than min_range."]
-    out_of_range: Annotated[int, "Stay in known free space up to max_range."]
-    out_of_map: Annotated[int, "Leave the workspace, or never enter it."]
+    unknown: Annotated[int, "Number of rays that reach unknown space, where they may show new surface."]
+    known_surface: Annotated[int, "Number of rays that end on known surface after free space."]
+    obstacle: Annotated[int, "Number of rays that end on an obstacle or, except with gain \"paper\", on the support plane."]
+    too_near: Annotated[int, "Number of rays that end on known surface or an obstacle nearer than min_range."]
+    out_of_range: Annotated[int, "Number of rays that stay in known free space up to max_range."]
+    out_of_map: Annotated[int, "Number of rays that leave the workspace, or never enter it."]
 
 
 @named("viewgain")
 class GridStatistics(NamedTuple):
-    """Voxels and progress of a map, from ``BeliefGrid.statistics``."""
+    """Numbers of voxels and removed entropy of a map, from ``BeliefGrid.statistics``."""
 
-    unknown: Annotated[int, "Voxels never observed."]
-    free: Annotated[int, "Voxels known to be free."]
-    occupied: Annotated[int, "Voxels known to be occupied."]
-    bytes: Annotated[int, "Memory of the map."]
-    entropy_removed: Annotated[float, "Entropy removed, summed over the occupied voxels [nat, or m**2 for trace]."]
+    unknown: Annotated[int, "Number of voxels never observed."]
+    free: Annotated[int, "Number of voxels known to be free."]
+    occupied: Annotated[int, "Number of voxels known to be occupied."]
+    bytes: Annotated[int, "Memory of the map [bytes]."]
+    entropy_removed: Annotated[float, "Entropy removed, summed over the occupied voxels [nat; m**2 with criterion \"trace\"]."]
 
 
 @named("viewgain")
 class ViewSet(NamedTuple):
-    """Poses with a large gain together, from ``GainEvaluator.best_set``."""
+    """A set of poses with a large gain together, from ``GainEvaluator.best_set``."""
 
     indices: Annotated[NDArray[np.int64], "(<= k,), int64: indices into the poses with their leading axes flattened, in the order chosen."]
-    gains: Annotated[NDArray[np.void], "(<= k,), structured: marginal gains (the increase over the earlier views), with the fields of ``evaluate_detailed``."]
+    gains: Annotated[NDArray[np.void], "(<= k,), structured: marginal gains (increase of the set's gain), with the fields of ``evaluate_detailed``."]
     gain: Annotated[float, "Gain of the set, in the gain's unit."]
     complete: Annotated[bool, "False: a stop ended the call before the last choice."]
 
 
 @named("viewgain")
 class BestViews(NamedTuple):
-    """The best of many poses, from ``best`` of ``ViewScorer`` and ``GainEvaluator``, and ``GainEvaluator.race``."""
+    """The best of many poses, from ``ViewScorer.best``, ``GainEvaluator.best`` and ``GainEvaluator.race``."""
 
     indices: Annotated[NDArray[np.int64], "(k,), int64: indices into the poses with their leading axes flattened, best first."]
-    gains: Annotated[NDArray[np.void], "(k,), structured: results of ``evaluate_detailed``, without costs; empty with a measure."]
-    worth: Annotated[_Floats, "(k,), float64: gain, or measure, minus cost."]
+    gains: Annotated[NDArray[np.void], "(k,), structured: results of ``evaluate_detailed``, without costs; empty with a custom gain."]
+    worth: Annotated[_Floats, "(k,), float64: gain, or custom gain, minus cost."]
     complete: Annotated[bool, "False: the time limit or a stop ended the call early."]
-    estimated: Annotated[int, "Number of poses scored with only some of their rays; 0 if all are scored in full."]
-    scored: Annotated[NDArray[np.int64], "(n,), int64: indices of the poses that were scored in full, ascending."]
-    scored_gains: Annotated[NDArray[np.void], "(n,), structured: their gains; empty with a measure."]
+    estimated: Annotated[int, "Number of poses whose gain was estimated from some of their rays."]
+    scored: Annotated[NDArray[np.int64], "(n,), int64: indices of the poses that were scored with all their rays, ascending."]
+    scored_gains: Annotated[NDArray[np.void], "(n,), structured: gains of these poses; empty with a custom gain."]
 
 
 @named("viewgain")
 class Frame(NamedTuple):
     """A recorded frame, from ``read_frames``."""
 
-    depth: Annotated[_Image, "(height, width), float32: along the optical axis [m]; 0: no reading, inf: free up to max_range."]
+    depth: Annotated[_Image, "(height, width), float32: along the optical axis [m]; 0: nothing measured, inf: free up to max_range."]
     T_world_camera: Annotated[_Floats, "(4, 4), float64."]
     amplitude: Annotated[Optional[_Image], "(height, width), float32 [1/m**2], or None."]
 
@@ -140,15 +140,15 @@ class SimulatedFrame(NamedTuple):
     """A simulated frame, from ``SimulatedSensor.acquire``."""
 
     depth: Annotated[_Image, "(height, width), float32: along the optical axis [m]; 0: invalid, inf: free up to max_range."]
-    amplitude: Annotated[_Image, "(height, width), float32: cos / range**2 [1/m**2]; 0 without a reading."]
+    amplitude: Annotated[_Image, "(height, width), float32: cos / range**2 [1/m**2], where cos is the cosine of the angle of incidence; 0 if nothing was measured."]
 
 
 @named("viewgain")
 class Cloud(NamedTuple):
     """A point cloud, from ``load_cloud``."""
 
-    points: Annotated[_Floats, "(n, 3), float64: as in the file, in its frame [m]; NaN for missing points of an organised cloud."]
-    viewpoint: Annotated[Optional[_Floats], "(4, 4), float64: the sensor's pose in the points' frame, or None."]
+    points: Annotated[_Floats, "(n, 3), float64: points in the frame of the file [m]; NaN for missing points of an organised cloud."]
+    viewpoint: Annotated[Optional[_Floats], "(4, 4), float64: pose of the sensor in the frame of the points, or None."]
 
 
 @named("viewgain")
@@ -165,67 +165,67 @@ class FrameRegistration(NamedTuple):
 
     status: Annotated[str, "\"registered\", \"too_little_overlap\" or \"refused\"."]
     reason: Annotated[str, "Reason of the status, in words; empty if registered."]
-    T_world_camera: Annotated[_Floats, "(4, 4), float64, corrected pose; if the frame is not registered, the reported pose."]
-    covariance: Annotated[_Floats, "(6, 6), float64: covariance of the translation [m], then the rotation [rad], world axes."]
-    translation: Annotated[float, "Displacement of the camera centre by the correction [m]."]
-    rotation: Annotated[float, "Angle of the correction [rad]; the program's JSON has rotation_deg."]
-    residual_before: Annotated[float, "RMS distance of readings from the map's surface at the reported pose [m]."]
-    residual_after: Annotated[float, "RMS distance of readings from the map's surface at the estimated pose [m]."]
+    T_world_camera: Annotated[_Floats, "(4, 4), float64: estimated pose; if the frame is not registered, the reported pose."]
+    covariance: Annotated[_Floats, "(6, 6), float64: covariance of translation [m] and rotation [rad], in this order, world axes."]
+    translation: Annotated[float, "Distance between the reported and the estimated camera centre [m]."]
+    rotation: Annotated[float, "Angle between the reported and the estimated rotation [rad]; the program's JSON has rotation_deg."]
+    residual_before: Annotated[float, "RMS distance between readings and the map's surface at the reported pose [m]."]
+    residual_after: Annotated[float, "RMS distance between readings and the map's surface at the estimated pose [m]."]
     readings: Annotated[int, "Number of readings (measured depths) used."]
     pairs: Annotated[int, "Number of readings that correspond to a point of the map."]
     overlap: Annotated[float, "pairs / readings."]
-    contradiction: Annotated[float, "The larger of two fractions: of readings that lie in known free space, and of the map's surface that the frame sees past."]
-    smallest_information: Annotated[float, "How well the frame determines the pose: smallest information over all motions, relative to that of the reported pose."]
-    free_directions: Annotated[int, "Number of motions that the frame does not determine, which stay as reported."]
-    pose_sigma: Annotated[tuple, "(2,): standard deviations per axis from the covariance [m], [rad], for ``ViewPlanner.add``."]
+    contradiction: Annotated[float, "The larger of two fractions: that of readings that lie in known free space, and that of the map's surface in space that the frame shows as free."]
+    smallest_information: Annotated[float, "How well the frame determines the pose: smallest information about any motion of the camera, relative to that of the reported pose."]
+    free_directions: Annotated[int, "Number of independent motions of the camera that the frame does not determine. In these, the pose stays as reported."]
+    pose_sigma: Annotated[tuple, "(2,): standard deviations per axis of translation [m] and rotation [rad], for ``ViewPlanner.add``."]
 
 
 @named("viewgain")
 class AddedView(NamedTuple):
     """Effect of a frame, from ``ViewPlanner.add``."""
 
-    readings: Annotated[int, "Pixels or points whose range is within the sensor's limits."]
-    plane_readings: Annotated[int, "Pixels or points that show the support plane or a known object; not counted as readings."]
-    out_of_range: Annotated[int, "Pixels or points that are free up to max_range."]
-    invalid: Annotated[int, "Pixels or points without information."]
-    readings_inside: Annotated[int, "Readings that lie in the workspace."]
-    voxels_hit: Annotated[int, "Voxels that contain readings."]
-    voxels_crossed: Annotated[int, "Voxels that rays cross and that contain no readings."]
+    readings: Annotated[int, "Number of pixels or points whose range is within the sensor's limits."]
+    plane_readings: Annotated[int, "Number of pixels or points that show the support plane or a known object; not counted as readings."]
+    out_of_range: Annotated[int, "Number of pixels or points that are free up to max_range."]
+    invalid: Annotated[int, "Number of pixels or points that measured nothing."]
+    readings_inside: Annotated[int, "Number of readings that lie in the workspace."]
+    voxels_hit: Annotated[int, "Number of voxels that readings hit."]
+    voxels_crossed: Annotated[int, "Number of voxels that were crossed, but not hit."]
     view: Annotated[int, "Number of the view, from 0."]
-    entropy_removed: Annotated[float, "Entropy removed by this view [nat, or m**2 for trace]."]
-    new_area: Annotated[float, "New surface shown by this view, perpendicular to the rays [m**2]; NaN with gain \"paper\"."]
-    total_entropy_removed: Annotated[float, "Entropy removed so far [nat, or m**2 for trace]."]
+    entropy_removed: Annotated[float, "Entropy removed by this view [nat; m**2 with criterion \"trace\"]."]
+    new_area: Annotated[float, "New surface that this view showed, measured perpendicular to the rays [m**2]; NaN with gain \"paper\"."]
+    total_entropy_removed: Annotated[float, "Entropy removed so far [nat; m**2 with criterion \"trace\"]."]
     total_area: Annotated[float, "Sum of the new areas so far [m**2]."]
     unknown_voxels: Annotated[int, "Number of voxels that are still unknown."]
-    verdict: Annotated[str, "How the frame was used: used, carved (only free space), or why it was not: lost_pose, no_pose, unreadable, wrong_size, nothing_in_range, outside, contradicts."]
+    verdict: Annotated[str, "used, or carved if it showed only free space. Otherwise the reason why the frame was not used: lost_pose, no_pose, unreadable, wrong_size, nothing_in_range, outside or contradicts."]
 
 
 @named("viewgain")
 class MapUpdate(NamedTuple):
     """Effect of a frame, from ``ViewScorer.add``."""
 
-    readings: Annotated[int, "Pixels or points whose range is within the sensor's limits."]
-    plane_readings: Annotated[int, "Pixels or points that show the support plane or a known object; not counted as readings."]
-    out_of_range: Annotated[int, "Pixels or points that are free up to max_range."]
-    invalid: Annotated[int, "Pixels or points without information."]
-    readings_inside: Annotated[int, "Readings that lie in the workspace."]
-    voxels_hit: Annotated[int, "Voxels that contain readings."]
-    voxels_crossed: Annotated[int, "Voxels that rays cross and that contain no readings."]
-    flying_pixels: Annotated[int, "Pixels removed by the jump-edge filter."]
-    new_area: Annotated[float, "New surface shown by the frame, perpendicular to the rays [m**2]; NaN with gain \"paper\"."]
-    verdict: Annotated[str, "How the frame was used: used, carved (only free space), or why it was not: nothing_in_range, outside."]
+    readings: Annotated[int, "Number of pixels or points whose range is within the sensor's limits."]
+    plane_readings: Annotated[int, "Number of pixels or points that show the support plane or a known object; not counted as readings."]
+    out_of_range: Annotated[int, "Number of pixels or points that are free up to max_range."]
+    invalid: Annotated[int, "Number of pixels or points that measured nothing."]
+    readings_inside: Annotated[int, "Number of readings that lie in the workspace."]
+    voxels_hit: Annotated[int, "Number of voxels that readings hit."]
+    voxels_crossed: Annotated[int, "Number of voxels that were crossed, but not hit."]
+    flying_pixels: Annotated[int, "Number of pixels that the jump-edge filter removed."]
+    new_area: Annotated[float, "New surface that the frame showed, measured perpendicular to the rays [m**2]; NaN with gain \"paper\"."]
+    verdict: Annotated[str, "used, or carved if it showed only free space. Otherwise the reason why the frame was not used: nothing_in_range or outside."]
 
 
 @named("viewgain")
 class Proposal(NamedTuple):
-    """Candidates that are currently possible, from ``ViewPlanner.propose``.
+    """Candidates that are currently feasible, from ``ViewPlanner.propose``.
 
-    A tuple of three fields: ``len(proposal)`` is 3, and ``len(proposal.T_world_camera)`` is the number of candidates.
+    The number of candidates is ``len(proposal.T_world_camera)``. ``len(proposal)`` is 3, the number of fields.
     """
 
     T_world_camera: Annotated[_Floats, "(n, 4, 4), float64."]
     generator: Annotated[list[str], "Name of the set or generator of each candidate."]
-    dropped: Annotated[dict[str, int], "Number of dropped candidates by reason: ``INFEASIBILITY_NAMES``, and \"missed\" (commanded and not reached)."]
+    dropped: Annotated[dict[str, int], "Number of dropped candidates per reason: one of ``INFEASIBILITY_NAMES``, or \"missed\" for poses that the robot did not reach."]
 
 
 @named("viewgain")
@@ -233,8 +233,8 @@ class ViewTour(NamedTuple):
     """Views in the order of a short path, from ``GainEvaluator.plan_tour``."""
 
     indices: Annotated[NDArray[np.int64], "(k,), int64: indices of the poses."]
-    gains: Annotated[NDArray[np.void], "(k,), structured: marginal gains, the increase over the views chosen earlier."]
-    worth: Annotated[_Floats, "(k,), float64: gain minus costs of view and path when the view was chosen."]
+    gains: Annotated[NDArray[np.void], "(k,), structured: marginal gains (increase of the set's gain), with the fields of ``evaluate_detailed``."]
+    worth: Annotated[_Floats, "(k,), float64: marginal gain minus the costs of the view and of its path, when it was chosen."]
     way: Annotated[float, "Total path cost, in the unit of way."]
 
 
@@ -242,12 +242,12 @@ class ViewTour(NamedTuple):
 class Ranking(NamedTuple):
     """The best candidates, best first, from ``ViewPlanner.rank``.
 
-    A tuple of six fields: ``len(ranking)`` is 6, and ``len(ranking.indices)`` is the number of views.
+    The number of views is ``len(ranking.indices)``. ``len(ranking)`` is 6, the number of fields.
     """
 
-    indices: Annotated[NDArray[np.int64], "(k,), int64: indices into ``poses`` if given, otherwise into the candidates of the proposal (not of ``add_poses``)."]
-    gain: Annotated[_Floats, "(k,), float64 [nat; with gain \"surface\" m**2]; marginal with together or in a new plan; NaN with ``measure``, whose value is in ``worth``."]
-    worth: Annotated[_Floats, "(k,), float64: gain minus cost, in the gain's unit; 0 or less if the view costs more than it gains."]
+    indices: Annotated[NDArray[np.int64], "(k,), int64: indices into the argument ``poses``; without it, indices into the candidates of the last ``Proposal``."]
+    gain: Annotated[_Floats, "(k,), float64: gains [nat; with gain \"surface\" m**2]; with ``together`` and in a new plan, marginal gains; with ``measure``, NaN, and the custom gain is in ``worth``."]
+    worth: Annotated[_Floats, "(k,), float64: gain minus cost, in the gain's unit; negative if the view costs more than it gains."]
     complete: Annotated[bool, "False: stopped early."]
     area: Annotated[_Floats, "(k,), float64: expected new surface [m**2]; NaN with gain \"paper\"."]
     T_world_camera: Annotated[_Floats, "(k, 4, 4), float64."]

@@ -141,34 +141,34 @@ void bind_grid(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(BeliefRow, voxel, hits, information, information_vector);
   PYBIND11_NUMPY_DTYPE(PointRow, position, covariance, toward_free, hits);
 
-  GridClass grid_class = bound_class<SharedGrid, std::shared_ptr<SharedGrid>>(
-      module, "BeliefGrid",
-      R"(The state of a workspace, voxel by voxel.
+  GridClass grid_class =
+      bound_class<SharedGrid, std::shared_ptr<SharedGrid>>(module, "BeliefGrid",
+                                                           R"(A map of a workspace, voxel by voxel.
 
-Voxel (i, j, k) covers [i, i+1) x [j, j+1) x [k, k+1) times the voxel size in the grid frame. A new
-grid is unknown everywhere and takes little memory. Two grids are equal if their ``content_hash()``
-is equal. Grids can be pickled.
+In the grid frame, voxel (i, j, k) covers [i, i+1) x [j, j+1) x [k, k+1) times the voxel size. These
+indices are called indices on the lattice. A new grid is unknown everywhere and takes little memory.
+Two grids are equal if their ``content_hash()`` is equal. Grids can be pickled.
 
 Parameters
 ----------
 voxel_size : float
     [m]
 workspace : array_like, (2, 3)
-    Lowest and highest corner, grid frame [m]; extended to whole voxels, at most 65,536 along an
-    axis and 2**40 in total.
+    Lowest and highest corner of the mapped space, grid frame [m]. It is extended to whole voxels,
+    at most 65,536 along an axis and 2**40 in total.
 prior_sigma : float, optional
-    Standard deviation of an unknown voxel's position [m].
+    Standard deviation of the surface position in an unknown voxel [m].
 sensor : Sensor, optional
-    Sensor of the map's frames; sets ``prior_sigma`` to ``default_prior_sigma``. Required unless
+    Sensor of the map's frames. Sets ``prior_sigma`` to ``default_prior_sigma``. Required unless
     ``prior_sigma`` is given.
 T_world_grid : array_like, (4, 4), optional
     Pose of the grid frame in the world.
 
 Notes
 -----
-Methods release the GIL. Python threads may share a grid: several may read it at once, and a thread
-that changes it waits until it is alone. Cost: linear in the returned or changed voxels, some ms for
-128**3 voxels with 40,000 occupied ones; properties take constant time.)");
+Methods release the GIL. Threads may share a grid: several may read it at once, and a thread that
+changes it waits until it is alone. Cost: linear in the voxels that a method returns or changes;
+some ms for 128**3 voxels with 40,000 occupied ones. Properties take constant time.)");
   bind_grid_files(grid_class);
   bind_voxels(grid_class);
   grid_class
@@ -192,27 +192,26 @@ that changes it waits until it is alone. Cost: linear in the returned or changed
 Parameters
 ----------
 labels : array_like, (nx, ny, nz), whole numbers
-    0 unknown, 1 free, 2 occupied. C-contiguous uint8 is read in place, other integers and nested
-    lists are converted once. Masked entries of a masked array are unknown; bools raise ValueError,
-    because they have no unknown state.
+    0 unknown, 1 free, 2 occupied. Masked entries of a masked array are unknown. bools raise
+    ValueError, because they cannot express unknown. C-contiguous uint8 is read without a copy;
+    other integers and nested lists are converted once.
 voxel_size : float
     [m]
 origin : array_like, (3,)
-    Lowest corner of voxel (0, 0, 0), world frame [m]; origin of the grid frame.
+    Lowest corner of voxel (0, 0, 0), world frame [m]. It becomes the origin of the grid frame.
 T_world_grid : array_like, (4, 4), optional
-    Pose of that corner and the axes; replaces origin.
+    Pose of the grid frame in the world; replaces origin.
 prior_sigma : float, optional
-    Standard deviation of an unknown voxel's position [m].
+    Standard deviation of the surface position in an unknown voxel [m].
 sensor : Sensor, optional
-    As for a new grid; sensor or prior_sigma is required. The map's property ``sensor`` is set only
-    by frames.
+    As for a new grid; sensor or prior_sigma is required. Only frames set the map's property
+    ``sensor``.
 
 Returns
 -------
 BeliefGrid)")
       .def("clone", &clone_of,
-           "A deep copy. Beliefs are shared until one copy is "
-           "written.\n\nReturns\n-------\nBeliefGrid")
+           "A deep copy. Beliefs are copied on write.\n\nReturns\n-------\nBeliefGrid")
       .def("__copy__", &clone_of)
       .def("__deepcopy__", [](const SharedGrid& grid, const py::dict&) { return clone_of(grid); })
       .def_property_readonly(
@@ -220,21 +219,21 @@ BeliefGrid)")
           "float: [m]")
       .def_property_readonly(
           "prior_sigma", [](const SharedGrid& grid) { return grid.layout().prior_sigma(); },
-          "float: standard deviation of an unknown voxel's position [m]")
+          "float: standard deviation of the surface position in an unknown voxel [m]")
       .def_property_readonly(
           "shape",
           [](const SharedGrid& grid) {
             const Index3 dims = grid.layout().dims();
             return py::make_tuple(dims.x, dims.y, dims.z);
           },
-          "tuple of 3 int: voxels along x, y, z")
+          "tuple of 3 int: number of voxels along x, y, z")
       .def_property_readonly(
           "min_index",
           [](const SharedGrid& grid) {
             const Index3 min = grid.layout().min_index();
             return py::make_tuple(min.x, min.y, min.z);
           },
-          "tuple of 3 int: lattice index of the voxel (0, 0, 0) of arrays")
+          "tuple of 3 int: index on the lattice of the voxel that is at (0, 0, 0) in arrays")
       .def_property_readonly(
           "workspace",
           [](const SharedGrid& grid) {
@@ -253,15 +252,16 @@ Returns
 ndarray, (nx, ny, nz), uint8
     0 unknown, 1 free, 2 occupied. A copy.)")
       .def("update_box", &update_box, "first"_a, "labels"_a,
-           R"(Sets the voxels of a box from labels, for planners with their own growing map.
+           R"(Sets the states of the voxels in a box, for planners with their own growing map.
 
-Voxels that already have the state keep their log-odds and belief; the others lose their belief.
+Voxels that already have the state keep their log-odds and belief. The others lose their belief.
 Cost: linear in the labels.
 
 Parameters
 ----------
 first : array_like, (3,), whole numbers
-    Lowest voxel of the box, on the lattice; ``min_index`` for a box at index (0, 0, 0) of arrays.
+    Index on the lattice of the lowest voxel of the box; ``min_index`` for the corner of the
+    workspace.
 labels : array_like, (nx, ny, nz), whole numbers
     0 unknown, 1 free, 2 occupied, as in ``from_labels``.
 
@@ -292,37 +292,38 @@ ndarray, (n, 4, 4), float64
             }
             return py::array_t<double>(static_cast<py::ssize_t>(factors.size()), factors.data());
           },
-          R"(ndarray, (8,), float64: factors of the hazard of unknown space, learnt from frames.
+          R"(ndarray, (8,), float64: factors that correct the hazard of unknown space, from frames.
 
 The hazard is the rate at which a ray meets the surface in unknown voxels. There is one factor per
-class of distance from known surface, nearest first; it multiplies the rate of the model. All are 1
-until ``FrameIntegrator.calibrate_hazard`` is called.)")
+class of distance from known surface, nearest first. It multiplies the rate of the hazard model. All
+factors are 1 until ``FrameIntegrator.calibrate_hazard`` is called.)")
       .def(
           "beliefs",
           [](const SharedGrid& grid) {
             const auto rows = grid.read(belief_rows);
             return to_array_1d<BeliefRow>(rows);
           },
-          R"(Sums over the readings (measured depths) of each voxel that was ever hit.
+          R"(For each voxel, sums over the readings (measured depths) that ended in it.
 
 Returns
 -------
 ndarray, (n,), structured
-    Fields: voxel (int32, 3; on the lattice, subtract ``min_index`` for arrays), hits (number of
-    readings), information (float32, 6: xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3
-    [1/m], relative to the voxel's centre).)")
+    One row per voxel with readings. Fields: voxel (int32, 3: index on the lattice; subtract
+    ``min_index`` to index arrays), hits (number of readings), information (float32, 6: sum of their
+    information matrices, xx yy zz xy xz yz [1/m**2]), information_vector (float32, 3: sum of their
+    information matrices times their positions relative to the voxel's centre [1/m]).)")
       .def("points", &points_of, py::kw_only(), "min_hits"_a = 2, "scale_sigma"_a = 0.0,
            "num_threads"_a = 0,
            R"(The surface points of the map.
 
-Cost: some µs per voxel that was ever hit, 0.25 s for 40,000 occupied ones on two threads.
+Cost: some µs per voxel with readings; 0.25 s for 40,000 occupied voxels on two threads.
 
 Parameters
 ----------
 min_hits : int
     Omits points with fewer readings (measured depths).
 scale_sigma : float
-    The sensor's scale_sigma; adds the scale error that all readings of a point share to its
+    scale_sigma of the sensor. Adds the relative error that all readings of a point share to its
     covariance.
 num_threads : int
     0: all hardware threads. Does not affect the result.
@@ -334,14 +335,16 @@ ndarray, (n,), structured
     [m**2]), toward_free (float64, 3: unit normal towards free space, world frame), hits (number of
     readings).)")
       .def("pooling_length", &pooling_length_of,
-           R"(Spacing of the map's points. Cost: a snapshot.
+           R"(Distance between neighbouring points of the map.
+
+Cost: linear in the map's blocks of voxels.
 
 Returns
 -------
 float
     The voxel size or the footprint of a pixel on the surface, whichever is larger [m].)")
       .def("statistics", &statistics_of, "criterion"_a = "log_diagonal",
-           R"(Voxel counts and progress.
+           R"(Number of voxels per state, and entropy removed.
 
 Parameters
 ----------
@@ -356,7 +359,7 @@ GridStatistics)")
           [](const SharedGrid& grid) {
             return grid.read([](const BeliefGrid& g) { return g.content_hash(); });
           },
-          "Hash of the map, 16 hexadecimal digits; equal maps have equal "
+          "Hash of the map, 16 hexadecimal digits. Equal maps have equal "
           "hashes.\n\nReturns\n-------\nstr")
       .def(
           "__eq__",

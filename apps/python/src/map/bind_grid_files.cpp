@@ -92,7 +92,7 @@ void bind_grid_files(GridClass& grid_class) {
           [](const SharedGrid& grid) {
             return grid.read([](const BeliefGrid& g) { return map_sensor(g); });
           },
-          "Sensor or None: the sensor of all readings; None if there are several or it is unknown. "
+          "Sensor or None: sensor of all frames; None if there are several or it is unknown. "
           "Kept in files, copies and pickles.")
       .def_property_readonly(
           "frames",
@@ -102,15 +102,14 @@ void bind_grid_files(GridClass& grid_class) {
               return std::vector<std::string>(frames.begin(), frames.end());
             });
           },
-          "list of str: identities of the folder frames in the map, which ``viewgain integrate "
+          "list of str: identities of the map's frames from folders, which ``viewgain integrate "
           "--map`` skips. Kept in files, copies and pickles.");
   grid_class
-      .def(
-          "to_bytes", &bytes_of,
-          R"(The map as bytes, for ``from_bytes`` and pickles: the contents of the file from ``save``.
+      .def("to_bytes", &bytes_of,
+           R"(The map as bytes: the contents of a .vdb file of ``save``.
 
-Uses a temporary file. Cost: linear in the blocks of voxels, 0.1 s for 128**3 voxels with 40,000
-occupied ones; ``from_bytes`` takes half as long.
+``from_bytes`` and pickles use them. Writes a temporary file. Cost: linear in the blocks of voxels;
+0.1 s for 128**3 voxels with 40,000 occupied ones. ``from_bytes`` takes half as long.
 
 Returns
 -------
@@ -147,23 +146,23 @@ BeliefGrid)")
           },
           "path"_a, py::kw_only(), "workspace"_a = py::none(), "prior_sigma"_a = py::none(),
           "sensor"_a = py::none(), "occupied_from"_a = py::none(),
-          R"(Reads a map: a .vdb of ``save`` or the program viewgain, or OctoMap's .ot or .bt.
+          R"(Reads a map: a .vdb file of ``save`` or the program viewgain, or an OctoMap .ot or .bt.
 
-An OctoMap file has states and, for .ot, log-odds. Runs without the GIL. Cost: 50 ms for a .vdb of 4
-MB, 20 ms for a tree of 128**3 voxels with 40,000 occupied ones.
+An OctoMap file only has states, and if it is a .ot, log-odds. Runs without the GIL. Cost: 50 ms for
+a .vdb of 4 MB; 20 ms for an OctoMap of 128**3 voxels with 40,000 occupied ones.
 
 Parameters
 ----------
 path : path-like
 workspace : array_like, (2, 3), optional
-    OctoMap: lowest and highest corner [m], in the tree's frame; default: the box of its known
-    voxels.
+    Only for OctoMap: lowest and highest corner [m], in the frame of the file; default: the bounding
+    box of its known voxels.
 prior_sigma : float, optional
-    OctoMap: standard deviation of an unknown voxel's position [m].
+    Only for OctoMap: standard deviation of the surface position in an unknown voxel [m].
 sensor : Sensor, optional
-    OctoMap: as for a new grid; sensor or prior_sigma is required.
+    Only for OctoMap: as for a new grid; sensor or prior_sigma is required.
 occupied_from : float, optional
-    OctoMap: log-odds above which a voxel of a .ot is occupied; default: 0.
+    Only for .ot: log-odds above which a voxel is occupied; default: 0.
 
 Returns
 -------
@@ -177,16 +176,16 @@ BeliefGrid)")
           "path"_a, py::kw_only(), "with_covariance"_a = false,
           R"(Writes the map as an OpenVDB file, or as an OctoMap .ot. Atomic.
 
-A .ot file has only states and log-odds. They are in the world frame if T_world_grid is a shift by
-whole voxels, otherwise in the grid frame. Cost: 80 ms for 128**3 voxels with 40,000 occupied ones,
-4 MB.
+A .ot file only has states and log-odds. It is in the world frame if T_world_grid is a shift by
+whole voxels, otherwise in the grid frame. Cost: 80 ms for 128**3 voxels with 40,000 occupied ones
+(4 MB).
 
 Parameters
 ----------
 path : path-like
     Must end in .vdb or .ot.
 with_covariance : bool
-    Adds covariances and mean positions to a .vdb, for viewers.)");
+    Adds covariances and mean positions to a .vdb file, for viewers.)");
 }
 
 }  // namespace viewgain::python

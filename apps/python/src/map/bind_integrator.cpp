@@ -30,18 +30,19 @@ namespace {
 // Common parts of the docstrings of both integrators: parameters of the constructors.
 constexpr const char* kIntegratorSettings =
     R"(occupancy : {"probabilistic", "literal"}
-    How states change: by log-odds, once per voxel and call, or literally: crossed voxels become
-    free and hit voxels occupied.
+    How a frame changes states. A reading (one measured depth) hits one voxel, and its ray crosses
+    the voxels before it. "probabilistic": the log-odds of each voxel change once per frame.
+    "literal": crossed voxels become free, and hit voxels occupied.
 support_plane : float, optional
-    Height z [m] of the table under the object. Measured depths of the table mark free space, but
-    hit no voxel.
+    Height z of the table under the object, world frame [m]. Readings of the table mark free space,
+    but hit no voxel.
 coarsest : int
-    0 to 3: merges voxels into cells of up to 2**coarsest voxels per edge, no larger than a pixel on
-    the surface. Closer views refine the cells.
+    0 to 3: voxels are merged into cells of up to 2**coarsest voxels per edge, about as wide as a
+    pixel on the surface. Closer views refine the cells.
 fine : array_like, (n, 2, 3), optional
-    Boxes in the grid frame [m] that keep single voxels.
+    Boxes in the grid frame [m] in which voxels are not merged.
 finest : int
-    Outside the boxes of ``fine``, cells have at least 2**finest voxels per edge; at most
+    Outside the boxes of ``fine``, cells have at least 2**finest voxels per edge. At most
     ``coarsest``.
 num_threads : int
     0: all hardware threads. Does not affect the map.)";
@@ -51,7 +52,7 @@ constexpr const char* kIntegratorNotes = R"(
 
 Notes
 -----
-Concurrent calls wait for each other. Releases the GIL during integration. Maps are bit-identical
+Concurrent calls wait for each other. The GIL is released during integration. Maps are bit-identical
 for any number of threads.)";
 
 // Result and exceptions of integrate().
@@ -65,8 +66,8 @@ IntegrationReport
 Raises
 ------
 ValueError
-    Also if depths seem to be in millimetres: all readings, or 19 of 20 unequal ones, are beyond 10
-    times max_range. The grid then does not change.)";
+    Also if depths seem to be in millimetres, because all depths, or 19 of 20 different ones, are
+    beyond 10 times max_range. The grid then does not change.)";
 
 IntegrationConfig::Occupancy parse_occupancy(const std::string& name) {
   if (name == "probabilistic") return IntegrationConfig::Occupancy::probabilistic;
@@ -154,31 +155,32 @@ py::object load(const py::object& path) {
 }  // namespace
 
 void bind_cloud(py::module_& module) {
-  const std::string doc = std::string(R"(Puts point clouds of one sensor into a belief grid.
+  const std::string doc = std::string(R"(Integrates point clouds of one sensor into a belief grid.
 
-Each point marks the voxels on the line from the sensor's origin as free and hits the voxel that
-contains the point, with the sensor's noise at that range and frontal incidence. All points of a
-call are one frame.
+Each point is a reading. It marks the voxels on the line from the sensor's origin as free and hits
+the voxel that contains it. Its noise is that of the sensor at this range and frontal incidence. All
+points of a call are one frame.
 
 Parameters
 ----------
 sensor : Sensor
-    Only its noise, fx (if the lateral noise is a pixel's footprint) and range limits matter.
+    Only its noise, its range limits and, if the lateral noise depends on it, fx are used.
 )") + kIntegratorSettings +
                           kIntegratorNotes;
-  const std::string integrate_doc = std::string(R"(Updates the grid by one cloud.
+  const std::string integrate_doc = std::string(R"(Integrates one cloud into a grid.
 
-Cost: grows with the points and the voxels on their lines: 25 ms for 25,000 points and voxels of
-5 mm on two threads.
+Cost: grows with the points and the voxels on their lines. It is 25 ms for 25,000 points and voxels
+of 5 mm on two threads.
 
 Parameters
 ----------
 grid : BeliefGrid
 points : array_like, (n, 3)
-    Sensor frame [m], with any axes; rays start at the origin. Points that are masked, not finite or
-    nearer than min_range are ignored; points beyond max_range mark free space up to max_range.
+    Sensor frame [m], with any axes; its origin is that of the sensor. Points that are masked, not
+    finite or nearer than min_range are ignored. Points beyond max_range mark free space up to
+    max_range.
 T_world_sensor : array_like, (4, 4)
-    Rotations that deviate by up to 1e-3 are orthonormalised.
+    A rotation that is not orthonormal is repaired if its error is at most 1e-3.
 
 )") + kIntegrateReturns;
   auto type = bound_class<Clouds>(module, "CloudIntegrator", doc.c_str());
@@ -204,7 +206,7 @@ T_world_sensor : array_like, (4, 4)
 
   module.def("cloud_bounds", &bounds, "sensor"_a, "points"_a, "T_world_sensor"_a, py::kw_only(),
              "support_plane"_a = py::none(),
-             R"(As ``reading_bounds``, for a cloud.
+             R"(The box that contains all readings of a cloud, as ``reading_bounds``.
 
 Runs without the GIL. Cost: 1.5 ms for 25,000 points.
 
@@ -219,7 +221,7 @@ Returns
 -------
 ndarray, (2, 3), float64, or None)");
   module.def("load_cloud", &load, "path"_a,
-             R"(Reads the points of a .pcd (ascii, binary) or .ply (ascii, binary).
+             R"(Reads the points of a .pcd or .ply file, ASCII or binary.
 
 Runs without the GIL. Cost: linear in the file.
 
@@ -230,8 +232,8 @@ path : path-like
 Returns
 -------
 Cloud
-    viewpoint is the VIEWPOINT of a PCD; its inverse maps points of the world to the sensor
-    frame.)");
+    viewpoint is the VIEWPOINT of a .pcd file. Its inverse maps points from the world frame to the
+    sensor frame.)");
 }
 
 namespace {
@@ -282,34 +284,37 @@ void calibrate_hazard(const Integrator& self, const Given<SharedGrid>& grid,
 }  // namespace
 
 void bind_integrator(py::module_& module) {
-  const std::string doc = std::string(R"(Puts depth frames of one sensor into a belief grid.
+  const std::string doc = std::string(R"(Integrates depth frames of one sensor into a belief grid.
 
 Parameters
 ----------
 sensor : Sensor
 carve : {"cones", "lines"}
-    Which voxels a pixel crosses. "cones": those whose centre lies in the pixel's cone, nearer than
-    the reading. "lines": those on the ray through its centre.
+    Which voxels a pixel crosses, and marks as free. "cones": those whose centre lies in the pixel's
+    cone and is nearer than the measured depth. "lines": those on the ray through the pixel's
+    centre.
 )") + kIntegratorSettings +
                           kIntegratorNotes;
-  const std::string integrate_doc = std::string(R"(Updates the grid by one frame.
+  const std::string integrate_doc = std::string(R"(Integrates one frame into a grid.
 
-Cost: grows with the pixels and the crossed voxels: 4 ms for 176x144 pixels and voxels of 5 mm on
-two threads.
+Cost: grows with the pixels and the crossed voxels. It is 4 ms for 176x144 pixels and voxels of 5 mm
+on two threads.
 
 Parameters
 ----------
 grid : BeliefGrid
 depth : array_like, (height, width), floating point
-    Along the optical axis (z, not range) [m]. 0, negative, NaN or masked: ignored; inf: free up to
+    Along the optical axis (z, not range) [m]. 0, negative, NaN or masked: ignored. inf: free up to
     the sensor's max_range.
 T_world_camera : array_like, (4, 4)
-    Rotations that deviate by up to 1e-3 are orthonormalised.
+    A rotation that is not orthonormal is repaired if its error is at most 1e-3.
 pose_sigma : array_like, (2,), optional
-    Uncertainty of this pose in addition to the sensor's pose_sigma [m], [rad].
+    Uncertainty of this pose in addition to the sensor's pose_sigma: standard deviations of
+    translation [m] and rotation [rad].
 amplitude : array_like, (height, width), floating point, optional
-    cos / range**2 [1/m**2], from which the angle of incidence is computed. By default, and where it
-    is inf (saturated), the angle is computed from the depth. NaN or masked: the most oblique angle.
+    cos / range**2 [1/m**2], where cos is the cosine of the angle of incidence, which is computed
+    from it. Where it is inf (saturated) or not given, the angle is computed from the depths. NaN or
+    masked: the most oblique angle.
 
 )") + kIntegrateReturns;
   auto type = bound_class<Integrator>(module, "FrameIntegrator", doc.c_str());
@@ -334,9 +339,9 @@ amplitude : array_like, (height, width), floating point, optional
            "T_world_camera"_a,
            R"(Counts how often a frame's rays meet the surface in unknown space.
 
-Call it before the frame is integrated. The surface and combined gains of the grid's later scenes
-use the counts. Has no effect while no surface is known, or if the scene was made with ``hazard``.
-Cost: about 5 ms for 176x144 pixels.
+The counts correct the hazard of later scenes of the grid, which gain "surface" and "combined" use.
+Call it before the frame is integrated. Has no effect if no surface is known yet, or the scene was
+made with ``hazard``. Cost: about 5 ms for 176x144 pixels.
 
 Parameters
 ----------
@@ -361,7 +366,7 @@ depth, T_world_camera
                                         support_plane));
       },
       "sensor"_a, "depth"_a, "T_world_camera"_a, py::kw_only(), "support_plane"_a = py::none(),
-      R"(The box that contains all readings of a depth frame, for choosing a workspace.
+      R"(The box that contains all readings (measured depths) of a frame, for choosing a workspace.
 
 Holds the GIL. Cost: 2 ms for 176x144 pixels.
 
@@ -371,12 +376,12 @@ sensor : Sensor
 depth, T_world_camera
     As ``FrameIntegrator.integrate``.
 support_plane : float, optional
-    Height z [m] of the table, whose readings are ignored.
+    Height z of the table, world frame [m]. Readings of the table are ignored.
 
 Returns
 -------
 ndarray, (2, 3), float64, or None
-    Lowest and highest corner, world frame [m]; None if the frame has no reading.)");
+    Lowest and highest corner, world frame [m]; None if there are no readings.)");
 }
 
 }  // namespace viewgain::python

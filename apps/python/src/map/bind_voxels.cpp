@@ -137,30 +137,30 @@ points : array_like, (..., 3)
 Returns
 -------
 ndarray, (..., 3), int32
-    On the lattice; subtract ``min_index`` for arrays. For a point that lies outside the workspace
-    or is not finite, all three numbers are -2**31, which is never a valid index.)")
+    Indices on the lattice; subtract ``min_index`` to index arrays. For a point that lies outside
+    the workspace or is not finite, all three numbers are -2**31, which is never a valid index.)")
       .def("center", &center, "voxels"_a,
            R"(Centres of voxels. Cost: about 25 ns per voxel.
 
 Parameters
 ----------
 voxels : array_like, (..., 3), whole numbers
-    On the lattice, also outside the workspace.
+    Indices on the lattice; they may lie outside the workspace.
 
 Returns
 -------
 ndarray, (..., 3), float64
     World frame [m].)")
       .def("set", &set, "voxels"_a, "log_odds"_a,
-           R"(Sets voxels of the workspace in order, all or none. Cost: about 0.25 µs per voxel.
+           R"(Sets voxels of the workspace, all or none. Cost: about 0.25 µs per voxel.
 
 Parameters
 ----------
 voxels : array_like, (..., 3), whole numbers
     On the lattice.
 log_odds : float or array_like, (...)
-    Above 0 the voxel is occupied, otherwise free. Rounded to the nearest step of 0.05 and clamped
-    to -2..3.5. The voxel's belief is removed.)")
+    Above 0 the voxel is occupied, otherwise free. Values are rounded to steps of 0.05 and clamped
+    to -2..3.5. The beliefs of the voxels are removed.)")
       .def(
           "forget",
           [](SharedGrid& grid, const py::object& region) {
@@ -170,14 +170,14 @@ log_odds : float or array_like, (...)
             return count;
           },
           "region"_a,
-          R"(Resets voxels to unknown, after objects or the robot have moved; views remain.
+          R"(Makes voxels unknown again, for example when objects or the robot have moved.
 
-Cost: grows with the map's blocks of voxels, 0.4 ms for 128**3 voxels.
+Views remain. Cost: linear in the map's blocks of voxels; 0.4 ms for 128**3 voxels.
 
 Parameters
 ----------
 region : array_like, (2, 3)
-    Lowest and highest corner of a box in the grid frame [m]; bounds may be infinite. Applies to
+    Lowest and highest corner of a box in the grid frame [m]. Bounds may be infinite. Applies to
     voxels whose centre lies in the box.
 
 Returns
@@ -185,7 +185,7 @@ Returns
 int
     Number of voxels that were known.)")
       .def("scale", &scale, "voxels"_a,
-           R"(Scales of the cells that contain voxels. Cost: linear in the voxels.
+           R"(Scales of the cells that contain the voxels. Cost: linear in the voxels.
 
 Parameters
 ----------
@@ -195,7 +195,8 @@ voxels : array_like, (..., 3), whole numbers
 Returns
 -------
 ndarray, (...), uint8
-    s, 0 to 3: a cell of 2**s voxels per edge has one state and one belief; 0 outside the workspace.)")
+    0 to 3. A cell of scale s has 2**s voxels per edge, which share one state and one belief. 0
+    outside the workspace.)")
       .def(
           "resample",
           [](SharedGrid& grid, const py::object& region, int to) {
@@ -205,32 +206,33 @@ ndarray, (...), uint8
             return count;
           },
           "region"_a, "scale"_a,
-          R"(Sets the scale of leaves of 8**3 voxels; larger cells sum hits and information.
+          R"(Sets the scale of leaves, which are blocks of 8**3 voxels.
 
-When a cell is split, the new cell that contains the mean of its readings gets them all; the rest of
-an occupied cell becomes unknown. Cost: grows with the map's blocks of voxels.
+A leaf of scale s is divided into cells of 2**s voxels per edge. When cells are merged, their
+beliefs are added. When a cell is split, the new cell that contains the mean of its readings gets
+its belief; the rest of an occupied cell becomes unknown. Cost: linear in the map's leaves.
 
 Parameters
 ----------
 region : array_like, (2, 3)
-    Lowest and highest corner of a box in the grid frame [m]; bounds may be infinite. Applies to all
+    Lowest and highest corner of a box in the grid frame [m]. Bounds may be infinite. Applies to all
     leaves that the box touches.
 scale : int
-    0 to 3: cells of 2**scale voxels per edge.
+    New scale, 0 to 3.
 
 Returns
 -------
 int
     Number of changed leaves.)")
-      .def(
-          "occupied", &occupied,
-          R"(The occupied voxels, for larger cells their lowest voxel; equal maps give the same order.
+      .def("occupied", &occupied,
+           R"(The occupied voxels. Equal maps give the same order.
 
 Returns
 -------
 ndarray, (n,), structured
-    Fields: voxel (int32, 3; on the lattice, subtract ``min_index`` for arrays), log_odds (float32),
-    hits (number of measured depths that ended in the voxel).)");
+    Of a cell larger than a voxel, only the lowest voxel is listed. Fields: voxel (int32, 3: index
+    on the lattice; subtract ``min_index`` to index arrays), log_odds (float32), hits (number of
+    measured depths that ended in the voxel).)");
 }
 
 }  // namespace viewgain::python

@@ -198,59 +198,62 @@ void bind_reconstruct(py::module_& module) {
              "control"_a = py::none(), "tracer"_a = "automatic", "num_threads"_a = 0,
              R"(The whole loop: measure, update map and surface, propose views, rank them, repeat.
 
-Algorithm 1 of the paper with your camera or simulator. Your functions run on the calling thread;
-the GIL is released in between.
+Algorithm 1 of the paper (Foix et al. 2012) with your camera or simulator. Your functions run on the
+calling thread. The GIL is released in between.
 
 Parameters
 ----------
 acquire : callable
-    Takes T_world_camera (4, 4) of the next view, moves the camera there and returns a frame: depth,
-    or (depth, amplitude) like a ``SimulatedFrame``, or (depth, T_world_camera, amplitude) like a
-    ``Frame``, with the pose that the camera reached. depth has the shape (height, width), floating
-    point, along the optical axis [m]; 0, NaN or masked: no reading, inf: free up to max_range.
-    amplitude may be None. Exceptions end the loop and pass through.
+    Takes T_world_camera (4, 4) of the next view, moves the camera there and returns a frame. The
+    frame is depth, or (depth, amplitude) like a ``SimulatedFrame``, or (depth, T_world_camera,
+    amplitude) like a ``Frame``, with the pose that the camera reached. depth has the shape (height,
+    width), floating point, along the optical axis [m]. 0, NaN or masked: no measured depth. inf:
+    free up to max_range. amplitude may be None. Exceptions end the loop and pass through.
 sensor : viewgain.Sensor
 start : array_like, (4, 4)
-    T_world_camera of the first view, which must have readings in the workspace.
+    T_world_camera of the first view, which must measure surface in the workspace.
 voxel_size : float
     [m]
 workspace : array_like, (2, 3)
     Lowest and highest corner of the mapped space, world frame [m].
 criterion : {"log_diagonal", "log_determinant", "trace"}
 policy : {"gain", "kriegel", "random", "frontier", "sequence"}
-    How to choose the next view. "frontier" counts unknown voxels in view, "sequence" takes the
-    candidates in order.
+    How to choose the next view. "gain": by gain. "kriegel": open boundaries in the order left,
+    right, top, bottom (Kriegel et al. 2011). "random": at random. "frontier": by the number of
+    unknown voxels in view. "sequence": the candidates in order.
 gain : {"combined", "surface", "paper"}
-    Gain of policy "gain": expected new surface and refinement, expected new surface, or entropy
-    removed.
+    Gain of policy "gain". "combined": expected new surface, and refinement of known surface [nat].
+    "surface": expected new surface [m**2]. "paper": entropy removed [nat].
 boundary : bool, optional
-    Propose views at open surface boundaries and where more surface is expected, in addition to
-    candidates. Default: True, except for the policies "sequence" and "random".
+    Whether to propose views at open boundaries of the surface and where more surface is expected,
+    in addition to candidates. Default: True, except for the policies "sequence" and "random".
 candidates : array_like, (n, 4, 4), optional
     T_world_camera of poses to propose after every view; required if boundary is False.
 reach : viewgain.ReachRegion, optional
     Reachable camera poses.
 support_plane : float, optional
-    Height z of the table [m].
+    Height z of the table, world frame [m].
 jump_edges : bool
     Remove flying pixels.
 max_views : int
 stop_gain : float, optional
-    With gain "paper": stop when the best candidate's gain per touched voxel is below this [nat,
-    m**2 for trace]. Default: 1.2; for trace 0.01 of the gain of the first decision.
+    With gain "paper": stop when the best candidate's gain, divided by the number of voxels in which
+    its rays end, is below this [nat; m**2 with "trace"]. Default: 1.2; with "trace", 0.01 of the
+    value of the first decision.
 stop_area : float, optional
-    With gain "surface" and "combined": stop when the best candidate's expected new surface, divided
-    by the surface so far, is below this on average over three decisions; 0: never. Default: that of
-    the program's ``reconstruct``.
+    With gain "surface" and "combined": stop when the largest expected new surface of a candidate,
+    divided by the surface area so far and averaged over three decisions, is below this; 0: never.
+    Default: that of the program's ``reconstruct``.
 idle_views : int
-    Stop after this many views in a row that changed almost nothing; 0: never.
+    Stop after this many consecutive views that changed almost nothing; 0: never.
 broken_promises : int
-    With policy "gain": stop after this many views in a row that showed less than a fifth of the
-    predicted new surface (with gain "paper": entropy); 0: never.
+    With policy "gain": stop after this many consecutive views that showed less than a fifth of the
+    predicted new surface, or with gain "paper", removed less than a fifth of the predicted entropy;
+    0: never.
 observer : callable, optional
-    Called with the ViewRecord of each view after the next view has been chosen.
+    Called with the ViewRecord of each view when the next view has been chosen.
 control : viewgain.BatchControl, optional
-    Its stop() ends the loop with the reason "interrupted"; its progress function is not called.
+    Its stop() ends the loop with the reason "interrupted". Its progress function is not called.
 tracer : {"automatic", "embree", "sweep"}
     Tracer, as in ``viewgain.GainEvaluator``. Does not affect the result.
 num_threads : int
@@ -259,7 +262,7 @@ num_threads : int
 Returns
 -------
 Reconstruction
-    Its views are named tuples, ``ViewRecord``.)");
+    Its views are of the class ``ViewRecord``.)");
 }
 
 }  // namespace viewgain::python

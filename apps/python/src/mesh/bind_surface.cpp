@@ -95,36 +95,38 @@ void bind_boundary(py::module_& module) {
              py::kw_only(), "spacing"_a, "working_distance"_a = py::none(),
              "overlap"_a = py::none(), "distances"_a = py::none(), "tilts"_a = py::none(),
              "rolls"_a = py::none(),
-             R"(Candidate views that look past the open boundaries of a surface, with reasons.
+             R"(Candidate views of the space beyond the open boundaries of a surface.
 
-Runs without the GIL. Cost: grows with the boundary's edges and the views, 3 ms for a surface of
+A boundary run is a part of the boundary at which the surface ends on the same image side. A patch
+is a quadric that is fitted to the surface at a boundary run and extrapolated; the views look at it.
+Runs without the GIL. Cost: grows with the boundary's edges and the views; 3 ms for a surface of
 19,000 vertices and 12 views.
 
 Parameters
 ----------
 surface : Surface
 views : array_like, (n, 4, 4)
-    T_world_camera of the views of the surface, in order; at least one.
+    T_world_camera of the views from which the surface was made, in order; at least one.
 sensor : Sensor
 spacing : float
-    Spacing of the surface's points [m]: ``grid.pooling_length()`` of the map.
+    Distance between neighbouring points of the surface [m]: ``grid.pooling_length()`` of the map.
 working_distance : float, optional
     Distance from the surface [m]; default: the sensor's.
 overlap : float, optional
-    Fraction of known surface in the next view, in (0, 1).
+    Fraction of the image that known surface should fill, in (0, 1).
 distances : sequence of float, (n,), optional
-    Multiples of the working distance.
+    Distances of the camera, as multiples of the working distance.
 tilts, rolls : sequence of float, (n,), optional
-    [rad]; all combinations are tried.
+    Angles [rad]. There is a candidate for each combination of distance, tilt and roll.
 
 Returns
 -------
 BoundaryCandidates
     Check them with ``FeasibilityChecker``. Fields of reasons: boundary_class (index into
-    ``BOUNDARY_CLASS_NAMES``), run (number of the part of the boundary), run_length [m], patch
-    (number of the fitted patch), target (3, point that the view looks at, world [m]), distance from
-    the target [m], tilt, roll [rad], nominal (neither tilted nor rolled, at the first
-    distance).)");
+    ``BOUNDARY_CLASS_NAMES``), run (number of the boundary run), run_length (its length [m]), patch
+    (number of the patch), target (3: point that the view looks at, world frame [m]), distance (from
+    the target [m]), tilt and roll ([rad]), nominal (whether tilt and roll are 0 and the distance is
+    the first).)");
 }
 
 namespace {
@@ -200,8 +202,9 @@ void bind_surface(py::module_& module) {
       R"(An open, oriented triangle surface. Made by ``reconstruct_surface``,
 ``surface_of_grid`` and ``reconstruct``.
 
-Faces are counter-clockwise seen from free space. Lengths are in metres, in the frame of the points
-(the world frame for a map). Surfaces are equal by value.
+Seen from free space, the vertices of a face are in counter-clockwise order. Lengths are in metres,
+in the frame of the input points, which is the world frame for a map. Surfaces are equal if their
+arrays are.
 
 Notes
 -----
@@ -209,18 +212,16 @@ Cost: each property is a copy, 30 µs for 20,000 vertices. Only ``save`` release
   refuse_pickling(type);
   type.def_property_readonly(
           "vertices", [](const SurfaceMesh& s) { return to_array_3(s.vertices); },
-          "ndarray, (n, 3), float64: positions in the surface frame (the world frame for a map) "
-          "[m]")
+          "ndarray, (n, 3), float64: positions in the frame of the input points [m]")
       .def_property_readonly(
           "normals", [](const SurfaceMesh& s) { return to_array_3(s.normals); },
-          "ndarray, (n, 3), float64: unit normals towards free space, in the same frame as the "
-          "vertices")
+          "ndarray, (n, 3), float64: unit normals of the vertices, towards free space")
       .def_property_readonly(
           "triangles", [](const SurfaceMesh& s) { return to_array_3(s.triangles); },
-          "ndarray, (m, 3), uint32: vertex indices")
+          "ndarray, (m, 3), uint32: indices of vertices")
       .def_property_readonly(
           "source", [](const SurfaceMesh& s) { return to_array_1d<std::uint32_t>(s.source); },
-          "ndarray, (n,), uint32: the input point of each vertex")
+          "ndarray, (n,), uint32: index of the input point of each vertex")
       .def(
           "save",
           [](const SurfaceMesh& self, const py::object& path) {
@@ -264,25 +265,25 @@ open3d.geometry.TriangleMesh
              py::kw_only(), "spacing"_a, "smoothing_neighbors"_a = defaults.smoothing_neighbors,
              "max_edge"_a = defaults.max_edge, "join_distance"_a = defaults.join_distance,
              "min_component"_a = defaults.min_component, "num_threads"_a = 0,
-             R"(The open surface through points; holes larger than max_edge stay open.
+             R"(The open surface through points. Holes larger than max_edge stay open.
 
 Runs without the GIL. Cost: about 20 µs per point on two threads.
 
 Parameters
 ----------
 points : array_like, (n, 3)
-    Any frame (the world frame for a map) [m].
+    Points in any frame [m].
 toward_free : array_like, (n, 3), optional
-    One direction per point, of any length, that shows on which side free space lies; zero if
-    unknown.
+    One vector per point towards free space, of any length; zero if unknown.
 spacing : float
-    Typical distance of neighbouring points [m].
+    Typical distance between neighbouring points [m].
 smoothing_neighbors : int
-    Neighbours in the jet fit; 0: no smoothing.
+    Number of neighbours in the jet fit that smooths a point; 0: no smoothing.
 max_edge, join_distance : float
-    Longest edge; distance within which points belong to one component [spacings].
+    max_edge is the longest edge of a triangle. join_distance is the distance within which points
+    belong to one component. Both are in units of spacing.
 min_component : int
-    Drops components with fewer points.
+    Omits components with fewer points, as outliers.
 num_threads : int
     0: all hardware threads. Does not affect the result.
 
@@ -294,8 +295,8 @@ Surface
              "num_threads"_a = 0,
              R"(The surface through ``grid.points(min_hits=min_hits)``.
 
-Runs without the GIL; other threads may read the grid meanwhile, but not write it. Cost: 0.7 s for
-40,000 occupied voxels on two threads.
+Runs without the GIL. Meanwhile, other threads may read the grid; threads that change it wait. Cost:
+0.7 s for 40,000 occupied voxels on two threads.
 
 Parameters
 ----------

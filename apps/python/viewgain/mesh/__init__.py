@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces, views at their open boundaries, and the whole reconstruction loop.
 
-Uses parts of CGAL that are GPL-3.0-or-later, so programs that import this package must be
-GPL-3.0-or-later too. ``import viewgain`` alone is Apache-2.0 and does not load this package.
+This package uses parts of CGAL that are GPL-3.0-or-later, so programs that import it must be
+GPL-3.0-or-later too. ``import viewgain`` does not load this package, and is Apache-2.0.
 """
 
 try:

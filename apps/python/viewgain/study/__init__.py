@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Compares policies and gains in one table, with one run of ``viewgain reconstruct`` per object, policy, seed, sensor, voxel and size of a
-spec. Command: ``python3 -m viewgain.study SPEC.toml --out DIR``. The tutorial "Compare methods" lists the keys of a spec.
+"""Compares policies and gains in one table. A spec lists objects, policies, seeds, sensors, voxel sizes and object sizes; each combination is
+one run of ``viewgain reconstruct``. Command: ``python3 -m viewgain.study SPEC.toml --out DIR``. The tutorial "Compare methods" lists the keys of
+a spec.
 
 Needs the program ``viewgain``, numpy and scipy, but not the extension module. Frames and units are those of the program.
 

@@ -43,7 +43,7 @@ def _arguments(words):
 
 
 def _check_folder(out, spec):
-    """Raises SpecError for a folder that has files but no runs/.lock of a study. The spec itself may be in the folder."""
+    """Raises SpecError if the folder has files other than the spec, but no runs/.lock of a study."""
     if out.exists() and not out.is_dir():
         raise SpecError(f"--out {out}: this is a file; choose another folder")
     others = [path for path in out.iterdir() if path.resolve() != spec.resolve()] if out.is_dir() else []
@@ -84,7 +84,7 @@ def _study(options):
         except (ValueError, RuntimeError, MemoryError) as error:
             _warn(f"{name} was not drawn: {error}")
     for name in draw.keys() - files.keys():
-        (options.out / name).unlink(missing_ok=True)  # may be from another spec
+        (options.out / name).unlink(missing_ok=True)  # it may be from another spec
     print(f"{text}\nwritten to {options.out}: {', '.join(files)}, runs/")
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""The plots of a study. Need matplotlib."""
+"""The plots of a study. They need matplotlib."""
 from __future__ import annotations
 
 import io
@@ -47,8 +47,8 @@ def _png(figure):
 
 
 def coverage(rows: list[dict]) -> bytes:
-    """A PNG of the mean coverage after each view, one line per policy, with standard errors as in the table; one panel per sensor, voxel
-    and size."""
+    """A PNG of the mean coverage after each view, with standard errors as in the table. It has one line per policy, and one panel per sensor,
+    voxel and size."""
     from matplotlib import colormaps
 
     groups, names = list(dict.fromkeys(map(_group, rows))), list(dict.fromkeys(map(name_of, rows)))
@@ -70,7 +70,7 @@ def coverage(rows: list[dict]) -> bytes:
 
 
 def differences(rows: list[dict], against: str) -> bytes:
-    """A PNG of each policy's mean difference in AUC to the policy `against`, with standard errors as in the table."""
+    """A PNG of the mean difference in AUC between each policy and the policy `against`, with standard errors as in the table."""
     groups = list(dict.fromkeys(map(_group, rows)))
     names = [name for name in dict.fromkeys(map(name_of, rows)) if name != against]
     figure, all_axes = _figure(groups, 1.2 + 0.28 * len(names))

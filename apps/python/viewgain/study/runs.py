@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the runs of a study in processes of this machine or on a Dask cluster."""
+"""Makes the runs of a study in processes on this machine, or on a Dask cluster."""
 from __future__ import annotations
 
 import concurrent.futures
@@ -25,7 +25,7 @@ from .rows import SpecError, row_of
 from .spec import Run, Spec
 
 _WORKERS_WITHIN = 60  # time to wait for the first worker [s]
-# Prefix of a command, so that it ends with its parent process, even if that is killed (util-linux).
+# Prefix of a command, so that its process ends when the parent process ends or is killed (util-linux).
 _ENDS_WITH_US = ["setpriv", "--pdeathsig", "KILL", "--"] if shutil.which("setpriv") else []
 
 
@@ -41,14 +41,14 @@ class RunError(RuntimeError):
 
 
 class _Children:
-    """The processes of one study on this machine, so that a stop ends all of them."""
+    """The running processes of a study on this machine. kill() ends all of them."""
 
     def __init__(self):
         self._lock, self._running, self._is_over = threading.Lock(), set(), False
 
     def call(self, words, title, beside):
-        """Calls a program in a new session, so that only the study receives Ctrl-C; raises RunError. PATH begins with `beside`, the folder
-        of ``viewgain``, and that of this Python, for custom programs."""
+        """Runs a program and waits for it. It gets a new session, so that only the study receives Ctrl-C. Its PATH begins with `beside`, the
+        folder of ``viewgain``, and the folder of this Python, for custom programs. Raises RunError if it fails."""
         path = os.pathsep.join([beside, os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)])
         try:
             with self._lock:
@@ -78,8 +78,8 @@ class _Children:
 
 
 def find_program(name: Optional[str] = None) -> str:
-    """The program ``viewgain``: `name` if given, else the one in the build or prefix that contains this package, else the one on PATH.
-    Raises SpecError if there is none."""
+    """The path of the program ``viewgain``: `name` if given, otherwise the program in the build or prefix that contains this package, otherwise
+    the one on PATH. Raises SpecError if there is none."""
     if name is None:
         for folder in pathlib.Path(__file__).resolve().parents[2:]:
             if (folder / "bin/viewgain").is_file() and os.access(folder / "bin/viewgain", os.X_OK):
@@ -108,9 +108,10 @@ def _fault(error):
 
 
 def make_run(words, title, kept, beside, is_own=False, folder=None, children=None):
-    """Makes one run in a temporary folder inside `folder` (default: the system's), and removes that folder. Returns run.json as a dict,
-    candidates, and the duration of the run [s]. Candidates are up to `kept` per view, evenly sampled, as TUM lines whose time stamp is the
-    number of views so far. Raises RunError. For a custom program (`is_own`) run.json gets the duration of the whole call."""
+    """Makes one run in a temporary folder inside `folder` (default: that of the system), which is removed afterwards. Returns run.json as a
+    dict, candidates, and the duration of the run [s]. For each view, candidates has up to `kept` of its candidates, evenly sampled, as TUM lines
+    whose timestamp is the number of views so far. `is_own`: the program is a custom one, and run.json gets the duration of the whole call.
+    Raises RunError."""
     begin = time.monotonic()
     with tempfile.TemporaryDirectory(prefix=".run-", dir=folder) as work:
         split = words.index("--")
@@ -133,7 +134,7 @@ def make_run(words, title, kept, beside, is_own=False, folder=None, children=Non
 
 def write_file(path, content):
     """Writes a file atomically and keeps the mode of an existing one."""
-    temporary = path.with_name(f".{path.name}.tmp")  # only one study uses the folder; a leftover of a killed study is overwritten
+    temporary = path.with_name(f".{path.name}.tmp")  # no conflict: only one study uses the folder. Leftovers of a killed study are overwritten.
     try:
         with open(temporary, "wb") as file:
             file.write(content if isinstance(content, bytes) else content.encode())
@@ -147,8 +148,8 @@ def write_file(path, content):
 
 @contextlib.contextmanager
 def _study_folder(out):
-    """Creates DIR/runs and locks it, so that one study at a time uses it. Clears leftovers of a killed study. Removes the folders again if
-    no run was kept."""
+    """Creates the folder `out`/runs and locks it, so that only one study uses it. Removes leftovers of a killed study. If no run was kept,
+    removes the folders again."""
     runs = out / "runs"
     try:
         runs.mkdir(parents=True, exist_ok=True)
@@ -179,7 +180,7 @@ def _command(spec, run, program, threads):
 
 
 def _first_of_each(runs):
-    """The first run of each policy and of each scene."""
+    """For each policy and each scene, the first run."""
     seen, first = set(), []
     for run in runs:
         of = {("policy", run.policy.name), ("scene", run.object.name, run.sensor, run.voxel, run.size)}
@@ -190,13 +191,13 @@ def _first_of_each(runs):
 
 
 def _one_view(words):
-    """The same call with a budget of one view, to check its arguments and files before hours of work."""
+    """The same command with a budget of one view, to check its arguments and files before hours of work."""
     return [word if not word.startswith("--max-views=") else "--max-views=1" for word in words]
 
 
 @contextlib.contextmanager
 def _here(jobs, folder):
-    """Yields a function that starts a run in a process of this machine and returns a future. An exception in the block kills running
+    """Yields a function that starts a run in a process on this machine and returns a future. An exception in the block kills the running
     processes."""
     children = _Children()
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:  # each thread waits for a process
@@ -210,7 +211,7 @@ def _here(jobs, folder):
 
 @contextlib.contextmanager
 def _on_cluster(scheduler, progress):
-    """Like `_here`, on the workers of a Dask cluster."""
+    """As `_here`, on the workers of a Dask cluster."""
     try:
         import distributed
     except ImportError as error:
@@ -245,7 +246,7 @@ def _on_cluster(scheduler, progress):
 
 
 def _results(futures, title, scheduler):
-    """Yields the futures' values with their results, or with the RunError, as they finish."""
+    """When a future finishes, yields futures[future] and the result of the future, or its RunError."""
     if scheduler is None:
         done = concurrent.futures.as_completed(futures)
     else:
@@ -264,9 +265,10 @@ def _results(futures, title, scheduler):
 
 def make_runs(spec: Spec, out, jobs: Optional[int] = None, scheduler: Optional[str] = None, program: Optional[str] = None,
               progress: Callable[[str], None] = lambda line: None) -> list[dict]:
-    """Makes the runs that are not in ``out/runs/HASH`` yet. Runs `jobs` at once on this machine (default: one per thread), or all on the
-    workers of a Dask cluster, which need the program and the files at the same paths. `progress` receives a line if runs are reused and
-    after each run. Returns the rows of all runs in the spec's order. Raises SpecError and RunError; finished runs are kept."""
+    """Makes the runs that are not in ``out/runs/HASH`` yet. On this machine, makes `jobs` runs at a time (default: one per thread). With
+    `scheduler`, makes them on the workers of a Dask cluster, which need the program and the files at the same paths. `progress` receives a line
+    if runs are reused, and after each run. Returns the rows of all runs, in the order of the spec. Raises SpecError and RunError; finished runs
+    are kept."""
     cores = len(os.sched_getaffinity(0))
     threads = max(1, cores // jobs) if jobs and scheduler is None else 1
     program = program or find_program()
@@ -299,7 +301,7 @@ def _check(spec, futures, scheduler):
 
 
 def _gather(spec, folder, futures, scheduler, rows, progress):
-    """Keeps each run when it finishes. If runs fail, makes the remaining runs first and then raises RunError."""
+    """Writes the files of each run when it finishes. If runs fail, waits for the remaining runs and then raises RunError."""
     begin, failures, total = time.monotonic(), [], len(spec.runs)
     for done, (run, made) in enumerate(_results(futures, spec.title, scheduler), start=1):
         if not isinstance(made, RunError):
@@ -320,7 +322,7 @@ def _gather(spec, folder, futures, scheduler, rows, progress):
 
 
 def _row_of(spec, run, record, max_views):
-    """The row of a run just made. Raises RunError."""
+    """The row of a run that was just made. Raises RunError if its run.json is invalid."""
     try:
         made_by = record.get("versions", {}).get("viewgain")
         if made_by not in (None, run.configuration["version"]) and run.configuration["version"]:
@@ -331,7 +333,7 @@ def _row_of(spec, run, record, max_views):
 
 
 def _keep(folder, run: Run, record, candidates):
-    """Writes the files of a run, run.json last, so that a run with this file is complete."""
+    """Writes the files of a run. run.json is the last, so a run that has it is complete."""
     folder.mkdir(exist_ok=True)
     if candidates:
         write_file(folder / "candidates.txt", candidates)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""The spec of a study: a TOML file. All combinations of its lists are run."""
+"""The spec of a study, a TOML file. There is one run for each combination of its lists."""
 from __future__ import annotations
 
 import dataclasses
@@ -22,7 +22,7 @@ try:
 except ImportError:  # Python 3.9 and 3.10
     import tomli as tomllib
 
-_FORMAT = 5  # format of kept runs; increases when it changes
+_FORMAT = 5  # format of the files of runs; increases when it changes
 _MOST_RUNS = 1_000_000
 _KEYS = ("objects", "policies", "against", "seeds", "sensors", "voxels", "sizes", "max_views", "tolerance", "flags", "kept_candidates")
 _OBJECT_KEYS = ("mesh", "name", "reach", "obstacles", "flags")
@@ -49,7 +49,7 @@ class Object:
 
 @dataclasses.dataclass(frozen=True)
 class Policy:
-    """A way to choose views. A `command`, if given, replaces ``viewgain reconstruct``."""
+    """A method of choosing views. If `command` is not empty, it replaces ``viewgain reconstruct``."""
     name: str
     policy: str
     gain: Optional[str] = None
@@ -59,7 +59,7 @@ class Policy:
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """One run. `hash` covers everything that can change its result."""
+    """One run. `hash` depends on everything that can change its result."""
     object: Object
     policy: Policy
     seed: int
@@ -72,15 +72,15 @@ class Run:
 
 @dataclasses.dataclass(frozen=True)
 class Spec:
-    """What to compare. `runs` are in the order sensor, voxel, size, object, seed, policy."""
+    """The runs of a study. `runs` is ordered by sensor, then voxel, size, object, seed and policy."""
     path: pathlib.Path
     objects: tuple[Object, ...]
     policies: tuple[Policy, ...]
-    against: str  # the policy with which the others are compared
+    against: str  # name of the policy with which all others are compared
     max_views: int
-    tolerance: float  # of coverage [m]
+    tolerance: float  # tolerance of coverage [m]
     flags: tuple[str, ...]
-    kept_candidates: int  # of each view
+    kept_candidates: int  # number per view
     runs: tuple[Run, ...]
 
     @functools.cached_property
@@ -88,14 +88,14 @@ class Spec:
         return {key for key in ("sensor", "voxel", "size") if len({getattr(run, key) for run in self.runs}) > 1}
 
     def title(self, run: Run) -> str:
-        """"camel, gain:combined, seed 3", with sensor, voxel and size if the spec has several of these."""
+        """The name of a run, such as "camel, gain:combined, seed 3". Has sensor, voxel and size if the spec lists several."""
         parts = [run.object.name, run.policy.name, f"seed {run.seed}"]
         texts = {"sensor": run.sensor, "voxel": f"voxel {run.voxel:g}", "size": f"size {run.size or 0:g}"}
         return ", ".join(parts + [text for key, text in texts.items() if key in self._varied])
 
     def words(self, run: Run) -> list[str]:
-        """The command line of a run after ``reconstruct``, except --out and --threads. Turns off all stopping rules except the budget of
-        views, unless a flag of the spec sets one."""
+        """The arguments of ``reconstruct`` for a run, without --out and --threads. Turns off all stopping rules except max_views, unless a flag
+        of the spec sets one."""
         words = [f"--sensor={run.sensor}", f"--voxel={run.voxel!r}", f"--seed={run.seed}", f"--max-views={self.max_views}",
                  f"--tolerance={self.tolerance!r}", "--pictures=off", "--quiet", *run.policy.words]
         if run.size is not None:
@@ -112,7 +112,7 @@ class Spec:
 
 
 class _Reader:
-    """The keys of a TOML file. Errors name file and line."""
+    """Reads the keys of a TOML file. Errors name file and line."""
 
     def __init__(self, path):
         self.path, self.folder = path, path.parent
@@ -134,7 +134,7 @@ class _Reader:
         raise SpecError(f"{self.path}{line}: {key} {message}")
 
     def values(self, key, kind, is_right, must):
-        """A list of distinct values."""
+        """The value of a key that must be a list of distinct values."""
         if key not in self.table:
             raise SpecError(f"{self.path}: {key} is missing; it {must}")
         values = self.table[key]
@@ -162,7 +162,7 @@ class _Reader:
         return value
 
     def flags(self, key, values):
-        """Further flags of reconstruct. Relative files in them become absolute, relative to the current folder."""
+        """Checks a list of further flags of reconstruct. Makes relative files in them absolute; they are relative to the current folder."""
         if not isinstance(values, list):
             self.fail(key, 'must be a list of strings like "--up=y"')
         flags = []
@@ -185,11 +185,11 @@ class _Reader:
             self.fail(key, "contains an entry without a file")
         if not isinstance(name, str) or not _is_file(self.folder / name):
             self.fail(key, f"contains {name!r}, but the file {self.folder / str(name)} does not exist")
-        return pathlib.Path(os.path.abspath(self.folder / name))  # does not resolve links, because the name determines the kind of mesh
+        return pathlib.Path(os.path.abspath(self.folder / name))  # links are not resolved, because the name determines the kind of mesh
 
 
 def _file_of(name, value):
-    """Splits a flag's value into the part before a file's name, and the name. The name is empty if the value names no file."""
+    """Splits the value of a flag into the part before the name of a file, and the name, which is empty if there is none."""
     before, comma, last = value.rpartition(",") if name == "--hazard" else ("", "", value)  # size=L,FILE
     return (before + comma, last) if name in _FILE_FLAGS and _is_file(last) else (value, "")
 
@@ -247,7 +247,7 @@ def _policy(reader, value):
 
 
 def _identity(path):
-    """Hash of a file's contents, including the poses that a reach file refers to."""
+    """Hash of the contents of a file. That of a reach file includes the poses to which it refers."""
     data = pathlib.Path(path).read_bytes()
     poses = re.search(rb"^\s*poses\s*=\s*[\"'](.+?)[\"']", data, re.MULTILINE) if str(path).endswith(".toml") else None
     inner = pathlib.Path(path).parent / poses[1].decode(errors="replace") if poses else None
@@ -261,8 +261,8 @@ def _flag_identity(flag):
 
 
 def read_spec(path, version: str = "") -> Spec:
-    """Reads a spec. `version` is the program's version, part of each run's hash. Raises SpecError with the file, the line and what to
-    do."""
+    """Reads a spec. `version` is the version of the program, on which the hash of each run depends. Raises SpecError with the file, the line and
+    what to do."""
     reader = _Reader(pathlib.Path(path))
     text = (str, lambda value: bool(value))
     objects = [_object(reader, value) for value in reader.values("objects", (str, dict), bool, "must be a list of mesh files or tables")]

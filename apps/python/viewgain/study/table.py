@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The viewgain authors
 # SPDX-License-Identifier: Apache-2.0
-"""A study's results as Markdown tables."""
+"""The results of a study as Markdown tables."""
 from __future__ import annotations
 
 import itertools
@@ -46,8 +46,8 @@ def _never(rows, goal):
 
 
 def _counts(rows, goal, max_views):
-    """"mean / median / number of runs that never reached the goal; mean path". For the median such runs are larger than all others. They
-    make the mean a lower bound, which has no interval."""
+    """"mean / median / number of runs that never reached the goal; mean path". In the median, runs that never reached the goal rank above all
+    others. They make the mean a lower bound, which has no interval."""
     never = _never(rows, goal)
     if never == len(rows):
         return "-"
@@ -78,7 +78,7 @@ def _probability(p):
 
 
 def _difference(rows, a, b, digits, more_is_better):
-    """Mean difference ± standard error (wins-ties-losses; p of both tests), from lists with the same runs in the same order."""
+    """Text "mean difference ± standard error (wins-ties-losses; p of both tests)". `a` and `b` have the same runs in the same order."""
     d = a - b
     mean, error, count = mean_and_error(d, _objects(rows))
     if count == 0:
@@ -149,8 +149,8 @@ def _introduction(rows, objects, max_views, tolerance):
 
 
 def table(rows: list[dict], against: str, max_views: int, tolerance: float) -> str:
-    """The tables for the rows from `make_runs`, for each sensor, voxel and size: means of the policies, paired differences to the policy
-    `against`, and results by object. `tolerance` [m] is that of coverage."""
+    """The tables for the rows from `make_runs`. For each sensor, voxel and size there are means of the policies, paired differences to the
+    policy `against`, and results per object. `tolerance` [m] is that of coverage."""
     objects, policies = list(dict.fromkeys(_objects(rows))), list(dict.fromkeys(map(name_of, rows)))
     text = _introduction(rows, objects, max_views, tolerance)
     for (sensor, voxel, size), some in itertools.groupby(rows, lambda row: (row["sensor"], row["voxel"], row["size"])):

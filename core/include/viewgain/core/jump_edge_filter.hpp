@@ -15,10 +15,10 @@ namespace viewgain {
 
 /// Removes flying pixels: readings (measured depths) that mix two surfaces at a depth
 /// discontinuity. The method is that of May et al. ("Three-dimensional mapping with time-of-flight
-/// cameras", J. Field Robotics 26, 2009). A reading p is removed if it has a neighbour q, among its
-/// 8, that meets two conditions. q is nearer to the camera, and the angle between p's ray and the
-/// line from p to q is below a threshold. All comparisons use the unfiltered depths. Thread safety:
-/// const members may run from many threads.
+/// cameras", J. Field Robotics 26, 2009). A reading p is removed if one of its 8 neighbours, q, is
+/// nearer to the camera, and the angle between p's ray and the line from p to q is below a
+/// threshold. All comparisons use the unfiltered depths. Thread safety: const members may run from
+/// many threads.
 class VIEWGAIN_EXPORT JumpEdgeFilter {
  public:
   /// Defines which pixels count as flying.

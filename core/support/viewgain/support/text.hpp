@@ -123,7 +123,7 @@ class VIEWGAIN_EXPORT LineReader {
 }
 
 /// Index of a name in `names`. If it is missing, throws Error(invalid_argument) that lists the
-/// valid names; `what` says what they are.
+/// valid names. `what` is the kind of name, such as "tracer".
 [[nodiscard]] inline std::size_t place_of_name(std::string_view name,
                                                const std::vector<std::string>& names,
                                                std::string_view what) {

@@ -22,7 +22,7 @@ class DisplacementFit;
 struct VIEWGAIN_EXPORT FrameContradiction {
   std::size_t readings = 0;  ///< sampled readings of this frame in the workspace, on smooth surface
   std::size_t in_free = 0;   ///< number of them in space that other frames saw as free
-  std::size_t others = 0;    ///< readings of earlier frames in this frame's view, and not hidden
+  std::size_t others = 0;  ///< readings of earlier frames in this frame's view that are not hidden
   std::size_t seen_past = 0;  ///< number of them in space that this frame sees as free
   /// Readings of earlier frames that project onto flat parts of this frame.
   std::size_t compared = 0;

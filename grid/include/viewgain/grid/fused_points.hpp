@@ -42,7 +42,7 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
   ///
   /// A point is omitted if its evidence is below this fraction of the upper quartile among its
   /// neighbours. 0 keeps all points. Neighbours are points within 4 pooling lengths whose normals
-  /// differ by less than 60°. Points on the other side of a thin wall are thus not neighbours.
+  /// differ by less than 60°. Points on the other side of a thin wall are therefore not neighbours.
   double min_relative_evidence = 0.25;
   /// Radius of the ball whose beliefs give the surface normal, at most 8 [pooling lengths].
   double normal_radius = 5.0;
@@ -53,10 +53,10 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
   /// keeps all. Only with per_voxel false. If the removal of a point would leave a hole, the
   /// minimum is 0.4 pooling lengths. Rare small gaps remain.
   double min_distance = 0.75;
-  /// Standard deviation [m] that is added in all directions: the covariance of a point grows by its
-  /// square F times the identity. F stands for errors that a point's readings share, and for blur
-  /// from pooling. Default with per_voxel: F = edge² / 12. Default otherwise: F = min(1, 0.2 + 2 /
-  /// e) · ((0.19 σ)² + (0.43 s)² + (0.02 edge)²).
+  /// Standard deviation √F of an isotropic error [m]: F times the identity matrix is added to the
+  /// covariance of each point. It covers errors that a point's readings share, and blur from
+  /// pooling. Default with per_voxel: F = edge² / 12. Default otherwise: F = min(1, 0.2 + 2 / e) ·
+  /// ((0.19 σ)² + (0.43 s)² + (0.02 edge)²).
   /// - e: evidence of the point, see min_relative_evidence
   /// - σ: standard deviation of one reading along the normal [m]
   /// - s: standard deviation of the voxels' mean readings in the column, along the normal [m]
@@ -67,9 +67,9 @@ struct VIEWGAIN_EXPORT FusedPointsConfig {
   /// to the point, weighted by the estimated number of readings per view. Views behind the surface
   /// are omitted, and occlusion is ignored. If there are no views, nothing is added.
   double scale_sigma = 0;
-  /// Makes points only at voxels (or pooled cubes) for whose centre [m, world frame] this returns
-  /// true. Empty: everywhere. Near the border of the selection, points can differ from those of the
-  /// whole map.
+  /// Predicate that restricts the points: a voxel (or pooled cube) gives a point only if its centre
+  /// [m, world frame] satisfies the predicate. Empty: no restriction. Near the border of the
+  /// selection, points can differ from those of the whole map.
   std::function<bool(const Eigen::Vector3d&)> where{};
 };
 

@@ -28,9 +28,10 @@ class VIEWGAIN_EXPORT HazardCalibration {
 
   /// Adds a frame to the grid's counters. Call it before the frame is integrated. `hazard` must be
   /// made from the current map. Follows about 800 rays through unknown voxels, up to 3 σ_ax before
-  /// their reading (measured depth). The model predicts rate times length meetings of a ray with
-  /// the surface. A ray has met the surface if its reading lies in an unknown voxel. Rays that are
-  /// out of range, or end on the support plane or a known object, have met no surface.
+  /// their reading (measured depth). The model predicts how often a ray meets the surface: its
+  /// rate, summed along the ray's length in unknown voxels. A ray has met the surface if its
+  /// reading lies in an unknown voxel. Rays that are out of range, or end on the support plane or a
+  /// known object, have met no surface.
   ///
   /// Has no effect if no surface is known yet, HazardProbe::follows_counters() is false, or the
   /// frame sees almost no unknown space. Throws Error(invalid_argument) if the frame does not have

@@ -16,7 +16,7 @@
 
 namespace viewgain {
 
-/// Surroundings and errors of a simulated camera. By default there are none.
+/// Surroundings and errors of a simulated camera. The default has none of them.
 struct VIEWGAIN_EXPORT SimulationConfig {
   /// Radius of a diffuse sphere around the world's origin that simulates the room [m]; 0: none.
   double background_radius = 0;

@@ -49,10 +49,9 @@ struct VIEWGAIN_EXPORT BestViews {
 
 /// A set of views with a large gain together; see GainEvaluator::best_set().
 struct VIEWGAIN_EXPORT ViewSet {
-  std::vector<std::size_t>
-      indices;                     ///< indices of the poses, in the order in which they were chosen
-  std::vector<ViewGain> marginal;  ///< marginal gain of each: increase of the set's gain
-  double gain = 0;                 ///< gain of the set, in the gain's unit
+  std::vector<std::size_t> indices;  ///< of the poses, in the order in which they were chosen
+  std::vector<ViewGain> marginal;    ///< marginal gain of each: increase of the set's gain
+  double gain = 0;                   ///< gain of the set, in the gain's unit
   /// Lower bound of `gain`. Each hazard cell (HazardField) counts only for the view that gains most
   /// from it, because one unknown object can hide the cell from several views. With the paper's
   /// gain it is equal to `gain`.
