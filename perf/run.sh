@@ -38,6 +38,7 @@ cut -d' ' -f1 /proc/loadavg >"$out/load.txt"
 started=$SECONDS
 measure trace trace --poses 100 --repetitions 5
 measure trace_256 trace --voxels 256 --without octomap,openvdb,tree64 --poses 40 --repetitions 3
+measure trace_512 trace --voxels 512 --without octomap,openvdb,tree64 --poses 20 --repetitions 3
 measure integrate integrate
 measure decision decision --maps camel-128 --candidates 500
 measure bars bars --maps "$maps" --repetitions 3 \

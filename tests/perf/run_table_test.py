@@ -11,7 +11,7 @@ import unittest
 PROGRAM = sys.argv.pop()
 HEAD = {"cpu": "a CPU", "threads": 2, "isa": "avx2", "compiler": "GNU 12", "versions": {"embree": "3.13", "cgal": ""},
         "commit": "abc", "agree": True}
-RATES = {"viewgain_gain": 60e6, "viewgain_trace": 120e6, "embree_quads": 15e6, "dense_dda": 40e6, "octomap_gain": 2e5}
+RATES = {"viewgain_gain": 60e6, "viewgain_combined": 24e6, "viewgain_trace": 120e6, "embree_quads": 15e6, "dense_dda": 40e6, "octomap_gain": 2e5}
 
 
 def trace(size, **changes):
@@ -26,7 +26,7 @@ def files(**changes):
             {"name": "wall_over_free", "value": 0.7, "bar": 0.8, "better": "higher", "pass": False},
             {"name": "thread_scaling", "value": 1.95, "bar": 1.9, "better": "higher", "pass": False, "note": "answers differ"},
             {"name": "decision_ms_500", "value": 50, "bar": None, "better": "lower", "pass": None}]
-    made = {"trace": trace(128), "trace_256": trace(256),
+    made = {"trace": trace(128), "trace_256": trace(256), "trace_512": trace(512),
             "integrate": {"agree": True, "milliseconds": {"octomap": {"median": 300}, "viewgain_cones": {"median": 1.5}}},
             "decision": [{"milliseconds": {name: {"median": ms} for name, ms in stages.items()}}], "bars": bars}
     return {**made, **changes}
@@ -49,7 +49,7 @@ class RunTable(unittest.TestCase):
         code, lines, rows = printed(files())
         self.assertEqual(code, 0)
         self.assertEqual(lines[0], "a CPU, 2 threads, avx2; GNU 12; embree 3.13; viewgain abc")
-        gain = "gain of a view, 128³ [million rays/s]"
+        gain = "gain `paper` of a view, 128³ [million rays/s]"
         self.assertEqual(rows[gain, "Embree, a quad per voxel face, tracing alone"], ["15.0", "60.0", "4.00 ×", "≥ 3", "met"])
         octomap = rows[gain, "OctoMap, entropy gain"]
         self.assertEqual(octomap[2:4], ["300 ×", "≥ 1,000"])
@@ -59,7 +59,15 @@ class RunTable(unittest.TestCase):
                          ["50,000", "50.0", "1,000 ×", "", ""])
         self.assertEqual(rows["the best of 500 views by `race` with `combined` [ms]", "`surface_frontier_count`, ours"][:3],
                          ["90.0", "30.0", "3.00 ×"])
-        self.assertEqual(rows["first voxel of each ray, 256³ [million rays/s]", "dense DDA, ours"][2:], ["3.00 ×", "≥ 1.3", "met"])
+        self.assertEqual(rows["first voxel of each ray, 256³ [million rays/s]", "dense DDA, ours"][2:], ["3.00 ×", "≥ 1.35", "met"])
+        self.assertEqual(rows["first voxel of each ray, 512³ [million rays/s]", "dense DDA, ours"][3:], ["≥ 1.2", "met"])
+
+    def test_the_default_gain_by_size(self):
+        _, _, rows = printed(files())
+        bars = {size: rows[f"gain `combined` of a view, {size}³ [million rays/s]", "Embree, a quad per voxel face, tracing alone"][2:]
+                for size in (128, 256, 512)}
+        missed = "**missed**: rays go far through unknown space"
+        self.assertEqual(bars, {128: ["1.60 ×", "≥ 1.45", "met"], 256: ["1.60 ×", "≥ 2", missed], 512: ["1.60 ×", "≥ 1.3", "met"]})
 
     def test_misses_are_rows_with_a_reason(self):
         _, _, rows = printed(files())
