@@ -18,15 +18,16 @@
    struct take constant time.
 
    Every function that can fail returns a status. If the status is not VG_OK, vg_last_error() gives
-   the reason and names the value. Handles are then null. Other outputs are unspecified, unless the
-   comment of the function states otherwise. Pointers must not be null unless "null" is mentioned;
-   an array of length 0 may be null.
+   the reason and names the value. In this case, output handles are null, and other outputs are
+   unspecified unless the comment of the function states otherwise. Pointers must not be null unless
+   "null" is mentioned; an array of length 0 may be null.
 
    Structs that a function takes begin with struct_size. First call the struct's _init function with
-   the sizeof of the struct: it sets struct_size and the defaults. Then change fields. If a size
-   differs from the library's, as with another version of the header, the result is
-   VG_INVALID_ARGUMENT with a message that states both sizes. The size argument next to an array of
-   vg_view_gain or vg_contribution works the same way.
+   the size of the struct (sizeof). It sets struct_size and the defaults. Then change fields. A
+   constant or number that stands alone in a field's comment is its default. If a size differs from
+   the library's, as with another version of the header, the result is VG_INVALID_ARGUMENT with a
+   message that states both sizes. The size argument next to an array of vg_view_gain or
+   vg_contribution works the same way.
 
    Release handles with the release function of their type, in any order: an object made from a
    handle stays valid after that handle is released. Releasing null has no effect. A handle must not

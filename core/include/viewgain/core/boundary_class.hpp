@@ -9,8 +9,8 @@
 
 namespace viewgain {
 
-/// The image side at which a surface ends, in the last view that saw this end. The order is that of
-/// section 5 of the paper (Foix et al. 2012).
+/// The side of the image at which a surface ends, in the last view that saw this boundary. The
+/// order is that of section 5 of the paper (Foix et al. 2012).
 enum class BoundaryClass : std::uint8_t { left, right, top, bottom };
 
 /// Names of the classes, in enumeration order.

@@ -25,14 +25,15 @@ struct VIEWGAIN_EXPORT PinholeCamera {
   /// Whether any coefficient differs from 0.
   [[nodiscard]] bool has_distortion() const { return distortion != std::array<double, 5>{}; }
 
-  /// Throws Error(invalid_argument) naming the field unless width and height are in 1..16384, there
-  /// are at most 2^24 pixels, the focal lengths are positive and all numbers are finite.
+  /// Throws Error(invalid_argument), naming the field, unless:
+  /// - width and height are in 1..16384, and there are at most 2^24 pixels
+  /// - the focal lengths are positive, and all numbers are finite
   void validate() const;
 
   /// Direction (x, y, 1), in the camera frame, of the ray through the pixel coordinates (u, v)
-  /// [px]. Inverts the distortion by iteration, to 1e-12. Without distortion the result is exact
-  /// and cheap. NaN if the pixel has no ray, because the distortion model is not invertible between
-  /// the optical axis and this pixel.
+  /// [px]. Inverts the distortion by iteration; x and y are accurate to 1e-12. Without distortion
+  /// the result is exact and cheap. NaN if the pixel has no ray. This happens if the distortion
+  /// model is not invertible between the optical axis and this pixel.
   [[nodiscard]] Eigen::Vector3d ray(double u, double v) const;
 
   /// Pixel coordinates (u, v) [px] of the camera-frame point p [m], with distortion. NaN unless p.z
@@ -58,9 +59,9 @@ struct VIEWGAIN_EXPORT PinholeCamera {
 
   /// Solid angle of every pixel [sr], row-major; 0 for a pixel without a ray. Let α be the angle
   /// between the pixel's ray and the optical axis. Without distortion the solid angle is cos³α /
-  /// (fx fy). With distortion it is cos³α |∂(x, y) / ∂(u, v)|, with finite differences between
-  /// neighbouring pixels. `rays` must be the result of ray_table(). Throws Error(invalid_argument)
-  /// for a wrong number of rays.
+  /// (fx fy). With distortion it is cos³α |∂(x, y) / ∂(u, v)|. These derivatives are finite
+  /// differences between neighbouring pixels. `rays` must be the result of ray_table(). Throws
+  /// Error(invalid_argument) for a wrong number of rays.
   [[nodiscard]] std::vector<double> solid_angles(std::span<const Eigen::Vector3d> rays) const;
 
   bool operator==(const PinholeCamera&) const = default;

@@ -10,7 +10,7 @@
 
 namespace viewgain {
 
-/// Symmetric 3x3 matrix, stored as its diagonal, then xy, xz, yz, as in the map files. Used for
+/// Symmetric 3x3 matrix. Map files store its entries in the same order as this struct. Used for
 /// covariances Σ [m²] and information matrices Λ = Σ⁻¹ [m⁻²]. Each use states the coordinate frame.
 /// A value type. Members do not check their arguments and never throw.
 struct VIEWGAIN_EXPORT SymmetricMatrix3 {
@@ -20,7 +20,7 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   [[nodiscard]] static SymmetricMatrix3 identity(double scale = 1.0) {
     return {scale, scale, scale, 0, 0, 0};
   }
-  /// The upper triangle of `m`.
+  /// From the upper triangle of `m`; the other entries are ignored.
   [[nodiscard]] static SymmetricMatrix3 from(const Eigen::Matrix3d& m) {
     return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};
   }
@@ -104,9 +104,9 @@ struct VIEWGAIN_EXPORT SymmetricMatrix3 {
   }
 };
 
-/// Information matrix of one reading (one measured depth), in the frame of d, the unit direction of
-/// its ray: Λ_r = a I + (b - a) d dᵀ. Here a = σ_lat⁻² and b = σ_ax⁻²
-/// (apps/docs/guide/equations.md). Arguments are not checked; sigmas of 0 give infinities.
+/// Information matrix of one reading (one measured depth): Λ_r = a I + (b - a) d dᵀ, with a =
+/// σ_lat⁻² and b = σ_ax⁻² (apps/docs/guide/equations.md). d is the unit direction of the ray, in
+/// the coordinate frame of the result. Arguments are not checked; sigmas of 0 give infinities.
 [[nodiscard]] inline SymmetricMatrix3 measurement_information(const Eigen::Vector3d& d,
                                                               const MeasurementSigmas& sigmas) {
   const double a = 1.0 / (sigmas.lateral * sigmas.lateral);

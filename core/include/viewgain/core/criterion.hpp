@@ -27,7 +27,7 @@ enum class Criterion : std::uint8_t {
 /// value.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view criterion_name(Criterion criterion);
 
-/// Parses a name. Throws Error(invalid_argument) listing the valid names.
+/// The criterion of this name. Throws Error(invalid_argument) listing the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT Criterion parse_criterion(std::string_view name);
 
 /// Entropy H(Λ) [nat; m² with trace]. `information` is Λ [m⁻²]. It must be positive definite, which
@@ -35,9 +35,10 @@ enum class Criterion : std::uint8_t {
 [[nodiscard]] VIEWGAIN_EXPORT double entropy(const SymmetricMatrix3& information,
                                              Criterion criterion);
 
-/// H(before) - H(before + added) >= 0 [nat; m² with trace]. Both are information matrices [m⁻²].
-/// `before` must be positive definite and `added` positive semidefinite, which is not checked.
-/// Small differences are accurate, because they are computed as one logarithm of a ratio.
+/// Reduction of the entropy, H(before) - H(before + added) >= 0 [nat; m² with trace]. The arguments
+/// are information matrices [m⁻²]. `before` must be positive definite and `added` positive
+/// semidefinite, which is not checked. Small differences are accurate, because they are computed as
+/// one logarithm of a ratio.
 [[nodiscard]] VIEWGAIN_EXPORT double entropy_reduction(const SymmetricMatrix3& before,
                                                        const SymmetricMatrix3& added,
                                                        Criterion criterion);

@@ -57,7 +57,7 @@ struct VIEWGAIN_EXPORT DepthFrame {
 };
 
 /// Throws Error(invalid_argument), stating both sizes, unless the frame has the camera's size.
-/// Amplitudes and known depths must have it too, if there are any. Constant time.
+/// Amplitudes and known depths, if any, must have this size too. Constant time.
 VIEWGAIN_EXPORT void check_frame_size(const DepthFrame& frame, const PinholeCamera& camera);
 
 }  // namespace viewgain

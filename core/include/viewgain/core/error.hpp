@@ -18,8 +18,8 @@ enum class ErrorCode {
   backend,           ///< Embree or OpenVDB reported a failure
 };
 
-/// The only exception type that the library defines. Constructors and functions that read or write
-/// files throw it. Scoring an invalid pose does not throw. A value type.
+/// The only exception type that the library defines. The comment of a function states when it
+/// throws. Scoring an invalid pose does not throw. A value type.
 class VIEWGAIN_EXPORT Error : public std::runtime_error {
  public:
   /// `message` names the offending value.

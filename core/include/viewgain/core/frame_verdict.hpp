@@ -13,7 +13,7 @@ namespace viewgain {
 
 /// How a frame was used for a map, or why it was not used.
 enum class FrameVerdict : std::uint8_t {
-  used,              ///< in the map; before its integration: no fault was found
+  used,              ///< in the map; or, if not integrated yet, without a known fault
   carved,            ///< in the map, but it shows only free space
   lost_pose,         ///< its pose is not a rigid transform with finite numbers
   no_pose,           ///< it has no pose
@@ -23,7 +23,7 @@ enum class FrameVerdict : std::uint8_t {
   outside,           ///< it shows nothing of the workspace
   contradicts,       ///< even after registration it contradicts the map or other frames
   changed,           ///< its number or its image was already used by another frame
-  no_mask,           ///< its mask never arrived
+  no_mask,           ///< the file of its mask does not exist
   not_metres,        ///< nearly all depths are beyond 10 times the sensor's max_range
 };
 
@@ -43,7 +43,7 @@ inline constexpr std::array<std::string_view, 12> kFrameVerdictNames{
   return verdict <= FrameVerdict::carved;
 }
 
-/// Number of frames per verdict. Verdicts without frames are missing.
+/// Number of frames per verdict. Verdicts without frames have no entry.
 using FrameCounts = std::map<FrameVerdict, std::size_t>;
 
 /// Number of frames with this verdict. Never throws.
@@ -52,7 +52,7 @@ using FrameCounts = std::map<FrameVerdict, std::size_t>;
   return found == counts.end() ? 0 : found->second;
 }
 
-/// Number of frames that are not in the map, per name of the verdict.
+/// Numbers of the frames that are not in the map, by name of their verdict.
 [[nodiscard]] inline std::map<std::string, std::size_t> bad_frames(const FrameCounts& counts) {
   std::map<std::string, std::size_t> bad;
   for (const auto& [verdict, count] : counts) {

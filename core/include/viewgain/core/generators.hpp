@@ -45,14 +45,16 @@ namespace viewgain {
     std::size_t count, double radius, double height, double tilt, double start = 0.0,
     const Eigen::Vector3d& center = Eigen::Vector3d::Zero());
 
-/// View sets of Isler et al. 2016 (ig_active_reconstruction). They are scaled so that their radius
-/// of 0.5 m (0.6 m for 48 poses) becomes `radius`. Each ring has 16 views. Some rings lie on a
-/// cylinder and look horizontally. The others lie on a dome above the highest of these, and look at
-/// the dome's centre. `total` selects the set, given here by the heights of the cylinder's rings
-/// above `center` and the elevations of the dome's rings:
+/// View sets of Isler et al. 2016 (ig_active_reconstruction). A set consists of rings of 16 views
+/// each. Some rings lie on a vertical cylinder around `center` and look horizontally at its axis.
+/// The others lie on a dome of the same radius above the highest of these rings, and look at the
+/// dome's centre. A set is scaled so that its radius of 0.5 m (0.6 m for 48 poses) becomes
+/// `radius`. `total` selects the set. The list states the unscaled heights of the cylinder's rings
+/// above `center`, and the elevations of the dome's rings:
 /// - 48: 0.15 and 0.35 m; dome 45°.
 /// - 80: 0.15, 0.30 and 0.45 m; dome 30° and 60°.
-/// - 288: 0.1, 0.2, 0.3 and 0.4 m; dome 30° and 60°; each ring also tilted by +22.5° and -22.5°.
+/// - 288: 0.1, 0.2, 0.3 and 0.4 m; dome 30° and 60°; each ring three times, with tilts of 0°,
+///   -22.5° and +22.5°.
 /// - 864: the set of 288 three times, with 0.8, 1.2 and 1.6 times the radius, at the same heights.
 ///
 /// Throws Error(invalid_argument) for any other total.

@@ -23,7 +23,7 @@ class VIEWGAIN_EXPORT JumpEdgeFilter {
  public:
   /// Defines which pixels count as flying.
   struct Config {
-    double angle = 5.0 * std::numbers::pi / 180;  ///< threshold [rad], 1° to 10°
+    double angle = 5.0 * std::numbers::pi / 180;  ///< threshold [rad]; allowed: 1° to 10°
     bool two_sided = false;  ///< also compare with farther neighbours, as published
   };
 

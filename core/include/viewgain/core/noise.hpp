@@ -98,8 +98,8 @@ using NoiseModel =
 [[nodiscard]] VIEWGAIN_EXPORT double sigma_along_normal(const MeasurementSigmas& sigmas,
                                                         double cos_incidence);
 
-/// A reading counts as a reading of a known surface if its distance from it, along the surface
-/// normal, is below this number of standard deviations.
+/// A reading counts as one of a known surface if it is nearer to this surface, along the surface
+/// normal, than this number of standard deviations.
 inline constexpr double kKnownSigmas = 3;
 
 /// Whether a reading shows a known plane. `height` [m] is the height of the reading above the
@@ -110,7 +110,7 @@ inline constexpr double kKnownSigmas = 3;
                                                const MeasurementSigmas& sigmas);
 
 /// Unambiguous range c / (2 modulation_frequency) [m], after which the phase of the light repeats.
-/// Infinity if the model has no modulation frequency, or if it is 0.
+/// Infinity if the model has no modulation frequency, or a modulation frequency of 0.
 [[nodiscard]] VIEWGAIN_EXPORT double unambiguous_range(const NoiseModel&);
 
 }  // namespace viewgain

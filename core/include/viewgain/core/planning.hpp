@@ -49,8 +49,8 @@ using StageSeconds = std::map<std::string, double>;
 
 /// State of map and model after a view, for the stopping rules.
 struct VIEWGAIN_EXPORT ModelProgress {
-  double entropy_removed = 0;        ///< removed from the whole map so far [nat or m²]
-  std::uint64_t unknown_voxels = 0;  ///< number in the workspace
+  double entropy_removed = 0;        ///< entropy removed from the whole map so far [nat or m²]
+  std::uint64_t unknown_voxels = 0;  ///< number of unknown voxels in the workspace
   std::optional<double> coverage{};  ///< in [0, 1], if a reference mesh is known
   double surface_area = 0;           ///< area of the model's surface [m²]
   /// New surface that the last view showed [m²]; NaN: unknown. Compared with Decision::area.
@@ -75,7 +75,7 @@ struct VIEWGAIN_EXPORT Candidate {
   std::optional<std::size_t> number{};  ///< number that the generator gave it, if any
 };
 
-/// The feasible candidates (c_m in the paper), and the number of dropped ones.
+/// The feasible candidates (c_m in the paper), and the number of dropped candidates.
 struct VIEWGAIN_EXPORT Proposal {
   std::vector<Candidate> candidates;  ///< feasible candidates, in the order of the generators
   std::map<std::string, std::size_t> dropped;  ///< number of dropped candidates per reason
@@ -122,11 +122,11 @@ class VIEWGAIN_EXPORT DecisionMaking {
 /// Default of PlanningConfig::stop_gain [nat] (perf/results/loop.md). For comparison: doubling the
 /// information of one voxel is a gain of 3/2 ln 2 = 1.04 nat.
 inline constexpr double kStopGain = 1.2;  // [nat]
-/// Default of PlanningConfig::stop_gain with Criterion::trace, as a fraction of the gain of the
-/// first decision.
+/// Default of PlanningConfig::stop_gain with Criterion::trace, as a fraction of the first
+/// decision's gain_per_voxel.
 inline constexpr double kStopGainShare = 0.01;
 
-/// Default of PlanningConfig::stop_area (perf/results/loop.md).
+/// Default of PlanningConfig::stop_area, which is a fraction (perf/results/loop.md).
 inline constexpr double kStopArea = 4e-3;
 
 /// A view counts for PlanningConfig::broken_promises if it gains less than this fraction of its
@@ -149,12 +149,12 @@ struct VIEWGAIN_EXPORT PlanningConfig {
   double idle_fraction = 1e-3;
   /// Stops after this many consecutive views that gained less than kKeptShare of their prediction;
   /// 0: never. The prediction is Decision::area, and it is compared with ModelProgress::new_area.
-  /// If one of these is unknown but gain_per_voxel is known, Decision::gain is compared with the
-  /// increase of ModelProgress::entropy_removed. Views without either comparison are skipped.
+  /// If one of these areas is unknown but gain_per_voxel is known, Decision::gain is compared with
+  /// the increase of ModelProgress::entropy_removed. Views without either comparison are skipped.
   std::size_t broken_promises = 3;
   std::optional<double> stop_coverage{};  ///< stops at this ModelProgress::coverage, in [0, 1]
   /// A stop request ends the run with StopReason::interrupted. Checked after each step except the
-  /// acquisition, because measurements always go into the model.
+  /// acquisition, so that acquired measurements always go into the model.
   std::stop_token stop{};
 };
 
@@ -185,7 +185,7 @@ struct VIEWGAIN_EXPORT ViewRecord {
   double predicted_area = std::numeric_limits<double>::quiet_NaN();  ///< Decision::area [m²]
   ModelProgress progress;                                            ///< state after the view
   double travelled = 0;  ///< length of the path along the camera centres so far [m]
-  Proposal proposal{};   ///< candidates for the next view; empty if the run ended earlier
+  Proposal proposal{};   ///< candidates for the next view; empty if none were generated
   /// The choice of the next view, or empty. If the run ended with StopReason::gain, area or cost,
   /// it is the rejected choice.
   std::optional<DecisionMaking::Decision> decision{};
@@ -206,9 +206,9 @@ struct VIEWGAIN_EXPORT PlanningResult {
 /// limit is not finite, or a decision refers to a missing candidate.
 ///
 /// After each view, the rules are checked in this order: interrupted, coverage, max_views, idle and
-/// promises. If no candidate is chosen then, the run ends with unreachable if candidates were
-/// dropped as unreachable, otherwise with no_candidates. If a candidate is chosen, gain, area and
-/// cost are checked.
+/// promises. Then a candidate is chosen, and gain, area and cost are checked. If no candidate can
+/// be chosen, the run ends with unreachable if any was dropped for this reason, otherwise with
+/// no_candidates.
 [[nodiscard]] VIEWGAIN_EXPORT PlanningResult active_view_planning(
     const Pose& x_0, DataAcquisition& acquisition, RepresentationUpdate& representation,
     ViewpointGeneration& generation, DecisionMaking& decision, const PlanningConfig& config = {},

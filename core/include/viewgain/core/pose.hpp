@@ -21,7 +21,8 @@ struct VIEWGAIN_EXPORT Pose {
   /// The identity.
   Pose() = default;
 
-  /// From Eigen. Inline, because the argument's alignment depends on the caller's compiler flags.
+  /// From an Eigen transform. Inline, because the argument's alignment depends on the caller's
+  /// compiler flags.
   Pose(const Eigen::Isometry3d& T) {  // NOLINT(google-explicit-constructor): vectors convert
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 4; ++c) m[static_cast<std::size_t>(4 * r + c)] = T.matrix()(r, c);
@@ -57,7 +58,7 @@ struct VIEWGAIN_EXPORT Pose {
     return rotation() * p + translation();
   }
 
-  /// T_a_b * T_b_c = T_a_c.
+  /// Composition: T_a_b * T_b_c = T_a_c.
   [[nodiscard]] Pose operator*(const Pose& other) const {
     return {rotation() * other.rotation(), rotation() * other.translation() + translation()};
   }
@@ -82,8 +83,8 @@ static_assert(sizeof(Pose) == 96 && alignof(Pose) == 8);
 [[nodiscard]] VIEWGAIN_EXPORT Pose orthonormalized(const Pose& pose);
 
 /// The rigid transform that the library uses for a pose. If orthonormality_error() is at most 1e-9,
-/// it is the pose itself. If the error is at most kMaxPoseError, it is orthonormalized(). Otherwise
-/// it is empty, and the pose is invalid. Never throws.
+/// it is the pose itself. If the error is larger, but at most kMaxPoseError, it is
+/// orthonormalized(). Otherwise the pose is invalid, and the result is empty. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<Pose> rigid_pose(const Pose& pose);
 inline constexpr double kMaxPoseError = 1e-3;  ///< largest orthonormality_error() that is repaired
 

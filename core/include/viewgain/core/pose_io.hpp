@@ -53,8 +53,8 @@ VIEWGAIN_EXPORT void write_tum(const std::filesystem::path& path, std::span<cons
 /// Reads one pose as a row-major 4x4 matrix, with the translation in [m], as in RGB-D data sets.
 /// Skips a byte order mark. If orthonormality_error() is between 1e-9 and 1e-2, repairs the
 /// rotation; above 1e-5, also sets *orthonormalized to true. Throws Error(format) for a larger
-/// error, a last row other than 0 0 0 1 (to 1e-6) or invalid numbers. Throws Error(io) unless it is
-/// a readable regular file, and Error(capacity) above 1 GiB.
+/// error, a last row other than 0 0 0 1 (to 1e-6) or invalid numbers. Throws Error(io) if the path
+/// is not a readable regular file, and Error(capacity) above 1 GiB.
 [[nodiscard]] VIEWGAIN_EXPORT Pose read_pose_matrix(const std::filesystem::path& path,
                                                     bool* orthonormalized = nullptr);
 

@@ -16,8 +16,9 @@ namespace viewgain {
 
 /// Region of camera poses that a robot can reach, in the world frame. Each member that is not empty
 /// is a condition, and a reachable pose meets all of them:
-/// - The camera centre lies in one of the boxes and in one of the shells, or on their faces.
-/// - The camera centre lies in all half-spaces, or on their planes.
+/// - The camera centre lies in or on one of the boxes.
+/// - The camera centre lies in or on one of the shells.
+/// - The camera centre lies in or on all half-spaces.
 /// - The pose is one of `poses`, within the tolerance.
 /// - The predicate returns true.
 struct VIEWGAIN_EXPORT ReachRegion {
@@ -38,14 +39,14 @@ struct VIEWGAIN_EXPORT ReachRegion {
   /// Tolerance for two camera poses to count as the same view.
   struct Tolerance {
     double distance = 0.010;  ///< largest distance between the camera centres [m]
-    double angle = 2.0 * std::numbers::pi / 180;  ///< largest rotation between them [rad]
+    double angle = 2.0 * std::numbers::pi / 180;  ///< largest angle between the orientations [rad]
     bool operator==(const Tolerance&) const = default;
   };
 
   std::vector<Box> boxes{};              ///< the camera centre lies in one of them
   std::vector<Shell> shells{};           ///< the camera centre lies in one of them
   std::vector<HalfSpace> half_spaces{};  ///< the camera centre lies in all of them
-  std::vector<Pose> poses{};             ///< T_world_camera
+  std::vector<Pose> poses{};             ///< the pose is one of these T_world_camera
   Tolerance tolerance{};                 ///< tolerance for `poses`
   std::function<bool(const Pose& T_world_camera)> predicate{};  ///< must be thread safe
 
@@ -61,8 +62,8 @@ struct VIEWGAIN_EXPORT ReachRegion {
   [[nodiscard]] bool contains(const Pose& T_world_camera) const;
 };
 
-/// Whether `pose` is within the tolerance of one of `poses`, all T_world_camera. The poses are not
-/// checked; false for NaN. Cost: O(poses).
+/// Whether `pose` is within the tolerance of one of `poses`. All are T_world_camera and are not
+/// checked. False for NaN. Cost: O(poses).
 [[nodiscard]] VIEWGAIN_EXPORT bool is_among(const Pose& pose, std::span<const Pose> poses,
                                             const ReachRegion::Tolerance& tolerance = {});
 

@@ -32,8 +32,8 @@ struct VIEWGAIN_EXPORT PoseSigma {
 struct VIEWGAIN_EXPORT Sensor {
   /// Meaning of the value 65535 in a depth image.
   enum class OutOfRange : std::uint8_t {
-    carve,    ///< free up to max_range
-    invalid,  ///< no reading
+    carve,    ///< the ray is free up to max_range
+    invalid,  ///< the pixel measured nothing
   };
 
   std::string name = "sr4000";  ///< name of the preset or of the file
@@ -45,7 +45,7 @@ struct VIEWGAIN_EXPORT Sensor {
   std::optional<Pose>
       T_flange_camera;  ///< pose of the camera in the frame of the robot's flange, if known
   /// Width, height and depth of the housing along x, y and z of the flange frame [m], if known. If
-  /// not, feasibility_of() (raycast/feasibility.hpp) uses the SR4000's.
+  /// unknown, feasibility_of() (raycast/feasibility.hpp) uses the size of the SR4000.
   std::optional<std::array<double, 3>> body_size{};
   /// Systematic range error; empty: unknown. load_frame() of viewgain::formats corrects it. Correct
   /// frames from other sources with RangeCalibration::correct().
@@ -66,9 +66,10 @@ struct VIEWGAIN_EXPORT Sensor {
     return viewgain::sigmas(noise, t, camera.fx, cos_incidence);
   }
   /// As above, including the pose uncertainty. The covariance is C + σ_t² I + σ_r² t² (I - d dᵀ),
-  /// where C is the covariance from noise_sigmas() and d the direction of the ray. All readings of
-  /// a frame share one pose error, but map and gains treat readings as independent. A voxel with
-  /// many readings therefore appears more certain than it is.
+  /// where C is the covariance from noise_sigmas(), d the direction of the ray, and σ_t and σ_r are
+  /// the members of pose_sigma. All readings of a frame share one pose error, but map and gains
+  /// treat readings as independent. A voxel with many readings therefore appears more certain than
+  /// it is.
   [[nodiscard]] MeasurementSigmas sigmas(double t, double cos_incidence = 1.0) const {
     const MeasurementSigmas own = noise_sigmas(t, cos_incidence);
     if (pose_sigma == PoseSigma{}) return own;
@@ -98,7 +99,7 @@ struct VIEWGAIN_EXPORT Sensor {
 /// The preset of this name. Throws Error(invalid_argument) listing the valid names.
 [[nodiscard]] VIEWGAIN_EXPORT Sensor sensor_preset(std::string_view name);
 
-/// Description of a sensor in TOML, with the layout of apps/docs/reference/formats.md.
+/// Description of a sensor in TOML, in the format of apps/docs/reference/formats.md.
 /// read_sensor_toml() of viewgain::formats reads it and returns an equal sensor. The sensor is not
 /// checked.
 [[nodiscard]] VIEWGAIN_EXPORT std::string sensor_toml(const Sensor& sensor);

@@ -14,7 +14,7 @@ namespace viewgain {
 /// take a mesh check its indices.
 struct VIEWGAIN_EXPORT TriangleMesh {
   std::vector<std::array<double, 3>> vertices;          ///< [m], or in the unit of the file
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three indices of vertices each
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three vertex indices each
 };
 
 /// The faces of a box, as two outward triangles each. The indices are those of the box's corners.

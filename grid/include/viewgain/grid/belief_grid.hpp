@@ -81,11 +81,13 @@ class VIEWGAIN_EXPORT BeliefGrid {
     std::uint64_t hits = 0;
   };
 
-  /// Makes an unknown map. `sensor` only sets the default of prior_sigma. Throws
-  /// Error(invalid_argument), naming the value, if voxel_size is below 2e-5 m, voxel_size or
-  /// prior_sigma is not positive and finite, the workspace is empty or not finite, or T_world_grid
-  /// is not rigid within 1e-9 (orthonormality_error()). Throws Error(capacity) above 65,536 voxels
-  /// along an axis, 2^40 voxels in total, or indices beyond ±2^30.
+  /// Makes a map in which all voxels are unknown. `sensor` only sets the default of prior_sigma.
+  /// Throws Error(capacity) above 65,536 voxels along an axis or 2^40 in total, and for indices
+  /// beyond ±2^30. Throws Error(invalid_argument), naming the value, unless:
+  /// - voxel_size is finite and at least 2e-5 m
+  /// - prior_sigma is finite and positive
+  /// - the workspace is finite and not empty
+  /// - T_world_grid is rigid within 1e-9 (orthonormality_error())
   explicit BeliefGrid(const GridConfig& config, const Sensor& sensor = {});
   ~BeliefGrid();
   BeliefGrid(BeliefGrid&&) noexcept;
@@ -94,8 +96,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Makes a map from an array of states, [x][y][z] with z fastest, one per voxel of the workspace:
   /// 0 unknown, 1 free (log-odds -0.4), 2 occupied (log-odds 0.85, no belief). Because beliefs are
   /// missing, GainModel::paper rewards measuring occupied voxels again; other gains do not. Throws
-  /// Error(invalid_argument) if the array has another size or state. Also throws whatever the
-  /// constructor throws. Cost: one pass over the array.
+  /// Error(invalid_argument) if the array has a wrong size or an invalid state. Also throws
+  /// whatever the constructor throws. Cost: one pass over the array.
   [[nodiscard]] static BeliefGrid from_states(const GridConfig& config,
                                               std::span<const std::uint8_t> states,
                                               const Sensor& sensor = {});
@@ -128,15 +130,17 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Scale of the leaf that contains the voxel; 0 outside the workspace.
   [[nodiscard]] int scale(Index3 voxel) const;
 
-  /// Writes the states of all voxels to an array, as in from_states(). Throws
+  /// Writes the states of all voxels to an array, in the order of from_states(). Throws
   /// Error(invalid_argument) unless its size is voxel_count(). Cost: one pass over the array.
   void copy_states(std::span<std::uint8_t> states) const;
 
   /// Sets one voxel of the workspace, for importers and tests. If no belief is given, an existing
   /// one is removed. Throws Error(invalid_argument), and changes nothing, if the voxel lies outside
-  /// the workspace, the log-odds is NaN or the belief is invalid. In a valid belief, all numbers
-  /// are finite, the information is positive semidefinite up to rounding errors, which are
-  /// repaired, and the mean position Λ⁻¹η is at most 2^28 voxels away.
+  /// the workspace, the log-odds is NaN or the belief is invalid. A valid belief meets these
+  /// conditions:
+  /// - All numbers are finite.
+  /// - The information matrix is positive semidefinite. Violations by rounding errors are repaired.
+  /// - The mean of the readings is at most 2^28 voxels away from the voxel's centre.
   void set(Index3 voxel, float log_odds, const std::optional<Belief>& belief = {});
   /// Sets many voxels at once. The result is as if they were set one after the other. If one is
   /// invalid, none is set. Cost: sorting by leaves, and a copy of each changed leaf.
@@ -151,18 +155,19 @@ class VIEWGAIN_EXPORT BeliefGrid {
 
   /// Sets the voxels of a box from an array of states, as in from_states(). For planners with their
   /// own growing map. Voxels that already have the state do not change, and cost no time in
-  /// VoxelScene::update(). The others lose their belief. Changed leaves get scale 0. Returns the
+  /// VoxelScene::update(). Changed voxels lose their belief. Their leaves get scale 0. Returns the
   /// number of changed voxels. Throws Error(invalid_argument), and changes nothing, if the box is
-  /// not inside the workspace or the array has another size or state. Cost: one pass over the
-  /// array.
+  /// not inside the workspace, or the array has a wrong size or an invalid state. Cost: one pass
+  /// over the array.
   std::uint64_t update_box(const VoxelBox& box, std::span<const std::uint8_t> states);
 
   /// Sets the scale of all leaves that the region touches. If a leaf is only partly inside the
-  /// workspace, it gets the largest scale that fits. When cells merge, their beliefs add up, and
-  /// the new cell is occupied if one of the old cells was. When a cell is split, its belief goes to
-  /// the new cell that contains the mean of its readings. The rest of an occupied cell becomes
-  /// unknown. Returns the number of changed leaves. Throws Error(invalid_argument) if a bound is
-  /// NaN or the scale is outside 0..3. Cost: one pass over the map.
+  /// workspace, it gets the largest scale up to this one at which no cell crosses the workspace's
+  /// border. When cells merge, their beliefs add up, and the new cell is occupied if one of the old
+  /// cells was. When a cell is split, its belief goes to the new cell that contains the mean of its
+  /// readings. The rest of an occupied cell becomes unknown. Returns the number of changed leaves.
+  /// Throws Error(invalid_argument) if a bound is NaN or the scale is outside 0..3. Cost: one pass
+  /// over the map.
   std::uint64_t resample(const Box& region, int scale);
 
   /// Calls `visit` for the lowest voxel of each occupied cell. Leaves come in the order of
@@ -180,13 +185,13 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Error(invalid_argument) if the pose is not rigid within 1e-3.
   void append_view(const Pose& T_world_camera);
 
-  /// Counts from frames that correct the hazard of unknown space (HazardCalibration).
+  /// Counts from past frames. They correct the hazard of unknown space (HazardCalibration).
   [[nodiscard]] const HazardCounters& hazard_counters() const noexcept;
   /// Replaces the counters. Throws Error(invalid_argument) if a count is negative or above 2^40.
   void set_hazard_counters(const HazardCounters& counters);
 
-  /// The origin of the map: its sensor and frames, which FrameIntegrator and CloudIntegrator
-  /// record. save_vdb() and clone() keep the notes. content_hash() ignores them.
+  /// Where the map's data came from: its sensor and its frames, which FrameIntegrator and
+  /// CloudIntegrator record. save_vdb() and clone() keep the notes. content_hash() ignores them.
   [[nodiscard]] const MapNotes& notes() const noexcept;
   /// Replaces the notes. Throws Error(invalid_argument) if the identity of a frame is invalid
   /// (DepthFrame::identity), or MapNotes::others contains the name "sensor" or "frames".
@@ -195,7 +200,7 @@ class VIEWGAIN_EXPORT BeliefGrid {
   /// Statistics of the map. `criterion` selects the entropy. Deterministic. Cost: one pass over the
   /// map's leaves.
   [[nodiscard]] Statistics statistics(Criterion criterion = Criterion::log_diagonal) const;
-  /// Statistics of the voxels whose centres lie in the region, Box::contains(). The belief of a
+  /// Statistics of the voxels whose centres lie in the region (Box::contains()). The belief of a
   /// cell counts if the centre of the cell's lowest voxel lies in the region. Throws
   /// Error(invalid_argument) if a bound is NaN.
   [[nodiscard]] Statistics statistics(const Box& region,
@@ -207,8 +212,8 @@ class VIEWGAIN_EXPORT BeliefGrid {
   [[nodiscard]] double mean_sigma(const Box& region) const;
 
   /// Hash of the map's contents, as 16 hexadecimal digits. Covers states, log-odds, beliefs,
-  /// scales, layout, prior, views and hazard counters. Maps with equal contents have the same hash,
-  /// whatever the number of threads, and after saving and loading.
+  /// scales, layout, prior, views and hazard counters. Maps with equal contents have the same hash.
+  /// The number of threads, saving and loading do not affect it.
   [[nodiscard]] std::string content_hash() const;
 
   /// The data that a VoxelScene needs. Immutable, and independent of later changes to the grid.

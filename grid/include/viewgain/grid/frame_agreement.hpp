@@ -21,9 +21,9 @@ class DisplacementFit;
 /// depths).
 struct VIEWGAIN_EXPORT FrameContradiction {
   std::size_t readings = 0;  ///< sampled readings of this frame in the workspace, on smooth surface
-  std::size_t in_free = 0;   ///< number of them in space that other frames saw as free
-  std::size_t others = 0;  ///< readings of earlier frames in this frame's view that are not hidden
-  std::size_t seen_past = 0;  ///< number of them in space that this frame sees as free
+  std::size_t in_free = 0;   ///< those of `readings` in space that other frames saw as free
+  std::size_t others = 0;    ///< readings of earlier frames that lie unhidden in this view
+  std::size_t seen_past = 0;  ///< those of `others` in space that this frame sees as free
   /// Readings of earlier frames that project onto flat parts of this frame.
   std::size_t compared = 0;
   /// RMS distance between this frame's surface and the same surface in earlier frames, along the
@@ -49,8 +49,8 @@ struct VIEWGAIN_EXPORT FrameContradiction {
 /// Compares frames while they are integrated into a map. Counts the readings in space that other
 /// frames saw as free, and measures how far apart the surfaces of different frames lie. A reading
 /// is in free space if its voxel and all voxels within three standard deviations along its ray are
-/// free. It counts if it is in free space either before its frame is integrated or when all frames
-/// are.
+/// free. It counts if it is in free space before its frame is integrated, or after all frames are
+/// integrated.
 ///
 /// Thread safety: one call at a time. Deterministic. Cost: 0.3 ms per frame; at most 4 MB.
 /// @code

@@ -47,7 +47,7 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   Index3 min_index;          ///< lowest voxel of the workspace
   Index3 dims;               ///< voxels along x, y, z
   HazardCounters hazard;     ///< counts that correct the hazard
-  std::vector<Leaf> leaves;  ///< all leaves that are not free, in the order of `regions`
+  std::vector<Leaf> leaves;  ///< those that are not free, in the order of `regions`
   /// Tiles of unknown voxels, clipped to the workspace. Tiles larger than a region come first:
   /// those of 2048³ voxels, then those of 128³, each sorted by x, y, z. The other tiles follow in
   /// the order of `regions`.
@@ -70,7 +70,7 @@ struct VIEWGAIN_EXPORT GridSnapshot {
   /// Centre of a voxel in the world frame [m].
   [[nodiscard]] Eigen::Vector3d center(Index3 voxel) const;
 
-  /// The leaf that contains a voxel; null if it is not in the list. O(log regions).
+  /// The leaf that contains a voxel; null if `leaves` does not contain it. O(log regions).
   [[nodiscard]] const Leaf* find_leaf(Index3 voxel) const;
 
   /// Whether a voxel is free; true outside the workspace. O(log regions + log tiles).

@@ -28,9 +28,9 @@ class OpenDirections;
 }  // namespace detail
 
 /// Settings of the hazard: the rate [1/m] at which a ray through unknown voxels meets the surface.
-/// Where the rate is 0, there is no surface and no ray ends. If a ray reaches known surface from
-/// behind, its back is expected in the last unknown voxels before it, unless their rate is 0. Rates
-/// below 1e-30 /m are rounded to 0.
+/// Where the rate is 0, there is no surface and no ray ends. A ray can reach known surface from
+/// behind. Then the surface's back is expected in the last unknown voxels in front of it, unless
+/// their rate is 0. Rates below 1e-30 /m are rounded to 0.
 struct VIEWGAIN_EXPORT HazardConfig {
   /// Model of the hazard, which depends on the location relative to known surface
   /// (apps/docs/guide/surface_gain.md): h(d, s, o) = far_rate + near_rate c(s) g(o) exp(-d /
@@ -47,7 +47,7 @@ struct VIEWGAIN_EXPORT HazardConfig {
     double decay_length = 0.016;  ///< lambda [m]
     double far_rate = 0.029;      ///< h_inf [1/m]
 
-    static constexpr double kCut = 5.0;        ///< [decay lengths]
+    static constexpr double kCut = 5.0;        ///< beyond it, the rate is far_rate [decay lengths]
     static constexpr double kOpenReach = 2.2;  ///< length of the directions of o [decay lengths]
 
     /// Start values, for an object whose longest side is `size` [m]. They were fitted to seven
@@ -67,8 +67,8 @@ struct VIEWGAIN_EXPORT HazardConfig {
     [[nodiscard]] static VIEWGAIN_EXPORT double continuation(double sine_of_elevation);
 
     /// g(o), the effect of the openness: surface lies between free and hidden space. A location
-    /// with free space in nearly all directions is a gap in free space; one with none lies deep
-    /// inside. Fitted, and piecewise linear in steps of 1/13 of o.
+    /// with free space in nearly all directions is a gap in free space; a location without any lies
+    /// deep in hidden space. Fitted, and piecewise linear in steps of 1/13 of o.
     [[nodiscard]] static VIEWGAIN_EXPORT double openness(double share_of_directions);
 
     /// Hazard [1/m]. `distance` [m] is d and `shape` is c(s) g(o).
@@ -117,9 +117,9 @@ struct VIEWGAIN_EXPORT HazardConfig {
 /// an occupied voxel with at least 3 readings (Belief::hits). If voxels are smaller than the
 /// footprint, the cubes of pooling_of() replace voxels here. The distance of a cell to known
 /// surface is that of its centre to the centre of the nearest cell with evidence. Beyond the cut,
-/// which is 5 decay lengths or 127 cells, it counts as infinite. The surface normal points to where
-/// more of the surrounding 7³ cells are free. HazardCounters::factor() scales the start values per
-/// class of distance.
+/// which is 5 decay lengths or 127 cells, whichever is shorter, it counts as infinite. The surface
+/// normal points to where more of the surrounding 7³ cells are free. HazardCounters::factor()
+/// scales the start values per class of distance.
 class VIEWGAIN_EXPORT HazardField {
  public:
   /// Computes the rates of all cells within the cut of evidence, on the threads of `exec`. Results

@@ -27,9 +27,9 @@ class VIEWGAIN_EXPORT HazardCalibration {
   explicit HazardCalibration(const Sensor& sensor, std::optional<double> support_plane = {});
 
   /// Adds a frame to the grid's counters. Call it before the frame is integrated. `hazard` must be
-  /// made from the current map. Follows about 800 rays through unknown voxels, up to 3 σ_ax before
-  /// their reading (measured depth). The model predicts how often a ray meets the surface: its
-  /// rate, summed along the ray's length in unknown voxels. A ray has met the surface if its
+  /// made from the current map. Follows about 800 rays through unknown voxels, up to 3 σ_ax in
+  /// front of their reading (measured depth). The model predicts how often a ray meets the surface:
+  /// its rate, summed along the ray's length in unknown voxels. A ray has met the surface if its
   /// reading lies in an unknown voxel. Rays that are out of range, or end on the support plane or a
   /// known object, have met no surface.
   ///

@@ -13,7 +13,8 @@ namespace viewgain {
 
 /// Computes values of the HazardField of a map for single voxels, on demand. The results are equal
 /// to those of the field. Cost: the constructor takes 0.3 ms for a map of 112³ voxels, and each
-/// voxel within the cut about 1 µs. For a few thousand voxels this is less than for the field.
+/// voxel within the cut (HazardField) about 1 µs. For a few thousand voxels this is less than for
+/// the field.
 ///
 /// Thread safety: is_new() may run from many threads; at() only one call at a time.
 class VIEWGAIN_EXPORT HazardProbe {

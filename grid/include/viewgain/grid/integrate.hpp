@@ -95,10 +95,12 @@ struct VIEWGAIN_EXPORT IntegrationReport {
 /// Thread safety: one call at a time on one integrator and on one grid.
 class VIEWGAIN_EXPORT FrameIntegrator {
  public:
-  /// Computes the rays of all pixels once. Throws Error(invalid_argument) if the sensor is invalid,
-  /// the support plane is not finite, coarsest is not in 0..3, finest is not in 0..coarsest, or a
-  /// bound of a fine box is NaN or exceeds the opposite one. Also throws whatever select_isa()
-  /// throws.
+  /// Computes the rays of all pixels once. Throws Error(backend) if no instruction set is
+  /// supported. Throws Error(invalid_argument) if the environment variable VIEWGAIN_ISA has an
+  /// unknown value, and unless:
+  /// - the sensor is valid and the support plane is finite
+  /// - 0 <= finest <= coarsest <= 3
+  /// - in each fine box, no bound is NaN and no minimum exceeds its maximum
   explicit FrameIntegrator(const Sensor& sensor, const IntegrationConfig& config = {},
                            const ExecConfig& exec = {});
   ~FrameIntegrator();
@@ -109,11 +111,13 @@ class VIEWGAIN_EXPORT FrameIntegrator {
   /// sensor and the frame to its notes. `pose_sigma` is the uncertainty of this pose in addition to
   /// Sensor::pose_sigma, for example after a registration.
   ///
-  /// Throws Error(invalid_argument), and leaves the grid unchanged, if the frame has a wrong size
-  /// or an invalid DepthFrame::identity, pose_sigma is negative or not finite, or the pose is not
-  /// rigid within 1e-3. Smaller errors of the pose are repaired (rigid_pose()). After
-  /// std::bad_alloc the grid is valid, but can contain part of the frame. Cost: grows with the
-  /// crossed voxels.
+  /// Throws Error(invalid_argument), and leaves the grid unchanged, unless:
+  /// - the frame has the sensor's size, and its DepthFrame::identity is valid or empty
+  /// - pose_sigma is finite and not negative
+  /// - the pose is rigid within 1e-3; smaller errors are repaired (rigid_pose())
+  ///
+  /// After std::bad_alloc the grid is valid, but can contain part of the frame. Cost: grows with
+  /// the crossed voxels.
   IntegrationReport integrate(BeliefGrid& grid, const DepthFrame& frame, const Pose& T_world_camera,
                               const PoseSigma& pose_sigma = {});
 

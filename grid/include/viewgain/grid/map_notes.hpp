@@ -10,7 +10,7 @@
 
 namespace viewgain {
 
-/// The origin of a map. A value type.
+/// Where the data of a map came from. A value type.
 struct VIEWGAIN_EXPORT MapNotes {
   /// The sensor of all readings, as text from sensor_toml(). map_sensor() of viewgain::formats
   /// reads it. Empty if there are several sensors, or the sensor is unknown.

@@ -31,18 +31,18 @@ VIEWGAIN_EXPORT void save_vdb(const BeliefGrid& grid, const std::filesystem::pat
 /// Reads a map that save_vdb(), or another program, wrote in this layout. The map is exactly the
 /// saved one, with the same content_hash() and notes. Throws Error(io) if the file cannot be
 /// opened. Throws Error(format) if it is truncated, has another layout version or is not a viewgain
-/// map. Throws Error(capacity) if it has more than 2^27 occupied voxels in tiles, or exceeds 16 GiB
-/// or the available memory. Cost: linear in leaves and beliefs, shared by the threads.
+/// map. Throws Error(capacity) if it exceeds 16 GiB, the available memory, or 2^27 occupied voxels
+/// in OpenVDB's tiles. Cost: linear in leaves and beliefs, shared by the threads.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_vdb(const std::filesystem::path& path,
                                                   const ExecConfig& exec = {});
 
-/// Reads hazard rates [1/m] for HazardConfig::volume from a .vdb file of any program. They are
-/// those of the float grid "hazard", or of the only float grid, with a linear transform to the
-/// world [m]. Each voxel of the map gets the value of the nearest voxel in the file, or the
-/// background value if that voxel is not active. Throws Error(io) and Error(capacity) as load_vdb()
-/// does. Throws Error(format) if a rate is negative or not finite, the float grid is ambiguous, or
-/// the transform is not linear. Throws Error(invalid_argument) if voxel sizes differ by a factor of
-/// 50 or no active voxel lies in the map. Cost: 4 bytes and 50 ns per voxel.
+/// Reads hazard rates [1/m] for HazardConfig::volume from a .vdb file of any program. Takes the
+/// float grid "hazard", or the only float grid. Its transform to the world [m] must be linear. Each
+/// voxel of the map gets the value of the nearest voxel in the file, or the background value if
+/// that voxel is not active. Throws Error(io) and Error(capacity) as load_vdb() does. Throws
+/// Error(format) if a rate is negative or not finite, the float grid is ambiguous, or the transform
+/// is not linear. Throws Error(invalid_argument) if the voxel sizes of file and map differ by more
+/// than a factor of 50, or no active voxel lies in the map. Cost: 4 bytes and 50 ns per voxel.
 [[nodiscard]] VIEWGAIN_EXPORT HazardConfig::Volume load_hazard_vdb(
     const std::filesystem::path& path, const BeliefGrid& grid);
 

@@ -63,9 +63,9 @@ struct VIEWGAIN_EXPORT BoundaryConfig {
 /// nearest. To smooth jagged borders, t × n is first averaged along the loop, over min_run_length
 /// or a quarter of the loop, whichever is shorter.
 ///
-/// This view is the last one that sees the midpoint of the edge: within range, below max_view_angle
-/// and, if `sees` is given, with sees(view, point) true. If there is none, it is the last view in
-/// front of the face, otherwise the last view of all.
+/// This view is the last one that sees the midpoint of the edge. The midpoint must be within range,
+/// its view angle below max_view_angle and, if `sees` is given, sees(view, point) true. If no view
+/// sees it, the last view in front of the face is used; if there is none, the last view of all.
 ///
 /// Boundary runs shorter than min_run_length are merged, shortest first. `views` are
 /// T_world_camera, in the order in which they were taken. Throws Error(invalid_argument) if there

@@ -15,15 +15,15 @@ namespace viewgain {
 /// Numbers of faces that read_mesh() repaired or omitted.
 struct VIEWGAIN_EXPORT MeshRepairs {
   std::size_t mended_faces = 0;   ///< self-crossing faces, split at their crossings
-  std::size_t dropped_faces = 0;  ///< omitted faces: three or more corners, but no area
+  std::size_t dropped_faces = 0;  ///< omitted faces, with three or more corners but no area
 };
 
 /// Reads an OFF, OBJ, STL or PLY file, according to the ending of its name. Keeps the unit and axes
-/// of the file. Triangulates polygons, also concave and self-crossing ones. Omits faces without
-/// area, unused vertices, colours, normals and lines. Throws Error(io) if the file cannot be read,
-/// and Error(capacity) if it is too large. Throws Error(format) with file and line if it is
-/// malformed or its polygons take too long to triangulate. Thread safe. Cost: linear in the file,
-/// and O(n log n) for a polygon of n corners that is not a fan.
+/// of the file. Triangulates polygons, including concave and self-crossing ones. Omits faces
+/// without area, unused vertices, colours, normals and lines. Throws Error(io) if the file cannot
+/// be read, and Error(capacity) if it is too large. Throws Error(format) with file and line if it
+/// is malformed or its polygons take too long to triangulate. Sets *repairs, if not null. Thread
+/// safe. Cost: linear in the file, and O(n log n) for a polygon of n corners that is not a fan.
 [[nodiscard]] VIEWGAIN_EXPORT TriangleMesh read_mesh(const std::filesystem::path& path,
                                                      MeshRepairs* repairs = nullptr);
 

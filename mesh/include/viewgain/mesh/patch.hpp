@@ -13,8 +13,8 @@
 
 namespace viewgain {
 
-/// A patch: a quadric that is fitted to a region of a surface at its boundary, to extrapolate it. w
-/// = a u² + b uv + c v² + d u + e v + f in a local frame [m], where u points outward across the
+/// A patch: a quadric that is fitted to a surface near its boundary, to extrapolate the surface. In
+/// a local frame [m], w = a u² + b uv + c v² + d u + e v + f, where u points outward across the
 /// boundary, v along the boundary and w along the surface normal. Arguments are not checked.
 struct VIEWGAIN_EXPORT QuadraticPatch {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< origin of the local frame, world [m]
@@ -43,12 +43,11 @@ struct VIEWGAIN_EXPORT QuadraticPatch {
                                                        const Eigen::Vector3d& outward,
                                                        const Eigen::Vector3d& normal);
 
-/// The region of a surface around the vertices `seeds`: vertices whose distance from a seed,
-/// measured along edges, is at most `depth` [m], and whose normals differ from the mean normal of
-/// the seeds by less than `max_turn` [rad]. In increasing order. Empty if the normals of the seeds
-/// cancel. Throws Error(invalid_argument) for an index out of range, a number that is not finite or
-/// a wrong number of normals. Cost: one pass over the surface, and O(n log n) for n vertices in the
-/// region.
+/// The region of a surface around the vertices `seeds`, in increasing order. Its vertices are at
+/// most `depth` [m] from a seed, measured along edges. Their normals differ from the mean normal of
+/// the seeds by less than `max_turn` [rad]. Empty if the normals of the seeds cancel. Throws
+/// Error(invalid_argument) for an index out of range, a number that is not finite or a wrong number
+/// of normals. Cost: one pass over the surface, and O(n log n) for n vertices in the region.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<std::uint32_t> grow_region(
     const SurfaceMesh& surface, std::span<const std::uint32_t> seeds, double depth,
     double max_turn);

@@ -50,9 +50,9 @@ struct VIEWGAIN_EXPORT Consistency {
 class VIEWGAIN_EXPORT GroundTruth {
  public:
   /// Draws random samples, uniformly distributed over the surface. The same seed gives the same
-  /// samples. `exec` sets the number of threads of members. Throws Error(invalid_argument) for a
-  /// mesh without area, an index out of range, or a vertex that is not finite. Cost: O(n log n) for
-  /// n triangles, and O(samples).
+  /// samples. `exec` sets the number of threads that members use. Throws Error(invalid_argument)
+  /// for a mesh without area, an index out of range, or a vertex that is not finite. Cost: O(n log
+  /// n) for n triangles, and O(samples).
   explicit GroundTruth(const TriangleMesh& mesh, std::size_t sample_count = 10'000,
                        std::uint64_t seed = 1, const ExecConfig& exec = {});
   ~GroundTruth();

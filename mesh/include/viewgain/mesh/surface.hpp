@@ -16,7 +16,7 @@ namespace viewgain {
 /// free space lies.
 struct VIEWGAIN_EXPORT OrientedPoint {
   std::array<double, 3> position{};  ///< [m]
-  /// Vector towards free space, of any length. The direction may be rough. Zero: unknown.
+  /// Vector towards free space, of any length. An approximate direction suffices. Zero: unknown.
   std::array<double, 3> toward_free{};
   /// Spacing: distance to neighbouring points [m]. 0: SurfaceConfig::spacing.
   double spacing = 0;
@@ -36,7 +36,8 @@ struct VIEWGAIN_EXPORT SurfaceMesh {
 struct VIEWGAIN_EXPORT SurfaceConfig {
   /// Smallest distance between neighbouring points [m]; usually the voxel size.
   double spacing = 0;
-  /// Number of neighbours in the jet fit that smooths a point; 0: no smoothing.
+  /// Number of neighbours in the jet fit (a local polynomial) that smooths a point; 0: no
+  /// smoothing.
   unsigned smoothing_neighbors = 24;
   double max_edge = 4;       ///< longest edge of a triangle [spacings]
   double join_distance = 3;  ///< points within this distance belong to one component [spacings]
@@ -50,8 +51,8 @@ struct VIEWGAIN_EXPORT SurfaceConfig {
 /// - omits components of the mesh with fewer than min_component vertices
 /// - orients the faces of each component outward, as most hints in the component say
 ///
-/// The unit of lengths is the spacing of each point. Points that smoothing would move by more than
-/// 1.25 spacings are omitted as outliers. Holes larger than max_edge stay open.
+/// Lengths in [spacings] refer to the spacing of each point. Points that smoothing would move by
+/// more than 1.25 spacings are omitted as outliers. Holes larger than max_edge stay open.
 ///
 /// If there are no points, or only outliers, the mesh is empty. Results are bit-identical for any
 /// number of threads. Throws Error(invalid_argument) if a position is not finite, a point's spacing

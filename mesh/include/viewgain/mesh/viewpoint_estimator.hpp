@@ -68,11 +68,11 @@ struct VIEWGAIN_EXPORT EstimatedViews {
 ///
 /// Boundary runs longer than patch_length are cut into equal parts; closed ones are cut into three
 /// or more. For each part, a patch is fitted to a region from grow_region(), with a max_turn of
-/// 45°. The origin of the patch is the mean of the part's edges. The target of a view lies on the
-/// patch, usually extrapolated, where known surface fills the fraction `overlap` of the image. It
-/// is at most the region's depth away from the boundary, and the normal there has rotated by at
-/// most EstimatorConfig::max_turn. At tilt 0, the camera looks at the target against the normal of
-/// the patch.
+/// 45°. The origin of the patch is the mean position of the part's edges. The target of a view is a
+/// point of the patch, usually beyond the boundary. It is chosen so that known surface fills the
+/// fraction `overlap` of the image. It is at most the region's depth away from the boundary, and
+/// the normal there has rotated by at most EstimatorConfig::max_turn. At tilt 0, the camera looks
+/// at the target against the normal of the patch.
 ///
 /// `views` are T_world_camera, in the order in which they were taken. `working_distance` is in
 /// metres. `sees` is as in boundary_runs().

@@ -62,8 +62,8 @@ struct VIEWGAIN_EXPORT FeasibilityConfig {
 /// Checks which camera poses are feasible in a scene. The body must not overlap voxels that are not
 /// free, obstacles or the support plane. The pose must be within reach, and differ from the poses
 /// of the views so far. Space outside the workspace counts as free. Obstacles that are boxes or
-/// closed meshes are solid; open meshes are sheets. Faces may touch; overlaps below a nanometre
-/// count as touching.
+/// closed meshes are solid; open meshes are sheets. The body may touch them; overlaps below a
+/// nanometre count as touching.
 ///
 /// Cost: 0.5 to 1 µs per pose and thread. With FeasibilityConfig::sensor, poses with voxels within
 /// min_range take 10 to 50 µs for an SR4000, and more for larger images.
@@ -97,8 +97,8 @@ class VIEWGAIN_EXPORT FeasibilityChecker {
                                     std::span<const Pose> taken = {}) const;
 
   /// Checks a batch of poses on all threads of the checker; result i is that of pose i. The threads
-  /// call the reach region's predicate concurrently. An exception of it ends the batch and is
-  /// rethrown.
+  /// call the reach region's predicate concurrently. If it throws, the batch ends and the exception
+  /// is rethrown.
   [[nodiscard]] std::vector<Infeasibility> check(std::span<const Pose> T_world_camera,
                                                  std::span<const Pose> taken = {}) const;
 
@@ -122,8 +122,8 @@ struct VIEWGAIN_EXPORT FeasiblePoses {
   std::map<std::string, std::size_t> dropped;  ///< number of dropped poses per infeasibility_name()
 };
 
-/// Checks a list of T_world_camera. `taken` has T_world_camera of the views so far. Throws and
-/// costs what FeasibilityChecker::check() does.
+/// Checks a list of poses T_world_camera. `taken` has T_world_camera of the views so far. Throws
+/// and costs what FeasibilityChecker::check() does.
 [[nodiscard]] VIEWGAIN_EXPORT FeasiblePoses feasible_poses(const FeasibilityChecker& checker,
                                                            std::span<const Pose> poses,
                                                            std::span<const Pose> taken);

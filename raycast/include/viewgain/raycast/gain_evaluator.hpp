@@ -63,8 +63,8 @@ struct VIEWGAIN_EXPORT GainConfig {
   Criterion criterion = Criterion::log_diagonal;
   int pixel_stride = 1;  ///< s: traces every s-th pixel of every s-th row, from pixel (0,0)
   std::optional<double> prior_sigma{};  ///< sigma_0 [m]; unset: the map's
-  /// Minimum range along the ray [m]; unset: camera of the sensor. Voxels nearer than this have no
-  /// gain, but known surface and obstacles there block the ray.
+  /// Minimum range along the ray [m]; unset: the sensor's. Voxels nearer than this have no gain,
+  /// but known surface and obstacles there block the ray.
   std::optional<double> min_range{};
   std::optional<double> max_range{};  ///< along the ray [m]; unset: the sensor's
   /// Task weights. Where regions overlap, the last one counts. Outside all regions the weight is 1.
@@ -152,8 +152,8 @@ struct VIEWGAIN_EXPORT VoxelContribution {
 /// @endcode
 class VIEWGAIN_EXPORT GainEvaluator {
  public:
-  /// Where the rays of a view end, to explain its gain. Each ray counts once, so the other counts
-  /// add up to `rays`.
+  /// Where the rays of a view end, to explain its gain. Each member is a number of rays. Each ray
+  /// counts in exactly one other member besides `rays`, so the others add up to `rays`.
   struct RayOutcomes {
     std::uint32_t rays = 0;           ///< number of rays of the view
     std::uint32_t too_near = 0;       ///< end on known surface or an obstacle nearer than min_range
@@ -210,11 +210,11 @@ class VIEWGAIN_EXPORT GainEvaluator {
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                        const RunMeasure& measure, const BatchControl& control = {}) const;
 
-  /// Explains a gain by the contribution of each voxel in which rays end. For surface and combined
-  /// gains, also of each unknown voxel that rays reach. Largest gain first, ties ordered by x, y,
-  /// z. The sum of the contributions is the gain of evaluate(), up to a relative error of 1e-9
-  /// (surface, combined: 1e-5). Empty for an invalid pose and for a camera in an occupied voxel.
-  /// Runs on the calling thread. Cost: three times evaluate().
+  /// Explains a gain by the contribution of each voxel in which rays end. Surface and combined
+  /// gains also have contributions of all unknown voxels that rays reach. Largest gain first, ties
+  /// ordered by x, y, z. The sum of the contributions is the gain of evaluate(), up to a relative
+  /// error of 1e-9 (surface, combined: 1e-5). Empty for an invalid pose and for a camera in an
+  /// occupied voxel. Runs on the calling thread. Cost: three times evaluate().
   [[nodiscard]] std::vector<VoxelContribution> contributions(const Pose& T_world_camera) const;
 
   /// Where each ray of evaluate() ends, in row-major order of the traced pixels. Empty for an
@@ -238,8 +238,9 @@ class VIEWGAIN_EXPORT GainEvaluator {
   /// As best(), but faster: finds the k best poses with high probability
   /// (perf/results/choosing.md), in two stages. The first estimates the gains of all poses with
   /// about 400 rays each, as approximate() does. The second scores the best of them with all their
-  /// rays: at least 24 poses, at least 4 k, and at least 1.6 % of all poses (5 % with the paper's
-  /// gain). Returned gains are exact. Poses with fewer than 900 rays skip the first stage.
+  /// rays: at least 24 poses, at least 4 times k poses, and at least 1.6 % of all poses (5 % with
+  /// the paper's gain). Returned gains are exact. Poses with fewer than 900 rays skip the first
+  /// stage.
   ///
   /// Without a deadline, results only depend on the seed. With a deadline, BestViews::estimated and
   /// scored_indices tell how much each stage did. control.progress counts poses that are eliminated
@@ -256,10 +257,10 @@ class VIEWGAIN_EXPORT GainEvaluator {
   ///
   /// A pose is not scored again for a choice if its earlier marginal gain shows that it cannot be
   /// the best. This is exact for the surface gain, and for the paper's gain with log_determinant,
-  /// because they are submodular. With the combined gain, the best pose can rarely be missed. With
-  /// log_diagonal and trace, all poses are scored for each choice. Cost with the paper's gain: up
-  /// to k batches, each about twice evaluate(). Cost otherwise: one batch, and about ten times
-  /// evaluate() the first time that a pose is scored again. Memory: up to 256 MB.
+  /// because these gains are submodular. With the combined gain, the best pose can rarely be
+  /// missed. With log_diagonal and trace, all poses are scored for each choice. Cost with the
+  /// paper's gain: up to k batches, each about twice evaluate(). Cost otherwise: one batch, and
+  /// about ten times evaluate() the first time that a pose is scored again. Memory: up to 256 MB.
   [[nodiscard]] ViewSet best_set(std::span<const Pose> T_world_camera, std::size_t k,
                                  const BatchControl& control = {}) const;
 

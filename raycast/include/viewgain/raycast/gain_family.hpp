@@ -57,8 +57,8 @@ class VIEWGAIN_EXPORT GainFamily {
       std::span<const std::string> names, const ExecConfig& exec) const = 0;
 };
 
-/// Registers a family for this process, instead of the previous one; null: none. Call it before
-/// other threads look up gains.
+/// Registers a family for this process. It replaces the family that was registered before, if any.
+/// Null only removes that family. Call it before other threads look up gains.
 VIEWGAIN_EXPORT void register_gains(std::shared_ptr<const GainFamily> family);
 /// The registered family, or a family without names if none is registered.
 [[nodiscard]] VIEWGAIN_EXPORT const GainFamily& registered_gains() noexcept;

@@ -67,9 +67,9 @@ class VIEWGAIN_EXPORT SimulatedSensor {
   SimulatedSensor& operator=(SimulatedSensor&&) noexcept;
 
   /// The depth frame from T_world_camera, with amplitudes, which are 0 where there is no reading.
-  /// Pixels are invalid if their range is below min_range or their amplitude is below that of the
-  /// noise model. Pixels are out of range if their ray hits nothing up to max_range. `frame_index`
-  /// selects the noise: the same seed, index and pose give the same frame. Throws
+  /// Pixels are invalid if their range is below min_range or their amplitude is below the minimum
+  /// of the noise model. Pixels are out of range if their ray hits nothing up to max_range.
+  /// `frame_index` selects the noise: the same seed, index and pose give the same frame. Throws
   /// Error(invalid_argument) if the pose is not rigid within 1e-3.
   [[nodiscard]] DepthFrame acquire(const Pose& T_world_camera, std::uint64_t frame_index = 0) const;
 

@@ -24,7 +24,7 @@ class VIEWGAIN_EXPORT SurfaceScene {
   struct Ray {
     Eigen::Vector3d origin = Eigen::Vector3d::Zero();            ///< [m]
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();        ///< unit length
-    double max_range = std::numeric_limits<double>::infinity();  ///< ignores farther hits [m]
+    double max_range = std::numeric_limits<double>::infinity();  ///< farther hits are ignored [m]
   };
   /// Intersection of a ray with the mesh.
   struct Hit {
@@ -49,8 +49,8 @@ class VIEWGAIN_EXPORT SurfaceScene {
   /// First hit of one ray.
   [[nodiscard]] Hit intersect(const Ray& ray) const;
 
-  /// Whether each ray hits anything in (0, max_range], as for shadows. Faster than intersect(), for
-  /// rays in any order. Rays are not checked.
+  /// Whether each ray hits anything in (0, max_range], for example for shadows. Faster than
+  /// intersect(). The rays may be in any order, and are not checked.
   void block(std::span<const Ray> rays, std::span<bool> blocked) const;
 
   /// The triangles of the scene.

@@ -45,9 +45,9 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_workspace(const BeliefGrid& map,
                                                           const Sensor& sensor);
 
-/// Suspects an obstacle that is too far away for views of the map, or 100 times as long as the map.
-/// `bounds` are those of the obstacle, world frame [m]. Kind obstacle_unit. `what` has no subject,
-/// for example "is 900 m long ...".
+/// Suspects an obstacle that is too far away for views of the map, or more than 100 times as long
+/// as the map. `bounds` are those of the obstacle, world frame [m]. Kind obstacle_unit.
+/// Suspicion::what has no subject, for example "is 900 m long ...".
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_obstacle(const Box& bounds, const BeliefGrid& map,
                                                          const Sensor& sensor);
 /// Bounding box of a mesh, for suspect_obstacle(). If the mesh has no vertices, it is a box at the
@@ -60,7 +60,7 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_solid_obstacles(const Obstacles& obstacles,
                                                                 std::span<const Pose> views);
 
-/// Suspects a region if the map is out of sight from all its boxes, shells and poses. Kind
+/// Suspects the reach if the map is out of sight from all its boxes, shells and poses. Kind
 /// reach_unit. Cost: linear in their number.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_reach(const ReachRegion& reach,
                                                       const BeliefGrid& map, const Sensor& sensor);
@@ -70,8 +70,8 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_support_plane(double z, const BeliefGrid& map,
                                                               const Sensor& sensor);
 
-/// Suspects an object that is 10 times as long as the workspace, or smaller than a voxel. `size` is
-/// its longest side [m]. Kind object_size_unit.
+/// Suspects an object that is more than 10 times as long as the workspace, or smaller than a voxel.
+/// `size` is its longest side [m]. Kind object_size_unit.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_object_size(double size, const BeliefGrid& map);
 
 /// Suspects a clearance [m] that is larger than any camera body. Kind clearance_unit.
@@ -90,11 +90,11 @@ namespace viewgain {
                                                       const Pose& T_world_camera,
                                                       const BeliefGrid& map);
 
-/// Suspects masks that remove 95 % of the measured depths in the map's workspace, or the middle of
-/// the images and little else. If `map` is null, all measured depths count. `unmasked` and `masked`
-/// are the same frames before and after masking. Kind masks. Throws Error(invalid_argument) if the
-/// spans differ in length. Also throws whatever check_frame_size() throws. Cost: one pass over the
-/// pixels.
+/// Suspects masks that remove at least 95 % of the measured depths in the map's workspace, or the
+/// middle of the images and little else. If `map` is null, all measured depths count. `unmasked`
+/// and `masked` are the same frames before and after masking. Kind masks. Throws
+/// Error(invalid_argument) if the spans differ in length. Also throws whatever check_frame_size()
+/// throws. Cost: one pass over the pixels.
 [[nodiscard]] VIEWGAIN_EXPORT Suspicion suspect_masks(const Sensor& sensor,
                                                       std::span<const DepthFrame> unmasked,
                                                       std::span<const DepthFrame> masked,

@@ -33,7 +33,7 @@ namespace viewgain {
 /// Settings of a ViewScorer. The defaults suit an object at the origin.
 struct VIEWGAIN_EXPORT ScorerConfig {
   double voxel_size = GridConfig{}.voxel_size;  ///< [m]
-  /// The part of space that is mapped, grid frame [m]. Extended to whole voxels. Let it begin at
+  /// The part of space that is mapped, grid frame [m]. Extended to whole voxels. It should begin at
   /// the table, because the paper's gain counts unknown space below the table.
   Box workspace = GridConfig{}.workspace;
   Pose T_world_grid{};  ///< pose of the grid frame in the world
@@ -73,7 +73,7 @@ struct VIEWGAIN_EXPORT ScorerConfig {
   [[nodiscard]] Surroundings surroundings() const { return {obstacles, support_plane}; }
 };
 
-/// Effect on the map of the frames from one pose.
+/// Effect of the frames from one pose on the map.
 struct VIEWGAIN_EXPORT MapUpdate {
   /// How the frames were used. Unless is_in_map(verdict), the map is unchanged.
   FrameVerdict verdict = FrameVerdict::used;
@@ -93,9 +93,10 @@ struct VIEWGAIN_EXPORT MapUpdate {
 ///
 /// Thread safety: add(), set() and forget() change the map, and wait for one another. evaluate(),
 /// best(), scene(), evaluator(), voxels(), sensor(), config() and exec() may run in any thread at
-/// any time. They do not wait for a change, and use the map before or after it. If several of them
-/// score poses, one uses all threads and the others run on their calling threads. During a change,
-/// do not call progress(), consistency(), grid_after() or save(), and do not read grid().
+/// any time. They do not wait for a change: they use the map as it is before or after it. If
+/// several of them score poses, one uses all threads and the others run on their calling threads.
+/// During a change, do not call progress(), consistency(), grid_after() or save(), and do not read
+/// grid().
 ///
 /// Cost: the first call that needs the scene after a change updates it in some milliseconds.
 /// @code
@@ -105,10 +106,10 @@ struct VIEWGAIN_EXPORT MapUpdate {
 /// @endcode
 class VIEWGAIN_EXPORT ViewScorer {
  public:
-  /// Starts with an unknown map. Throws Error(invalid_argument), naming the value, if the sensor or
-  /// a setting is invalid, gain.prior_sigma is set, or voxels are as large as the workspace or
-  /// larger than the sensor's range. Throws Error(backend) if Embree fails. Cost: five calls of
-  /// PinholeCamera::ray_table().
+  /// Starts with a map in which all voxels are unknown. Throws Error(invalid_argument), naming the
+  /// value, if the sensor or a setting is invalid, gain.prior_sigma is set, or voxels are as large
+  /// as the workspace or larger than the sensor's range. Throws Error(backend) if Embree fails.
+  /// Cost: five calls of PinholeCamera::ray_table().
   explicit ViewScorer(const Sensor& sensor, const ScorerConfig& config = {},
                       const ExecConfig& exec = {});
   /// As above, but starts with a given map. Its layout and prior replace those of `config`.
@@ -172,7 +173,7 @@ class VIEWGAIN_EXPORT ViewScorer {
   [[nodiscard]] const ScorerConfig& config() const noexcept;  ///< with the map's layout and prior
   [[nodiscard]] const ExecConfig& exec() const noexcept;      ///< threads and tracer
 
-  /// Entropy removed, and number of unknown voxels; the other members are unset. Cost:
+  /// The removed entropy and the number of unknown voxels. The other members are unset. Cost:
   /// BeliefGrid::statistics().
   [[nodiscard]] ModelProgress progress() const;
   /// How well the frames added so far agree. Cost: FrameCheck::result().

@@ -49,7 +49,7 @@ struct VIEWGAIN_EXPORT BestViews {
 
 /// A set of views with a large gain together; see GainEvaluator::best_set().
 struct VIEWGAIN_EXPORT ViewSet {
-  std::vector<std::size_t> indices;  ///< of the poses, in the order in which they were chosen
+  std::vector<std::size_t> indices;  ///< indices of poses, in the order in which they were chosen
   std::vector<ViewGain> marginal;    ///< marginal gain of each: increase of the set's gain
   double gain = 0;                   ///< gain of the set, in the gain's unit
   /// Lower bound of `gain`. Each hazard cell (HazardField) counts only for the view that gains most

@@ -30,14 +30,14 @@ struct VIEWGAIN_EXPORT TourConfig {
   double cost_per_way = 0;  ///< cost per unit of `way`, in the gain's unit
   /// Limit of the total path cost, in the unit of `way`. Stops that would exceed it are not chosen.
   double budget = std::numeric_limits<double>::infinity();
-  /// False: chooses the view with the largest marginal gain minus costs. True: chooses the view
-  /// with the largest marginal gain divided by its path cost; use it with a budget.
+  /// False: chooses the view with the largest marginal gain minus costs. True: divides this
+  /// difference by the cost that the view adds to the path; use it with a budget.
   bool per_way = false;
   std::span<const double> costs{};  ///< cost of each pose itself, as BestConfig::costs
   /// Number of candidate poses to evaluate; fewer are faster. Takes the poses with the largest
   /// gains, estimated from few rays. Skips a pose that is closer than 0.3 working distances and 30
-  /// degrees to one that was taken. If too few poses remain, the limits are 0.1 working distances
-  /// and 15 degrees.
+  /// degrees to one that it already took. If too few poses remain, the limits are 0.1 working
+  /// distances and 15 degrees.
   std::size_t max_candidates = std::numeric_limits<std::size_t>::max();
   /// Fraction of rays to trace, in (0, 1]. Values below 1 are faster but less exact, and
   /// underestimate refinement. Must be 1 with the paper's gain.
@@ -52,17 +52,17 @@ struct VIEWGAIN_EXPORT ViewTour {
   /// Marginal gain of each view of the set, minus the costs of the view and of its path, when it
   /// was chosen.
   std::vector<double> worth;
-  std::vector<ViewGain> alone;  ///< gain of each pose alone, with the same rays; NaN: not evaluated
-  Tour tour;                    ///< order of the views; its stops are indices into `set`
+  /// Gain of each pose alone, from the same rays; NaN: not evaluated.
+  std::vector<ViewGain> alone;
+  Tour tour;  ///< order of the views; its stops are indices into `set`
 };
 
-/// Chooses a set of views greedily by marginal gain minus costs, as GainEvaluator::best_set() does
-/// by marginal gain, and orders the set with order_stops(). The path cost of a view is that of its
-/// cheapest insertion into the tour so far. Omits views with no gain and, after the first view,
-/// views that cost more than they gain. Ignores obstacles and reach. Deterministic for any number
-/// of threads. Rethrows exceptions of `way`. Throws Error(invalid_argument) naming a setting that
-/// is out of range. Cost: best_set(), and two calls of `way` per pose and stop on the calling
-/// thread.
+/// Chooses a set of views greedily, as GainEvaluator::best_set() does, but by marginal gain minus
+/// costs. Orders the set with order_stops(). The path cost of a view is that of its cheapest
+/// insertion into the tour so far. Omits views with no gain and, after the first view, views that
+/// cost more than they gain. Ignores obstacles and reach. Deterministic for any number of threads.
+/// Rethrows exceptions of `way`. Throws Error(invalid_argument), naming the setting, if one is out
+/// of range. Cost: best_set(), and two calls of `way` per pose and stop on the calling thread.
 [[nodiscard]] VIEWGAIN_EXPORT ViewTour plan_tour(const GainEvaluator& evaluator,
                                                  std::span<const Pose> T_world_camera,
                                                  const TourConfig& config,

@@ -81,13 +81,13 @@ class VIEWGAIN_EXPORT VoxelScene {
 
   /// The snapshot from which the scene was made.
   [[nodiscard]] const GridSnapshot& snapshot() const noexcept;
-  /// The surroundings. A scene from update() shares this object with the scene before.
+  /// The surroundings. A scene from update() shares this object with the scene `before`.
   [[nodiscard]] const Surroundings& surroundings() const noexcept;
 
   /// Hazard of unknown voxels, and their distance to known surface. Computed on the first call, in
   /// some milliseconds. Valid as long as the scene.
   [[nodiscard]] const HazardField& hazard() const;
-  /// The same for single voxels, without computing it for all.
+  /// As hazard(), but computes the values of single voxels on demand.
   [[nodiscard]] HazardProbe hazard_probe() const;
 
   /// Instruction set with which this scene is traced: "avx512", "avx2" or "sse4"; "baseline" on

@@ -19,7 +19,7 @@ typedef struct vg_scene vg_scene;
 /* Settings of a scene. */
 typedef struct vg_scene_config {
   size_t struct_size;        /* set by _init() */
-  int32_t num_threads;       /* of the build; 0: all */
+  int32_t num_threads;       /* threads that build the scene; 0: all */
   const double* boxes;       /* obstacles, world: 6 numbers each, min x y z, max x y z */
   size_t box_count;          /* number of boxes */
   const double* vertices;    /* an obstacle mesh, world: 3 numbers each */
@@ -96,8 +96,9 @@ typedef struct vg_evaluator_config {
   double min_range, max_range;     /* along the ray [m]; NaN (the default): the sensor's */
   const vg_weight_region* weights; /* task weights of parts of the workspace; null: none */
   size_t weight_count;             /* number of weights */
-  double refinement_weight; /* VG_GAIN_COMBINED: weight of refinement relative to new surface (1) */
-  int32_t gain;             /* VG_GAIN_COMBINED */
+  double refinement_weight;  /* with VG_GAIN_COMBINED: weight of refinement relative to new surface;
+                                default 1 */
+  int32_t gain;              /* VG_GAIN_COMBINED */
   int32_t posterior_entropy; /* 1: also compute vg_view_gain.posterior_entropy with VG_GAIN_PAPER; 0
                                 is the default */
   int32_t tracer;            /* VG_TRACER_AUTOMATIC; does not affect gains */
@@ -139,18 +140,20 @@ typedef struct vg_view_gain {
   double gain; /* paper: exploration + refinement; surface: area; combined: from area and
                   refinement_saturated; NaN: invalid pose */
   double exploration, refinement;           /* paper: parts from unknown and from occupied voxels */
-  double posterior_entropy;                 /* paper, if enabled: eq. (6), lengths in metres */
+  double posterior_entropy;                 /* paper, if enabled: eq. (6) of the paper, lengths in
+                                               metres */
   uint32_t rays, hits;                      /* rays of the view; rays that end in a voxel */
-  uint32_t unknown_voxels, occupied_voxels; /* distinct voxels; paper; the latter also combined */
+  uint32_t unknown_voxels, occupied_voxels; /* distinct voxels (paper); occupied_voxels also with
+                                               combined */
   int32_t status;                           /* VG_VIEW_ */
   double area;                              /* surface, combined: expected new surface [m^2] */
   double refinement_saturated;              /* combined: refinement of known surface [nat] */
 } vg_view_gain;
 
-/* Expected gain of every pose, count times 16 doubles, on all threads of the evaluator. (For a
+/* Expected gain of each of `count` poses (16 doubles each), on all threads of the evaluator. (For a
    single pose without a watch, only the paper's gain uses more than one thread.) An invalid pose
    has gain NaN and affects no other; a camera in an occupied voxel has gain 0. `watch` may be null.
-   VG_STOPPED: the remaining gains are NaN. */
+   If the result is VG_STOPPED, the remaining gains are NaN. */
 VG_API vg_status vg_evaluate(const vg_evaluator* evaluator, const double* poses, size_t count,
                              double* gains, const vg_watch* watch);
 
@@ -162,22 +165,23 @@ VG_API vg_status vg_evaluate_views(const vg_evaluator* evaluator, const double* 
 
 /* The k best poses, found by scoring all poses: best first, ties in the order of their indices.
    `indices` and `gains` have room for k; gains may be null. *found is the number of chosen poses,
-   which is less than k if fewer poses are valid. VG_STOPPED: the best *found poses so far. */
+   which is less than k if fewer poses are valid. If the result is VG_STOPPED, these are the best
+   *found poses so far. */
 VG_API vg_status vg_best(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          size_t* indices, double* gains, size_t* found, const vg_watch* watch);
 
-/* The k best poses with high probability, faster: compares poses with about 400 of their rays, and
-   scores the best in full. `seed` selects the rays with VG_GAIN_PAPER; the other gains ignore it.
-   `indices`, `gains` and *found are as in vg_best(). Deterministic for a seed and any number of
-   threads. deadline: time limit of the call [s], >= 0, or INFINITY. At most half of it goes to
-   comparing poses. After the deadline the result is the best of the poses scored in full, with
-   VG_OK. */
+/* The k best poses with high probability, faster than vg_best(). Compares poses with about 400 of
+   their rays, and scores the best in full. With VG_GAIN_PAPER, `seed` selects the rays; the other
+   gains ignore it. `indices`, `gains` and *found are as in vg_best(). Deterministic for a seed and
+   any number of threads. deadline: time limit of the call [s], >= 0, or INFINITY. At most half of
+   it goes to comparing poses. After the deadline the result is the best of the poses scored in
+   full, with VG_OK. */
 VG_API vg_status vg_race(const vg_evaluator* evaluator, const double* poses, size_t count, size_t k,
                          double deadline, uint64_t seed, size_t* indices, double* gains,
                          size_t* found, const vg_watch* watch);
 
 /* Up to k poses whose joint gain is large, in the order chosen. `gains` are marginal gains: the
-   increase over the earlier poses. VG_STOPPED: the poses chosen so far. */
+   increase over the earlier poses. VG_STOPPED: these are the poses chosen so far. */
 VG_API vg_status vg_best_set(const vg_evaluator* evaluator, const double* poses, size_t count,
                              size_t k, size_t* indices, double* gains, size_t* found,
                              const vg_watch* watch);
@@ -197,16 +201,16 @@ VG_API vg_status vg_depth_image(const vg_evaluator* evaluator, const double T_wo
 typedef struct vg_contribution {
   int32_t voxel[3];     /* lattice of the grid */
   int32_t state;        /* 0 unknown, 2 occupied */
-  uint32_t rays;        /* rays that end in the voxel; surface, combined: that reach it */
+  uint32_t rays;        /* rays that end in the voxel; surface, combined: rays that reach it */
   double gain;          /* [nat, or m^2] */
   double expected_rays; /* expected number of rays that end in the voxel; less than `rays` if rays
                            can continue */
 } vg_contribution;
 
 /* Explains a gain: one entry per voxel in which rays end or can end, largest gain first; the gains
-   add up to the view's. Writes at most `capacity` entries; *found is the number of all, with
-   VG_GAIN_PAPER at most rays_per_pose. contribution_size is sizeof(vg_contribution). A camera in an
-   occupied voxel has no entries. Returns VG_INVALID_ARGUMENT for an invalid pose. */
+   add up to the view's. Writes at most `capacity` entries; *found is their total number, which is
+   at most rays_per_pose with VG_GAIN_PAPER. contribution_size is sizeof(vg_contribution). A camera
+   in an occupied voxel has no entries. Returns VG_INVALID_ARGUMENT for an invalid pose. */
 VG_API vg_status vg_contributions(const vg_evaluator* evaluator, const double T_world_camera[16],
                                   vg_contribution* contributions, size_t contribution_size,
                                   size_t capacity, size_t* found);
@@ -250,18 +254,21 @@ enum {
 /* Settings of the feasibility check: body, reach and sight. */
 typedef struct vg_feasibility_config {
   size_t struct_size;         /* set by _init() */
-  double body_size[3];        /* width, height, depth of the housing, in this order [m]; 0.065
-                                 0.065 0.076 */
+  double body_size[3];        /* width, height, depth of the housing, in this order [m]; default
+                                 0.065, 0.065, 0.076 */
   int32_t has_flange;         /* nonzero: uses T_flange_camera; 0: the camera is in the middle of
                                  the body's front face */
-  double T_flange_camera[16]; /* from the camera's frame to the flange's; identity */
-  double clearance;           /* margin around the body on each side [m]; 0 */
-  double taken_distance;      /* two views are the same if they are nearer than this [m]; 0.010 */
-  double taken_angle;         /* and their rotations differ by less than this [rad]; 2 degrees */
+  double T_flange_camera[16]; /* from the camera's frame to the flange's; default identity */
+  double clearance;           /* margin around the body on each side [m]; default 0 */
+  double taken_distance;      /* two views are the same if their distance is less than this [m];
+                                 default 0.010 */
+  double taken_angle;         /* and their rotations differ by less than this [rad]; default 2
+                                 degrees */
   const vg_sensor* sensor;    /* null (the default): no view is too near; read during create */
-  double max_near_share;      /* share of the rays; 0.2 */
-  /* Whether the robot can reach the camera pose: nonzero if so. Null (the default): everywhere.
-     Must be thread safe, and must not throw or jump out. */
+  double max_near_share;      /* a view is too near if more than this share of the rays that end in
+                                 the map end within min_range; default 0.2 */
+  /* Whether the robot can reach the camera pose: nonzero if so. Null (the default): all poses are
+     reachable. Must be thread safe, and must not throw or jump out. */
   int32_t (*reachable)(const double T_world_camera[16], void* user);
   void* user;          /* may be null */
   int32_t num_threads; /* 0: all; 1: the calling thread; does not affect results */
@@ -303,8 +310,8 @@ VG_API vg_status vg_look_at(const double eye[3], const double target[3], const d
 /* Orders `count` stops so that the path through all of them is the cheapest; exact up to 12 stops.
    costs, in any unit, has count + 1 rows of `count` numbers. Row i, column j is the cost from stop
    i to stop j; the last row is from the current pose. Costs are at least 0; infinity means no path.
-   `stops` has room for count. If no order is found, *cost (or null) is infinity and `stops` is
-   unchanged. */
+   `stops` has room for count. `cost` may be null. If no order is found, *cost is infinity and
+   `stops` is unchanged. */
 VG_API vg_status vg_order_stops(const double* costs, size_t count, size_t* stops, double* cost);
 
 #ifdef __cplusplus

@@ -42,9 +42,11 @@ typedef struct vg_sensor {
   double working_distance;     /* intended distance [m] */
   int32_t noise_model;         /* VG_NOISE_ */
   int32_t out_of_range;        /* VG_OUT_OF_RANGE_ */
-  double noise[6];      /* the model's parameters, in the order of VG_NOISE_; the others are 0 */
-  double pose_sigma[2]; /* standard deviations of the poses of frames: [m], [rad]; 0: exact */
-  double scale_sigma;   /* relative sigma of one factor common to all ranges; 0: none */
+  double noise[6];      /* the model's parameters, in the order of VG_NOISE_; unused entries: 0 */
+  double pose_sigma[2]; /* standard deviations of the poses of frames: translation [m], rotation
+                           [rad]; 0: exact */
+  double scale_sigma;   /* relative standard deviation of a scale error common to all ranges; 0:
+                           none */
 } vg_sensor;
 /* Sets everything to 0, which is not yet a valid sensor. */
 VG_API void vg_sensor_init(vg_sensor* sensor, size_t struct_size);
@@ -64,9 +66,9 @@ typedef struct vg_range_calibration vg_range_calibration;
 /* Makes a calibration for the sensor's camera from a table of `rows` x 2 numbers, row-major: each
    row holds a measured range, and the measured minus the true range [m]. Measured ranges increase.
    The error is interpolated linearly and constant beyond the ends. Returns VG_INVALID_ARGUMENT,
-   with a message that names the value, for no row, a number that is not finite, measured ranges
-   that do not increase, a measured or corrected range that is not positive, or an invalid sensor.
-   Costs 8 bytes and 10 ns per pixel, or 0.4 us with lens distortion. */
+   with a message that names the value, for a table without rows, a number that is not finite,
+   measured ranges that do not increase, a measured or corrected range that is not positive, or an
+   invalid sensor. Costs 8 bytes and 10 ns per pixel, or 0.4 us with lens distortion. */
 VG_API vg_status vg_range_calibration_create(const vg_sensor* sensor, const double* table,
                                              size_t rows, vg_range_calibration** calibration);
 
@@ -114,7 +116,8 @@ VG_API void vg_grid_release(vg_grid* grid); /* null: no effect */
 /* Properties and progress of a map. */
 typedef struct vg_grid_info {
   size_t struct_size;               /* set by _init() */
-  int32_t min_index[3];             /* x, y, z of the lowest voxel on the grid's lattice */
+  int32_t min_index[3];             /* indices x, y, z of the lowest voxel on the lattice, in which
+                                       voxel i begins at i * voxel_size */
   int32_t dims[3];                  /* voxels along x, y, z */
   double voxel_size;                /* [m] */
   double prior_sigma;               /* [m] */
@@ -136,17 +139,17 @@ VG_API vg_status vg_grid_get_info(const vg_grid* grid, vg_grid_info* info);
 /* The dense array of states; count must be dims[0] * dims[1] * dims[2]. */
 VG_API vg_status vg_grid_states(const vg_grid* grid, uint8_t* states, size_t count);
 
-/* The value of all three parts of an index if there is no voxel. */
+/* The value of all three indices if there is no voxel. */
 enum { VG_NO_VOXEL = INT32_MIN };
 
-/* The voxels that contain points, which have 3 numbers each, world [m]. Each voxel gets 3 indices
-   on the lattice; subtract min_index to get array indices. For a point outside the workspace or not
-   finite, all three are VG_NO_VOXEL. */
+/* The voxels that contain the points (3 numbers each, world [m]), as 3 indices each on the lattice.
+   Subtract min_index to get array indices. For a point outside the workspace or not finite, all
+   three are VG_NO_VOXEL. */
 VG_API vg_status vg_grid_index_of(const vg_grid* grid, const double* points, size_t count,
                                   int32_t* voxels);
 
-/* Centres of voxels, 3 numbers each, world [m]. The voxels may be any of the lattice, 3 indices
-   each. */
+/* Centres of voxels, 3 numbers each, world [m]. Voxels have 3 indices each on the lattice and may
+   lie outside the workspace. */
 VG_API vg_status vg_grid_center(const vg_grid* grid, const int32_t* voxels, size_t count,
                                 double* centers);
 
@@ -178,14 +181,14 @@ VG_API vg_status vg_grid_scale(const vg_grid* grid, const int32_t* voxels, size_
 
 /* Sets the scale of the leaves of 8^3 voxels that a box of the grid frame [m] touches; bounds may
    be infinite. When cells merge, their hits and information add up. When a cell is split, the new
-   cell that contains the mean of its readings gets them all; the rest of an occupied cell becomes
-   unknown. *changed (may be null) is the number of changed leaves. Returns VG_INVALID_ARGUMENT for
-   a bound that is NaN or a scale outside 0..3. */
+   cell that contains the mean position of the readings gets all of them; the rest of an occupied
+   cell becomes unknown. *changed (may be null) is the number of changed leaves. Returns
+   VG_INVALID_ARGUMENT for a bound that is NaN or a scale outside 0..3. */
 VG_API vg_status vg_grid_resample(vg_grid* grid, const double min[3], const double max[3],
                                   int32_t scale, uint64_t* changed);
 
 /* The occupied voxels, 3 indices each, on the lattice; a larger cell is given by its lowest voxel.
-   Equal maps give the same order. Writes at most `capacity` of them; *found is the number of all.
+   Equal maps give the same order. Writes at most `capacity` of them; *found is their total number.
    log_odds may be null. */
 VG_API vg_status vg_grid_occupied(const vg_grid* grid, int32_t* voxels, float* log_odds,
                                   size_t capacity, size_t* found);
@@ -210,7 +213,8 @@ typedef struct vg_integrator_config {
   int32_t carve;        /* VG_CARVE_CONES */
   int32_t occupancy;    /* VG_OCCUPANCY_PROBABILISTIC */
   int32_t num_threads;  /* 0: all; 1: the calling thread; does not affect the map */
-  int32_t coarsest;     /* largest scale of a leaf, 0 to 3, for surface seen from afar */
+  int32_t coarsest;     /* largest scale of cells (see vg_grid_scale), 0 to 3, for surface seen from
+                           afar */
   double support_plane; /* height of the table, world z [m]; NaN (the default): none */
   const double* fine;   /* boxes that keep scale 0: lowest and highest corners, grid frame [m]; null
                            (the default): none */
@@ -228,7 +232,7 @@ typedef struct vg_integration_report {
   uint64_t out_of_range;               /* pixels that are free up to max_range */
   uint64_t invalid;                    /* pixels without information */
   uint64_t readings_inside;            /* readings that lie in the workspace */
-  uint64_t voxels_hit, voxels_crossed; /* voxels with readings; voxels crossed and not hit */
+  uint64_t voxels_hit, voxels_crossed; /* voxels with readings; voxels crossed but not hit */
 } vg_integration_report;
 /* Prepares `report` for a call. */
 VG_API void vg_integration_report_init(vg_integration_report* report, size_t struct_size);

@@ -18,7 +18,7 @@ extern "C" {
    change. */
 typedef struct vg_scorer vg_scorer;
 
-/* Settings; a field without a comment is as in vg_scene_config. */
+/* Settings of a scorer. */
 typedef struct vg_scorer_config {
   size_t struct_size;            /* set by _init() */
   int32_t num_threads;           /* 0: all; does not affect results */
@@ -37,14 +37,14 @@ typedef struct vg_scorer_config {
   size_t vertex_count;           /* number of vertices */
   const uint32_t* triangles;     /* 3 vertex indices each */
   size_t triangle_count;         /* number of triangles */
-  double jump_edge_angle; /* angle of the filter for flying pixels: 5 degrees [rad]; 0: off */
+  double jump_edge_angle; /* angle of the filter for flying pixels [rad]; default 5 deg; 0: off */
   double object_size; /* longest side of the object [m]; NaN (the default): that of its seen part */
   double body_size[3]; /* width, height, depth of the sensor's housing [m]; all 0 (the default):
                           vg_scorer_best() does not check feasibility */
   int32_t has_flange;  /* nonzero: uses T_flange_camera, as in vg_feasibility_config */
   double T_flange_camera[16]; /* identity */
-  double clearance;           /* free space required around the body [m]; 0 */
-  int32_t coarsest, finest;   /* scales of leaves, as in vg_integrator_config; 0 */
+  double clearance;           /* free space required around the body [m]; default 0 */
+  int32_t coarsest, finest;   /* scales of cells, as in vg_integrator_config; default 0 */
   const double* fine;         /* as in vg_integrator_config */
   size_t fine_count;          /* number of boxes */
 } vg_scorer_config;
@@ -77,11 +77,12 @@ enum {
 /* Effect of a frame. */
 typedef struct vg_map_update {
   size_t struct_size;                  /* set by _init() */
-  int32_t verdict;                     /* VG_FRAME_; for 2 and more the map did not change */
-  uint64_t readings, readings_inside;  /* readings; those in the workspace */
+  int32_t verdict;                     /* VG_FRAME_; if it is 2 or more, the map did not change */
+  uint64_t readings, readings_inside;  /* all readings; readings in the workspace */
   uint64_t voxels_hit, voxels_crossed; /* as in vg_integration_report */
   uint64_t flying_pixels;              /* pixels removed by the filter */
-  double new_area; /* new surface, perpendicular to the rays [m^2]; NaN with VG_GAIN_PAPER */
+  double new_area; /* area of new surface, measured perpendicular to the rays [m^2]; NaN with
+                      VG_GAIN_PAPER */
 } vg_map_update;
 /* Prepares `update` for a call. */
 VG_API void vg_map_update_init(vg_map_update* update, size_t struct_size);
@@ -124,8 +125,9 @@ typedef struct vg_consistency {
   size_t contradicting;   /* number of frames that contradict the others */
   double share_in_free;   /* fraction of all readings in space that other frames saw as free */
   double share_seen_past; /* fraction of earlier frames' readings that later frames see past */
-  double displacement;    /* displacement relative to earlier frames, median [m]; NaN: none */
-  double expected;        /* displacement explained by the declared errors [m] */
+  double displacement;    /* median displacement of surfaces between frames [m]; NaN if no frames
+                             could be compared */
+  double expected;        /* displacement that the declared errors explain [m] */
   char kind[32];          /* likely cause; empty: the frames agree */
   char what[480];         /* a sentence for people, truncated if too long */
 } vg_consistency;

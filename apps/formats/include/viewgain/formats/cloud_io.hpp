@@ -24,10 +24,10 @@ struct VIEWGAIN_EXPORT PointCloud {
 
 /// Reads a .pcd (ascii, binary) or .ply (ascii, binary of either byte order), chosen by the file
 /// name's ending; the points of a PLY are the element "vertex". Ignores fields other than x, y, z.
-/// Points need not be finite. Throws Error(io) if the file cannot be opened; Error(format) with
-/// file and, in text, line for a missing field, a count that contradicts the file's length, an
-/// invalid number, a viewpoint's quaternion that deviates by more than 1e-2, or another ending;
-/// Error(capacity) above 16 GiB. Cost: O(points).
+/// Points need not be finite. Throws Error(io) if the file cannot be opened, and Error(capacity)
+/// above 16 GiB. Throws Error(format), with the file and (in text files) the line, for another
+/// ending, a missing field, an invalid number, a count that contradicts the file's length, or a
+/// viewpoint whose quaternion has a norm that differs from 1 by more than 1e-2. Cost: O(points).
 [[nodiscard]] VIEWGAIN_EXPORT PointCloud load_cloud(const std::filesystem::path& path);
 
 }  // namespace viewgain

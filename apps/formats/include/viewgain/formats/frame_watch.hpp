@@ -29,8 +29,8 @@ struct VIEWGAIN_EXPORT FrameWatchConfig {
   std::vector<MaskFolder> masks{};
   /// Identities (frame_identity()) of frames that are not returned again.
   std::set<std::string> taken{};
-  /// Faults of files that changed more recently than this are ignored, because the files may still
-  /// be written.
+  /// Faults of files that changed more recently than this are ignored, because another program may
+  /// still be writing these files.
   std::chrono::milliseconds settle{2000};
 };
 
@@ -57,8 +57,8 @@ struct VIEWGAIN_EXPORT BadFrame {
 /// Result of a look at the folder.
 struct VIEWGAIN_EXPORT FolderLook {
   std::optional<WatchedFrame> frame{};  ///< the next complete frame, if any
-  /// New faults since the previous look, by number. Frames that share their number with another
-  /// frame come first.
+  /// New faults since the previous look, in order of their numbers. Frames that share their number
+  /// with another frame come first.
   std::vector<BadFrame> bad{};
 };
 
@@ -93,10 +93,11 @@ class VIEWGAIN_EXPORT FrameWatch {
 
   /// Ends the wait for incomplete frames. Frames that lack a pose, a mask or an image that
   /// poses.txt lists become bad (no_pose, no_mask, unreadable) until their files change. Returns
-  /// these frames by number. Cost: O(frames); does not look at files.
+  /// these frames in order of their numbers. Cost: O(frames); does not look at files.
   [[nodiscard]] std::vector<BadFrame> give_up();
 
-  /// Rejects the frame of the last look: it is bad for this reason until its files change.
+  /// Rejects the frame of the last look: it counts as bad, with this verdict, until its files
+  /// change.
   void refuse(const WatchedFrame& frame, FrameVerdict verdict);
 
   /// Sensor, scale and layout, without images and poses; empty before the first complete frame.
@@ -107,7 +108,7 @@ class VIEWGAIN_EXPORT FrameWatch {
   [[nodiscard]] std::size_t taken_count() const;
   /// Number of frames in the folder that are incomplete or may still be written.
   [[nodiscard]] std::size_t waiting() const;
-  /// Number of bad frames in the folder by name of the verdict.
+  /// Number of bad frames in the folder for each verdict, with its name as the key.
   [[nodiscard]] std::map<std::string, std::size_t> bad() const;
   /// Whether nothing changes any more: waiting frames have not changed for
   /// FrameWatchConfig::settle, and the other frames have not changed since their last check.

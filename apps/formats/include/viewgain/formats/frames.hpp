@@ -29,8 +29,8 @@ namespace viewgain {
 /// of mask_of(): reads a file, O(pixels).
 class VIEWGAIN_EXPORT MaskFolder {
  public:
-  /// With `least_confidence` the images are confidences. Throws Error(io) naming the folder if it
-  /// does not exist.
+  /// If `least_confidence` is given, the images are confidence images. Throws Error(io) naming the
+  /// folder if it does not exist.
   explicit MaskFolder(std::filesystem::path folder,
                       std::optional<std::uint8_t> least_confidence = {});
 
@@ -94,7 +94,7 @@ struct VIEWGAIN_EXPORT FrameSequence {
   bool is_out_of_range_assumed = false;  ///< out_of_range is not stated
   std::size_t orthonormalized = 0;       ///< number of repaired rotations
   /// Corrector of the sensor at the time of opening, so that load_frame() need not compute the
-  /// rays; null without a table. Ignored if the sensor was changed.
+  /// rays; null if the sensor has no table of range errors. Ignored if the sensor was changed.
   std::shared_ptr<const RangeCorrector> corrector{};
 };
 
@@ -102,7 +102,7 @@ struct VIEWGAIN_EXPORT FrameSequence {
 /// sensor.toml, or the recorded one with frame-NNNNNN.pose.txt and camera-intrinsics.txt.
 /// frames.toml states the layout, depth scale and meaning of 65535; apps/docs/reference/formats.md
 /// documents its keys, the defaults, and how poses are matched to images. A pose that is missing,
-/// not finite or not rigid only affects its frame. `sensor`: preset or .toml file; empty: the
+/// not finite or not rigid affects only its own frame. `sensor`: preset or .toml file; empty: the
 /// folder's own. Throws Error naming the file for faults of the whole folder.
 [[nodiscard]] VIEWGAIN_EXPORT FrameSequence open_frames(const std::filesystem::path& dir,
                                                         const std::string& sensor = {},
@@ -160,7 +160,7 @@ struct VIEWGAIN_EXPORT FrameReading {
 class VIEWGAIN_EXPORT FramesWriter {
  public:
   /// Throws Error(io), and Error(invalid_argument) if the folder holds frames, poses or a sensor
-  /// that no FramesWriter wrote, or if the scale [m per unit] is not within 0 and 1.
+  /// that no FramesWriter wrote, or if the scale [m per unit] is not between 0 and 1.
   explicit FramesWriter(const std::filesystem::path& dir, double depth_scale = kDepthUnit);
 
   /// Writes the depth image, and an amplitude image if the frame has amplitudes. Depths that are

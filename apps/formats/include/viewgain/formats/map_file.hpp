@@ -14,7 +14,7 @@
 
 /// @file
 /// Map files. The cost of reading and writing grows with the leaves and beliefs of the map;
-/// functions on names take constant time.
+/// functions that only inspect a name take constant time.
 
 namespace viewgain {
 
@@ -26,9 +26,9 @@ namespace viewgain {
 [[nodiscard]] VIEWGAIN_EXPORT std::filesystem::path map_in(const std::filesystem::path& path);
 
 /// Reads a .vdb map, the map of a run's folder (map_in()), or an OctoMap tree with `config`. If a
-/// sensor is given, the default of config.prior_sigma is that of the sensor. Throws
-/// Error(format) with file and key if the map's note of its sensor is invalid. Also throws whatever
-/// load_vdb() and load_octomap() throw.
+/// sensor is given, it determines the default of config.prior_sigma. Throws Error(format) with file
+/// and key if the map's note of its sensor is invalid. Also throws whatever load_vdb() and
+/// load_octomap() throw.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_map(const std::filesystem::path& file_or_run,
                                                   const Sensor* sensor = nullptr,
                                                   OctomapConfig config = {},
@@ -42,12 +42,12 @@ namespace viewgain {
 /// that end neither in .vdb nor in .ot.
 VIEWGAIN_EXPORT void check_map_name(const std::filesystem::path& path);
 
-/// Contents of a map that a .ot file loses.
+/// Contents of a map that were lost because a .ot file cannot store them.
 struct VIEWGAIN_EXPORT LostInTree {
-  std::size_t beliefs = 0;       ///< number of voxels with beliefs
-  std::size_t views = 0;         ///< number of views
-  bool hazard_counters = false;  ///< whether there were hazard counters
-  bool T_world_grid = false;     ///< see octomap_keeps_frame
+  std::size_t beliefs = 0;       ///< number of voxels whose beliefs were lost
+  std::size_t views = 0;         ///< number of lost views
+  bool hazard_counters = false;  ///< whether hazard counters were lost
+  bool T_world_grid = false;     ///< whether this pose was lost; see octomap_keeps_frame()
 };
 
 /// Writes a .ot if the name ends in .ot, otherwise a .vdb, which loses nothing. Atomic. Throws

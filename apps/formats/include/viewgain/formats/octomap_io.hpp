@@ -25,7 +25,7 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 
 /// Reads OctoMap's `.ot` (types OcTree and ColorOcTree, ignoring colours) or `.bt`, according to
 /// the file's first line. Does not need the OctoMap library. The lattices are the same: OctoMap's
-/// key k is the voxel [k - 32768, k - 32767) times the resolution.
+/// key k stands for the interval [k - 32768, k - 32767) times the resolution.
 ///
 /// Keeps the states occupied, free and unknown. Log-odds of a `.ot` are rounded to steps of 0.05
 /// and clamped to [-2, 3.5] without changing the state; a `.bt` gives 3.5 and -2. The map has no
@@ -33,9 +33,10 @@ struct VIEWGAIN_EXPORT OctomapConfig {
 /// but a pruned occupied leaf needs a block per 8³ voxels.
 ///
 /// Throws Error(io) if the file cannot be read; Error(format) with the file and the line or byte if
-/// it is truncated, has a wrong number of nodes, an invalid value, or no known voxel and no
-/// workspace; Error(capacity) with the file if it is too large or pruned leaves have more than 2^27
-/// occupied voxels. Also throws whatever the constructor of BeliefGrid throws.
+/// it is truncated, or has a wrong number of nodes or an invalid value. Also throws it if no voxel
+/// is known and no workspace is given. Throws Error(capacity) with the file if it is too large or
+/// pruned leaves have more than 2^27 occupied voxels. Also throws whatever the constructor of
+/// BeliefGrid throws.
 [[nodiscard]] VIEWGAIN_EXPORT BeliefGrid load_octomap(const std::filesystem::path& path,
                                                       const OctomapConfig& config = {});
 /// As above for a file's contents; `name` is the file name in messages.
@@ -58,8 +59,8 @@ VIEWGAIN_EXPORT void save_octomap(const BeliefGrid& grid, const std::filesystem:
 [[nodiscard]] VIEWGAIN_EXPORT std::string octomap_bytes(const BeliefGrid& grid);
 
 /// Whether save_octomap() writes the tree in the world frame. This requires that T_world_grid is
-/// the identity or, to 1e-6 voxel, a shift by whole voxels within a tree's space. Otherwise the
-/// tree must be moved by T_world_grid. Never throws; constant time.
+/// the identity or, to 1e-6 voxel, a shift by whole voxels that stays within the range of a tree's
+/// keys. Otherwise the tree must be moved by T_world_grid. Never throws; constant time.
 [[nodiscard]] VIEWGAIN_EXPORT bool octomap_keeps_frame(const BeliefGrid& grid);
 
 }  // namespace viewgain

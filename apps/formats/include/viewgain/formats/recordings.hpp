@@ -42,18 +42,19 @@ struct VIEWGAIN_EXPORT ImportConfig {
   std::filesystem::path confidences{};
   std::uint8_t least_confidence = 1;    ///< least confidence to keep
   std::optional<double> depth_scale{};  ///< metres per unit of 16-bit images; empty: the format's
-  std::string world{};  ///< tf frame of the poses; empty: the topmost parent of the images' frame
+  std::string world{};        ///< tf frame of the poses; empty: the topmost parent of the images'
+                              ///< frame_id
   std::string depth_topic{};  ///< empty: the only topic with depth images
   /// Topic of PoseStamped, PoseWithCovarianceStamped, TransformStamped or Odometry with the pose of
   /// the body that carries the camera; empty: use tf.
   std::string pose_topic{};
-  /// Camera pose on that body; empty: from tf (Odometry, TransformStamped), else the sensor's
-  /// T_flange_camera.
+  /// Camera pose on the body of pose_topic; empty: from tf (Odometry, TransformStamped), else the
+  /// sensor's T_flange_camera.
   std::optional<Pose> T_body_camera{};
   /// tf frame that carries the camera; empty: the images' frame_id, which is its optical frame.
   std::string camera_frame{};
-  Pose T_frame_camera{};  ///< the camera in that frame
-  /// Called with the number of processed frames and of all frames.
+  Pose T_frame_camera{};  ///< camera pose in camera_frame
+  /// Called with the number of processed frames and the number of all frames.
   std::function<void(std::size_t, std::size_t)> progress{};
 };
 
@@ -62,7 +63,8 @@ struct VIEWGAIN_EXPORT ImportReport {
   std::size_t frames = 0;  ///< number of frames written
   PinholeCamera camera{};  ///< camera of the images
   FrameCounts bad{};  ///< frames left out, by reason: no_pose, lost_pose, unreadable, wrong_size
-  /// Number of rotations that deviated by 1e-9 to 1e-2 and were repaired.
+  /// Number of rotations that deviated from an orthonormal matrix by 1e-9 to 1e-2 and were
+  /// repaired.
   std::size_t orthonormalized = 0;
   std::uint64_t readings = 0;       ///< pixels with a depth that were written
   std::uint64_t masked_pixels = 0;  ///< pixels with a depth that were masked out

@@ -15,9 +15,9 @@
 
 namespace viewgain {
 
-/// Reads a file of sensor_toml() (core/sensor.hpp). Throws Error(io) if the file cannot be read and
-/// Error(format) with file and key for a key that is missing, unknown, of the wrong type or out of
-/// bounds.
+/// Reads a file in the format of sensor_toml() (core/sensor.hpp). Throws Error(io) if the file
+/// cannot be read and Error(format) with file and key for a key that is missing, unknown, of the
+/// wrong type or out of bounds.
 [[nodiscard]] VIEWGAIN_EXPORT Sensor read_sensor_toml(const std::filesystem::path& path);
 
 /// As above for a text; `name` is the file name in messages.

@@ -17,8 +17,8 @@ class SyncedTogether;
 class TemporaryNames;
 
 /// A folder of results that appears, or begins to change, only when all results are written.
-/// Results are written to a hidden folder, next to the target or inside it if it exists, and
-/// commit() moves them. Other contents of the target remain. The hidden folder is named
+/// Results are first written to a hidden folder: inside the target if that exists, otherwise next
+/// to it. commit() then moves them. Other contents of the target remain. The hidden folder is named
 /// .NAME.tmp-PROCESS-COUNTER (with a hash for a long NAME). If a killed process leaves a hidden
 /// folder, the next writer of the same target removes or resumes it. Thread safety: distinct
 /// objects may be used from distinct threads. Cost of commit(): one disk sync, then one rename, or
@@ -84,8 +84,8 @@ inline constexpr const char* kCheckpoint = "checkpoint.json";
 class VIEWGAIN_EXPORT RunFolder {
  public:
   /// Throws Error(io), and Error(invalid_argument) if the folder holds files of these names but
-  /// neither run.json nor checkpoint.json of an earlier run. With `resume` it continues the files
-  /// of an ended process that wrote a checkpoint.
+  /// neither run.json nor checkpoint.json of an earlier run. If `resume` is set, continues the
+  /// files of an ended process that wrote a checkpoint.
   explicit RunFolder(const std::filesystem::path& dir, bool resume = false);
 
   /// The folder to write to.
@@ -104,8 +104,8 @@ class VIEWGAIN_EXPORT RunFolder {
   /// Keeps the files for a resumed run if commit() is not called.
   void keep() noexcept { staged_.keep(); }
 
-  /// Replaces an earlier run with this run. Keeps the checkpoint only if the run `goes_on`. Throws
-  /// Error(io).
+  /// Replaces an earlier run with this run. Keeps the checkpoint only if the run `goes_on` later.
+  /// Throws Error(io).
   void commit(bool goes_on = false);
 
  private:

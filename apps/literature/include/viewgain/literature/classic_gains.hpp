@@ -28,16 +28,16 @@ struct ClassicAccess;
 }  // namespace detail
 
 /// Gains of the literature; apps/literature/README.md has equations and sources. Sums run over the
-/// rays of a view and the voxels v of each ray, in order. H is the entropy of a voxel's occupancy
-/// [nat]; P is its visibility, the transmission of all nearer voxels on the ray.
+/// rays of a view and over the voxels of each ray. H is the entropy of a voxel's occupancy [nat]. P
+/// is its visibility: the probability that the ray passes all nearer voxels.
 enum class ClassicGain : std::uint8_t {
   occlusion_aware,    ///< Σ P H [nat]
   unobserved_voxel,   ///< Σ P H over unknown voxels [nat]
   average_entropy,    ///< mean of H over the crossed voxels [nat]
   rear_side_voxel,    ///< rays whose last voxel in front of a surface is unknown [rays]
-  rear_side_entropy,  ///< Σ P H over the unknown voxels in front of such a surface [nat]
-  proximity_count,    ///< unknown voxels behind a measured surface; nearer ones have a larger
-                      ///< weight [voxels]
+  rear_side_entropy,  ///< Σ P H over the consecutive unknown voxels in front of that surface [nat]
+  proximity_count,    ///< unknown voxels behind a measured surface; those near it weigh more
+                      ///< [voxels]
   /// From two fractions of the rays: those that hit a surface, and those that reach space hidden by
   /// one. Dimensionless.
   area_factor,
@@ -55,7 +55,7 @@ enum class ClassicGain : std::uint8_t {
 [[nodiscard]] VIEWGAIN_EXPORT ClassicGain parse_classic_gain(std::string_view name);
 /// Unit: "nat", "rays", "voxels", "m^3" or "1". Throws std::out_of_range for an invalid value.
 [[nodiscard]] VIEWGAIN_EXPORT std::string_view classic_gain_unit(ClassicGain gain);
-/// Whether the gain needs the distance of unknown voxels behind measured surfaces. Never throws.
+/// Whether the gain needs the occlusion distances of ClassicMap. Never throws.
 [[nodiscard]] VIEWGAIN_EXPORT bool needs_occlusion(ClassicGain gain);
 
 /// These gains as a family for register_gains(), computed by ClassicGainEvaluator.
@@ -81,17 +81,16 @@ struct VIEWGAIN_EXPORT Acquisition {
 /// accept any voxel, never throw and take constant time.
 ///
 /// Occlusion distances: each ray of each view of the map (BeliefGrid::views()) runs from min_range
-/// to the first occupied voxel within max_range, unless an obstacle stops it. The k-th voxel behind
-/// that voxel, within occlusion_depth, is k steps behind a measured surface if it is unknown. The
-/// minimum over all rays counts.
+/// to the first occupied voxel within max_range, unless an obstacle stops it. If the k-th voxel
+/// behind that voxel is unknown and within occlusion_depth, its occlusion distance is k steps. The
+/// smallest distance over all rays counts.
 class VIEWGAIN_EXPORT ClassicMap {
  public:
   /// Uses the scene's obstacles and the voxels of the current `grid`. Throws
   /// Error(invalid_argument) for a scene that is null or has another workspace, an invalid sensor,
-  /// or a depth that is negative, not finite or above 140 voxels; Error(capacity) above 2^24 cubes
-  /// of 128 voxels or 2^31 voxels in mixed blocks of 8³. Cost: one pass over the map (some
-  /// milliseconds at 128³) and, with `acquisition`, one over the rays of its views, on all threads
-  /// of `exec`.
+  /// or an occlusion_depth that is negative, not finite or above 140 voxels. Throws Error(capacity)
+  /// if the map is too large. Cost: one pass over the map (some milliseconds at 128³ voxels) and,
+  /// with `acquisition`, one over the rays of its views, on all threads of `exec`.
   [[nodiscard]] static std::shared_ptr<const ClassicMap> build(
       std::shared_ptr<const VoxelScene> scene, const BeliefGrid& grid,
       const std::optional<Acquisition>& acquisition = {}, const ExecConfig& exec = {});
@@ -101,12 +100,12 @@ class VIEWGAIN_EXPORT ClassicMap {
 
   /// The scene of the map.
   [[nodiscard]] const VoxelScene& scene() const noexcept;
-  /// Steps of an unknown voxel behind a measured surface; 0: unknown.
+  /// Occlusion distance of the voxel [steps]; 0 if it has none.
   [[nodiscard]] int occlusion_steps(Index3 voxel) const;
   /// Whether the voxel is unknown, and its 26 neighbours in the workspace include a free and an
   /// occupied voxel.
   [[nodiscard]] bool is_surface_frontier(Index3 voxel) const;
-  /// Memory in addition to the scene's.
+  /// Memory in addition to the scene's [bytes].
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
  private:
@@ -116,41 +115,41 @@ class VIEWGAIN_EXPORT ClassicMap {
 };
 
 /// Computes any number of classic gains of camera poses at once. A ray visits, in order, the voxels
-/// of the workspace that it crosses from min_range to the first occupied one (log-odds above 0),
-/// where it ends, or to max_range, a known obstacle, the scene's support plane or the workspace's
-/// edge. A ray that enters an occupied voxel nearer than min_range visits none. Each ray counts a
-/// voxel once; several rays count it several times, unless the gain counts distinct voxels.
+/// of the workspace that it crosses from min_range on. It ends in the first occupied voxel
+/// (log-odds above 0), or at max_range, an obstacle, the support plane or the workspace's edge. A
+/// ray that enters an occupied voxel nearer than min_range visits none. Each ray counts a voxel
+/// once; several rays count it several times, unless the gain counts distinct voxels.
 ///
 /// Rays are in single precision; apps/literature/README.md states the accuracy. Thread safety:
 /// const members may run from many threads at once. Bit-identical for any number of threads.
 ///
-/// Cost of evaluate(): all ten gains together take about 20 times the paper's gain
+/// Cost of evaluate(): all ten gains together take about 20 times as long as the paper's gain
 /// (perf/README.md). Cost of the constructor: one PinholeCamera::ray() per pixel; with_map() takes
 /// constant time.
 class VIEWGAIN_EXPORT ClassicGainEvaluator {
  public:
-  /// Throws Error(invalid_argument) naming the value for no gain, a duplicate gain, a null map, an
-  /// invalid sensor, a stride below 1, invalid ranges, an unknown_prior outside 0..1, or a gain
-  /// that needs occlusion distances if the map has none.
+  /// Throws Error(invalid_argument) naming the value for an empty list of gains, a duplicate gain,
+  /// a null map, an invalid sensor, a stride below 1, invalid ranges, or an unknown_prior outside
+  /// 0..1. Also throws it for a gain that needs occlusion distances if the map has none.
   ClassicGainEvaluator(std::shared_ptr<const ClassicMap> map, const Sensor& sensor,
                        const ClassicConfig& config, const ExecConfig& exec = {});
   ~ClassicGainEvaluator();
   ClassicGainEvaluator(ClassicGainEvaluator&&) noexcept;
   ClassicGainEvaluator& operator=(ClassicGainEvaluator&&) noexcept;
 
-  /// An evaluator for another map, to follow a growing map; shares rays and threads. Throws like
-  /// the constructor if the map is invalid.
+  /// An evaluator for another map, to follow a growing map. It shares the rays and threads of this
+  /// one. Throws like the constructor if the map is invalid.
   [[nodiscard]] ClassicGainEvaluator with_map(std::shared_ptr<const ClassicMap> map) const;
 
   /// Gains of a batch: results[i * gains + g] for pose i and gain g, in the unit of each gain. The
   /// result is NaN for an invalid pose, and 0 for a camera in an occupied voxel. `statuses` is
-  /// empty or has one entry per pose. Returns the number of scored poses, which is less than all if
-  /// `control` ended the call; the remaining results are NaN and bad_pose. Throws
+  /// empty or has one entry per pose. Returns the number of scored poses. If `control` ended the
+  /// call early, the remaining results are NaN with the status bad_pose. Throws
   /// Error(invalid_argument) if the sizes do not match.
   std::size_t evaluate(std::span<const Pose> T_world_camera, std::span<double> results,
                        std::span<ViewGain::Status> statuses = {},
                        const BatchControl& control = {}) const;
-  /// As above, into a new array: row i for pose i.
+  /// As above, in a new array; row i belongs to pose i.
   [[nodiscard]] std::vector<double> evaluate(std::span<const Pose> T_world_camera) const;
 
   /// The settings.

@@ -30,9 +30,9 @@ namespace viewgain {
 /// once. Bit-identical for any number of threads.
 class VIEWGAIN_EXPORT FrameAlignment {
  public:
-  /// `map`: settings of the map that frames go into, or are compared with. The constructor removes
-  /// the lens distortion once. Throws Error(invalid_argument) naming the value if the sensor, an
-  /// obstacle or the filter is invalid.
+  /// `map`: settings of the map to which frames are added, or with which they are compared. The
+  /// constructor removes the lens distortion once, for all frames. Throws Error(invalid_argument)
+  /// naming the value if the sensor, an obstacle or the filter is invalid.
   FrameAlignment(const Sensor& sensor, const ScorerConfig& map, const ExecConfig& exec = {});
   ~FrameAlignment();
   FrameAlignment(FrameAlignment&&) noexcept;
@@ -42,9 +42,9 @@ class VIEWGAIN_EXPORT FrameAlignment {
   /// frame with too little overlap stays as reported until other frames show the same surface.
   /// Covariances are relative to the first frame, whose covariance is zero. `sigma`: uncertainty of
   /// the reported pose. Throws Error(invalid_argument), and changes nothing, for a frame of a wrong
-  /// size, a pose that is not rigid (1e-3), a sigma that is not positive and finite, or an invalid
-  /// map.grid. Cost: 100 bytes per measured depth; time grows with the square of the number of
-  /// frames.
+  /// size, a pose that is not rigid to within 1e-3, a sigma that is not positive and finite, or
+  /// invalid settings of the map's grid. Cost: 100 bytes per measured depth; time grows with
+  /// (number of frames)².
   const FrameRegistration& add(DepthFrame frame, const Pose& T_reported,
                                const PoseSigma& sigma = kUsualPoseSigma);
 

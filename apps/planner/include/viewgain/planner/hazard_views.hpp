@@ -36,7 +36,7 @@ inline constexpr std::string_view kHazardViews = "hazard";
 inline constexpr std::string_view kReachViews = "reach_hazard";
 
 /// At most `count` views (T_world_camera) of the same places from poses within `reach`, at 1, 1.6
-/// or 2.5 times `distance` [m] and up to 75° to the side. A third of the views looks at their
+/// or 2.5 times `distance` [m] and up to 75° to the side. A third of the views looks at their own
 /// places, a third at the mean of all places, and a third in between. A view is omitted if 16
 /// attempts find no reachable pose. Deterministic; thread safe if the reach's predicate is. Errors
 /// and cost: those of hazard_views(), plus up to 16 · count calls of ReachRegion::contains().

@@ -34,7 +34,8 @@ struct VIEWGAIN_EXPORT PoseSetRequest {
   /// Number of poses: 500 by default; rings: 48 (default), 80, 288 or 864.
   std::optional<std::size_t> count{};
   std::uint64_t seed = 1;       ///< seed of the shell
-  std::optional<Pose> start{};  ///< T_world_camera of the previous view (sequence, spread_out)
+  std::optional<Pose> start{};  ///< T_world_camera of the previous view; used by the generator
+                                ///< sequence and by spread_out
   /// Orders the poses so that the first n are spread evenly, for every n. The next pose is always
   /// the one whose direction from the centre differs most from the directions of the start and of
   /// all earlier poses. Ties go to the lower index.

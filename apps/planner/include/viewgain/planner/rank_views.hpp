@@ -87,7 +87,7 @@ struct VIEWGAIN_EXPORT Ranking {
 
 /// Cost of each pose under `config`, including the path from current_pose. Empty if there are no
 /// costs. Throws Error(invalid_argument) for a cost_per_metre that is negative or not finite, and
-/// for a current_pose that is not rigid (1e-3).
+/// for a current_pose that is not rigid to within 1e-3.
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<double> view_costs(std::span<const Pose> T_world_camera,
                                                              const RankConfig& config);
 
@@ -122,8 +122,8 @@ VIEWGAIN_EXPORT void keep_worth(const GainEvaluator& evaluator, const PlanAhead&
                                                    RankConfig config,
                                                    const BatchControl& control = {});
 
-/// The values of a ranking that the stopping rules use, such as gain and area of its first view
-/// alone. Empty if the ranking has no views.
+/// The values of a ranking that the stopping rules use, such as the gain and the area of its first
+/// view. Empty if the ranking has no views.
 [[nodiscard]] VIEWGAIN_EXPORT std::optional<DecisionMaking::Decision> decision_of(
     const Ranking& ranking, GainModel model);
 

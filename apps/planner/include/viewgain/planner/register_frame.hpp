@@ -23,6 +23,7 @@ inline constexpr PoseSigma kUsualPoseSigma{0.005, 0.0087};
 enum class RegistrationStatus : std::uint8_t {
   registered,
   too_little_overlap,  ///< the other frames show too little of this frame's surface; the pose stays
+                       ///< as reported
   refused,             ///< the frame contradicts the other frames under every likely pose
 };
 /// Name for messages and files; "unknown" for an invalid value. Never throws.
@@ -52,7 +53,8 @@ struct VIEWGAIN_EXPORT FrameRegistration {
   double residual_before = 0;
   double residual_after = 0;  ///< the same at the corrected pose [m]
   std::size_t readings = 0;   ///< readings used: those in the workspace with a surface normal
-  std::size_t pairs = 0;      ///< number of these on the others' surface after the alignment
+  std::size_t pairs = 0;      ///< number of these that lie on the others' surface after the
+                              ///< alignment
   double overlap = 0;         ///< pairs / readings
   /// The larger of two fractions. One is the fraction of the frame's readings that lie in free
   /// space of the others. The other is the fraction of the others' surface that the frame sees

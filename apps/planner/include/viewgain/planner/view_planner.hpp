@@ -87,7 +87,7 @@ class VIEWGAIN_EXPORT ViewPlanner {
   ViewPlanner& operator=(ViewPlanner&&) noexcept;
 
   /// Adds a fixed set of candidates for all later calls of propose(); invalidates the last
-  /// proposal. Throws Error(invalid_argument) for a pose that is not rigid (1e-3).
+  /// proposal. Throws Error(invalid_argument) for a pose that is not rigid to within 1e-3.
   void add_poses(PoseSet set);
   /// Adds candidates that are recomputed for each proposal, such as those at surface boundaries
   /// (BoundaryGeneration of viewgain::planner_mesh). save() does not include the generation.
@@ -146,7 +146,7 @@ class VIEWGAIN_EXPORT ViewPlanner {
 
   /// Reports whether a commanded pose was `reached`. The pose is not proposed again. It is also
   /// removed from the current proposal, so the indices of later candidates decrease. Throws
-  /// Error(invalid_argument) for a pose that is not rigid (1e-3).
+  /// Error(invalid_argument) for a pose that is not rigid to within 1e-3.
   void tried(const Pose& T_world_camera, bool reached);
 
   /// Reason to stop, if any. After add() it can be max_views, idle or promises; after propose()
@@ -160,14 +160,14 @@ class VIEWGAIN_EXPORT ViewPlanner {
   void save(const std::filesystem::path& path) const;
   /// Continues after save(). With the same settings, sets and generations, all later results are
   /// bit-identical. Throws Error(invalid_argument) if the map's layout differs from scorer.grid(),
-  /// or the map was changed by other functions than add(). Throws Error(format) for another kind of
-  /// file. Also throws whatever the constructors and load_vdb() throw.
+  /// or if functions other than add() changed the map. Throws Error(format) if save() did not write
+  /// the file. Also throws whatever the constructors and load_vdb() throw.
   [[nodiscard]] static ViewPlanner load(const std::filesystem::path& path, const Sensor& sensor,
                                         const ScorerConfig& scorer, const PlannerConfig& config,
                                         const ExecConfig& exec = {});
 
-  /// Decision of the last rank() of the proposal, for Algorithm 1; empty if no candidate is
-  /// suitable.
+  /// The decision of the last rank() of the proposal, as used by Algorithm 1; empty if no candidate
+  /// is suitable.
   [[nodiscard]] const std::optional<DecisionMaking::Decision>& decision() const noexcept;
   /// Stopping rules of these settings, for active_view_planning().
   [[nodiscard]] const PlanningConfig& planning() const noexcept;

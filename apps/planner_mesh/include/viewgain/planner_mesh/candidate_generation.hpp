@@ -40,8 +40,9 @@ struct VIEWGAIN_EXPORT BoundaryViewsConfig {
 [[nodiscard]] VIEWGAIN_EXPORT BoundaryViewsConfig default_boundary(const Sensor& sensor,
                                                                    double voxel_size);
 
-/// Views at the open boundaries of a map's surface, feasible or not; `views`: T_world_camera so
-/// far, in order. Errors and cost: see estimate_views(), and with classes_by_sight also ViewSight.
+/// Views at the open boundaries of a map's surface, feasible or not. `views`: poses T_world_camera
+/// of the views so far, in order. Errors and cost: see estimate_views() and, if classes_by_sight is
+/// set, ViewSight.
 [[nodiscard]] VIEWGAIN_EXPORT EstimatedViews
 boundary_views(const SurfaceMesh& surface, const std::shared_ptr<const VoxelScene>& scene,
                std::span<const Pose> views, const Sensor& sensor, const BoundaryViewsConfig& config,
@@ -54,8 +55,8 @@ boundary_views(const SurfaceMesh& surface, const std::shared_ptr<const VoxelScen
 /// VIEWPOINTSGENERATION at the surface boundaries of a map, recomputed for each proposal, for
 /// ViewPlanner::add_generation(). If there are fewer than 200 candidates, adds hazard_views(),
 /// because new surface is also expected at places that are not near a boundary. Does not check
-/// feasibility. For a map without surface or views, such as an OctoMap, the candidates are a sphere
-/// around the workspace. Thread safety: one call at a time. Cost: fused_points(),
+/// feasibility. For a map without surface or views, such as an OctoMap, the candidates lie on a
+/// sphere around the workspace. Thread safety: one call at a time. Cost: fused_points(),
 /// reconstruct_surface(), estimate_views() and hazard_views().
 class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
  public:
@@ -63,7 +64,8 @@ class VIEWGAIN_EXPORT BoundaryGeneration : public ViewpointGeneration {
   /// scorer must outlive this object.
   BoundaryGeneration(const ViewScorer& scorer, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
-  /// Uses a model's current surface. The model must outlive this object.
+  /// Uses the current surface of a model, without recomputing it. The model must outlive this
+  /// object.
   BoundaryGeneration(const SurfaceModel& model, const BoundaryViewsConfig& config,
                      const ExecConfig& exec = {});
 

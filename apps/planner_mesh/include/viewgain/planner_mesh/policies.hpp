@@ -38,7 +38,7 @@ class VIEWGAIN_EXPORT BoundaryOrder {
   /// `same_place` [m], unchecked. Half the length of a patch is a good value.
   explicit BoundaryOrder(double same_place) : same_place_(same_place) {}
 
-  /// Index of the chosen candidate, which then counts as tried; empty if no untried run has a
+  /// Index of the chosen candidate, whose run then counts as tried; empty if no untried run has a
   /// feasible nominal pose. Boundary candidates are those with a class; their numbers must index
   /// estimated.candidates.
   [[nodiscard]] std::optional<std::size_t> next(std::span<const Candidate> candidates,
@@ -58,7 +58,8 @@ class VIEWGAIN_EXPORT BoundaryOrder {
 /// Scores candidates with a registered gain (register_gains()) on the current map.
 ///
 /// Thread safety: one call at a time. Deterministic for any number of threads. Cost:
-/// GainFamily::evaluator(), about 400 rays per pose, and all rays of 32 poses or of all.
+/// GainFamily::evaluator(), about 400 rays per pose, and all rays of 32 poses (of all poses if
+/// `all` is set).
 class VIEWGAIN_EXPORT RegisteredChoice {
  public:
   /// Number of candidates scored with all rays.
@@ -88,8 +89,8 @@ struct VIEWGAIN_EXPORT KnownObject {
       simulation{};  ///< settings of the simulation, including surroundings; noise is ignored
 };
 
-/// Decision with knowledge of the object, as an upper reference for planners. It looks only one
-/// view ahead, so another sequence of views can still be better.
+/// Chooses views with knowledge of the object, as an upper benchmark for planners. It looks only
+/// one view ahead, so another sequence of views can still be better.
 ///
 /// Thread safety: one call at a time. Deterministic for any number of threads.
 class VIEWGAIN_EXPORT OracleChoice {
@@ -101,11 +102,11 @@ class VIEWGAIN_EXPORT OracleChoice {
   OracleChoice(const SurfaceModel& model, const Sensor& sensor, const KnownObject& object,
                const ExecConfig& exec);
 
-  /// Index of the candidate after which the map's points cover the most samples. Simulates one
-  /// noise-free frame into a copy of the map for each of the 8 candidates that see the most
-  /// uncovered samples of the mesh, unoccluded and at less than 72°. Ties go to the lower index.
-  /// Requires at least one candidate (unchecked). Throws whatever covered_after() throws. Cost:
-  /// some seconds for a thousand candidates.
+  /// Index of the candidate after whose frame the map's points cover the most samples. Simulates
+  /// one noise-free frame into a copy of the map for each of the 8 candidates that see the most
+  /// uncovered samples of the mesh, unoccluded and at an angle of incidence below 72°. Ties go to
+  /// the lower index. Requires at least one candidate (unchecked). Throws whatever covered_after()
+  /// throws. Cost: some seconds for a thousand candidates.
   [[nodiscard]] std::size_t next(std::span<const Candidate> candidates) const;
 
   /// Number of uncovered samples that each candidate sees, weighted by 1 / (1 + σ_ax(t) / V) for a
@@ -131,7 +132,7 @@ enum class Policy : std::uint8_t {
   random,     ///< uniformly random among the feasible poses
   frontier,   ///< most unknown voxels in view
   fibonacci,  ///< a fixed set in order: evenly spread around the object
-  oracle,     ///< knows the object: an upper reference, see OracleChoice
+  oracle,     ///< knows the object; an upper benchmark; see OracleChoice
 };
 /// Names of the policies, in enumeration order.
 [[nodiscard]] VIEWGAIN_EXPORT const std::vector<std::string>& policy_names();
@@ -173,7 +174,8 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
   /// candidates of the generation.
   Proposal generate(const Pose& T_world_camera) override;
 
-  /// The chosen candidate. Empty if there are no candidates, and for kriegel if all were tried.
+  /// The chosen candidate. Empty if there are no candidates, or if the policy kriegel has tried all
+  /// boundary runs.
   std::optional<Decision> decide(const Pose& T_world_camera,
                                  std::span<const Candidate> candidates) override;
 

@@ -100,9 +100,10 @@ class VIEWGAIN_EXPORT SurfaceModel : public RepresentationUpdate {
   std::vector<Pose> tried_;
 };
 
-/// UPDATEREPRESENTATIONS for slightly wrong poses. Aligns the first frames of all views so far with
-/// each other (FrameAlignment) and rebuilds the model from the corrected poses. A view is
-/// left out of the model as long as its alignment is refused. The first view's pose is fixed.
+/// UPDATEREPRESENTATIONS for slightly wrong poses. Aligns the first frame of each view with those
+/// of all other views so far (FrameAlignment) and rebuilds the model from the corrected poses. A
+/// view is left out of the model as long as its alignment is refused. The first view's pose is
+/// fixed.
 ///
 /// Keeps all frames. Thread safety: one call at a time. Cost of a view: the alignment, and an
 /// update for every view so far.

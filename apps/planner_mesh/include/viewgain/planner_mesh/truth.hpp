@@ -56,7 +56,7 @@ struct VIEWGAIN_EXPORT Stage {
                                                  std::uint64_t seed, const ReachRegion& reach,
                                                  const std::optional<double>& support_plane);
 
-/// Default distance within which a point covers a sample [m].
+/// Default distance within which a point covers a sample of the reference mesh [m].
 inline constexpr double kCovered = 5e-3;
 
 /// Default covering distance for a map with this voxel size [m]: at least a voxel.
@@ -75,15 +75,15 @@ struct VIEWGAIN_EXPORT QualityFigures {
   /// Fraction of all samples with a vertex of the surface within 2.5 mm.
   double coverage_2_5mm = 0;
   double covered_area = 0;          ///< area of the mesh with covered visible samples [m²]
-  ErrorStatistics surface_error{};  ///< error of surface.ply
-  ErrorStatistics points_error{};   ///< error of points.ply
+  ErrorStatistics surface_error{};  ///< error of the surface, written to surface.ply
+  ErrorStatistics points_error{};   ///< error of the points, written to points.ply
   Consistency consistency{};        ///< consistency of the points
 };
 
 /// All figures of a surface and its points except covered_area, which stays 0. `visible` has one
 /// entry per sample of the reference mesh, nonzero for a visible one. A sample is covered if a
-/// point is within `tolerance` [m]. Throws for a wrong number of entries. Also throws whatever
-/// the members of GroundTruth throw; they also determine the cost.
+/// point is within `tolerance` [m]. Throws Error(invalid_argument) if `visible` has a wrong number
+/// of entries. Also throws whatever the members of GroundTruth throw; they also determine the cost.
 [[nodiscard]] VIEWGAIN_EXPORT QualityFigures quality_figures(const GroundTruth& truth,
                                                              const SurfaceMesh& surface,
                                                              std::span<const FusedPoint> points,
@@ -111,11 +111,11 @@ VIEWGAIN_EXPORT void mark_seen(const SurfaceScene& scene, const SurfaceScene* su
                                std::span<std::uint8_t> seen);
 
 /// A reference mesh, and which of its samples a camera can see. A sample is visible if the start or
-/// one of 2,562 poses around the mesh sees it unoccluded, within range and at under 80°. If the
-/// reachable region has a list of poses, that list replaces the 2,562 poses. An unreachable pose
-/// moves along its line of sight to the nearest reachable distance, or is omitted if there is none.
-/// Thread safety: const members may run from many threads at once. Cost of the constructor: at most
-/// 10,000 samples times 2,563 poses, two rays each.
+/// one of 2,562 poses around the mesh sees it unoccluded, within range and at an angle of incidence
+/// below 80°. If the reachable region has a list of poses, that list replaces the 2,562 poses. An
+/// unreachable pose moves along its line of sight to the nearest reachable distance, or is omitted
+/// if there is none. Thread safety: const members may run from many threads at once. Cost of the
+/// constructor: at most 10,000 samples times 2,563 poses, two rays each.
 class VIEWGAIN_EXPORT Truth {
  public:
   /// Determines the visible samples. The scene must not be null. Throws whatever GroundTruth and
