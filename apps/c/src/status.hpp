@@ -65,7 +65,8 @@ template <typename Struct>
 void require_size(std::size_t size, const std::string& name) {
   if (size == sizeof(Struct)) return;
   refuse("the size of " + name + " is " + std::to_string(size) +
-         " bytes, but in viewgain " VIEWGAIN_VERSION " it is " + std::to_string(sizeof(Struct)));
+         " bytes, but in viewgain " VIEWGAIN_VERSION " it is " + std::to_string(sizeof(Struct)) +
+         "; use the header of this version");
 }
 
 /// Throws Error(invalid_argument) for null. Also throws whatever require_size() throws.

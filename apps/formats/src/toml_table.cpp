@@ -68,7 +68,8 @@ int TableReader::whole_number(std::string_view key) {
 void TableReader::check_format() {
   if (find("format") == nullptr || whole_number("format") <= kTomlFormat) return;
   fail("format", "is " + std::to_string(whole_number("format")) +
-                     "; this library reads up to format " + std::to_string(kTomlFormat));
+                     ", which is too new; this library reads formats up to " +
+                     std::to_string(kTomlFormat));
 }
 
 std::string TableReader::text(std::string_view key) {

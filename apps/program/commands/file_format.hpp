@@ -19,8 +19,8 @@ inline constexpr std::uint64_t kRunFormat = 1;
 inline void check_format(const std::string& file, const Json& json) {
   const auto format = json.at("format").get_ref<const Json::number_unsigned_t&>();
   if (format <= kRunFormat) return;
-  throw Error(ErrorCode::format, file + ": the file has format " + std::to_string(format) +
-                                     "; this program reads up to format " +
+  throw Error(ErrorCode::format, file + ": the file's format, " + std::to_string(format) +
+                                     ", is too new; this program reads formats up to " +
                                      std::to_string(kRunFormat));
 }
 

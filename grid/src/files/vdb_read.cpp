@@ -93,9 +93,9 @@ class Loader {
   [[nodiscard]] std::int32_t version_of(const openvdb::MetaMap& metadata) const {
     const auto found = value<openvdb::Int32Metadata>(metadata, "viewgain_version");
     if (found != kVdbLayoutVersion && found != kVdbScaledVersion) {
-      fail("the file has viewgain_version " + std::to_string(found) +
-           "; this program reads versions " + std::to_string(kVdbLayoutVersion) + " and " +
-           std::to_string(kVdbScaledVersion));
+      fail("the map's viewgain_version " + std::to_string(found) +
+           " is not supported; this program reads versions " + std::to_string(kVdbLayoutVersion) +
+           " and " + std::to_string(kVdbScaledVersion));
     }
     return found;
   }
@@ -320,7 +320,8 @@ class Loader {
     for (const openvdb::Vec3STree* part : trees.parts) {
       if (part->activeVoxelCount() != trees.hits->activeVoxelCount()) fail(kOtherBeliefs);
     }
-    if (trees.parts[0]->activeTileCount() != 0) fail("grid 'information_diagonal' has tiles");
+    if (trees.parts[0]->activeTileCount() != 0)
+      fail("grid 'information_diagonal' has tiles; it must have only single voxels");
     std::vector<const Vec3Leaf*> leaves;
     trees.parts[0]->getNodes(leaves);
     std::vector<std::shared_ptr<BeliefBlock>> blocks(leaves.size());

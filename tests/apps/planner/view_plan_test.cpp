@@ -61,7 +61,7 @@ TEST_F(ViewPlan, ViewsThatGoTogetherAreTheBestSets) {
     EXPECT_EQ(together.views[0].index,
               planner.rank(1, {.together = true, .exact = true}).views[0].index);
     const Height height;
-    expect_error(ErrorCode::invalid_argument, "a set of views is chosen by the gain",
+    expect_error(ErrorCode::invalid_argument, "cannot be used to choose a set of views",
                  [&] { (void)planner.rank(2, {.measure = &height, .together = true}); });
   }
 }

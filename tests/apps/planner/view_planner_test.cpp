@@ -413,7 +413,7 @@ TEST(ViewPlanner, RefusesWrongUseAndStaysAsItWas) {
       EXPECT_FALSE(candidate.T_world_camera == scene.views[tried]);
     }
   }
-  expect_error(ErrorCode::invalid_argument, "cannot have the verdict used or carved",
+  expect_error(ErrorCode::invalid_argument, "cannot have the verdict \"used\" or \"carved\"",
                [&] { planner.drop(FrameVerdict::carved); });
   ViewPlanner none = scene.config().make(scene.sensor, {1});
   none.add_poses({"dome", scene.views});

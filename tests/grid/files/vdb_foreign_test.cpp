@@ -216,9 +216,9 @@ TEST_F(ForeignVdb, ValuesOutOfBoundsAreNamed) {
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::int32_t version : {0, 1, 4}) {
-    metadata(
-        "has viewgain_version " + std::to_string(version) + "; this program reads versions 2 and 3",
-        "viewgain_version", openvdb::Int32Metadata(version));
+    metadata("the map's viewgain_version " + std::to_string(version) +
+                 " is not supported; this program reads versions 2 and 3",
+             "viewgain_version", openvdb::Int32Metadata(version));
   }
   metadata("voxel size", "voxel_size", openvdb::DoubleMetadata(-1));
   metadata("transform", "voxel_size", openvdb::DoubleMetadata(0.06));

@@ -136,9 +136,9 @@ PlannerState state_of(const std::string& name, std::string_view text) {
     if (key == "version") {
       const std::uint64_t version = reader.count(1, kMost);
       if (version >= kOldest && version <= kVersion) continue;
-      reader.fail("the planner's state has version " + std::to_string(version) +
-                  "; this library reads versions " + std::to_string(kOldest) + " to " +
-                  std::to_string(kVersion));
+      reader.fail("version " + std::to_string(version) +
+                  " of the planner's state is not supported; this library reads versions " +
+                  std::to_string(kOldest) + " to " + std::to_string(kVersion));
     } else if (key == "seen_area") {
       state.seen_area = reader.number(1);
     } else if (key == "before_choice") {

@@ -24,7 +24,7 @@ constexpr std::size_t kByStop = 3, kFewPoses = 32;
 
 void refuse_measures(const RankConfig& config) {
   if (config.measure == nullptr && config.run_measure == nullptr) return;
-  refuse("a set of views is chosen by the gain; measure and run_measure cannot be used");
+  refuse("measure and run_measure cannot be used to choose a set of views");
 }
 
 double least_area_of(const PlanAhead& ahead, double surface_area) {

@@ -271,7 +271,7 @@ AddedView ViewPlanner::add(std::span<const DepthFrame> frames, const Pose& T_wor
 }
 
 AddedView ViewPlanner::drop(FrameVerdict verdict, const std::optional<Pose>& T_world_camera) {
-  if (is_in_map(verdict)) refuse("a dropped frame cannot have the verdict used or carved");
+  if (is_in_map(verdict)) refuse("a dropped frame cannot have the verdict \"used\" or \"carved\"");
   MapUpdate nothing;
   nothing.verdict = verdict;
   return impl_->counted(std::move(nothing), T_world_camera);

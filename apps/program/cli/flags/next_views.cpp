@@ -87,7 +87,7 @@ PlanAhead parse_plan(const std::string& text) {
   ahead.plan = parse_count("--plan", n[0]);
   ahead.take = n.size() > 1 ? parse_count("--plan", n[1]) : ahead.plan;
   if (ahead.plan < 1 || ahead.plan > 1000 || ahead.take < 1 || ahead.take > ahead.plan) {
-    refuse("--plan " + text + ": needs 1 <= M <= K <= 1000");
+    refuse("--plan " + text + ": expected 1 <= M <= K <= 1000");
   }
   return ahead;
 }

@@ -79,8 +79,8 @@ void add_pose_options(App& app, PoseOptions& options) {
                  "                      or (n, 4, 4) matrices; float64 or float32\n"
                  "  sphere:N,RADIUS     evenly spread over a sphere\n"
                  "  dome:N,RADIUS       evenly spread over the upper half of a sphere\n"
-                 "  rings:N,RADIUS      on rings around a cylinder and a dome; N is 48, 80, 288\n"
-                 "                      or 864\n"
+                 "  rings:N,RADIUS      on horizontal rings of a cylinder and of a dome above it;\n"
+                 "                      N is 48, 80, 288 or 864\n"
                  "  shell:N,RMIN,RMAX   random between two radii; --seed changes them\n"
                  "  orbit:N,RADIUS,ELEVATION[,START,STEP]  on a circle at this elevation\n");
   app.add_option("--center", options.center,

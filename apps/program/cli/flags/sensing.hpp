@@ -53,7 +53,7 @@ void add_sensing_options(App& app, SensingOptions& options);
 
 /// Help of --jump-edge-filter in all subcommands.
 inline constexpr const char* kJumpEdgeHelp =
-    "ANGLE_DEG (1..10) or off: remove flying pixels, where the line to a nearer neighbour is "
+    "ANGLE_DEG (1..10) or off: remove flying pixels, whose line to a nearer neighbour is "
     "within this angle of the ray";
 
 /// Parses --jump-edge-filter ANGLE_DEG|off. Throws Error(invalid_argument) for other text; the

@@ -145,7 +145,8 @@ class Recording {
       progress.update(i + 1, map_->folder().size());
     }
     if (views_->empty() && stop.stop_requested()) {
-      refuse(map_->folder().name() + ": the call was interrupted before the map had any frame");
+      refuse(map_->folder().name() +
+             ": the call was interrupted before the map had any frame; repeat it");
     }
     map_->require_frames();
   }

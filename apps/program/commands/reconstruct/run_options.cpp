@@ -26,7 +26,7 @@ void add_output_options(App& app, RunOutputs& outputs) {
   add_switch(app, "--pictures", outputs.pictures, "draw each view as views/NN.png");
   app.add_option(
       "--report", outputs.report,
-      "on: write report.html; RUN: also show the curves of the run in this folder; off: no report");
+      "on: write report.html; RUN: also show the curves of the run in folder RUN; off: no report");
   app.add_flag("--resume", outputs.resume, "continue this call after an interruption");
   app.add_option("--out", outputs.out, "folder to write")->required();
 }
@@ -46,8 +46,8 @@ void add_options(App& app, ReconstructOptions& o) {
       ->check(one_of({"x", "y", "z"}, "axis"));
   begin_group(app, "Views");
   app.add_option("--from", o.from,
-                 "tx,ty,tz,qx,qy,qz,qw: start pose of the camera [m] (default: 27 deg above the "
-                 "object; --seed sets the azimuth)");
+                 "tx,ty,tz,qx,qy,qz,qw: start pose [m] (default: 27 deg above the object; --seed "
+                 "sets the azimuth)");
   app.add_option("--distance", o.distance,
                  "distance of start pose and sets of poses from the object's centre [m] "
                  "(default: see below)");
@@ -61,7 +61,7 @@ void add_options(App& app, ReconstructOptions& o) {
                  "Views that --policy chooses:\n"
                  "  gain       highest expected gain\n"
                  "  kriegel    open edges of the surface: left, right, top, then bottom\n"
-                 "  sequence   8 views of a turntable, then one from above; or --poses\n"
+                 "  sequence   8 views of a turntable, then one from above; or those of --poses\n"
                  "  random     random views\n"
                  "  frontier   most unknown voxels in view\n"
                  "  fibonacci  evenly around the object\n"
@@ -74,8 +74,8 @@ void add_options(App& app, ReconstructOptions& o) {
       "            --distance: the working distance, or more for large objects.\n"
       "            With --reach, shell fills the shells or boxes of the reach file\n");
   app.add_option("--poses", o.poses,
-                 "TUM or .npy file of poses for --policy sequence, after the start pose (default: "
-                 "a turntable)");
+                 "TUM or .npy file of poses that --policy sequence takes after the start pose "
+                 "(default: a turntable)");
   app.add_option("--count", o.count,
                  "number of poses for sphere, dome or shell (default: 500; --policy fibonacci: "
                  "--max-views), or for rings (48, 80, 288 or 864; default: 48)")

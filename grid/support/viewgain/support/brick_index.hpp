@@ -54,7 +54,7 @@ struct BrickIndex {
   /// Throws Error(capacity) if gathers, which have signed 32-bit indices, cannot reach all.
   static void check_capacity(std::size_t count) {
     if (count > std::size_t{std::numeric_limits<std::int32_t>::max()}) {
-      throw Error(ErrorCode::capacity, "the map is too large for this gain");
+      throw Error(ErrorCode::capacity, "the map is too large for this gain; use larger voxels");
     }
   }
 

@@ -280,9 +280,10 @@ TEST_F(Reports, HoldTheRunAndTheRanking) {
   json newer = run_json;
   newer["format"] = 2;
   write("none/run.json", newer.dump());
-  expect_refused({"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel",
-                  "0.01", "--out", "third", "--report", "none"},
-                 "none/run.json: the file has format 2; this program reads up to format 1");
+  expect_refused(
+      {"reconstruct", "cube.off", "--size", "0.3", "--sensor", "tof.toml", "--voxel", "0.01",
+       "--out", "third", "--report", "none"},
+      "none/run.json: the file's format, 2, is too new; this program reads formats up to 1");
 
   // A later run in the folder takes the report of the one before with it.
   ASSERT_EQ(reconstruct("off").exit_code, 0);

@@ -282,7 +282,8 @@ TEST_F(Resume, AnothersCheckpointIsRefusedAndStays) {
   real["decisions"][0]["candidate"] = 3e31;
   std::size_t cases = 0;
   for (const auto& [text, word] :
-       {std::pair{newer.dump(), "has format 7; this program reads up to format 1"},
+       {std::pair{newer.dump(),
+                  "the file's format, 7, is too new; this program reads formats up to 1"},
         std::pair{cut.dump(), "checkpoint.json: the file is not a checkpoint: "},
         std::pair{real_format.dump(), "checkpoint.json: the file is not a checkpoint: "},
         std::pair{real.dump(), "checkpoint.json: the file is not a checkpoint: "},

@@ -339,7 +339,8 @@ TEST_F(Watch, SaysWhereToLookNext) {
   json newer = json::parse(before);
   newer["format"] = 2;
   write("plan/next.json", newer.dump());
-  expect_refused(watch({}), "next.json: the file has format 2; this program reads up to format 1");
+  expect_refused(watch({}),
+                 "next.json: the file's format, 2, is too new; this program reads formats up to 1");
   for (const char* damaged : {"", "{", "{}", "{\"format\": -1}"}) {
     write("plan/next.json", damaged);
     (void)run_well(watch({"--top", "5"}));

@@ -235,11 +235,11 @@ VG_API vg_status vg_outcomes(const vg_evaluator* evaluator, const double T_world
 
 /* ---- Which poses are possible ---- */
 
-/* Checks which poses are possible in a scene. Calls that take it as const may run from many threads
+/* Checks which poses are feasible in a scene. Calls that take it as const may run from many threads
    at once. */
 typedef struct vg_feasibility vg_feasibility;
 
-/* Why a pose is impossible; the first reason in this order. */
+/* Why a pose is infeasible. If several reasons hold, the first in this order counts. */
 enum {
   VG_FEASIBLE = 0,
   VG_INFEASIBLE_BAD_POSE = 1,
@@ -280,9 +280,9 @@ VG_API void vg_feasibility_config_init(vg_feasibility_config* config, size_t str
 VG_API vg_status vg_feasibility_create(const vg_scene* scene, const vg_feasibility_config* config,
                                        vg_feasibility** feasibility);
 
-/* Why each pose is impossible (or VG_FEASIBLE); the first reason in the order above. `taken`: poses
+/* Why each pose is infeasible, or VG_FEASIBLE; the first reason in the order above. `taken`: poses
    of the views so far, 16 doubles each. Runs on all threads, which call `reachable` concurrently.
- */
+   */
 VG_API vg_status vg_feasibility_check(const vg_feasibility* feasibility, const double* poses,
                                       size_t count, const double* taken, size_t taken_count,
                                       int32_t* reasons);

@@ -119,12 +119,12 @@ class VIEWGAIN_EXPORT ViewPlanner {
   /// Verdicts of the frames so far.
   [[nodiscard]] const FrameCounts& frames() const noexcept;
 
-  /// The possible candidates from the reach region's poses, the sets and the generations, in this
-  /// order (see ViewProposer). Also gives the number of dropped candidates per reason. If an
-  /// earlier plan has views left that are still good, only these are returned; their generator is
-  /// kPlanned. Valid until the next add() or propose(). Earlier rankings become invalid. Like
-  /// rank(), throws Error(invalid_argument) if no frame so far could be used, because the set-up is
-  /// then probably wrong.
+  /// The feasible candidates: first the reach region's poses, then those of the sets and of the
+  /// generations (see ViewProposer). Also gives the number of dropped candidates per reason. If an
+  /// earlier plan has views left that are still feasible and worth taking, returns only these;
+  /// their generator is kPlanned. Valid until the next add() or propose(). Earlier rankings become
+  /// invalid. Like rank(), throws Error(invalid_argument) if no frame so far could be used, because
+  /// the set-up is then probably wrong.
   const Proposal& propose();
   /// Dropped candidates of the last proposal, in order; valid as long as the proposal.
   [[nodiscard]] const std::vector<DroppedCandidate>& dropped() const noexcept;

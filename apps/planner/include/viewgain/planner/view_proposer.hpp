@@ -21,8 +21,8 @@
 #include "viewgain/raycast/voxel_scene.hpp"
 
 /// @file
-/// Rules for which views are possible. All commands, studies, ViewPlanner and Python share them.
-/// Poses are T_world_camera. Functions keep the order of the poses.
+/// Rules that decide which candidates are feasible. All commands, studies, ViewPlanner and Python
+/// share these rules. Poses are T_world_camera. Functions keep the order of the poses.
 
 namespace viewgain {
 
@@ -48,10 +48,10 @@ struct VIEWGAIN_EXPORT ProposerConfig {
   double distance_in_reach = 0;
 };
 
-/// Collects candidates of sets and generations and checks which are possible. If all views of the
-/// map lie inside its workspace, as in a room, candidates of generations must lie inside as well,
-/// because obstacles outside are not mapped. This rule does not apply if the reach is limited. Not
-/// thread safe.
+/// Collects candidates of sets and generations, and checks which of them are feasible. If all views
+/// of the map lie inside its workspace, as in a room, candidates of generations must lie inside as
+/// well, because obstacles outside are not mapped. This rule does not apply if the reach is
+/// limited. Not thread safe.
 class VIEWGAIN_EXPORT ViewProposer {
  public:
   /// The reach region's list of poses, if any, becomes the set "reach". Throws whatever
@@ -64,15 +64,15 @@ class VIEWGAIN_EXPORT ViewProposer {
   /// Adds candidates that are recomputed for each proposal.
   void add_generation(std::shared_ptr<ViewpointGeneration> generation);
 
-  /// The possible candidates of the sets, then of the generations, in order. Also gives the number
-  /// of dropped candidates per reason. `scene` must show the current map. Poses in `reached` and
-  /// `missed` were tried and are dropped. Generations receive the current camera pose
+  /// The feasible candidates of the sets, then those of the generations, in order. Also gives the
+  /// number of dropped candidates per reason. `scene` must show the current map. Poses in `reached`
+  /// and `missed` were tried and are dropped. Generations receive the current camera pose
   /// `T_world_camera`. Cost: the generations, and FeasibilityChecker::check().
   [[nodiscard]] Proposal propose(const BeliefGrid& grid, std::shared_ptr<const VoxelScene> scene,
                                  const Pose& T_world_camera, std::span<const Pose> reached = {},
                                  std::span<const Pose> missed = {});
 
-  /// The possible poses of one set, under the same rules.
+  /// The feasible poses of one set, according to the same rules.
   [[nodiscard]] Proposal propose_these(const PoseSet& set, const BeliefGrid& grid,
                                        std::shared_ptr<const VoxelScene> scene,
                                        std::span<const Pose> reached = {},

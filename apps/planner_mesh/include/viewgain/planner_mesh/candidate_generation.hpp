@@ -107,11 +107,11 @@ class VIEWGAIN_EXPORT CandidateGeneration : public ViewpointGeneration {
   CandidateGeneration(const SurfaceModel& model, const GenerationConfig& config,
                       const ExecConfig& exec);
 
-  /// Poses of the sets and boundary views that are possible under the rules of ViewProposer. Throws
-  /// whatever boundary_views() throws.
+  /// Poses of the sets and boundary views that are feasible according to the rules of ViewProposer.
+  /// Throws whatever boundary_views() throws.
   Proposal generate(const Pose& T_world_camera) override;
 
-  /// The possible poses of one set.
+  /// The feasible poses of one set.
   [[nodiscard]] Proposal propose_these(const PoseSet& set);
 
   /// The settings.

@@ -170,8 +170,8 @@ class VIEWGAIN_EXPORT PolicyDecision : public DecisionMaking, public ViewpointGe
   PolicyDecision(const SurfaceModel& model, CandidateGeneration& generation, const Sensor& sensor,
                  const PolicyConfig& config, const ExecConfig& exec);
 
-  /// The remaining views of a plan that are still good (generator kPlanned). If there are none, the
-  /// candidates of the generation.
+  /// The remaining views of a plan that are still feasible and worth taking (generator kPlanned).
+  /// If there are none, the candidates of the generation.
   Proposal generate(const Pose& T_world_camera) override;
 
   /// The chosen candidate. Empty if there are no candidates, or if the policy kriegel has tried all
