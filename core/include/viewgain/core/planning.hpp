@@ -25,7 +25,8 @@
 /// generates candidates and chooses the next view. Four interfaces, named as in the paper, do these
 /// steps. x_i is the camera pose of view i. A run is one execution of the loop.
 ///
-/// Gains and entropies are in nats; with Criterion::trace they are in m².
+/// Gains are in nats. With Criterion::trace, or by the surface gain, they are in m².
+/// Entropies are in nats; with Criterion::trace they are in m².
 
 namespace viewgain {
 
