@@ -223,7 +223,7 @@ TEST(PinholeCamera, SolidAnglesWhereThereIsNoRay) {
   PinholeCamera pixel = small_camera();
   pixel.width = pixel.height = 1, pixel.cx = pixel.cy = 0;
   EXPECT_EQ(pixel.solid_angles(pixel.ray_table()), std::vector<double>{1.0 / 50 * (1.0 / 52)});
-  expect_error(ErrorCode::invalid_argument, "3072 rays", [&] { (void)pixel.solid_angles(table); });
+  expect_error(ErrorCode::invalid_argument, "rays: 3072", [&] { (void)pixel.solid_angles(table); });
 }
 
 TEST(PinholeCamera, ValidateNamesTheField) {

@@ -215,7 +215,7 @@ TEST(SavedPlanner, RefusesWhatIsNone) {
   with_note("");
   refuses(ErrorCode::format, "version", config);
   with_note("version 1\n");
-  refuses(ErrorCode::format, "planner's state has version 1;", config);
+  refuses(ErrorCode::format, "version 1 of the planner's state", config);
   with_note(note + "of_view tired\n");
   refuses(ErrorCode::format, "tired", config);
   with_note(note);

@@ -275,7 +275,7 @@ def test_the_surface_gain_is_an_area_and_follows_the_hazard(grid, labels, sensor
         evaluator("surface", hazard=1.0, object_size=0)
     for path in (tmp_path / "map.vdb", str(tmp_path / "map.vdb"), bytes(tmp_path / "map.vdb")):
         grid.save(tmp_path / "map.vdb")
-        with pytest.raises(viewgain.Error, match="float grids"):
+        with pytest.raises(viewgain.Error, match="grids of floats"):
             evaluator("surface", hazard=path)
     with pytest.raises(ValueError, match="hazard"):
         evaluator("surface", hazard=-1.0)

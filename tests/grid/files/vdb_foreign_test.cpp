@@ -481,8 +481,8 @@ TEST_F(ForeignVdb, OtherGridsBesideTheRatesDoNotMatter) {
     expect_error(ErrorCode::format, part, [&] { (void)load(grids); });
     expect_error(ErrorCode::format, "foreign.vdb", [&] { (void)load(grids); });
   };
-  refused("2 float grids", {named("a", 1), named("b", 1)});
-  refused("0 float grids", {openvdb::Int32Grid::create(7)});
+  refused("2 grids of floats", {named("a", 1), named("b", 1)});
+  refused("0 grids of floats", {openvdb::Int32Grid::create(7)});
   refused("-1", {named("hazard", -1)});
   refused("nan", {named("hazard", std::numeric_limits<float>::quiet_NaN())});
   auto infinite = named("hazard", 1);
@@ -492,7 +492,7 @@ TEST_F(ForeignVdb, OtherGridsBesideTheRatesDoNotMatter) {
   frustum->setTransform(openvdb::math::Transform::createFrustumTransform(
       openvdb::BBoxd({0, 0, 0}, {10, 10, 10}), 0.5, 1.0, 0.1));
   refused("not linear", {frustum});
-  expect_error(ErrorCode::format, "3 float grids", [&] { (void)load_hazard_vdb(path(), map); });
+  expect_error(ErrorCode::format, "3 grids of floats", [&] { (void)load_hazard_vdb(path(), map); });
   expect_error(ErrorCode::io, "none.vdb",
                [&] { (void)load_hazard_vdb(folder_.path() / "none.vdb", map); });
 }

@@ -140,7 +140,7 @@ TEST(BoundaryLoops, RefuseWhatIsNoSurface) {
   expect_error(invalid, "2 and 2", [&] { (void)boundary_loops(surface); });
   surface.triangles.clear();
   surface.normals.pop_back();
-  expect_error(invalid, "4 normals", [&] { (void)boundary_loops(surface); });
+  expect_error(invalid, "normals: 4", [&] { (void)boundary_loops(surface); });
 }
 
 TEST(BoundaryRuns, AHalfCylindersSidesAreNamedByTheCamerasAxes) {
@@ -364,7 +364,7 @@ TEST(BoundaryRuns, SmallHolesAreLeftOutAndLargerOnesAreNot) {
 TEST(BoundaryRuns, RefuseBadArguments) {
   const auto invalid = ErrorCode::invalid_argument;
   const SurfaceMesh surface = plane_sheet(0.1, 0.1, 0.02);
-  expect_error(invalid, "no views", [&] { (void)runs_of(surface, {}); });
+  expect_error(invalid, "at least one view is required", [&] { (void)runs_of(surface, {}); });
   Pose skewed;
   skewed.m[1] = 0.5;
   expect_error(invalid, "view 1", [&] { (void)runs_of(surface, {Pose(), skewed}); });

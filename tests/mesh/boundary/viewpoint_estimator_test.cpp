@@ -325,7 +325,8 @@ TEST(EstimateViews, RefusesBadArguments) {
   const std::vector<Pose> views{kFromAbove};
   expect_error(invalid, "working_distance",
                [&] { (void)estimate_views(surface, views, kSensor, 0.0); });
-  expect_error(invalid, "no views", [&] { (void)estimate_views(surface, {}, kSensor, kDistance); });
+  expect_error(invalid, "at least one view is required",
+               [&] { (void)estimate_views(surface, {}, kSensor, kDistance); });
 }
 
 }  // namespace
