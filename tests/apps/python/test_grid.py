@@ -283,7 +283,7 @@ def test_obstacles_block(grid, sensor, poses):
     vertices, triangles = box_mesh(*wall[0])
     for boxes, meshes, text in [(wall[0], (), r"\(2, 3\)"), (wall[:, ::-1], (), "inside out|box"),
                                 (None, [vertices], "pair"),
-                                (None, [(vertices, triangles + 1)], "index 8"),
+                                (None, [(vertices, triangles + 1)], "contains 8"),
                                 (None, [(vertices, triangles - 0.5)], "index"),
                                 (None, [(vertices * np.nan, triangles)], "finite")]:
         with pytest.raises(ValueError, match=text):

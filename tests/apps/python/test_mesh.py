@@ -176,7 +176,7 @@ def test_surface_and_boundaries(camera, sensor, start):
             (lambda: viewgain.mesh.boundary_candidates(surface, [start], sensor, spacing=0.0), "spacing"),
             (lambda: viewgain.mesh.reconstruct_surface(np.zeros((3, 2)), spacing=VOXEL), r"\(3, 2\)"),
             (lambda: viewgain.mesh.reconstruct_surface(np.zeros((3, 3)), np.zeros((2, 3)), spacing=VOXEL),
-             "2 rows"),
+             "rows: 2"),
             (lambda: viewgain.mesh.reconstruct_surface(np.zeros((3, 3)), spacing=0.0), "spacing")]:
         with pytest.raises(ValueError, match=text):
             call()
