@@ -19,7 +19,7 @@ class Watcher {
   Watcher(const vg_watch* watch, std::size_t total) : total_(total) {
     if (watch == nullptr) return;
     watch_ = read_struct(watch, "vg_watch");
-    if (watch_->poll == nullptr) refuse("poll of vg_watch is null");
+    if (watch_->poll == nullptr) refuse("the member poll of vg_watch is null");
   }
 
   /// Valid during the lifetime of this object.

@@ -282,8 +282,7 @@ std::uint64_t follow_file(std::string& image) {
     const auto end = reader.number<std::int64_t>();
     const bool is_known = is_followed(without_half(type));
     if (!has_positions) {
-      if (!is_known)
-        throw Fault("the file has a grid of type " + std::string(type) + " of unknown length");
+      if (!is_known) throw Fault("the size of a grid of type " + std::string(type) + " is unknown");
       bytes += follow_grid(reader, image, type, !parent.empty());
       continue;
     }

@@ -31,7 +31,7 @@ ScalePlan::ScalePlan(const IntegrationConfig& config)
   for (const Box& box : fine_) {
     for (std::size_t a = 0; a < 3; ++a) {
       if (box.min[a] < box.max[a]) continue;
-      refuse(std::string("a fine box is inside out or empty: along ") + "xyz"[a] +
+      refuse(std::string("a box for fine voxels is inside out or empty: along ") + "xyz"[a] +
              " it extends from " + short_text(box.min[a]) + " to " + short_text(box.max[a]));
     }
   }

@@ -81,7 +81,7 @@ void add_pose_options(App& app, PoseOptions& options) {
                  "  dome:N,RADIUS       evenly spread over the upper half of a sphere\n"
                  "  rings:N,RADIUS      on horizontal rings of a cylinder and of a dome above it;\n"
                  "                      N is 48, 80, 288 or 864\n"
-                 "  shell:N,RMIN,RMAX   random between two radii; --seed changes them\n"
+                 "  shell:N,RMIN,RMAX   random places between two radii; depends on --seed\n"
                  "  orbit:N,RADIUS,ELEVATION[,START,STEP]  on a circle at this elevation\n");
   app.add_option("--center", options.center,
                  "x,y,z: point that sets of poses look at, world frame [m] (default: the origin)");

@@ -311,9 +311,10 @@ Command add_score(App& program) {
   add_pose_options(*app, options->poses);
   app->add_option("--sensor", options->sensor, kMapSensorHelp);
   begin_group(*app, "Gain");
-  app->add_option("--gain", options->gain,
-                  "paper (entropy removed) [nat], surface (new surface) [m^2], combined [nat], or "
-                  "gains of the literature, separated by commas (the first one ranks the poses)")
+  app->add_option(
+         "--gain", options->gain,
+         "paper (entropy removed) [nat], surface (new surface) [m^2], combined [nat], or "
+         "a gain of the literature; several, separated by commas (the first ranks the poses)")
       ->check(several_of(all_gain_names(), "gain"));
   add_hazard_option(*app, options->hazard);
   begin_group(*app, "Obstacles");

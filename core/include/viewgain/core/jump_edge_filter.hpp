@@ -42,7 +42,8 @@ class VIEWGAIN_EXPORT JumpEdgeFilter {
   PinholeCamera camera_;
   Config config_;
   std::vector<Eigen::Vector3d> rays_;
-  double smooth_ = 1;  ///< a ratio of squared ranges below this is not a discontinuity
+  double smooth_ =
+      1;  ///< two ranges are no discontinuity if the ratio of their squares is below this
 };
 
 }  // namespace viewgain

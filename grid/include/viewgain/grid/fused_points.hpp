@@ -23,7 +23,7 @@ struct VIEWGAIN_EXPORT FusedPoint {
   SymmetricMatrix3 covariance{};     ///< covariance [m²], including FusedPointsConfig::floor_sigma
   std::array<double, 3> toward_free{};  ///< unit surface normal towards free space
   std::uint32_t hits = 0;               ///< number of readings (measured depths) that support it
-  double spacing = 0;                   ///< distance of neighbouring points: the pooling length [m]
+  double spacing = 0;  ///< typical distance to the next points: the pooling length [m]
 };
 
 /// Settings of fused_points(). The belief of a voxel is defined in grid/belief.hpp. The footprint
@@ -94,12 +94,12 @@ struct VIEWGAIN_EXPORT Pooling {
   double length = 0;  ///< edge of the cubes or the footprint, whichever is larger [m]
 };
 
-/// Pooling of a map. The footprint is the standard deviation of a reading across its ray, estimated
-/// from the beliefs as the median over the occupied voxels. The cubes are as large as possible with
-/// an edge below 1.42 footprints. If single voxels are larger than that, shift is 0. If `scale` (0
-/// to 3) is given, considers only leaves with this scale (BeliefGrid::scale()), and makes the cubes
-/// at least as large as their cells. Never throws. Thread safe. Cost: about 20 ns per occupied
-/// voxel.
+/// Pooling of a map. The footprint is estimated from the beliefs: it is the standard deviation of a
+/// reading across its ray, as a median over the occupied voxels. The cubes are as large as possible
+/// with an edge below 1.42 footprints. If single voxels are larger than that, shift is 0. If
+/// `scale` (0 to 3) is given, considers only leaves with this scale (BeliefGrid::scale()), and
+/// makes the cubes at least as large as their cells. Never throws. Thread safe. Cost: about 20 ns
+/// per occupied voxel.
 [[nodiscard]] VIEWGAIN_EXPORT Pooling pooling_of(const GridSnapshot& snapshot,
                                                  std::optional<int> scale = {});
 

@@ -39,8 +39,8 @@ struct VIEWGAIN_EXPORT TourConfig {
   /// degrees to one that it already took. If too few poses remain, the limits are 0.1 working
   /// distances and 15 degrees.
   std::size_t max_candidates = std::numeric_limits<std::size_t>::max();
-  /// Fraction of rays to trace, in (0, 1]. Values below 1 are faster but less exact, and
-  /// underestimate refinement. Must be 1 with the paper's gain.
+  /// Fraction of rays to trace, in (0, 1]. Values below 1 are faster but less exact. They
+  /// underestimate the gain from more accurate known surface. Must be 1 with the paper's gain.
   double share = 1;
   /// Minimum new surface [m²] of each stop after the first; ignored with the paper's gain.
   double least_area = 0;
@@ -52,7 +52,7 @@ struct VIEWGAIN_EXPORT ViewTour {
   /// Marginal gain of each view of the set, minus the costs of the view and of its path, when it
   /// was chosen.
   std::vector<double> worth;
-  /// Gain of each pose alone, from the same rays; NaN: not evaluated.
+  /// Gain of each pose alone, by the rays that chose the set; NaN: not evaluated.
   std::vector<ViewGain> alone;
   Tour tour;  ///< order of the views; its stops are indices into `set`
 };
