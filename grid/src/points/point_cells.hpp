@@ -8,10 +8,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
+#include <unordered_map>
 #include <vector>
-
-#include "viewgain/support/hash64.hpp"
 
 namespace viewgain::detail {
 
@@ -24,17 +22,7 @@ class PointCells {
   explicit PointCells(double edge) : edge_(std::max(edge, kLeastEdge)) {}
 
   [[nodiscard]] Bucket& at(const Eigen::Vector3d& p) {
-    const std::uint64_t number = key(cell(p.x()), cell(p.y()), cell(p.z()));
-    std::size_t slot = slot_of(number);
-    if (slots_[slot].bucket == kNone) {
-      if (2 * (buckets_.size() + 1) > slots_.size()) {
-        grow();
-        slot = slot_of(number);
-      }
-      slots_[slot] = {number, buckets_.size()};
-      buckets_.emplace_back();
-    }
-    return buckets_[slots_[slot].bucket];
+    return cells_[key(cell(p.x()), cell(p.y()), cell(p.z()))];
   }
 
   [[nodiscard]] double edge() const { return edge_; }
@@ -52,8 +40,8 @@ class PointCells {
     for (std::int64_t i = low[0]; i <= high[0]; ++i) {
       for (std::int64_t j = low[1]; j <= high[1]; ++j) {
         for (std::int64_t k = low[2]; k <= high[2]; ++k) {
-          const std::size_t bucket = slots_[slot_of(key(i, j, k))].bucket;
-          if (bucket != kNone && f(buckets_[bucket])) return true;
+          const auto found = cells_.find(key(i, j, k));
+          if (found != cells_.end() && f(found->second)) return true;
         }
       }
     }
@@ -63,8 +51,8 @@ class PointCells {
   /// The bucket of each cube that has one.
   [[nodiscard]] std::vector<const Bucket*> buckets() const {
     std::vector<const Bucket*> result;
-    result.reserve(buckets_.size());
-    for (const Bucket& bucket : buckets_) result.push_back(&bucket);
+    result.reserve(cells_.size());
+    for (const auto& [key, bucket] : cells_) result.push_back(&bucket);
     return result;
   }
 
@@ -80,31 +68,8 @@ class PointCells {
     return bits(x) << 42U | bits(y) << 21U | bits(z);
   }
 
-  // Slot of the cube with this key, or a free slot for it.
-  [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t slot = mix64(key) & mask;
-    while (slots_[slot].bucket != kNone && slots_[slot].key != key) slot = (slot + 1) & mask;
-    return slot;
-  }
-  void grow() {
-    std::vector<Slot> before(2 * slots_.size());
-    before.swap(slots_);
-    for (const Slot& slot : before) {
-      if (slot.bucket != kNone) slots_[slot_of(slot.key)] = slot;
-    }
-  }
-
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  struct Slot {
-    std::uint64_t key = 0;
-    std::size_t bucket = kNone;
-  };
-
   double edge_;
-  std::deque<Bucket> buckets_;
-  // A hash table with open addressing, at most half full, because searches look up many cubes.
-  std::vector<Slot> slots_ = std::vector<Slot>(1024);
+  std::unordered_map<std::uint64_t, Bucket> cells_;
 };
 
 }  // namespace viewgain::detail

@@ -17,9 +17,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSameSide = 0.5;       // least cosine between normals of one side
-constexpr std::size_t kDirections = 8;  // of the rim of a disc
-constexpr double kLeastGap = 0.4;       // of `cover`: nearer points are not put back
+constexpr double kSameSide = 0.5;  // least cosine between normals of one side
+constexpr int kDirections = 8;     // of the rim of a disc
+constexpr double kLeastGap = 0.4;  // of `cover`: nearer points are not put back
 
 // Points with one array per component, so that a loop over them can be vectorised.
 struct Columns {
@@ -67,17 +67,10 @@ struct Taken {
 // Whether the rim of the disc of radius `cover` in the point's tangent plane is within `cover` of
 // others.
 bool rim_is_covered(const PooledPoint& point, double cover, const std::vector<Vector3d>& others) {
-  static const auto kTurns = [] {
-    std::array<std::array<double, 2>, kDirections> turns{};  // cosine, sine
-    for (std::size_t k = 0; k < turns.size(); ++k) {
-      const double turn = 2 * std::numbers::pi * static_cast<double>(k) / kDirections;
-      turns[k] = {std::cos(turn), std::sin(turn)};
-    }
-    return turns;
-  }();
   const Vector3d u = point.toward_free.unitOrthogonal(), w = point.toward_free.cross(u);
-  for (const auto& [cosine, sine] : kTurns) {
-    const Vector3d rim = point.position + cover * (cosine * u + sine * w);
+  for (int k = 0; k < kDirections; ++k) {
+    const double turn = 2 * std::numbers::pi * k / kDirections;
+    const Vector3d rim = point.position + cover * (std::cos(turn) * u + std::sin(turn) * w);
     if (std::none_of(others.begin(), others.end(), [&](const Vector3d& other) {
           return (other - rim).squaredNorm() <= cover * cover;
         })) {

@@ -216,8 +216,7 @@ std::vector<std::uint32_t> apart(std::span<const Point3> points, double min_dist
     finite.push_back(i);
     candidates.push_back(points[i]);
   }
-  // A search then touches one to eight cells, instead of 27 that are mostly empty.
-  const PointGrid grid(candidates, 4 * min_distance);
+  const PointGrid grid(candidates, min_distance);
   std::vector<bool> dropped(candidates.size(), false);
   std::vector<std::uint32_t> kept;
   for (std::uint32_t i = 0; i < candidates.size(); ++i) {
