@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "front_triangulation.hpp"
+#include "viewgain/core/error.hpp"
 
 namespace viewgain::detail::front {
 
@@ -47,6 +48,7 @@ class FrontGrowth {
   FrontGrowth(Front& front, const BoundedEdges& priority) : front_(front), priority_(priority) {}
 
   void run() {
+    if (front_.triangulation_3().dimension() < 3) return;
     front_.*opened(Bound{}) = kFirstBound;
     front_.*opened(Wedge{}) = std::cos(kBeta);
     (front_.*opened(Initialize{}))();
@@ -56,7 +58,8 @@ class FrontGrowth {
       // outliers if they were fewer than a tenth of a size that CGAL leaves at 0.
       const auto vertices = static_cast<int>(front_.triangulation_3().number_of_vertices());
       if (has_requests_ && front_.number_of_facets() > vertices) {
-        (void)front_.postprocessing();
+        if (front_.postprocessing())
+          throw Error(ErrorCode::backend, "CGAL removed outliers; its version is not supported");
         has_requests_ = false;
       }
     }
@@ -193,7 +196,7 @@ class FrontGrowth {
   }
 
   Front& front_;
-  const BoundedEdges& priority_;
+  BoundedEdges priority_;
   Front::Ordered_border_type& border_ = front_.*opened(Border{});
   bool has_requests_ = false;  // since the last postprocessing
 };

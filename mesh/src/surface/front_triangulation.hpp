@@ -51,6 +51,7 @@ template <typename Base>
 class OrderedBorder : public Base {
  public:
   using Base::Base;
+  OrderedBorder() { this->id() = 0; }  // also for the vertex that CGAL adds to flat input
   template <typename Triangulation>
   struct Rebind_TDS {
     using Other = OrderedBorder<typename Base::template Rebind_TDS<Triangulation>::Other>;

@@ -87,5 +87,25 @@ TEST(FrontGrowth, HasTheTrianglesOfCgalsOwnLoop) {
   EXPECT_GT(triangles, 72U * 1000U);
 }
 
+// CGAL adds a vertex to flat points, and decides ties of regular ones by the order of the edges.
+TEST(FrontGrowth, HasThemForFewFlatAndRegularPoints) {
+  Points flat, cube;
+  for (int x = 0; x < 9; ++x) {
+    for (int y = 0; y < 9; ++y) flat.push_back({1.0 * x, 1.0 * y, 0});
+  }
+  for (int i = 0; i < 125; ++i) cube.push_back({1.0 * (i % 5), 1.0 * (i / 5 % 5), 1.0 * (i / 25)});
+  const Points tetrahedron{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const Points triangle(tetrahedron.begin(), tetrahedron.begin() + 3);
+  std::size_t cases = 0;
+  for (const Points& points : {triangle, tetrahedron, flat, cube}) {
+    for (const double max_edge : {1.2, 1.5, 4.0}) {
+      EXPECT_EQ(grown(points, max_edge, false), grown(points, max_edge, true))
+          << points.size() << " points, edges up to " << max_edge;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 12U);
+}
+
 }  // namespace
 }  // namespace viewgain
