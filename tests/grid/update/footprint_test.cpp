@@ -266,7 +266,7 @@ TEST(Footprint, WrongSettingsAreRefused) {
                  [&] { FrameIntegrator(sensor, {.coarsest = 1, .finest = finest}); });
   }
   for (const double end : {0.0, -1.0, std::nan("")}) {
-    expect_error(ErrorCode::invalid_argument, "fine box", [&] {
+    expect_error(ErrorCode::invalid_argument, "box for fine voxels", [&] {
       FrameIntegrator(sensor, {.fine = {{{0, 0, 0}, {1, end, 1}}}});
     });
   }
