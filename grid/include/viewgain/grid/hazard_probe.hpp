@@ -36,6 +36,7 @@ class VIEWGAIN_EXPORT HazardProbe {
     double distance = 0;    ///< HazardField::distance() [m]
     double start_rate = 0;  ///< HazardField::start_rate() [1/m]
   };
+  /// Distance and rate at the voxel. Keeps the last cell, so only one thread at a time.
   [[nodiscard]] At at(Index3 voxel) const;
   /// HazardField::is_new().
   [[nodiscard]] bool is_new(Index3 voxel) const;
