@@ -43,17 +43,27 @@ class Sigmas(NamedTuple):
     lateral: Annotated[float, "Across the ray [m]."]
 
 
+# Counts that several results have.
+_Readings = Annotated[int, "Number of pixels or points whose range is within the sensor's limits."]
+_PlaneReadings = Annotated[int, "Number of pixels or points that show the support plane or a known object; not counted as readings."]
+_OutOfRange = Annotated[int, "Number of pixels or points that are free up to max_range."]
+_Invalid = Annotated[int, "Number of pixels or points that measured nothing."]
+_ReadingsInside = Annotated[int, "Number of readings that lie in the workspace."]
+_VoxelsHit = Annotated[int, "Number of voxels that readings hit."]
+_VoxelsCrossed = Annotated[int, "Number of voxels that were crossed, but not hit."]
+
+
 @named("viewgain")
 class IntegrationReport(NamedTuple):
     """Counts of ``integrate``, from ``FrameIntegrator`` and ``CloudIntegrator``."""
 
-    readings: Annotated[int, "Number of pixels or points whose range is within the sensor's limits."]
-    plane_readings: Annotated[int, "Number of pixels or points that show the support plane or a known object; not counted as readings."]
-    out_of_range: Annotated[int, "Number of pixels or points that are free up to max_range."]
-    invalid: Annotated[int, "Number of pixels or points that measured nothing."]
-    readings_inside: Annotated[int, "Number of readings that lie in the workspace."]
-    voxels_hit: Annotated[int, "Number of voxels that readings hit."]
-    voxels_crossed: Annotated[int, "Number of voxels that were crossed, but not hit."]
+    readings: _Readings
+    plane_readings: _PlaneReadings
+    out_of_range: _OutOfRange
+    invalid: _Invalid
+    readings_inside: _ReadingsInside
+    voxels_hit: _VoxelsHit
+    voxels_crossed: _VoxelsCrossed
 
 
 @named("viewgain")
@@ -184,13 +194,13 @@ class FrameRegistration(NamedTuple):
 class AddedView(NamedTuple):
     """Effect of a frame, from ``ViewPlanner.add``."""
 
-    readings: Annotated[int, "Number of pixels or points whose range is within the sensor's limits."]
-    plane_readings: Annotated[int, "Number of pixels or points that show the support plane or a known object; not counted as readings."]
-    out_of_range: Annotated[int, "Number of pixels or points that are free up to max_range."]
-    invalid: Annotated[int, "Number of pixels or points that measured nothing."]
-    readings_inside: Annotated[int, "Number of readings that lie in the workspace."]
-    voxels_hit: Annotated[int, "Number of voxels that readings hit."]
-    voxels_crossed: Annotated[int, "Number of voxels that were crossed, but not hit."]
+    readings: _Readings
+    plane_readings: _PlaneReadings
+    out_of_range: _OutOfRange
+    invalid: _Invalid
+    readings_inside: _ReadingsInside
+    voxels_hit: _VoxelsHit
+    voxels_crossed: _VoxelsCrossed
     view: Annotated[int, "Number of the view, from 0."]
     entropy_removed: Annotated[float, "Entropy removed by this view [nat; m**2 with criterion \"trace\"]."]
     new_area: Annotated[float, "New surface that this view showed, measured perpendicular to the rays [m**2]; NaN with gain \"paper\"."]
@@ -204,13 +214,13 @@ class AddedView(NamedTuple):
 class MapUpdate(NamedTuple):
     """Effect of a frame, from ``ViewScorer.add``."""
 
-    readings: Annotated[int, "Number of pixels or points whose range is within the sensor's limits."]
-    plane_readings: Annotated[int, "Number of pixels or points that show the support plane or a known object; not counted as readings."]
-    out_of_range: Annotated[int, "Number of pixels or points that are free up to max_range."]
-    invalid: Annotated[int, "Number of pixels or points that measured nothing."]
-    readings_inside: Annotated[int, "Number of readings that lie in the workspace."]
-    voxels_hit: Annotated[int, "Number of voxels that readings hit."]
-    voxels_crossed: Annotated[int, "Number of voxels that were crossed, but not hit."]
+    readings: _Readings
+    plane_readings: _PlaneReadings
+    out_of_range: _OutOfRange
+    invalid: _Invalid
+    readings_inside: _ReadingsInside
+    voxels_hit: _VoxelsHit
+    voxels_crossed: _VoxelsCrossed
     flying_pixels: Annotated[int, "Number of pixels that the jump-edge filter removed."]
     new_area: Annotated[float, "New surface that the frame showed, measured perpendicular to the rays [m**2]; NaN with gain \"paper\"."]
     verdict: Annotated[str, "used, or carved if it showed only free space. Otherwise the reason why the frame was not used: nothing_in_range or outside."]

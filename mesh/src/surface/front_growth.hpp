@@ -38,11 +38,12 @@ template struct Opened<&Front::min_K, NextBound>;
 template struct Opened<&Front::COS_BETA, Wedge>;
 template struct Opened<&Front::initialize_vertices_and_cells, Initialize>;
 
-/// Grows the front like Front::run(), to the same triangles, but without computing all edges of the
-/// border anew whenever the bound on the ratio of radii rises. Of a map of a room that was half of
-/// the time of the whole surface. An edge waits if its best triangle is too large for the bound, or
-/// if it has none. Triangles only become impossible while the front grows. So a waiting edge is
-/// computed anew only if the bound reaches its ratio, or a triangle that it depends on was lost.
+/// Grows the front to the same triangles as Front::run(). Front::run() recomputes all edges of the
+/// border whenever the bound on the ratio of radii rises. This took half of the time for the
+/// surface of a room. Here, an edge waits if its best triangle is too large for the bound, or if it
+/// has none. While the front grows, triangles can only become impossible. A waiting edge is
+/// therefore recomputed only if the bound reaches its ratio, or if a triangle that it depends on
+/// became impossible.
 class FrontGrowth {
  public:
   FrontGrowth(Front& front, const BoundedEdges& priority) : front_(front), priority_(priority) {}
@@ -94,7 +95,7 @@ class FrontGrowth {
       next = front_.infinity();
       do {
         if (border_.begin()->first >= kTooLarge) {
-          compute_anew();
+          recompute();
         } else {
           advance();
         }
@@ -123,9 +124,8 @@ class FrontGrowth {
     }
   }
 
-  // Computes the waiting edges anew for the current bound, as far as they can change, and the next
-  // bound.
-  void compute_anew() {
+  // Recomputes the waiting edges that can change with the current bound. Computes the next bound.
+  void recompute() {
     double& next = front_.*opened(NextBound{});
     std::vector<Front::IO_edge_type*> changed;
     for (auto item = border_.begin(); item != border_.end();) {

@@ -59,7 +59,7 @@ struct VIEWGAIN_EXPORT PinholeCamera {
 
   /// Solid angle of every pixel [sr], row-major; 0 for a pixel without a ray. Let α be the angle
   /// between the pixel's ray and the optical axis. Without distortion the solid angle is cos³α /
-  /// (fx fy). With distortion it is cos³α |∂(x, y) / ∂(u, v)|. These derivatives are finite
+  /// (fx fy). With distortion it is cos³α |∂(x, y) / ∂(u, v)|, where the derivatives are finite
   /// differences between neighbouring pixels. `rays` must be the result of ray_table(). Throws
   /// Error(invalid_argument) for a wrong number of rays.
   [[nodiscard]] std::vector<double> solid_angles(std::span<const Eigen::Vector3d> rays) const;

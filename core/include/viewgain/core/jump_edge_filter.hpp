@@ -42,8 +42,8 @@ class VIEWGAIN_EXPORT JumpEdgeFilter {
   PinholeCamera camera_;
   Config config_;
   std::vector<Eigen::Vector3d> rays_;
-  double smooth_ =
-      1;  ///< two ranges are no discontinuity if the ratio of their squares is below this
+  /// Neighbouring ranges are continuous if the ratio of their squares is below this.
+  double smooth_ = 1;
 };
 
 }  // namespace viewgain

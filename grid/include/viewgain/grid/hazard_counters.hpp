@@ -11,8 +11,8 @@
 namespace viewgain {
 
 /// Counts how often measured rays met the surface in unknown space, and how often the hazard model
-/// (HazardConfig::Model) predicted that. There is one pair of counts per class of distance from
-/// known surface. Part of a map. The counts are integers, so that all machines get the same result.
+/// (HazardConfig::Model) predicted that. Each class of distance from known surface has one pair of
+/// counts. A map contains them. They are integers, so all machines get the same result.
 /// Arguments are not checked.
 struct VIEWGAIN_EXPORT HazardCounters {
   /// Number of distance classes.

@@ -68,8 +68,8 @@ struct VIEWGAIN_EXPORT BoundaryConfig {
 /// sees it, the last view in front of the face is used; if there is none, the last view of all.
 ///
 /// Boundary runs shorter than min_run_length are merged, shortest first. `views` are
-/// T_world_camera, in the order in which they were taken. Throws Error(invalid_argument) if there
-/// are no views, or a view, the sensor, a loop or the config is invalid. Cost: O(edges · views).
+/// T_world_camera, in the order in which they were taken. Throws Error(invalid_argument) without
+/// views, and for an invalid view, sensor, loop or config. Cost: O(edges · views).
 [[nodiscard]] VIEWGAIN_EXPORT std::vector<BoundaryRun> boundary_runs(
     const SurfaceMesh& surface, std::span<const BoundaryLoop> loops, std::span<const Pose> views,
     const Sensor& sensor, const BoundaryConfig& config = {},
