@@ -21,7 +21,7 @@ ModelScene::ModelScene(const std::filesystem::path& mesh, std::uint64_t seed,
       stage_(set_stage({.mesh = mesh, .size = 0.35}, exec)),
       camera_(stage_.scene, sensor_, simulation("on", seed, sensor_), exec),
       undisturbed_(stage_.scene, sensor_, simulation("off", seed, sensor_), exec),
-      filter_(sensor_.camera) {}
+      filter_(sensor_.camera, {}, exec) {}
 
 DepthFrame ModelScene::acquire(const Pose& T_world_camera, std::uint64_t frame) const {
   DepthFrame result = camera_.acquire(T_world_camera, frame);

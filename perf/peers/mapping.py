@@ -131,8 +131,11 @@ def distance_to(vertices, triangles):
     """A function that returns the distances of points from the mesh."""
     import open3d as o3d
 
+    corners = vertices.astype(np.float32)
+    a, b, c = (corners[triangles[:, k]] for k in range(3))
+    has_area = np.cross(b - a, c - a).any(axis=1)  # without area, Open3D's distances can fail an assertion
     scene = o3d.t.geometry.RaycastingScene()
-    scene.add_triangles(o3d.core.Tensor(vertices.astype(np.float32)), o3d.core.Tensor(triangles.astype(np.uint32)))
+    scene.add_triangles(o3d.core.Tensor(corners), o3d.core.Tensor(triangles[has_area].astype(np.uint32)))
     return lambda points: scene.compute_distance(o3d.core.Tensor(points.astype(np.float32))).numpy()
 
 

@@ -4,11 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <thread>
+#include <vector>
 
 #include "expect_error.hpp"
 #include "random_values.hpp"
+#include "viewgain/support/shared_rays.hpp"
 
 namespace viewgain {
 namespace {
@@ -187,6 +192,38 @@ TEST(PinholeCamera, TableIsRowByRow) {
   EXPECT_EQ(table[1], camera.ray(1, 0));
   EXPECT_EQ(table[64], camera.ray(0, 1));
   EXPECT_EQ(table.back(), camera.ray(63, 47));
+}
+
+TEST(PinholeCamera, EqualCamerasShareOneTable) {
+  const PinholeCamera camera = small_camera({-0.1, 0.02, 0.001, -0.001, 0});
+  PinholeCamera other = camera;
+  auto table = shared_rays(camera);
+  EXPECT_EQ(*table, camera.ray_table());
+  EXPECT_EQ(shared_rays(other).get(), table.get());
+  other.cx += 1;
+  const auto of_other = shared_rays(other);
+  EXPECT_NE(of_other.get(), table.get());
+  EXPECT_EQ(*of_other, other.ray_table());
+
+  const std::weak_ptr<const std::vector<Eigen::Vector3d>> watched = table;
+  table.reset();
+  EXPECT_TRUE(watched.expired());
+  EXPECT_EQ(*shared_rays(camera), camera.ray_table());
+}
+
+TEST(PinholeCamera, SharedTablesFromManyThreads) {
+  std::atomic<int> equal = 0;
+  std::vector<std::jthread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&equal, t] {
+      for (int k = 0; k < 50; ++k) {
+        const PinholeCamera camera = small_camera({0.001 * ((t + k) % 3), 0, 0, 0, 0});
+        equal += *shared_rays(camera) == camera.ray_table() ? 1 : 0;
+      }
+    });
+  }
+  threads.clear();  // joins them
+  EXPECT_EQ(equal, 200);
 }
 
 TEST(PinholeCamera, SolidAnglesKnowTheLens) {

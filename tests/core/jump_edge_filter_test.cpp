@@ -77,12 +77,16 @@ TEST(JumpEdgeFilter, EqualsItsDefinition) {
   RandomValues random(4);
   std::size_t total = 0;
   for (int i = 0; i < 60; ++i) {
-    PinholeCamera camera = small_camera(17, 13);
+    // More rows than a thread takes at a time, in some cases.
+    PinholeCamera camera = small_camera(17, i % 5 == 0 ? 45 : 13);
     if (i % 3 == 1) camera.distortion = {-0.2, 0.05, 0.001, -0.001, 0};
     if (i % 3 == 2) {  // a lens model that folds inside the image
       camera.fx = camera.fy = 9;
       camera.distortion = {-0.35, 0, 0, 0, 0};
     }
+    if (i % 12 == 6) camera.fx = camera.fy = 0.7;  // neighbouring rays more than 30° apart
+    if (i % 10 == 3) camera.width = 1, camera.cx = 0;
+    if (i % 10 == 8) camera.height = 1, camera.cy = 0;
     const JumpEdgeFilter::Config config{random.uniform(1, 10) * kDegree, i % 2 == 0};
     DepthFrame frame = flat(camera, 1.0F);
     for (float& depth : frame.depth) {
@@ -92,11 +96,13 @@ TEST(JumpEdgeFilter, EqualsItsDefinition) {
       if (dice > 0.95) depth = DepthFrame::kOutOfRange;
       if (dice > 0.5 && dice < 0.55) depth = std::numeric_limits<float>::quiet_NaN();
       if (dice > 0.6 && dice < 0.65) depth = 1.5F;
+      if (dice > 0.7 && dice < 0.71) depth = std::numeric_limits<float>::max();
     }
     std::size_t expected_removed = 0;
     const DepthFrame expected = filtered_by_definition(camera, config, frame, expected_removed);
     DepthFrame result = frame;
-    EXPECT_EQ(JumpEdgeFilter(camera, config).apply(result), expected_removed);
+    const JumpEdgeFilter filter(camera, config, {.num_threads = 1 + i % 4});
+    EXPECT_EQ(filter.apply(result), expected_removed);
     for (std::size_t k = 0; k < frame.depth.size(); ++k) {
       if (std::isnan(frame.depth[k])) {
         EXPECT_TRUE(std::isnan(result.depth[k]));

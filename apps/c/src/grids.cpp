@@ -222,8 +222,9 @@ vg_status vg_integrator_create(const vg_sensor* sensor, const vg_integrator_conf
         enum_of<IntegrationConfig::Occupancy>(chosen.occupancy, VG_OCCUPANCY_LITERAL, "occupancy"),
         given(chosen.support_plane)};
     set_scales(chosen, settings);
-    return vg_integrator{FrameIntegrator(camera, settings, {.num_threads = chosen.num_threads}),
-                         HazardCalibration(camera, settings.support_plane), camera.camera};
+    const ExecConfig exec{.num_threads = chosen.num_threads};
+    return vg_integrator{FrameIntegrator(camera, settings, exec),
+                         HazardCalibration(camera, settings.support_plane, exec), camera.camera};
   });
 }
 

@@ -10,7 +10,12 @@
 namespace viewgain::detail {
 
 BlockMasks::BlockMasks(const GridSnapshot& snapshot, const VoxelBox& cells, int shift)
-    : shift_(shift), workspace_(VoxelBox::from_dims(snapshot.min_index, snapshot.dims)) {
+    : shift_(shift),
+      cells_(cells),
+      rows_y_(static_cast<std::size_t>(cells.max.y - cells.min.y)),
+      rows_z_(static_cast<std::size_t>(cells.max.z - cells.min.z)),
+      workspace_(VoxelBox::from_dims(snapshot.min_index, snapshot.dims)) {
+  known_ = std::make_unique<Cell[]>(cells.volume());
   const VoxelBox voxels{lowest(cells.min), lowest(cells.max)};
   is_cut_ = voxels.intersection(workspace_).volume() != voxels.volume();
   low_ = {voxels.min.x >> 3, voxels.min.y >> 3, voxels.min.z >> 3};
@@ -69,15 +74,13 @@ int BlockMasks::free_voxels(Index3 cell) const {
   return (part - non_free(first, part)) * (1 << (3 * shift_)) / part;
 }
 
-bool BlockMasks::is_free(Index3 cell) const {
+BlockMasks::Cell BlockMasks::looked_up(Index3 cell) const {
   const Index3 first = lowest(cell);
-  return non_free(first, inside(first)) == 0;
-}
-
-bool BlockMasks::has_occupied(Index3 cell) const {
-  const Index3 first = lowest(cell);
+  if (non_free(first, inside(first)) == 0) return Cell::free;
   const std::int32_t at = blocks_[index(first)];
-  return at >= 0 && count(masks_[static_cast<std::size_t>(at)].occupied, first) > 0;
+  const bool is_occupied =
+      at >= 0 && count(masks_[static_cast<std::size_t>(at)].occupied, first) > 0;
+  return is_occupied ? Cell::occupied : Cell::other;
 }
 
 }  // namespace viewgain::detail

@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewgain/grid/hazard_calibration.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/shared_rays.hpp"
 #include "viewgain/support/state_reader.hpp"
 #include "viewgain/support/text.hpp"
+#include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
 namespace {
@@ -19,9 +24,17 @@ constexpr double kPixels = 800;       // number of followed pixels
 constexpr double kLeftOut = 3;        // before a reading [σ_ax]
 constexpr double kEnough = 10;        // expected meetings of a frame with full weight
 constexpr double kLeastEvents = 0.1;  // minimum to count at all
+constexpr std::size_t kRowChunk = 4;
 
 struct Sums {
   std::array<double, HazardCounters::kClasses> expected{}, met{};
+
+  void add(const Sums& other) {
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      expected[k] += other.expected[k];
+      met[k] += other.met[k];
+    }
+  }
 };
 
 // Interval of a ray inside a box: [begin, end), empty if it misses it.
@@ -64,6 +77,7 @@ class Meetings {
       : map_(grid),
         voxel_size_(grid.voxel_size()),
         hazard_(hazard),
+        decay_length_(hazard.model().decay_length),
         eye_(eye),
         workspace_(grid.workspace()),
         // Half a hazard cell: finer steps give the same result.
@@ -88,16 +102,18 @@ class Meetings {
     if (is_of_known_surface(map_, voxel_size_, p, direction, range, sigma)) return;
     sums_.met[class_at(hazard_.at(voxel))] += 1;
   }
-  [[nodiscard]] const Sums& sums() const { return sums_; }
+  /// The counts since the last call.
+  [[nodiscard]] Sums take() { return std::exchange(sums_, {}); }
 
  private:
   [[nodiscard]] std::size_t class_at(const HazardProbe::At& at) const {
-    return HazardCounters::class_of(at.distance / hazard_.model().decay_length);
+    return HazardCounters::class_of(at.distance / decay_length_);
   }
 
   StateReader map_;
   double voxel_size_;  // [m]
-  const HazardProbe& hazard_;
+  HazardProbe::Reader hazard_;
+  double decay_length_;  // [m]
   Eigen::Vector3d eye_;
   Box workspace_;
   double step_;  // [m]
@@ -121,16 +137,70 @@ void add_counts(const Sums& sums, BeliefGrid& grid) {
 
 }  // namespace
 
-HazardCalibration::HazardCalibration(const Sensor& sensor, std::optional<double> support_plane)
-    : sensor_(sensor), support_plane_(support_plane) {
-  sensor.validate();
-  rays_ = sensor.camera.ray_table();
+struct HazardCalibration::Impl {
+  Sensor sensor;
+  std::optional<double> support_plane;
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rays;
+  int stride;  // rows and columns of the followed pixels begin at half of it
+  ThreadPool pool;
+
+  // `of` is valid.
+  Impl(const Sensor& of, std::optional<double> plane, const ExecConfig& exec)
+      : sensor(of),
+        support_plane(plane),
+        rays(shared_rays(of.camera)),
+        stride(std::max(1, static_cast<int>(std::lround(
+                               std::sqrt(static_cast<double>(rays->size()) / kPixels))))),
+        pool(exec.num_threads) {}
+
+  void follow_row(const DepthFrame& frame, const Pose& T_world_camera, const Pose& T_grid_camera,
+                  int v, Meetings& meetings) const;
+};
+
+void HazardCalibration::Impl::follow_row(const DepthFrame& frame, const Pose& T_world_camera,
+                                         const Pose& T_grid_camera, int v,
+                                         Meetings& meetings) const {
+  const auto sees_plane = [&](const Eigen::Vector3d& p_camera, double range) {
+    if (!support_plane) return false;
+    const Eigen::Vector3d p = T_world_camera * p_camera;
+    const double rise = (p.z() - T_world_camera.translation().z()) / range;
+    return is_of_plane(p.z() - *support_plane, rise, sensor.sigmas(range, std::abs(rise)));
+  };
+  const int width = sensor.camera.width;
+  for (int u = stride / 2; u < width; u += stride) {
+    const std::size_t i =
+        static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u);
+    const Eigen::Vector3d& ray = (*rays)[i];
+    const float z = frame.depth[i];
+    if (!(z > 0) || !ray.allFinite()) continue;  // skips NaN too
+    const double norm = ray.norm();
+    const double range = z == DepthFrame::kOutOfRange ? std::numeric_limits<double>::infinity()
+                                                      : static_cast<double>(z) * norm;
+    if (range < sensor.min_range) continue;
+    const bool is_reading = range <= sensor.max_range;
+    const double sigma = is_reading ? sensor.sigmas(range).axial : 0;
+    const Eigen::Vector3d direction = T_grid_camera.rotation() * ray / norm;
+    meetings.pass(direction, sensor.min_range,
+                  is_reading ? range - kLeftOut * sigma : sensor.max_range);
+    if (is_reading && !frame.shows_known(i) && !sees_plane(static_cast<double>(z) * ray, range)) {
+      meetings.meet(direction, range, sigma);
+    }
+  }
 }
+
+HazardCalibration::HazardCalibration(const Sensor& sensor, std::optional<double> support_plane,
+                                     const ExecConfig& exec) {
+  sensor.validate();
+  impl_ = std::make_unique<Impl>(sensor, support_plane, exec);
+}
+HazardCalibration::~HazardCalibration() = default;
+HazardCalibration::HazardCalibration(HazardCalibration&&) noexcept = default;
+HazardCalibration& HazardCalibration::operator=(HazardCalibration&&) noexcept = default;
 
 void HazardCalibration::count(BeliefGrid& grid, const HazardProbe& hazard, const DepthFrame& frame,
                               const Pose& T_world_camera) const {
-  const PinholeCamera& camera = sensor_.camera;
-  check_frame_size(frame, camera);
+  Impl& m = *impl_;
+  check_frame_size(frame, m.sensor.camera);
   const std::optional<Pose> T_rigid = rigid_pose(T_world_camera);
   if (!T_rigid) refuse("the frame's pose is not a rigid transform");
   if (hazard.voxel_size() != grid.voxel_size()) {
@@ -140,38 +210,20 @@ void HazardCalibration::count(BeliefGrid& grid, const HazardProbe& hazard, const
   if (!hazard.follows_counters() || hazard.near_box().volume() == 0) return;
 
   const Pose T_grid_camera = grid.T_world_grid().inverse() * *T_rigid;
-  Meetings meetings(grid, hazard, T_grid_camera.translation());
-  const auto sees_plane = [&](const Eigen::Vector3d& p_camera, double range) {
-    if (!support_plane_) return false;
-    const Eigen::Vector3d p = *T_rigid * p_camera;
-    const double rise = (p.z() - T_rigid->translation().z()) / range;
-    return is_of_plane(p.z() - *support_plane_, rise, sensor_.sigmas(range, std::abs(rise)));
-  };
-  const int width = camera.width, height = camera.height;
-  const int stride = std::max(
-      1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(rays_.size()) / kPixels))));
-  for (int v = stride / 2; v < height; v += stride) {
-    for (int u = stride / 2; u < width; u += stride) {
-      const std::size_t i = static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
-                            static_cast<std::size_t>(u);
-      const float z = frame.depth[i];
-      if (!(z > 0) || !rays_[i].allFinite()) continue;  // skips NaN too
-      const double norm = rays_[i].norm();
-      const double range = z == DepthFrame::kOutOfRange ? std::numeric_limits<double>::infinity()
-                                                        : static_cast<double>(z) * norm;
-      if (range < sensor_.min_range) continue;
-      const bool is_reading = range <= sensor_.max_range;
-      const double sigma = is_reading ? sensor_.sigmas(range).axial : 0;
-      const Eigen::Vector3d direction = T_grid_camera.rotation() * rays_[i] / norm;
-      meetings.pass(direction, sensor_.min_range,
-                    is_reading ? range - kLeftOut * sigma : sensor_.max_range);
-      if (is_reading && !frame.shows_known(i) &&
-          !sees_plane(static_cast<double>(z) * rays_[i], range)) {
-        meetings.meet(direction, range, sigma);
-      }
+  const int stride = m.stride, first = stride / 2;
+  const int beyond = std::max(0, m.sensor.camera.height - first);
+  std::vector<Sums> rows(static_cast<std::size_t>((beyond + stride - 1) / stride));
+  m.pool.for_each_chunk(rows.size(), kRowChunk, [&](std::size_t begin, std::size_t end) {
+    Meetings meetings(grid, hazard, T_grid_camera.translation());
+    for (std::size_t row = begin; row < end; ++row) {
+      m.follow_row(frame, *T_rigid, T_grid_camera, first + static_cast<int>(row) * stride,
+                   meetings);
+      rows[row] = meetings.take();
     }
-  }
-  add_counts(meetings.sums(), grid);
+  });
+  Sums sums;  // in the order of the rows, so that the threads make no difference
+  for (const Sums& row : rows) sums.add(row);
+  add_counts(sums, grid);
 }
 
 }  // namespace viewgain

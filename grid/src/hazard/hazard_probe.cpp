@@ -51,6 +51,10 @@ class EvidenceCells {
     const int coarse_reach = static_cast<int>(std::ceil((reach_ + kSlack) / kCoarse));
     ThreadPool caller(1);
     (void)detail::NearestCells(coarse_, coarse_size_, coarse_reach, caller);
+    for (int squared = 0; squared <= coarse_reach * coarse_reach; ++squared) {
+      const double least = std::max(0.0, kCoarse * std::sqrt(squared) - kSlack);
+      least_.push_back(static_cast<int>(std::ceil(least * least)));
+    }
   }
 
   struct Nearest {
@@ -110,25 +114,48 @@ class EvidenceCells {
     return above < below ? above : -below;
   }
 
+  // Of a cell in the box: no evidence within the reach is nearer than the root of this [cells²].
+  [[nodiscard]] int least(Index3 c) const {
+    const std::uint16_t coarse = coarse_[coarse_index(c)];
+    return coarse == detail::kNoDistance ? std::numeric_limits<int>::max() / 2 : least_[coarse];
+  }
+
+  // Searches rows from near to far. Let q be the cell of a row at the height of c, at the offset
+  // (dx, dy). If q's distance to evidence, squared, and dx² + dy² add up to no less than the best
+  // so far, then neither this row nor those beyond it on the same side have anything nearer: the
+  // angle at q between c and their cells is at least a right angle. The same holds for all rows
+  // beyond dx, if dy is 0.
   [[nodiscard]] std::optional<Nearest> nearest(Index3 c, int most) const {
     Nearest best{most + 1, {}};
-    for (int a = 0; a * a < best.squared; ++a) {
+    std::array<bool, 2> is_open_x{true, true};  // lower and higher x
+    for (int a = 0; a * a < best.squared && (is_open_x[0] || is_open_x[1]); ++a) {
       for (int dx = -a; dx <= a; dx += std::max(1, 2 * a)) {
-        if (c.x + dx < 0 || c.x + dx >= size_.x) continue;
-        for (int b = 0; a * a + b * b < best.squared; ++b) {
-          for (int dy = -b; dy <= b; dy += std::max(1, 2 * b)) {
-            if (c.y + dy < 0 || c.y + dy >= size_.y) continue;
-            const std::size_t row = row_index(c.x + dx, c.y + dy);
-            if (has_any_[row] == 0) continue;
-            const int dz = along(&rows_[row * words_], c.z);
-            const int squared = a * a + b * b + dz * dz;
-            if (squared < best.squared) best = {squared, {dx, dy, dz}};
-          }
-        }
+        bool& is_open = is_open_x[dx < 0 ? 0 : 1];
+        const int x = c.x + dx;
+        is_open = is_open && x >= 0 && x < size_.x && least({x, c.y, c.z}) + a * a < best.squared;
+        if (is_open) search_plane(c, dx, best);
       }
     }
     if (best.squared > most) return std::nullopt;
     return best;
+  }
+  // The rows at this dx.
+  void search_plane(Index3 c, int dx, Nearest& best) const {
+    const int x = c.x + dx;
+    std::array<bool, 2> is_open_y{true, true};
+    for (int b = 0; dx * dx + b * b < best.squared && (is_open_y[0] || is_open_y[1]); ++b) {
+      for (int dy = -b; dy <= b; dy += std::max(1, 2 * b)) {
+        bool& is_open = is_open_y[dy < 0 ? 0 : 1];
+        const int y = c.y + dy, across = dx * dx + b * b;
+        is_open = is_open && y >= 0 && y < size_.y && least({x, y, c.z}) + across < best.squared;
+        if (!is_open) continue;
+        const std::size_t row = row_index(x, y);
+        if (has_any_[row] == 0) continue;
+        const int dz = along(&rows_[row * words_], c.z);
+        const int squared = across + dz * dz;
+        if (squared < best.squared) best = {squared, {dx, dy, dz}};
+      }
+    }
   }
 
   Index3 low_, size_;  // of the box of cells
@@ -138,6 +165,7 @@ class EvidenceCells {
   int reach_;
   detail::CellBox coarse_size_;
   std::vector<std::uint16_t> coarse_;  // squared distances of coarse cells to coarse evidence
+  std::vector<int> least_;             // bounds on squared distances of cells, by those of coarse
 };
 
 }  // namespace
@@ -149,9 +177,6 @@ struct HazardProbe::Impl {
   std::optional<EvidenceCells> evidence;  // empty without any
   std::optional<BlockMasks> masks;
   std::array<double, detail::OpenDirections::kDirections + 1> openness{};
-  std::unordered_map<std::uint64_t, Eigen::Vector3d> normals;  // of cells with evidence
-  std::optional<Index3> last_cell;
-  At last;
 
   Impl(const GridSnapshot& snapshot, const HazardConfig& config)
       : layout(snapshot, config),
@@ -212,43 +237,51 @@ struct HazardProbe::Impl {
       for (int step = 0; step < steps; ++step) {
         there = {there.x + by.x, there.y + by.y, there.z + by.z};
         if (!layout.cells.contains(there)) break;
-        if (masks->is_free(there)) {
-          ++open;
-          break;
-        }
-        if (masks->has_occupied(there)) break;
+        const BlockMasks::Cell state = masks->state(there);
+        if (state == BlockMasks::Cell::other) continue;
+        open += state == BlockMasks::Cell::free ? 1 : 0;
+        break;
       }
     }
     return open;
   }
+};
+
+struct HazardProbe::Reader::Impl {
+  const HazardProbe::Impl& map;
+  std::unordered_map<std::uint64_t, Eigen::Vector3d> normals;  // of cells with evidence
+  std::optional<Index3> last_cell;
+  At last;
 
   [[nodiscard]] double shape(Index3 cell, const EvidenceCells::Nearest& nearest) {
-    if (masks->is_free(cell)) return 1;
+    if (map.masks->state(cell) == BlockMasks::Cell::free) return 1;
     const Index3 by = nearest.offset;
     const Index3 source{cell.x + by.x, cell.y + by.y, cell.z + by.z};
     const auto part = [](std::int32_t at, std::int32_t low) {
       return static_cast<std::uint64_t>(at - low);
     };
-    const Index3& low = layout.cells.min;
+    const Index3& low = map.layout.cells.min;
     const auto [entry, is_fresh] = normals.try_emplace(
         part(source.x, low.x) << 42U | part(source.y, low.y) << 21U | part(source.z, low.z));
-    if (is_fresh) entry->second = gradient(source);
+    if (is_fresh) entry->second = map.gradient(source);
     const Eigen::Vector3d& n = entry->second;
     const Eigen::Vector3d away(-by.x, -by.y, -by.z);
     const double product = n.norm() * away.norm();
     const double sine = product > 0 ? n.dot(away) / product : 0.0;
-    const double shape = HazardConfig::Model::continuation(sine) * openness[open_directions(cell)];
+    const double shape =
+        HazardConfig::Model::continuation(sine) * map.openness[map.open_directions(cell)];
     constexpr double kUnit = HazardField::kShapeUnit;
     return static_cast<double>(std::lround(kUnit * shape)) / kUnit;
   }
 
-  [[nodiscard]] At at(Index3 cell) {
+  [[nodiscard]] At of_cell(Index3 cell) {
+    const auto& model = map.layout.model;
     constexpr double kFar = std::numeric_limits<double>::infinity();
-    const auto nearest = evidence->nearest(cell);
-    if (!nearest) return {kFar, layout.model.rate(kFar)};
+    const auto nearest = map.evidence->nearest(cell);
+    if (!nearest) return {kFar, model.rate(kFar)};
     const double distance =
-        std::sqrt(static_cast<double>(nearest->squared)) * voxel_size * (1 << layout.shift);
-    return {distance, layout.model.rate(distance, shape(cell, *nearest))};
+        std::sqrt(static_cast<double>(nearest->squared)) * map.voxel_size * (1 << map.layout.shift);
+    return {distance, model.rate(distance, shape(cell, *nearest))};
   }
 };
 
@@ -264,15 +297,22 @@ int HazardProbe::cell_shift() const { return impl_->has_volume ? 0 : impl_->layo
 double HazardProbe::voxel_size() const { return impl_->voxel_size; }
 const VoxelBox& HazardProbe::near_box() const { return impl_->layout.voxels; }
 
-HazardProbe::At HazardProbe::at(Index3 voxel) const {
+HazardProbe::Reader::Reader(const HazardProbe& probe)
+    : impl_(std::make_unique<Impl>(Impl{*probe.impl_, {}, {}, {}})) {}
+HazardProbe::Reader::~Reader() = default;
+HazardProbe::Reader::Reader(Reader&&) noexcept = default;
+HazardProbe::Reader& HazardProbe::Reader::operator=(Reader&&) noexcept = default;
+
+HazardProbe::At HazardProbe::Reader::at(Index3 voxel) {
   Impl& m = *impl_;
-  if (!m.layout.voxels.contains(voxel)) {
+  const detail::HazardLayout& layout = m.map.layout;
+  if (!layout.voxels.contains(voxel)) {
     constexpr double kFar = std::numeric_limits<double>::infinity();
-    return {kFar, m.layout.model.rate(kFar)};
+    return {kFar, layout.model.rate(kFar)};
   }
-  const Index3 cell = m.layout.cell_of(voxel);
+  const Index3 cell = layout.cell_of(voxel);
   if (m.last_cell != cell) {  // rays take several steps in a cell
-    m.last = m.at(cell);
+    m.last = m.of_cell(cell);
     m.last_cell = cell;
   }
   return m.last;

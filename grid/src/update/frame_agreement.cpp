@@ -14,6 +14,7 @@
 #include "viewgain/core/noise.hpp"
 #include "viewgain/support/frame_displacement.hpp"
 #include "viewgain/support/hash64.hpp"
+#include "viewgain/support/shared_rays.hpp"
 
 namespace viewgain {
 namespace {
@@ -75,7 +76,7 @@ bool is_free(const BeliefGrid& grid, const Eigen::Vector3d& p_world) {
 FrameAgreement::FrameAgreement(const Sensor& sensor, std::optional<double> support_plane)
     : sensor_(sensor), support_plane_(support_plane) {
   sensor.validate();
-  rays_ = sensor.camera.ray_table();
+  rays_ = shared_rays(sensor.camera);
 }
 
 bool FrameAgreement::is_smooth(const DepthFrame& frame, std::size_t u, std::size_t v) const {
@@ -85,7 +86,7 @@ bool FrameAgreement::is_smooth(const DepthFrame& frame, std::size_t u, std::size
   }
   const std::size_t i = v * width + u;
   const auto z = static_cast<double>(frame.depth[i]);
-  const double noise = 2 * kSigmas * sensor_.noise_sigmas(z * rays_[i].norm()).axial;
+  const double noise = 2 * kSigmas * sensor_.noise_sigmas(z * (*rays_)[i].norm()).axial;
   const double step = kSteepest * z / std::min(sensor_.camera.fx, sensor_.camera.fy) + noise;
   for (std::size_t y = v - 1; y <= v + 1; ++y) {
     for (std::size_t x = u - 1; x <= u + 1; ++x) {
@@ -108,8 +109,8 @@ std::vector<FrameAgreement::Reading> FrameAgreement::sampled(const BeliefGrid& m
   for (std::size_t v = stride / 2; v < height; v += stride) {
     for (std::size_t u = stride / 2; u < width; u += stride) {
       const std::size_t i = v * width + u;
-      if (!is_depth(frame.depth[i]) || !rays_[i].allFinite() || frame.shows_known(i)) continue;
-      const Eigen::Vector3d p_camera = static_cast<double>(frame.depth[i]) * rays_[i];
+      if (!is_depth(frame.depth[i]) || !(*rays_)[i].allFinite() || frame.shows_known(i)) continue;
+      const Eigen::Vector3d p_camera = static_cast<double>(frame.depth[i]) * (*rays_)[i];
       const double range = p_camera.norm();
       if (range < sensor_.min_range || range > sensor_.max_range) continue;
       const Eigen::Vector3d p_world = T_world_camera * p_camera;
@@ -130,7 +131,7 @@ Eigen::Vector3f FrameAgreement::seen_normal(const DepthFrame& frame, std::size_t
                                             double range,
                                             const Eigen::Matrix3d& R_world_camera) const {
   const double noise = sensor_.noise_sigmas(range).axial;
-  const auto plane = plane_at(frame, sensor_.camera, rays_, u, v, noise);
+  const auto plane = plane_at(frame, sensor_.camera, *rays_, u, v, noise);
   if (!plane) return Eigen::Vector3f::Zero();
   return (R_world_camera * plane->normalized()).cast<float>();
 }
@@ -205,7 +206,7 @@ void FrameAgreement::compare(const DepthFrame& frame, std::size_t u, std::size_t
   const Eigen::Vector3d p_camera = T_camera_world * earlier.p_world;
   const double range = p_camera.norm();
   const MeasurementSigmas noise = sensor_.noise_sigmas(range);
-  const auto plane = plane_at(frame, sensor_.camera, rays_, u, v, noise.axial);
+  const auto plane = plane_at(frame, sensor_.camera, *rays_, u, v, noise.axial);
   if (!plane) return;
   const double size = plane->norm(), cosine = std::min(1.0, 1 / (size * range));
   const Eigen::Vector3d normal = *plane / size;

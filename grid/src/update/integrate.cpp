@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "map/grid_layout.hpp"
@@ -17,6 +18,7 @@
 #include "viewgain/core/error.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/support/block_lattice.hpp"
+#include "viewgain/support/shared_rays.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain::detail {
@@ -64,6 +66,7 @@ class FramePixels : public Readings {
   }
 
   PoseSigma own_pose_sigma_;
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> table_;
 };
 
 namespace {
@@ -81,7 +84,8 @@ double cos_from_amplitude(double amplitude, double range) {
 FramePixels::FramePixels(const Sensor& sensor)
     : Readings(sensor), own_pose_sigma_(sensor.pose_sigma) {
   row_length_ = sensor_.camera.width;
-  rays_ = sensor_.camera.ray_table();
+  table_ = shared_rays(sensor_.camera);
+  rays_ = *table_;
   norms_.reserve(rays_.size());
   for (const Eigen::Vector3d& ray : rays_) norms_.push_back(ray.norm());
   resize(rays_.size());
@@ -294,14 +298,15 @@ class CloudPoints : public Readings {
                                            " points; the maximum is 4294967295");
     }
     origin_ = origin;
-    rays_.resize(points.size());
+    lines_.resize(points.size());
+    rays_ = lines_;
     norms_.resize(points.size());
     resize(points.size());
     pool.for_each_chunk(points.size(), kPointChunk, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         points_[i] = Eigen::Vector3d(points[i][0], points[i][1], points[i][2]);
-        rays_[i] = points_[i] - origin;
-        norms_[i] = rays_[i].stableNorm();
+        lines_[i] = points_[i] - origin;
+        norms_[i] = lines_[i].stableNorm();
         const bool is_ray = std::isfinite(norms_[i]) && norms_[i] > 0;
         const PixelKind kind =
             sort_by_range(i, is_ray ? norms_[i] : std::numeric_limits<double>::quiet_NaN());
@@ -309,12 +314,15 @@ class CloudPoints : public Readings {
         sigmas_[i] = sensor_.sigmas(norms_[i]);
         if (tapered) reach_taper_[2 * i + 1] = kTaperSigmas * sigmas_[i].axial;
         if (support_plane &&
-            is_of_plane(points_[i].z() - *support_plane, rays_[i].z() / norms_[i], sigmas_[i])) {
+            is_of_plane(points_[i].z() - *support_plane, lines_[i].z() / norms_[i], sigmas_[i])) {
           kinds_[i] = PixelKind::on_known;
         }
       }
     });
   }
+
+ private:
+  std::vector<Eigen::Vector3d> lines_;  // from the origin to the points
 };
 
 }  // namespace

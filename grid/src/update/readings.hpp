@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "viewgain/core/box.hpp"
@@ -43,7 +44,7 @@ class Readings {
   [[nodiscard]] MeasurementSigmas sigmas(std::size_t pixel) const { return sigmas_[pixel]; }
 
   /// For kernels: all rays, their norms, all sigmas.
-  [[nodiscard]] const std::vector<Eigen::Vector3d>& rays() const { return rays_; }
+  [[nodiscard]] std::span<const Eigen::Vector3d> rays() const { return rays_; }
   [[nodiscard]] const std::vector<double>& norms() const { return norms_; }
   [[nodiscard]] const std::vector<MeasurementSigmas>& all_sigmas() const { return sigmas_; }
   /// Depths along z of an image's readings, otherwise NaN, with a border of kDepthBorder pixels of
@@ -69,8 +70,8 @@ class Readings {
   Sensor sensor_;
   int row_length_ = 0;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> rays_;
-  std::vector<double> norms_;  ///< of the rays
+  std::span<const Eigen::Vector3d> rays_;  ///< owned by the derived class
+  std::vector<double> norms_;              ///< of the rays
   std::vector<PixelKind> kinds_;
   std::vector<Eigen::Vector3d> points_;
   std::vector<MeasurementSigmas> sigmas_;

@@ -84,7 +84,8 @@ void orient_alike(std::vector<Triangle>& triangles) {
     const Triangle& t = triangles[edge / 3];
     return t[(edge + 1) % 3] < t[(edge + 2) % 3];
   };
-  enum class Side : std::uint8_t { unknown, as_is, turned };
+  // Not of one byte, because GCC 14 then warns falsely of what it frees.
+  enum class Side { unknown, as_is, turned };
   std::vector<Side> sides(triangles.size(), Side::unknown);
   std::vector<std::uint32_t> open;
   for (std::uint32_t first = 0; first < triangles.size(); ++first) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -14,6 +15,7 @@
 
 #include "scene/gather_scene.hpp"
 #include "viewgain/core/error.hpp"
+#include "viewgain/support/shared_rays.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
 namespace viewgain {
@@ -30,11 +32,11 @@ TriangleMesh mesh_of(const Obstacles& obstacles) {
 
 struct ObstacleView::Impl {
   Sensor sensor;
-  std::vector<Eigen::Vector3d> rays;
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rays;
   std::optional<SurfaceScene> scene;
   mutable ThreadPool pool;
 
-  Impl(const Sensor& of, int threads) : sensor(of), rays(of.camera.ray_table()), pool(threads) {}
+  Impl(const Sensor& of, int threads) : sensor(of), rays(shared_rays(of.camera)), pool(threads) {}
 };
 
 ObstacleView::ObstacleView(const Obstacles& obstacles, const Sensor& sensor,
@@ -55,17 +57,18 @@ void ObstacleView::mark(DepthFrame& frame, const Pose& T_world_camera) const {
   const std::optional<Pose> T_rigid = rigid_pose(T_world_camera);
   if (!T_rigid) refuse("the frame's pose is not a rigid transform");
   if (!m.scene) return;
-  frame.known_depth.assign(m.rays.size(), DepthFrame::kOutOfRange);
+  const std::vector<Eigen::Vector3d>& table = *m.rays;
+  frame.known_depth.assign(table.size(), DepthFrame::kOutOfRange);
   const Eigen::Matrix3d R_world_camera = T_rigid->rotation();
   const Eigen::Vector3d eye = T_rigid->translation();
-  m.pool.for_each_chunk(m.rays.size(), kRayChunk, [&](std::size_t begin, std::size_t end) {
+  m.pool.for_each_chunk(table.size(), kRayChunk, [&](std::size_t begin, std::size_t end) {
     std::array<SurfaceScene::Ray, kRayChunk> rays;
     std::array<SurfaceScene::Hit, kRayChunk> hits;
     std::array<std::size_t, kRayChunk> pixels;
     std::size_t count = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      if (!m.rays[i].allFinite()) continue;
-      rays[count] = {eye, R_world_camera * m.rays[i] / m.rays[i].norm()};
+      if (!table[i].allFinite()) continue;
+      rays[count] = {eye, R_world_camera * table[i] / table[i].norm()};
       pixels[count++] = i;
     }
     m.scene->intersect(std::span(rays).first(count), hits);
@@ -78,7 +81,7 @@ void ObstacleView::mark(DepthFrame& frame, const Pose& T_world_camera) const {
                            std::max(cosine, kMinCosIncidence);
       const double from = std::max(0.0, hit.range - kKnownSigmas * sigma);
       const std::size_t i = pixels[k];
-      frame.known_depth[i] = static_cast<float>(from / m.rays[i].norm());  // from range to depth
+      frame.known_depth[i] = static_cast<float>(from / table[i].norm());  // from range to depth
     }
   });
 }

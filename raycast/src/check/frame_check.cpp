@@ -25,8 +25,12 @@ double median_of(std::vector<double> values) {
 
 }  // namespace
 
-FrameCheck::FrameCheck(const Sensor& sensor, std::optional<double> support_plane)
-    : sensor_(sensor), support_plane_(support_plane), agreement_(sensor, support_plane) {}
+FrameCheck::FrameCheck(const Sensor& sensor, std::optional<double> support_plane,
+                       const ExecConfig& exec)
+    : sensor_(sensor),
+      support_plane_(support_plane),
+      exec_(exec),
+      agreement_(sensor, support_plane) {}
 
 void FrameCheck::see(const DepthFrame& frame, const Pose& T_world_camera) {
   if (frame.width != sensor_.camera.width || frame.height != sensor_.camera.height) return;
@@ -74,7 +78,8 @@ FrameConsistency FrameCheck::result(const BeliefGrid& after) const {
   result.share_seen_past = all.share_seen_past();
   const double voxel_size = after.voxel_size();
   const Suspicion contradiction = detail::suspect_contradiction(result, voxel_size);
-  const detail::FrameMeetings meetings(sensor_, kept_, sequence_, places_);
+  const JumpEdgeFilter filter(sensor_.camera, {}, exec_);
+  const detail::FrameMeetings meetings(sensor_, filter, kept_, sequence_, places_);
   result.suspicion = detail::suspicion_of(sensor_, kept_, meetings, support_plane_, contradiction);
   if (result.suspicion.kind.empty()) return result;
   const double most = std::max(detail::kContradicting, 0.5 * detail::largest_share(result));

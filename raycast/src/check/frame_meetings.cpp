@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "viewgain/core/jump_edge_filter.hpp"
+#include "viewgain/support/shared_rays.hpp"
 #include "viewgain/support/text.hpp"
 
 namespace viewgain::detail {
@@ -106,23 +106,23 @@ std::vector<Convention> other_readings() {
   return all;
 }
 
-FrameMeetings::FrameMeetings(const Sensor& sensor, std::span<const DepthFrame> frames,
-                             std::span<const Pose> sequence, std::vector<std::size_t> places)
+FrameMeetings::FrameMeetings(const Sensor& sensor, const JumpEdgeFilter& filter,
+                             std::span<const DepthFrame> frames, std::span<const Pose> sequence,
+                             std::vector<std::size_t> places)
     : sensor_(sensor),
       frames_(frames.begin(), frames.end()),
       sequence_(sequence),
       places_(std::move(places)),
-      rays_(sensor.camera.ray_table()),
+      rays_(shared_rays(sensor.camera)),
       least_squared_(sensor.min_range * sensor.min_range),
       most_squared_(sensor.max_range * sensor.max_range) {
-  const JumpEdgeFilter filter(sensor.camera);
   for (DepthFrame& frame : frames_) filter.apply(frame);
   const std::size_t points =
       std::clamp(kPoints / std::max<std::size_t>(1, frames_.size()), kLeastPoints, kMostPoints);
   for (const DepthFrame& frame : frames_) {
     std::vector<std::size_t> seen;
-    for (std::size_t i = 0; i < rays_.size(); ++i) {
-      if (frame.depth[i] > 0 && std::isfinite(frame.depth[i]) && rays_[i].allFinite()) {
+    for (std::size_t i = 0; i < rays_->size(); ++i) {
+      if (frame.depth[i] > 0 && std::isfinite(frame.depth[i]) && (*rays_)[i].allFinite()) {
         seen.push_back(i);
       }
     }
@@ -193,7 +193,7 @@ std::optional<double> FrameMeetings::share_better(const Convention& reading) con
       for (std::size_t j = 0; j < frames_.size(); ++j) {
         if (j == i) continue;
         const Pose T = T_camera[j] * T_world[i];
-        const auto one = beyond(as_said, j, T * (z * rays_[pixel]), true);
+        const auto one = beyond(as_said, j, T * (z * (*rays_)[pixel]), true);
         const auto other = beyond(reading, j, T * (other_z * ray(reading, pixel)), true);
         if (!one || !other) continue;
         const double a = std::abs(*one), b = std::abs(*other);
@@ -218,7 +218,7 @@ std::size_t FrameMeetings::flipped(const Convention& reading, std::size_t pixel)
 }
 
 Eigen::Vector3d FrameMeetings::ray(const Convention& reading, std::size_t pixel) const {
-  const Eigen::Vector3d& stated = rays_[flipped(reading, pixel)];
+  const Eigen::Vector3d& stated = (*rays_)[flipped(reading, pixel)];
   return {stated.x() / (reading.focal_factor * reading.focal_x_factor),
           stated.y() / reading.focal_factor, 1};
 }

@@ -4,12 +4,14 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/jump_edge_filter.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
 
@@ -67,12 +69,14 @@ struct Meetings {
 class FrameMeetings {
  public:
   /// `sequence`: the poses of all frames of the recording; `places`: indices of `frames` in it.
-  FrameMeetings(const Sensor& sensor, std::span<const DepthFrame> frames,
-                std::span<const Pose> sequence, std::vector<std::size_t> places);
+  /// Frames are filtered first.
+  FrameMeetings(const Sensor& sensor, const JumpEdgeFilter& filter,
+                std::span<const DepthFrame> frames, std::span<const Pose> sequence,
+                std::vector<std::size_t> places);
   /// The given pose of a frame.
   [[nodiscard]] const Pose& pose(std::size_t frame) const { return sequence_[places_[frame]]; }
   /// The camera's ray_table().
-  [[nodiscard]] const std::vector<Eigen::Vector3d>& rays() const { return rays_; }
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& rays() const { return *rays_; }
   /// Cost: 5 ms for a dozen frames.
   [[nodiscard]] Meetings under(const Convention& reading) const;
   /// Considers pairs that fit both as given and under the convention, but not equally well, on
@@ -102,7 +106,7 @@ class FrameMeetings {
   std::vector<DepthFrame> frames_;
   std::span<const Pose> sequence_;
   std::vector<std::size_t> places_;  ///< indices of the frames in the sequence
-  std::vector<Eigen::Vector3d> rays_;
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rays_;
   double least_squared_, most_squared_;            ///< ranges [m²]
   std::vector<std::vector<std::size_t>> samples_;  ///< pixels with a depth, of each frame
 };

@@ -293,7 +293,8 @@ Suspicion suspect_frames(const Sensor& sensor, std::span<const DepthFrame> frame
   for (const DepthFrame& frame : frames) check_frame_size(frame, sensor.camera);
   std::vector<std::size_t> places(frames.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
-  const FrameMeetings meeting(sensor, frames, T_world_camera, std::move(places));
+  const JumpEdgeFilter filter(sensor.camera, {}, {.num_threads = 1});
+  const FrameMeetings meeting(sensor, filter, frames, T_world_camera, std::move(places));
   return detail::suspicion_of(sensor, frames, meeting, {}, {});
 }
 

@@ -12,6 +12,7 @@
 #include "check/frame_meetings.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/raycast/suspect_set_up.hpp"
+#include "viewgain/support/shared_rays.hpp"
 
 namespace viewgain {
 namespace {
@@ -140,7 +141,8 @@ Suspicion suspect_masks(const Sensor& sensor, std::span<const DepthFrame> unmask
     refuse("one masked frame and one pose per frame are required");
   }
   constexpr double kNearlyAll = 0.95, kMostOfMiddle = 0.8, kLittleElse = 0.4;
-  const std::vector<Eigen::Vector3d> rays = sensor.camera.ray_table();
+  const auto shared = shared_rays(sensor.camera);
+  const std::vector<Eigen::Vector3d>& rays = *shared;
   const auto width = static_cast<std::size_t>(sensor.camera.width);
   const auto height = static_cast<std::size_t>(sensor.camera.height);
   Taken inside, middle_inside, middle, elsewhere;

@@ -19,6 +19,7 @@
 #include "trace/scene_tracing.hpp"
 #include "viewgain/core/error.hpp"
 #include "viewgain/raycast/gain_evaluator.hpp"
+#include "viewgain/support/shared_rays.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
@@ -84,7 +85,8 @@ struct Tally {
 SightCheck::SightCheck(const Sensor& sensor, double max_near_share)
     : min_range_(sensor.min_range), max_range_(sensor.max_range), max_near_share_(max_near_share) {
   const PinholeCamera& camera = sensor.camera;
-  const std::vector<Eigen::Vector3d> table = camera.ray_table();
+  const auto shared = shared_rays(camera);
+  const std::vector<Eigen::Vector3d>& table = *shared;
   constexpr int kStep = kStride * kEdge;
   for (int v0 = 0; v0 < camera.height; v0 += kStep) {
     for (int u0 = 0; u0 < camera.width; u0 += kStep) {

@@ -9,6 +9,7 @@
 
 #include "gain/from_behind.hpp"
 #include "gain/frontal_sigmas.hpp"
+#include "viewgain/support/shared_rays.hpp"
 #include "viewgain/support/state_reader.hpp"
 #include "viewgain/support/voxel_walk.hpp"
 
@@ -117,16 +118,16 @@ RealisedArea::RealisedArea(const Sensor& sensor, double voxel_size,
                            std::optional<double> support_plane)
     : sensor_(sensor),
       support_plane_(support_plane),
-      rays_(sensor.camera.ray_table()),
-      solid_angles_(sensor.camera.solid_angles(rays_)),
+      rays_(shared_rays(sensor.camera)),
+      solid_angles_(sensor.camera.solid_angles(*rays_)),
       worth_(frontal_sigmas(sensor), sensor.working_distance, voxel_size) {}
 
 double RealisedArea::of(const DepthFrame& frame, const Pose& T_world_camera,
                         const BeliefGrid& before, const HazardProbe* hazard,
                         ThreadPool& pool) const {
   check_frame_size(frame, sensor_.camera);
-  std::vector<std::vector<double>> areas((rays_.size() + kPixelChunk - 1) / kPixelChunk);
-  pool.for_each_chunk(rays_.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::vector<double>> areas((rays_->size() + kPixelChunk - 1) / kPixelChunk);
+  pool.for_each_chunk(rays_->size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
     add_areas(frame, T_world_camera, before, hazard, {begin, end}, areas[begin / kPixelChunk]);
   });
   double area = 0;  // in the order of the pixels
@@ -143,8 +144,8 @@ void RealisedArea::add_areas(const DepthFrame& frame, const Pose& T_world_camera
   SurfaceBehind behind(before);
   for (std::size_t i = pixels[0]; i < pixels[1]; ++i) {
     const float z = frame.depth[i];
-    if (!(z > 0) || !std::isfinite(z) || !rays_[i].allFinite()) continue;
-    const Eigen::Vector3d p_camera = static_cast<double>(z) * rays_[i];
+    if (!(z > 0) || !std::isfinite(z) || !(*rays_)[i].allFinite()) continue;
+    const Eigen::Vector3d p_camera = static_cast<double>(z) * (*rays_)[i];
     const double range = p_camera.norm();
     if (range < sensor_.min_range || range > sensor_.max_range) continue;
     if (frame.shows_known(i)) continue;

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -42,7 +43,7 @@ class RealisedArea {
 
   Sensor sensor_;
   std::optional<double> support_plane_;
-  std::vector<Eigen::Vector3d> rays_;
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rays_;
   std::vector<double> solid_angles_;  // [sr]
   ReadingWorth worth_;
 };

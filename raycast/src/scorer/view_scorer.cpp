@@ -17,6 +17,7 @@
 #include "viewgain/grid/vdb_io.hpp"
 #include "viewgain/raycast/feasibility.hpp"
 #include "viewgain/raycast/obstacle_view.hpp"
+#include "viewgain/support/shared_rays.hpp"
 #include "viewgain/support/stopwatch.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/thread_pool.hpp"
@@ -100,7 +101,8 @@ struct ViewScorer::Impl {
   ExecConfig exec;
   BeliefGrid grid;
   std::optional<JumpEdgeFilter> filter;
-  std::vector<Eigen::Vector3d> rays;  ///< per pixel, (x, y, 1); not finite if the pixel has no ray
+  /// Per pixel, (x, y, 1); not finite if the pixel has no ray.
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rays;
   ObstacleView obstacles;
   FrameIntegrator integrator;
   FrameCheck check;
@@ -119,19 +121,19 @@ struct ViewScorer::Impl {
         config(with_layout(with, map)),
         exec(by),
         grid(std::move(map)),
-        rays(of.camera.ray_table()),
+        rays(shared_rays(of.camera)),
         obstacles(with.obstacles, of, by),
         integrator(of, with.integration(), by),
-        check(of, with.support_plane),
+        check(of, with.support_plane, by),
         pool(by.num_threads),
-        calibration(of, with.support_plane),
+        calibration(of, with.support_plane, by),
         learns(with.learn_hazard.value_or(with.gain.model != GainModel::paper)),
         voxels(VoxelBox::from_dims(grid.min_index(), grid.dims())),
         current(std::make_shared<detail::MapVersion>(grid, of, config, by)) {
     if (learns && with.measure_new_area) {
       new_surface.emplace(of, grid.voxel_size(), with.support_plane);
     }
-    if (with.jump_edges) filter.emplace(of.camera, *with.jump_edges);
+    if (with.jump_edges) filter.emplace(of.camera, *with.jump_edges, by);
   }
 
   [[nodiscard]] std::shared_ptr<detail::MapVersion> now() const {
@@ -159,7 +161,7 @@ struct ViewScorer::Impl {
 
   [[nodiscard]] bool shows_workspace(const DepthFrame& frame, const Pose& T_world_camera) const {
     const auto shows = [&](std::size_t i) {
-      const Eigen::Vector3d p = static_cast<double>(frame.depth[i]) * rays[i];
+      const Eigen::Vector3d p = static_cast<double>(frame.depth[i]) * (*rays)[i];
       const double range = p.norm();
       // False for pixels without a depth or without a ray.
       if (!(range >= sensor.min_range && range <= sensor.max_range)) return false;
@@ -168,7 +170,7 @@ struct ViewScorer::Impl {
     // First a few pixels of the whole image, because one is enough.
     constexpr std::size_t kPasses = 61;
     for (std::size_t pass = 0; pass < kPasses; ++pass) {
-      for (std::size_t i = pass; i < rays.size(); i += kPasses) {
+      for (std::size_t i = pass; i < rays->size(); i += kPasses) {
         if (shows(i)) return true;
       }
     }
@@ -178,10 +180,10 @@ struct ViewScorer::Impl {
   void drop_known_readings(DepthFrame& frame, const Pose& T_world_camera) const {
     for (std::size_t i = 0; i < frame.depth.size(); ++i) {
       const float z = frame.depth[i];
-      if (z == DepthFrame::kInvalid || z == DepthFrame::kOutOfRange || !rays[i].allFinite())
+      if (z == DepthFrame::kInvalid || z == DepthFrame::kOutOfRange || !(*rays)[i].allFinite())
         continue;
       const auto voxel =
-          grid.index_of(T_world_camera * Eigen::Vector3d(rays[i] * static_cast<double>(z)));
+          grid.index_of(T_world_camera * Eigen::Vector3d((*rays)[i] * static_cast<double>(z)));
       if (voxel && grid.belief(*voxel)) frame.depth[i] = DepthFrame::kInvalid;
     }
   }

@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "viewgain/support/shared_rays.hpp"
+
 namespace viewgain::detail {
 
 // Columns and rows are known; ray_at(column, row) is asked once for each lane.
@@ -41,7 +43,8 @@ void TileTable::fill(const RayAt& ray_at) {
 TileTable::TileTable(const PinholeCamera& camera, int pixel_stride)
     : columns(strided(camera.width, pixel_stride)), rows(strided(camera.height, pixel_stride)) {
   image_columns_ = columns;
-  const std::vector<Eigen::Vector3d> table = camera.ray_table();
+  const auto shared = shared_rays(camera);
+  const std::vector<Eigen::Vector3d>& table = *shared;
   const std::vector<double> angles = camera.solid_angles(table);
   const double pixels = static_cast<double>(table.size()) / static_cast<double>(ray_count());
   fill([&](int column, int row) -> Ray {

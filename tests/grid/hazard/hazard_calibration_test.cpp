@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <random>
 #include <utility>
 
@@ -201,6 +202,27 @@ TEST(HazardCalibration, PosesThatAreALittleOffAreMended) {
   test::expect_error(ErrorCode::invalid_argument, "rigid", [&] {
     HazardCalibration(sensor).count(grid, probe, frame, Pose(2 * R, off.translation()));
   });
+}
+
+TEST(HazardCalibration, CountsTheSameOnAnyNumberOfThreads) {
+  std::size_t cases = 0;
+  for (const Index3 size : {Index3{64, 48, 0}, Index3{61, 5, 0}, Index3{7, 300, 0}}) {
+    Sensor sensor = looking();
+    sensor.camera.width = size.x, sensor.camera.height = size.y;
+    sensor.camera.cx = (size.x - 1) / 2.0, sensor.camera.cy = (size.y - 1) / 2.0;
+    const DepthFrame frame = test::see_plane(sensor, 0.6F);
+    std::optional<HazardCounters> alone;
+    for (const int threads : {1, 2, 5}) {
+      BeliefGrid grid = unknown_cube({}, {0, 0, 0});
+      const HazardProbe probe(grid.snapshot(), {.object_size = 0.35});
+      HazardCalibration(sensor, {}, {.num_threads = threads}).count(grid, probe, frame, kFromFront);
+      EXPECT_FALSE(grid.hazard_counters().empty());
+      if (!alone) alone = grid.hazard_counters();
+      EXPECT_EQ(grid.hazard_counters(), *alone);
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 9U);
 }
 
 TEST(HazardCalibration, WhatSaysNothing) {

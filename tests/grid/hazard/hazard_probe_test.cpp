@@ -7,8 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
+#include <thread>
+#include <vector>
 
 #include "grid/hazard/cut_grid.hpp"
 
@@ -58,13 +61,14 @@ TEST(HazardProbe, SaysWhatTheFieldSays) {
         const GridSnapshot snapshot = grid.snapshot();
         const HazardField field(snapshot, config);
         const HazardProbe probe(snapshot, config);
+        HazardProbe::Reader reader(probe);
         ASSERT_EQ(probe.cell_shift(), field.cell_shift());
         ASSERT_EQ(probe.near_box(), field.near_box());
         const Index3 low = grid.min_index();
         for (int x = low.x - 2; x < low.x + dims.x + 2; ++x) {
           for (int y = low.y - 2; y < low.y + dims.y + 2; y += 2) {
             for (int z = low.z - 2; z < low.z + dims.z + 2; z += 3) {
-              const HazardProbe::At at = probe.at({x, y, z});
+              const HazardProbe::At at = reader.at({x, y, z});
               ASSERT_EQ(at.distance, field.distance({x, y, z})) << x << " " << y << " " << z;
               ASSERT_EQ(at.start_rate, field.start_rate({x, y, z})) << x << " " << y << " " << z;
               ASSERT_EQ(probe.is_new({x, y, z}), field.is_new({x, y, z}));
@@ -85,6 +89,34 @@ TEST(HazardProbe, SaysWhatTheFieldSays) {
   EXPECT_LT(new_ones, voxels - 5'000U);
 }
 
+TEST(HazardProbe, ReadersOfManyThreadsAgree) {
+  std::mt19937 random(12);
+  const Index3 dims{48, 40, 44};
+  const BeliefGrid grid = random_map(dims, 60, 0.003, random);
+  const HazardProbe probe(grid.snapshot());
+  const Index3 low = grid.min_index();
+  const auto values = [&] {
+    std::vector<double> all;
+    HazardProbe::Reader reader(probe);
+    for (int x = 0; x < dims.x; x += 3) {
+      for (int y = 0; y < dims.y; y += 3) {
+        for (int z = 0; z < dims.z; ++z) {
+          const HazardProbe::At at = reader.at({low.x + x, low.y + y, low.z + z});
+          all.insert(all.end(), {at.distance, at.start_rate});
+        }
+      }
+    }
+    return all;
+  };
+  std::array<std::vector<double>, 4> found;
+  std::vector<std::jthread> threads;
+  for (std::vector<double>& own : found) threads.emplace_back([&] { own = values(); });
+  threads.clear();  // joins them
+  const std::vector<double> expected = values();
+  EXPECT_EQ(expected.size(), 2U * 16 * 14 * 44);
+  for (const std::vector<double>& own : found) EXPECT_EQ(own, expected);
+}
+
 TEST(HazardProbe, TakesTheModelAndItsLimitsFromTheMap) {
   std::mt19937 random(3);
   const BeliefGrid grid = random_map({50, 40, 30}, 200, 0.004, random);
@@ -99,8 +131,9 @@ TEST(HazardProbe, TakesTheModelAndItsLimitsFromTheMap) {
   const BeliefGrid empty = random_map({20, 20, 20}, 0, 0.004, random);
   const HazardProbe nothing(empty.snapshot());
   EXPECT_EQ(nothing.near_box().volume(), 0U);
-  EXPECT_TRUE(std::isinf(nothing.at({0, 10, -95}).distance));
-  EXPECT_EQ(nothing.at({0, 10, -95}).start_rate, nothing.model().far_rate);
+  const HazardProbe::At at = HazardProbe::Reader(nothing).at({0, 10, -95});
+  EXPECT_TRUE(std::isinf(at.distance));
+  EXPECT_EQ(at.start_rate, nothing.model().far_rate);
   EXPECT_TRUE(nothing.is_new({0, 10, -95}));
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "viewgain/core/noise.hpp"
 #include "viewgain/grid/fused_points.hpp"
 #include "viewgain/raycast/obstacle_view.hpp"
+#include "viewgain/support/shared_rays.hpp"
 #include "viewgain/support/text.hpp"
 #include "viewgain/support/thread_pool.hpp"
 
@@ -250,7 +252,7 @@ struct FrameAlignment::Impl {
   std::optional<JumpEdgeFilter> filter;
   ObstacleView obstacles;
   ExecConfig exec;
-  std::vector<Eigen::Vector3d> rays;
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rays;
   mutable ThreadPool pool;
   std::optional<Added> added;
 
@@ -260,9 +262,9 @@ struct FrameAlignment::Impl {
         support_plane(map.support_plane),
         obstacles(map.obstacles, s, e),
         exec(e),
-        rays(s.camera.ray_table()),
+        rays(shared_rays(s.camera)),
         pool(e.num_threads) {
-    if (map.jump_edges) filter.emplace(s.camera, *map.jump_edges);
+    if (map.jump_edges) filter.emplace(s.camera, *map.jump_edges, e);
   }
 
   [[nodiscard]] bool is_on_plane(const Eigen::Vector3d& point, const Eigen::Vector3d& sight) const {
@@ -283,8 +285,8 @@ struct FrameAlignment::Impl {
     pool.for_each_chunk(inside.depth.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const double z = static_cast<double>(inside.depth[i]);
-        if (!(z > 0) || !std::isfinite(z) || !rays[i].allFinite()) continue;
-        const Eigen::Vector3d sight = R * (z * rays[i]);
+        if (!(z > 0) || !std::isfinite(z) || !(*rays)[i].allFinite()) continue;
+        const Eigen::Vector3d sight = R * (z * (*rays)[i]);
         const Eigen::Vector3d point = sight + T_world_camera.translation();
         if (!layout.index_of(point) || is_on_plane(point, sight)) {
           inside.depth[i] = DepthFrame::kInvalid;
@@ -293,7 +295,7 @@ struct FrameAlignment::Impl {
     });
     return detail::view_of(
         frame, sensor.camera,
-        detail::readings_of(inside, sensor, rays,
+        detail::readings_of(inside, sensor, *rays,
                             (is_smoothed ? kSmoothedRadius : kSingleRadius) * length, is_smoothed,
                             is_smoothed ? kSmoothedReadings : kSingleReadings, pool));
   }

@@ -18,10 +18,10 @@ namespace viewgain::app {
 namespace {
 
 ScorerConfig config_of(const FrameFolder& folder, const FrameMapOptions& options,
-                       const ProposalOptions& proposal, bool quiet) {
+                       const ProposalOptions& proposal, bool quiet, const ExecConfig& exec) {
   ScorerConfig config = scorer_config(options, proposal);
   config.workspace = options.workspace.empty()
-                         ? seen_workspace(folder, config, options.voxel, quiet)
+                         ? seen_workspace(folder, config, options.voxel, quiet, exec)
                          : parse_box("--workspace", options.workspace);
   const BeliefGrid empty(config.grid());
   warn_of_few_voxels(empty);
@@ -44,10 +44,10 @@ ScorerConfig scorer_config(const FrameMapOptions& options, const ProposalOptions
   return config;
 }
 
-Box seen_workspace(const FrameFolder& folder, const ScorerConfig& config, double voxel,
-                   bool quiet) {
+Box seen_workspace(const FrameFolder& folder, const ScorerConfig& config, double voxel, bool quiet,
+                   const ExecConfig& exec) {
   std::optional<JumpEdgeFilter> filter;
-  if (config.jump_edges) filter.emplace(folder.sensor().camera, *config.jump_edges);
+  if (config.jump_edges) filter.emplace(folder.sensor().camera, *config.jump_edges, exec);
   Progress progress("bounds of frame", quiet);
   FrameTally tally(true);
   const auto bounds = [&](std::size_t i) {
@@ -90,7 +90,7 @@ void add_frame_map_options(App& app, FrameMapOptions& options) {
 FrameMap::FrameMap(const FrameMapOptions& options, const ProposalOptions& proposal, bool quiet,
                    const ExecConfig& exec)
     : folder_(options.folder),
-      config_(config_of(folder_, options, proposal, quiet)),
+      config_(config_of(folder_, options, proposal, quiet, exec)),
       scorer_(with_body(folder_.sensor(), proposal), config_, exec),
       tally_(quiet) {
   warn_of_set_up(proposal, config_.obstacles, scorer_.grid(), scorer_.sensor(), true);

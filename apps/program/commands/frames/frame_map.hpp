@@ -38,7 +38,7 @@ void add_frame_map_options(App& app, FrameMapOptions& options);
 /// The workspace for what the frames see, without pixels that --jump-edge-filter removes. Reads all
 /// frames. Throws Error(invalid_argument) if none has a reading.
 [[nodiscard]] Box seen_workspace(const FrameFolder& folder, const ScorerConfig& config,
-                                 double voxel, bool quiet);
+                                 double voxel, bool quiet, const ExecConfig& exec);
 
 /// A map into which the frames of a folder are integrated, in order.
 class FrameMap {

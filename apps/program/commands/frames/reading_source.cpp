@@ -69,7 +69,7 @@ class FrameSource : public ReadingSource {
     return folder_.frames().images[index];
   }
   [[nodiscard]] Box seen_workspace(double voxel, bool quiet) override {
-    return app::seen_workspace(folder_, config_, voxel, quiet);
+    return app::seen_workspace(folder_, config_, voxel, quiet, exec_);
   }
   void start(BeliefGrid grid) override {
     map_.emplace(std::move(grid), folder_.sensor(), config_, exec_);

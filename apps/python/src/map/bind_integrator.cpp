@@ -241,7 +241,8 @@ namespace {
 /// Adds the calibration of the hazard, which only frames support.
 struct Integrator : SharedIntegrator<FrameIntegrator> {
   Integrator(const Sensor& of, const IntegrationConfig& config, int num_threads)
-      : SharedIntegrator(of, config, num_threads), calibration(of, config.support_plane) {}
+      : SharedIntegrator(of, config, num_threads),
+        calibration(of, config.support_plane, {.num_threads = num_threads}) {}
   HazardCalibration calibration;
 };
 

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -117,7 +118,7 @@ class VIEWGAIN_EXPORT FrameAgreement {
 
   Sensor sensor_;
   std::optional<double> support_plane_;
-  std::vector<Eigen::Vector3d> rays_;
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> rays_;
   std::vector<FrameContradiction> frames_;
   std::vector<Reading> kept_;  ///< of all frames; fewer per frame as their number grows
   std::size_t keep_every_ = 1;

@@ -16,7 +16,7 @@ namespace viewgain {
 /// voxel within the cut (HazardField) about 1 µs. For a few thousand voxels this is less than for
 /// the field.
 ///
-/// Thread safety: is_new() may run from many threads; at() only one call at a time.
+/// Thread safety: const members may run from many threads; a Reader belongs to one thread.
 class VIEWGAIN_EXPORT HazardProbe {
  public:
   /// Copies what it needs from the snapshot. Throws whatever the constructor of HazardField throws.
@@ -36,14 +36,29 @@ class VIEWGAIN_EXPORT HazardProbe {
     double distance = 0;    ///< HazardField::distance() [m]
     double start_rate = 0;  ///< HazardField::start_rate() [1/m]
   };
-  /// Distance and rate at the voxel. Keeps the last cell, so only one thread at a time.
-  [[nodiscard]] At at(Index3 voxel) const;
   /// HazardField::is_new().
   [[nodiscard]] bool is_new(Index3 voxel) const;
 
+  /// Reads distances and rates. Keeps what several voxels have in common, and is therefore fastest
+  /// for voxels in order along rays. The probe must outlive it.
+  class VIEWGAIN_EXPORT Reader {
+   public:
+    explicit Reader(const HazardProbe& probe);
+    explicit Reader(HazardProbe&&) = delete;
+    ~Reader();
+    Reader(Reader&&) noexcept;
+    Reader& operator=(Reader&&) noexcept;
+
+    [[nodiscard]] At at(Index3 voxel);
+
+   private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+  };
+
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<const Impl> impl_;
 };
 
 }  // namespace viewgain

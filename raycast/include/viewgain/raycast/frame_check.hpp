@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "viewgain/core/depth_frame.hpp"
+#include "viewgain/core/exec_config.hpp"
 #include "viewgain/core/export.hpp"
 #include "viewgain/core/pose.hpp"
 #include "viewgain/core/sensor.hpp"
@@ -40,9 +41,10 @@ struct VIEWGAIN_EXPORT FrameConsistency {
 /// Thread safety: one call at a time. Cost: 0.4 ms per frame, and memory for about twelve images.
 class VIEWGAIN_EXPORT FrameCheck {
  public:
-  /// `support_plane` [m] is the height z of a table, as in IntegrationConfig. Throws
-  /// Error(invalid_argument) if the sensor is invalid.
-  explicit FrameCheck(const Sensor& sensor, std::optional<double> support_plane = {});
+  /// `support_plane` [m] is the height z of a table, as in IntegrationConfig. `exec` is for
+  /// result(). Throws Error(invalid_argument) if the sensor is invalid.
+  explicit FrameCheck(const Sensor& sensor, std::optional<double> support_plane = {},
+                      const ExecConfig& exec = {});
 
   /// Records a frame and its pose. Call it for every frame, even if it cannot be integrated.
   /// Ignores frames that do not have the sensor's size.
@@ -59,6 +61,7 @@ class VIEWGAIN_EXPORT FrameCheck {
  private:
   Sensor sensor_;
   std::optional<double> support_plane_;
+  ExecConfig exec_;
   FrameAgreement agreement_;
   std::vector<Pose> sequence_;  ///< poses of all recorded frames
   std::vector<DepthFrame> kept_;

@@ -109,7 +109,7 @@ class VIEWGAIN_EXPORT ViewScorer {
   /// Starts with a map in which all voxels are unknown. Throws Error(invalid_argument), naming the
   /// value, if the sensor or a setting is invalid, gain.prior_sigma is set, or voxels are as large
   /// as the workspace or larger than the sensor's range. Throws Error(backend) if Embree fails.
-  /// Cost: five calls of PinholeCamera::ray_table().
+  /// Cost: some passes over the pixels, and tables of about 150 bytes per pixel.
   explicit ViewScorer(const Sensor& sensor, const ScorerConfig& config = {},
                       const ExecConfig& exec = {});
   /// As above, but starts with a given map. Its layout and prior replace those of `config`.
