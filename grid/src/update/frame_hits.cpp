@@ -55,6 +55,7 @@ void VoxelSupport::gather(const BeliefGrid& map, const BlockLattice& lattice,
   lattice_ = &lattice;
   blocks_.resize(blocks.size());
   counts_.resize(blocks.size());
+  most_.resize(blocks.size());
   const BeliefMap& beliefs = beliefs_of(map);
   pool.for_each_chunk(blocks.size(), kBlockChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -62,14 +63,15 @@ void VoxelSupport::gather(const BeliefGrid& map, const BlockLattice& lattice,
       Counts& counts = counts_[i];
       counts.fill(0);
       for (std::uint32_t h = blocks[i].begin; h < blocks[i].end; ++h) ++counts[hits[h].offset];
-      const auto found = beliefs.find(blocks[i].key);
-      if (found == beliefs.end()) continue;
-      for_each_bit(occupied_in(map, lattice.origin(blocks[i].key)), [&](unsigned offset) {
-        const Belief* belief = found->second->find(offset);
-        if (belief == nullptr) return;
-        constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
-        counts[offset] += std::min(belief->hits, kMost - counts[offset]);
-      });
+      if (const auto found = beliefs.find(blocks[i].key); found != beliefs.end()) {
+        for_each_bit(occupied_in(map, lattice.origin(blocks[i].key)), [&](unsigned offset) {
+          const Belief* belief = found->second->find(offset);
+          if (belief == nullptr) return;
+          constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+          counts[offset] += std::min(belief->hits, kMost - counts[offset]);
+        });
+      }
+      most_[i] = *std::max_element(counts.begin(), counts.end());
     }
   });
 }
@@ -79,15 +81,19 @@ void VoxelSupport::Reader::enter(Index3 voxel) {
   scale_ = scale_of(*support_.map_, block);
   counts_ = nullptr;
   beliefs_ = nullptr;
+  most_ = 0;
   const std::vector<std::uint64_t>& blocks = support_.blocks_;
   const auto found = std::lower_bound(blocks.begin(), blocks.end(), block);
   if (found != blocks.end() && *found == block) {
-    counts_ = support_.counts_[static_cast<std::size_t>(found - blocks.begin())].data();
+    const auto i = static_cast<std::size_t>(found - blocks.begin());
+    counts_ = support_.counts_[i].data();
+    most_ = support_.most_[i];
     return;
   }
   const BeliefMap& beliefs = beliefs_of(*support_.map_);
   if (const auto of_map = beliefs.find(block); of_map != beliefs.end()) {
     beliefs_ = of_map->second.get();
+    most_ = std::numeric_limits<std::uint32_t>::max();
     occupied_ = occupied_in(*support_.map_, support_.lattice_->origin(block));
   }
 }
@@ -105,13 +111,39 @@ std::uint32_t VoxelSupport::Reader::at(Index3 voxel) {
   return belief != nullptr ? belief->hits : 0;
 }
 
+namespace {
+
+// Where a line from p leaves a block, along it [voxels], less what rounding may change. `inverse`:
+// of the components of its direction.
+double end_of_block(Index3 block, const Eigen::Vector3d& p, const Eigen::Vector3d& inverse) {
+  constexpr double kRounding = 1e-6;
+  const std::array<int, 3> at{block.x, block.y, block.z};
+  double end = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    const int face = kBlockSize * (inverse[a] > 0 ? at[axis] + 1 : at[axis]);
+    end = std::min(end, (face - p[a]) * inverse[a]);
+  }
+  return end - kRounding;
+}
+
+// One direction from a reading, sampled from near to far.
+struct Search {
+  VoxelSupport::Reader reader;
+  Index3 last{};         // voxel of the last sample
+  double dull_until{0};  // samples before this are in a block without enough support
+};
+
+}  // namespace
+
 void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places,
                const BlockLattice& lattice, double voxel_size, const VoxelSupport& support,
                ThreadPool& pool, std::vector<Hit>& by_pixel) {
   const Readings& pixels = frame.readings;
   const Eigen::Matrix3d R_grid_readings = frame.T_grid_readings.rotation();
   pool.for_each_chunk(by_pixel.size(), kPixelChunk, [&](std::size_t begin, std::size_t end) {
-    VoxelSupport::Reader before(support), behind(support);
+    Search before{.reader = VoxelSupport::Reader(support)};
+    Search behind{.reader = VoxelSupport::Reader(support)};
     for (std::size_t i = begin; i < end; ++i) {
       Hit& hit = by_pixel[i];
       if (hit.offset >= kBlockVoxels) continue;
@@ -119,28 +151,42 @@ void associate(const PlacedFrame& frame, std::span<const Eigen::Vector3d> places
       if (sigma < kNoisySigma) continue;
       const Eigen::Vector3d& p = places[i];
       const Index3 own = *lattice.voxel_at(p);
-      const Eigen::Vector3d direction = R_grid_readings * pixels.direction(i);
-      const double range = (pixels.point(i) - pixels.origin()).norm() / voxel_size;
-      double best = kMargin * before.at(own);
-      const double cell = before.cell();
+      double best = kMargin * before.reader.at(own);
+      const double cell = before.reader.cell();
       if (sigma < kNoisySigma * cell) continue;
+      const Eigen::Vector3d direction = R_grid_readings * pixels.direction(i);
+      const Eigen::Vector3d inverse = direction.cwiseInverse();
       const double reach = std::min(kTaperSigmas * sigma, kFarthest * cell);
+      const bool is_dull = before.reader.most() <= best;
+      const Index3 block = before.reader.block();
+      before.last = behind.last = own;
+      before.dull_until = is_dull ? end_of_block(block, p, -inverse) : 0;
+      behind.dull_until = is_dull ? end_of_block(block, p, inverse) : 0;
+      const double dull_until = std::min(before.dull_until, behind.dull_until);
+      if (dull_until >= reach) continue;
+      const double range = (pixels.point(i) - pixels.origin()).norm() / voxel_size;
       // A voxel's value is largest at the first sample on its side.
-      Index3 last_before = own, last_behind = own;
-      const auto look = [&](double t, VoxelSupport::Reader& reader, Index3& last) {
-        const std::optional<Index3> voxel = lattice.voxel_at(p + t * direction);
-        if (!voxel || *voxel == last) return;
-        last = *voxel;
-        const double value = reader.at(*voxel) * (1 - t / reach * (t / reach));
-        if (value <= best) return;
-        best = value;
-        hit.block = lattice.key(*voxel);
-        hit.offset = block_offset(*voxel);
+      const auto look = [&](double t, double sign, Search& side) {
+        if (t < side.dull_until) return;
+        const std::optional<Index3> voxel = lattice.voxel_at(p + sign * t * direction);
+        if (!voxel || *voxel == side.last) return;
+        side.last = *voxel;
+        const double weight = 1 - t / reach * (t / reach);
+        const double value = side.reader.at(*voxel) * weight;
+        if (value > best) {
+          best = value;
+          hit.block = lattice.key(*voxel);
+          hit.offset = block_offset(*voxel);
+        }
+        if (side.reader.most() * weight <= best) {  // weights only fall
+          side.dull_until = end_of_block(side.reader.block(), p, sign * inverse);
+        }
       };
-      for (int step = 1; step * kStep * cell < reach; ++step) {
+      const int first = std::max(1, static_cast<int>(dull_until / (kStep * cell)));
+      for (int step = first; step * kStep * cell < reach; ++step) {
         const double t = step * kStep * cell;
-        if (t < range) look(-t, before, last_before);
-        look(t, behind, last_behind);
+        if (t < range) look(t, -1, before);
+        look(t, 1, behind);
       }
     }
   });

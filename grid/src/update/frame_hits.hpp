@@ -55,6 +55,9 @@ class VoxelSupport {
     [[nodiscard]] std::uint32_t at(Index3 voxel);
     /// Edge of the cell of the last look-up [voxels].
     [[nodiscard]] int cell() const { return 1 << scale_; }
+    /// The block of the last look-up, in blocks, and a bound on the support of its cells.
+    [[nodiscard]] Index3 block() const { return block_; }
+    [[nodiscard]] std::uint32_t most() const { return most_; }
 
    private:
     const VoxelSupport& support_;
@@ -63,6 +66,7 @@ class VoxelSupport {
     /// Lowest voxel of the block divided by 8; none yet.
     Index3 block_{std::numeric_limits<std::int32_t>::max(), 0, 0};
     int scale_ = 0;                          ///< of the block
+    std::uint32_t most_ = 0;                 ///< bound on the support of its cells
     const std::uint32_t* counts_ = nullptr;  ///< of the block if the frame hits it
     const BeliefBlock* beliefs_ = nullptr;   ///< otherwise its beliefs, if any,
     LeafMask occupied_{};                    ///< of its occupied voxels
@@ -74,6 +78,7 @@ class VoxelSupport {
   const BlockLattice* lattice_ = nullptr;
   std::vector<std::uint64_t> blocks_;  ///< blocks that the frame hits, in increasing order
   std::vector<Counts> counts_;         ///< of each of them
+  std::vector<std::uint32_t> most_;    ///< largest count of each
 };
 
 /// Assigns each noisy reading to the voxel with the largest n · (1 - (t / reach)²) along its ray,

@@ -49,7 +49,7 @@ class VIEWGAIN_EXPORT HazardProbe {
     Reader(Reader&&) noexcept;
     Reader& operator=(Reader&&) noexcept;
 
-    [[nodiscard]] At at(Index3 voxel);
+    [[nodiscard]] At at(Index3 voxel);  ///< distance and rate at the voxel
 
    private:
     struct Impl;
