@@ -18,30 +18,45 @@ constexpr double kMargin = 2.0;  // factor by which another voxel must be better
 constexpr double kFarthest = 8;  // reach that is searched; limits the cost [cells]
 
 constexpr std::size_t kHitChunk = 1024, kSurfaceRows = 4;
+constexpr std::size_t kSortPart = 8192;  // least hits that a thread sorts at a time
 
 Hit hit(const BlockLattice& lattice, Index3 voxel, std::size_t pixel) {
   return {lattice.key(voxel), static_cast<std::uint32_t>(pixel), block_offset(voxel)};
 }
 
 /// Sorts the hits by block, stably. `scratch` is working space.
-void sort_by_block(std::vector<Hit>& hits, std::vector<Hit>& scratch) {
-  // Radix sort from the lowest digit: stable, and most keys have few varying digits.
+void sort_by_block(std::vector<Hit>& hits, std::vector<Hit>& scratch, ThreadPool& pool) {
+  // Radix sort from the lowest digit: stable, and most keys have few varying digits. The hits are
+  // counted and moved in parts, each by one thread.
   constexpr unsigned kBits = 11;
-  constexpr std::size_t kBuckets = std::size_t{1} << kBits;
+  constexpr std::size_t kBuckets = std::size_t{1} << kBits, kMostParts = 16;
+  const std::size_t parts = std::clamp<std::size_t>(hits.size() / kSortPart, 1, kMostParts);
+  const std::size_t length = (hits.size() + parts - 1) / parts;
+  std::vector<std::array<std::uint32_t, kBuckets>> position(parts);
   std::uint64_t varying = 0;
   for (const Hit& hit : hits) varying |= hit.block ^ hits.front().block;
   scratch.resize(hits.size());
   for (unsigned shift = 0; shift < 64 && varying >> shift != 0; shift += kBits) {
     if ((varying >> shift & (kBuckets - 1)) == 0) continue;
-    std::array<std::uint32_t, kBuckets> position{};
-    for (const Hit& hit : hits) ++position[hit.block >> shift & (kBuckets - 1)];
+    const auto for_each_part = [&](const auto& body) {
+      pool.for_each_chunk(hits.size(), length, [&](std::size_t begin, std::size_t end) {
+        std::array<std::uint32_t, kBuckets>& own = position[begin / length];
+        for (std::size_t i = begin; i < end; ++i) {
+          body(hits[i], own[hits[i].block >> shift & (kBuckets - 1)]);
+        }
+      });
+    };
+    for (auto& own : position) own.fill(0);
+    for_each_part([](const Hit&, std::uint32_t& count) { ++count; });
     std::uint32_t sum = 0;
-    for (std::uint32_t& p : position) {
-      const std::uint32_t count = p;
-      p = sum;
-      sum += count;
+    for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
+      for (auto& own : position) {
+        const std::uint32_t count = own[bucket];
+        own[bucket] = sum;
+        sum += count;
+      }
     }
-    for (const Hit& hit : hits) scratch[position[hit.block >> shift & (kBuckets - 1)]++] = hit;
+    for_each_part([&](const Hit& hit, std::uint32_t& place) { scratch[place++] = hit; });
     hits.swap(scratch);
   }
 }
@@ -113,18 +128,18 @@ std::uint32_t VoxelSupport::Reader::at(Index3 voxel) {
 
 namespace {
 
-// Where a line from p leaves a block, along it [voxels], less what rounding may change. `inverse`:
-// of the components of its direction.
+// Where a line from p leaves a block, along it [voxels], or comes so close to a face that rounding
+// may put it beyond. `inverse`: of the components of its direction.
 double end_of_block(Index3 block, const Eigen::Vector3d& p, const Eigen::Vector3d& inverse) {
-  constexpr double kRounding = 1e-6;
+  constexpr double kRounding = 1e-6;  // more than that of coordinates
   const std::array<int, 3> at{block.x, block.y, block.z};
   double end = std::numeric_limits<double>::infinity();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<Eigen::Index>(axis);
     const int face = kBlockSize * (inverse[a] > 0 ? at[axis] + 1 : at[axis]);
-    end = std::min(end, (face - p[a]) * inverse[a]);
+    end = std::min(end, (std::abs(face - p[a]) - kRounding) * std::abs(inverse[a]));
   }
-  return end - kRounding;
+  return std::max(end, 0.0);
 }
 
 // One direction from a reading, sampled from near to far.
@@ -206,7 +221,7 @@ void FrameHits::find(const PlacedFrame& frame, const BlockLattice& lattice, doub
     }
   });
   if (on_surface && pixels.row_length() > 0) move_to_surface(frame, lattice, voxel_size, pool);
-  sort();
+  sort(pool);
 }
 
 void FrameHits::move_to_surface(const PlacedFrame& frame, const BlockLattice& lattice,
@@ -252,7 +267,7 @@ void FrameHits::associate(const PlacedFrame& frame, const BlockLattice& lattice,
   }
   support_.gather(map, lattice, blocks_, hits_, pool);
   detail::associate(frame, places_, lattice, voxel_size, support_, pool, by_pixel_);
-  sort();
+  sort(pool);
 }
 
 void FrameHits::use_cells(const ScalePlan& plan, BeliefGrid& map) {
@@ -266,12 +281,12 @@ void FrameHits::use_cells(const ScalePlan& plan, BeliefGrid& map) {
   }
 }
 
-void FrameHits::sort() {
+void FrameHits::sort(ThreadPool& pool) {
   hits_.clear();
   for (const Hit& hit : by_pixel_) {
     if (hit.offset < kBlockVoxels) hits_.push_back(hit);
   }
-  sort_by_block(hits_, scratch_);
+  sort_by_block(hits_, scratch_, pool);
 
   blocks_.clear();
   for (std::uint32_t i = 0; i < hits_.size(); ++i) {

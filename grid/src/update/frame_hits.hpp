@@ -120,7 +120,7 @@ class FrameHits {
  private:
   void move_to_surface(const PlacedFrame& frame, const BlockLattice& lattice, double voxel_size,
                        ThreadPool& pool);
-  void sort();
+  void sort(ThreadPool& pool);
 
   const SurfaceKernels& kernels_;
   std::vector<Hit> by_pixel_;            ///< one per pixel; offset kBlockVoxels without a hit
