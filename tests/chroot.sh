@@ -32,9 +32,16 @@ open_system() {
   ln -sf pts/ptmx "$system/dev/ptmx"
 }
 
-# copy_sources FOLDER: the project's, their times kept so that only what has changed is compiled.
+# copy_sources FOLDER: the project's. A file keeps its time if it is as in the last copy; otherwise its time is
+# now, because it may have been written before something was compiled from the last copy.
 copy_sources() {
+  local before file
+  before=$(mktemp -d)
   mkdir -p "$1"
-  find "$1" -mindepth 1 -maxdepth 1 -not -name build -exec rm -rf {} +
-  tar --exclude=./build --exclude=./out --exclude=./.git -cf - . | tar -xf - -C "$1"
+  find "$1" -mindepth 1 -maxdepth 1 -not -name build -exec mv -t "$before" {} +
+  tar --exclude=./build --exclude=./out --exclude=./.git -cf - . | tar -xmf - -C "$1"
+  while IFS= read -r -d '' file; do
+    if cmp -s "$1/$file" "$before/$file"; then touch -r "$before/$file" "$1/$file"; fi
+  done < <(cd "$1" && find . -path ./build -prune -o -type f -print0)
+  rm -rf "$before"
 }

@@ -43,7 +43,7 @@ class VIEWGAIN_EXPORT HazardProbe {
   /// for voxels in order along rays. The probe must outlive it.
   class VIEWGAIN_EXPORT Reader {
    public:
-    explicit Reader(const HazardProbe& probe);
+    explicit Reader(const HazardProbe& probe);  ///< of this probe
     explicit Reader(HazardProbe&&) = delete;
     ~Reader();
     Reader(Reader&&) noexcept;
