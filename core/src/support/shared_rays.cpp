@@ -11,8 +11,8 @@ std::shared_ptr<const std::vector<Eigen::Vector3d>> shared_rays(const PinholeCam
   using Table = const std::vector<Eigen::Vector3d>;
   using Tables = std::vector<std::pair<PinholeCamera, std::weak_ptr<Table>>>;
   static constinit std::mutex mutex;
-  static constinit Tables* tables =
-      nullptr;  // never freed: threads may call until the process ends
+  // Never freed, because threads may call until the process ends.
+  static constinit Tables* tables = nullptr;
 
   // After a fork, a thread that does not exist in the child may hold the lock. So nobody waits.
   const std::unique_lock lock(mutex, std::try_to_lock);
