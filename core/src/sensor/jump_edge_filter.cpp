@@ -97,6 +97,7 @@ JumpEdgeFilter::JumpEdgeFilter(const PinholeCamera& camera, const JumpEdgeFilter
 struct JumpEdgeFilter::Image {
   const std::vector<float>& depth;
   const std::size_t width, height;
+  const double sin2_angle;    // of the threshold
   std::vector<float> ranges;  // kNone without a reading; with a row of these above and below
 
   [[nodiscard]] const float* row(std::size_t v) const { return &ranges[(v + 1) * width]; }
@@ -117,7 +118,7 @@ bool JumpEdgeFilter::is_flying(const Image& image, std::size_t u, std::size_t v)
       if (std::max(range, other) < smooth_[i] * std::min(range, other)) continue;
       const Eigen::Vector3d q = point(y * image.width + x);
       if (!config_.two_sided && !(q.squaredNorm() < p.squaredNorm())) continue;
-      if (along_ray(p, q, sin2_of(config_.angle))) return true;
+      if (along_ray(p, q, image.sin2_angle)) return true;
     }
   }
   return false;
@@ -153,7 +154,8 @@ std::size_t JumpEdgeFilter::apply(DepthFrame& frame) const {
   check_frame_size(frame, camera_);
   const auto width = static_cast<std::size_t>(camera_.width);
   const auto height = static_cast<std::size_t>(camera_.height);
-  Image image{frame.depth, width, height, std::vector<float>((height + 2) * width, kNone)};
+  Image image{frame.depth, width, height, sin2_of(config_.angle),
+              std::vector<float>((height + 2) * width, kNone)};
   pool_->for_each_chunk(height, kRowChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin * width; i < end * width; ++i) {
       image.row(0)[i] = image.depth[i] > 0 ? image.depth[i] * norms_[i] : kNone;

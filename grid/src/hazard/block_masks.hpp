@@ -38,7 +38,7 @@ class BlockMasks {
         (part(cell.x, cells_.min.x) * rows_y_ + part(cell.y, cells_.min.y)) * rows_z_ +
         part(cell.z, cells_.min.z);
     // Several threads may store the same value.
-    const std::atomic_ref<Cell> known(known_.get()[i]);
+    const std::atomic_ref<Cell> known(known_[i]);
     Cell state = known.load(std::memory_order_relaxed);
     if (state == Cell::not_looked_up) {
       state = looked_up(cell);

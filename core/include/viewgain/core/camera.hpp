@@ -57,10 +57,10 @@ struct VIEWGAIN_EXPORT PinholeCamera {
   /// row-major. Cost: one ray() and 24 bytes per pixel.
   [[nodiscard]] std::vector<Eigen::Vector3d> ray_table() const;
 
-  /// Solid angle of every pixel [sr], row-major; 0 for a pixel without a ray. Let α be the angle
-  /// between the pixel's ray and the optical axis. Without distortion the solid angle is cos³α /
-  /// (fx fy). With distortion it is cos³α |∂(x, y) / ∂(u, v)|, where the derivatives are finite
-  /// differences between neighbouring pixels. `rays` must be the result of ray_table(). Throws
+  /// Solid angle of every pixel [sr], row-major; 0 for a pixel without a ray. `rays` must be the
+  /// result of ray_table(). The solid angle is cos³α |∂(x, y) / ∂(u, v)|, where α is the angle
+  /// between the pixel's ray and the optical axis. The derivatives are differences between the rays
+  /// of neighbouring pixels; without distortion, this is cos³α / (fx fy). Throws
   /// Error(invalid_argument) for a wrong number of rays.
   [[nodiscard]] std::vector<double> solid_angles(std::span<const Eigen::Vector3d> rays) const;
 

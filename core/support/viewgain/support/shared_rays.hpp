@@ -11,9 +11,9 @@
 
 namespace viewgain {
 
-/// The camera's ray_table(), shared by all who hold one of an equal camera. A table is freed with
-/// its last holder. Any thread may call it; a call during another one makes a table of its own
-/// instead of waiting.
+/// Returns the camera's ray_table(). Calls with equal cameras share one table as long as somebody
+/// holds it. Thread safety: may run from many threads. Does not wait: calls at the same time may
+/// each make a table.
 [[nodiscard]] VIEWGAIN_EXPORT std::shared_ptr<const std::vector<Eigen::Vector3d>> shared_rays(
     const PinholeCamera& camera);
 
